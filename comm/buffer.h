@@ -1,0 +1,57 @@
+// What a message carries.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+namespace delray::comm {
+
+// Owned bytes, moved and never copied implicitly; not initialised on construction, aligned for any
+// scalar type.
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(std::size_t size) : bytes_(new std::byte[size]), size_(size) {}
+
+  // A copy of `values`.
+  template <class T>
+  static Buffer of(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    Buffer buffer(values.size_bytes());
+    if (!values.empty()) std::memcpy(buffer.data(), values.data(), values.size_bytes());
+    return buffer;
+  }
+  template <class T>
+  static Buffer of_value(const T& value) {
+    return of(std::span<const T>(&value, 1));
+  }
+
+  std::byte* data() { return bytes_.get(); }
+  const std::byte* data() const { return bytes_.get(); }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  // The bytes as values of T. REQUIRES: size() is a multiple of sizeof(T).
+  template <class T>
+  std::span<T> as() {
+    static_assert(std::is_trivially_copyable_v<T>);
+    assert(size_ % sizeof(T) == 0);
+    return {reinterpret_cast<T*>(bytes_.get()), size_ / sizeof(T)};
+  }
+  template <class T>
+  std::span<const T> as() const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    assert(size_ % sizeof(T) == 0);
+    return {reinterpret_cast<const T*>(bytes_.get()), size_ / sizeof(T)};
+  }
+
+ private:
+  std::unique_ptr<std::byte[]> bytes_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace delray::comm

@@ -1,0 +1,97 @@
+// Ranks and their messages: the only way that data gets from one rank to another.
+//
+// A Communicator belongs to one rank, and only that rank's own thread uses it
+// (MPI_THREAD_FUNNELED). Collectives (comm/collectives.h) are free functions over it, so that every
+// message is seen, counted and simulated. Implementations: comm/threads.h, comm/mpi.h,
+// comm/simulated.h; comm/recording.h wraps any of them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "comm/buffer.h"
+
+namespace delray::comm {
+
+// 0 <= tag < kReservedTags is the caller's; collectives use tags from kReservedTags on.
+using Tag = int;
+inline constexpr int kAnyRank = -1;
+inline constexpr Tag kAnyTag = -1;
+inline constexpr Tag kReservedTags = 1 << 12;
+
+struct Envelope {
+  int source = 0;
+  Tag tag = 0;
+  std::size_t bytes = 0;
+};
+
+// How long probe may wait: not at all, until a message is there, or for a time (of the virtual
+// clock on the simulated machine).
+struct Deadline {
+  std::chrono::nanoseconds wait{0};
+  static Deadline now() { return {std::chrono::nanoseconds{0}}; }
+  static Deadline never() { return {std::chrono::nanoseconds::max()}; }
+  static Deadline in(std::chrono::nanoseconds wait) { return {wait}; }
+};
+
+// What a rank is busy with, for ledgers and timelines.
+enum class Phase : std::uint8_t {
+  other,
+  load,
+  transform,
+  redistribute,
+  bin,
+  rasterize,
+  trace,
+  shade,
+  compose,
+  gather,
+  collective,
+};
+const char* name(Phase phase);
+
+// What `work` counts; the simulated machine turns an amount into time.
+enum class Work : std::uint8_t {
+  seconds_e9,  // nanoseconds that the caller measured or wishes to spend
+  pixels_composited,
+  primitives,
+  fragments,
+  rays,
+  points,
+};
+
+// REQUIRES for every rank: 0 <= rank < size().
+class Communicator {
+ public:
+  virtual ~Communicator() = default;
+  Communicator() = default;
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+
+  // Hands `message` over; never blocks. A rank may send to itself. Any size, 2 GiB and more
+  // included.
+  virtual void send(int to, Tag tag, Buffer&& message) = 0;
+  // Waits for a message and takes it; first in, first out per source and tag.
+  virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;
+  // The next message that receive(envelope.source, envelope.tag) would take, left in place; nothing
+  // when none arrives before the deadline.
+  virtual std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) = 0;
+
+  // Collective: ranks that give the same colour form a communicator, ordered by key, then rank.
+  virtual std::unique_ptr<Communicator> split(int color, int key) = 0;
+
+  // Everything until the next mark belongs to this phase and round.
+  virtual void mark(Phase phase, int round) = 0;
+  virtual void work(Work kind, std::uint64_t amount) = 0;
+
+  // Ends all ranks; the launcher reports `why` with this rank's number (exit code 5).
+  [[noreturn]] virtual void abort(std::string why) = 0;
+};
+
+}  // namespace delray::comm
