@@ -19,6 +19,7 @@ endif()
 
 add_library(delray_warnings INTERFACE)
 target_compile_options(delray_warnings INTERFACE -Wall -Wextra -Wshadow
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false on std::string + (PR105329)
                        $<$<BOOL:${DELRAY_WERROR}>:-Werror>)
 if(DELRAY_SANITIZE)
   add_compile_options(-fsanitize=${DELRAY_SANITIZE} -fno-omit-frame-pointer -g1)

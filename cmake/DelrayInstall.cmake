@@ -1,0 +1,20 @@
+# `cmake --install`: libraries, headers, the program, and a package for find_package(delray).
+include_guard()
+include(CMakePackageConfigHelpers)
+
+get_property(libraries GLOBAL PROPERTY DELRAY_LIBRARIES)
+get_property(folders GLOBAL PROPERTY DELRAY_FOLDERS)
+install(TARGETS ${libraries} EXPORT delrayTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(folder IN LISTS folders)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/delray
+          FILES_MATCHING PATTERN "*.h" PATTERN internal EXCLUDE)
+endforeach()
+install(EXPORT delrayTargets NAMESPACE delray::
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/delray)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/delrayConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/delrayConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/delray)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/delrayConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/delrayConfig.cmake ${PROJECT_BINARY_DIR}/delrayConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/delray)

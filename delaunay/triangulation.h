@@ -1,0 +1,34 @@
+// What every triangulation method returns.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace delray::delaunay {
+
+// The finite simplices of a Delaunay triangulation. Vertices are rows of the input, from 0; of
+// equal points the lowest row represents.
+struct Triangulation {
+  int dim = 2;                          // 2: triangles, 3: tetrahedra
+  std::vector<std::uint32_t> vertices;  // dim + 1 per simplex, positively oriented
+  std::uint64_t distinct = 0;           // distinct points of the input
+  std::uint64_t hull_facets = 0;        // edges (2D) or triangles (3D) of the convex hull
+
+  std::size_t size() const { return vertices.size() / (static_cast<std::size_t>(dim) + 1); }
+};
+
+// Identity of a set of simplices (interface.md): the sum modulo 2^128 of the XXH3 128-bit hashes of
+// the simplices, each hashed as its vertices in ascending order as little-endian uint64.
+struct Hash128 {
+  std::uint64_t high = 0, low = 0;
+  bool operator==(const Hash128&) const = default;
+};
+Hash128 operator+(const Hash128& a, const Hash128& b);
+std::string to_string(const Hash128& hash);  // 32 lower-case hex digits, high half first
+
+// Parallel, without sorting. O(simplices).
+Hash128 hash(const Triangulation& triangulation);
+
+}  // namespace delray::delaunay
