@@ -1,0 +1,48 @@
+// The camera that both renderers share.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "geometry/box.h"
+
+namespace delray::scenes {
+
+// A pinhole camera. `up` need not be at right angles to the view, only not parallel to it.
+struct Camera {
+  glm::vec3 eye{0, 0, 1};
+  glm::vec3 at{0, 0, 0};
+  glm::vec3 up{0, 1, 0};
+  float vertical_fov = 40.0F;  // degrees, 0 < fov < 180
+  float near = 0;              // distance of the near plane; 0: a small part of |at - eye|
+};
+
+// A camera bound to a frame of pixels: the one place where pixels and directions meet.
+//
+// A point p is seen at view coordinates v = (dot(p - eye, right), dot(p - eye, up),
+// dot(p - eye, forward)), v.z > 0 in front, and falls on the real-valued pixel position
+//   x = half_width  + v.x / v.z * scale,   y = half_height - v.y / v.z * scale.
+// The centre of pixel (i, j) is (i + 0.5, j + 0.5); the ray through position (x, y) has direction
+//   forward + right * ((x - half_width) / scale) - up * ((y - half_height) / scale).
+struct View {
+  glm::vec3 eye, right, up, forward;  // unit vectors at right angles
+  float scale = 1;                    // pixels per unit of v.x / v.z
+  float half_width = 0, half_height = 0;
+  float near = 0;
+  int width = 0, height = 0;
+
+  glm::vec3 ray(float x, float y) const {  // not normalised: its part along `forward` is 1
+    return forward + right * ((x - half_width) / scale) - up * ((y - half_height) / scale);
+  }
+};
+
+// REQUIRES: width, height >= 1. A camera whose eye equals `at`, or whose up is parallel to the
+// view, gets some direction rather than NaN.
+View make_view(const Camera& camera, int width, int height);
+
+// Cameras around the box of a scene, such that all of it is in the frame.
+// name: default, front, back, left, right, top, bottom, iso. `z_up` for terrains and point data.
+// An empty box gives a camera that looks at the origin. Throws std::invalid_argument for other
+// names.
+Camera camera_around(const geometry::Box3& bounds, const char* name, bool z_up, float aspect);
+
+}  // namespace delray::scenes

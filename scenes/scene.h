@@ -1,0 +1,109 @@
+// What is rendered: meshes, placed by instances, with materials, textures, lights and cameras.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "geometry/box.h"
+#include "image/image.h"
+#include "scenes/camera.h"
+
+namespace delray::scenes {
+
+inline constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+// Indexed triangles with one material. Attributes are empty or have one value per vertex.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;   // unit length
+  std::vector<glm::vec2> uvs;       // v grows downwards, as rows of the texture do
+  std::vector<glm::vec4> tangents;  // xyz unit length, w = handedness: bitangent = w * cross(n, t)
+  std::vector<glm::vec4> colours;   // linear, straight alpha; multiplies the base colour
+  std::vector<glm::uvec3>
+      triangles;  // indices into the attributes; counter-clockwise seen from outside
+  std::uint32_t material = 0;
+};
+
+// A mesh placed in the world. The same mesh may be placed many times.
+struct Instance {
+  std::uint32_t mesh = 0;
+  glm::mat4x3 transform{1.0F};  // columns: x, y, z axis and origin of the mesh in the world
+};
+
+// glTF's metallic-roughness model, with transmission. Textures multiply their factor; kNone: none.
+struct Material {
+  std::string name;
+  glm::vec4 base_colour{0.8F, 0.8F, 0.8F, 1.0F};  // linear
+  float metallic = 0.0F, roughness = 0.6F;
+  float transmission = 0.0F, ior = 1.5F;  // transmission 1: glass
+  glm::vec3 emission{0.0F};               // radiance
+  float normal_scale = 1.0F;
+  enum class Alpha : std::uint8_t { opaque, mask, blend } alpha = Alpha::opaque;
+  float alpha_cutoff = 0.5F;
+  bool double_sided = true;
+  std::uint32_t base_colour_texture = kNone;
+  std::uint32_t metallic_roughness_texture = kNone;  // G roughness, B metallic
+  std::uint32_t normal_texture = kNone;
+  std::uint32_t emission_texture = kNone;
+};
+
+struct Texture {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<image::Rgba8> texels;  // straight alpha, top row first
+  bool srgb = true;                  // colours; false: data such as normals, used as they are
+  enum class Wrap : std::uint8_t { repeat, mirror, clamp } wrap_u = Wrap::repeat,
+                                                           wrap_v = Wrap::repeat;
+};
+
+struct Light {
+  enum class Kind : std::uint8_t {
+    point,        // radiant intensity `colour` at `position`
+    directional,  // irradiance `colour` on a surface facing it; light travels along `direction`
+    area,         // radiance `colour` from the parallelogram position + s*edge_u + t*edge_v,
+                  // 0 <= s, t <= 1, on the side of cross(edge_u, edge_v)
+  } kind = Kind::directional;
+  glm::vec3 colour{1.0F};
+  glm::vec3 position{0.0F}, direction{0, 0, -1}, edge_u{0.0F}, edge_v{0.0F};
+};
+
+// Light from everywhere: a latitude-longitude texture (`up` is its top) or, without one, a gradient
+// from `horizon` to `zenith` above and to `ground` below.
+struct Environment {
+  std::uint32_t texture = kNone;
+  glm::vec3 up{0, 1, 0};
+  glm::vec3 zenith{0.0F}, horizon{0.0F}, ground{0.0F};  // radiance
+};
+
+struct Scene {
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;  // at least one
+  std::vector<Texture> textures;
+  std::vector<Light> lights;
+  Environment environment;
+  std::vector<Camera> cameras;  // those of the file; may be empty
+  glm::dvec3 origin{0.0};       // added to a position gives the coordinates of the file (UTM ...)
+  bool z_up = false;
+};
+
+// Triangles and vertices of all instances. O(instances).
+std::uint64_t triangle_count(const Scene& scene);
+std::uint64_t vertex_count(const Scene& scene);
+
+// The box of all instances, transformed vertex by vertex; empty for an empty scene. Parallel.
+geometry::Box3 bounds(const Scene& scene);
+
+// Primitive numbers: triangle t of instance i is number first_primitive[i] + t. One more element
+// than instances: the last is the count.
+std::vector<std::uint64_t> first_primitives(const Scene& scene);
+
+// Adds what a picture needs and the file does not have: a material, normals (area-weighted, not
+// over creases sharper than `crease_degrees`), a key light and a sky where there is no light at
+// all, seen from `camera`. Idempotent.
+void complete(Scene& scene, const Camera& camera, float crease_degrees = 60.0F);
+
+}  // namespace delray::scenes
