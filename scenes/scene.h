@@ -102,8 +102,10 @@ geometry::Box3 bounds(const Scene& scene);
 std::vector<std::uint64_t> first_primitives(const Scene& scene);
 
 // Adds what a picture needs and the file does not have: a material, normals (area-weighted, not
-// over creases sharper than `crease_degrees`), a key light and a sky where there is no light at
-// all, seen from `camera`. Idempotent.
+// over creases sharper than `crease_degrees`), tangents where a normal texture needs them, a key
+// light and a sky where there is no light at all, seen from `camera`. A diffuse surface of albedo
+// 0.8 that faces the key light then has a radiance of about 0.75. Vertices on creases are split,
+// triangles keep their numbers. Idempotent.
 void complete(Scene& scene, const Camera& camera, float crease_degrees = 60.0F);
 
 }  // namespace delray::scenes
