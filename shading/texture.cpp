@@ -1,0 +1,181 @@
+#include "shading/texture.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "image/srgb.h"
+#include "shading/arithmetic.h"
+
+namespace delray::shading {
+namespace {
+
+using Wrap = scenes::Texture::Wrap;
+
+// How codes of one kind of texture become numbers from 0 to 1, and back.
+struct Coding {
+  std::array<float, 256> decode;
+  std::uint8_t (*encode)(float);
+};
+
+Coding make_coding(float (*decode)(std::uint8_t), std::uint8_t (*encode)(float)) {
+  Coding coding{{}, encode};
+  for (int i = 0; i < 256; ++i) coding.decode[i] = decode(static_cast<std::uint8_t>(i));
+  return coding;
+}
+
+const Coding kSrgb = make_coding(image::decode_srgb, image::encode_srgb);
+const Coding kLinear = make_coding(image::decode_alpha, image::encode_alpha);
+
+const Coding& coding(bool srgb) { return srgb ? kSrgb : kLinear; }
+
+// The source texels of texel i when `from` texels become `to` = max(1, from / 2), with weights that
+// add up to 1: two halves, or three parts where `from` is odd.
+struct Taps {
+  std::array<int, 3> at;
+  std::array<float, 3> weight;
+};
+
+Taps taps(int i, int from, int to) {
+  if (from == 1) return {{0, 0, 0}, {1.0F, 0.0F, 0.0F}};
+  if (from % 2 == 0) return {{2 * i, 2 * i + 1, 2 * i}, {0.5F, 0.5F, 0.0F}};
+  const auto whole = static_cast<float>(from);
+  return {{2 * i, 2 * i + 1, 2 * i + 2},
+          {static_cast<float>(to - i) / whole, static_cast<float>(to) / whole,
+           static_cast<float>(i + 1) / whole}};
+}
+
+void reduce(const image::Rgba8* from, const Texture::Level& source, image::Rgba8* to,
+            const Texture::Level& target, const Coding& colours) {
+  for (int y = 0; y < target.height; ++y) {
+    const Taps rows = taps(y, source.height, target.height);
+    for (int x = 0; x < target.width; ++x) {
+      const Taps columns = taps(x, source.width, target.width);
+      glm::vec3 weighted(0.0F), plain(0.0F);
+      float alpha = 0.0F;
+      for (int j = 0; j < 3; ++j) {
+        const image::Rgba8* row = from + static_cast<std::size_t>(rows.at[j]) * source.width;
+        for (int i = 0; i < 3; ++i) {
+          const float weight = rows.weight[j] * columns.weight[i];
+          if (weight == 0.0F) continue;
+          const image::Rgba8 texel = row[columns.at[i]];
+          const glm::vec3 colour(colours.decode[texel.r], colours.decode[texel.g],
+                                 colours.decode[texel.b]);
+          const float a = weight * kLinear.decode[texel.a];
+          plain += colour * weight;
+          weighted += colour * a;
+          alpha += a;
+        }
+      }
+      const glm::vec3 colour = alpha > 0.0F ? weighted / alpha : plain;
+      to[static_cast<std::size_t>(y) * target.width + x] = {
+          colours.encode(colour.x), colours.encode(colour.y), colours.encode(colour.z),
+          kLinear.encode(alpha)};
+    }
+  }
+}
+
+// Brings u into [0, 1].
+float fold(float u, Wrap wrap) {
+  if (!(std::abs(u) <= 0x1p24F)) return 0.0F;
+  switch (wrap) {
+    case Wrap::repeat:
+      return u - static_cast<float>(floor_to_int(u));
+    case Wrap::mirror: {
+      const float t = u - 2.0F * static_cast<float>(floor_to_int(u * 0.5F));
+      return t > 1.0F ? 2.0F - t : t;
+    }
+    case Wrap::clamp:
+      break;
+  }
+  return clamp01(u);
+}
+
+// The two texels beside a folded coordinate and the weight of the second.
+struct Pair {
+  int first, second;
+  float weight;
+};
+
+Pair pair(float folded, int size, Wrap wrap) {
+  const float x = folded * static_cast<float>(size) - 0.5F;
+  const int i = floor_to_int(x);
+  const float weight = x - static_cast<float>(i);
+  // At the edges a mirrored texture meets itself, so it ends there as a clamped one does.
+  const bool repeats = wrap == Wrap::repeat;
+  const int first = i < 0 ? (repeats ? size - 1 : 0) : i;
+  const int second = i + 1 >= size ? (repeats ? 0 : size - 1) : i + 1;
+  return {first, second, weight};
+}
+
+glm::vec4 bilinear(const Texture& texture, const Coding& colours, float u, float v, int level) {
+  const Texture::Level& at = texture.levels[level];
+  const image::Rgba8* texels = texture.texels.data() + at.first;
+  const Pair x = pair(u, at.width, texture.wrap_u);
+  const Pair y = pair(v, at.height, texture.wrap_v);
+  const auto texel = [&](int i, int j) {
+    const image::Rgba8 t = texels[static_cast<std::size_t>(j) * at.width + i];
+    return glm::vec4(colours.decode[t.r], colours.decode[t.g], colours.decode[t.b],
+                     kLinear.decode[t.a]);
+  };
+  const glm::vec4 a = texel(x.first, y.first), b = texel(x.second, y.first);
+  const glm::vec4 c = texel(x.first, y.second), d = texel(x.second, y.second);
+  const glm::vec4 top = a + (b - a) * x.weight;
+  const glm::vec4 bottom = c + (d - c) * x.weight;
+  return top + (bottom - top) * y.weight;
+}
+
+}  // namespace
+
+Texture make_texture(const scenes::Texture& texture) {
+  Texture result;
+  result.srgb = texture.srgb;
+  result.wrap_u = texture.wrap_u;
+  result.wrap_v = texture.wrap_v;
+  const bool empty = texture.width < 1 || texture.height < 1 || texture.texels.empty();
+  int width = empty ? 1 : texture.width, height = empty ? 1 : texture.height;
+  std::size_t total = 0;
+  for (;;) {
+    result.levels.push_back({total, width, height});
+    total += static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (width == 1 && height == 1) break;
+    width = std::max(1, width / 2);
+    height = std::max(1, height / 2);
+  }
+  result.texels.resize(total);
+  if (empty) {
+    result.texels[0] = {255, 255, 255, 255};
+  } else {
+    std::copy_n(texture.texels.begin(), result.levels.size() == 1 ? total : result.levels[1].first,
+                result.texels.begin());
+  }
+  for (std::size_t i = 1; i < result.levels.size(); ++i) {
+    reduce(result.texels.data() + result.levels[i - 1].first, result.levels[i - 1],
+           result.texels.data() + result.levels[i].first, result.levels[i], coding(result.srgb));
+  }
+  return result;
+}
+
+float mip_level(const Texture& texture, const Footprint& footprint) {
+  const glm::vec2 size(static_cast<float>(texture.levels[0].width),
+                       static_cast<float>(texture.levels[0].height));
+  const glm::vec2 dx = footprint.dx * size, dy = footprint.dy * size;
+  const float squared = std::max(glm::dot(dx, dx), glm::dot(dy, dy));
+  if (squared <= 1.0F) return 0.0F;
+  const auto last = static_cast<float>(texture.levels.size() - 1);
+  if (!(squared <= std::numeric_limits<float>::max())) return last;
+  return std::min(0.5F * log2(squared), last);
+}
+
+glm::vec4 sample(const Texture& texture, const glm::vec2& uv, float level) {
+  const Coding& colours = coding(texture.srgb);
+  const float u = fold(uv.x, texture.wrap_u), v = fold(uv.y, texture.wrap_v);
+  const auto base = static_cast<int>(level);
+  const float weight = level - static_cast<float>(base);
+  const glm::vec4 sharp = bilinear(texture, colours, u, v, base);
+  if (weight == 0.0F) return sharp;
+  return sharp + (bilinear(texture, colours, u, v, base + 1) - sharp) * weight;
+}
+
+}  // namespace delray::shading
