@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace delray::comm {
 
@@ -15,6 +16,13 @@ namespace delray::comm {
 class Buffer {
  public:
   Buffer() = default;
+  Buffer(Buffer&& other) noexcept
+      : bytes_(std::move(other.bytes_)), size_(std::exchange(other.size_, 0)) {}
+  Buffer& operator=(Buffer&& other) noexcept {
+    bytes_ = std::move(other.bytes_);
+    size_ = std::exchange(other.size_, 0);
+    return *this;
+  }
   explicit Buffer(std::size_t size) : bytes_(new std::byte[size]), size_(size) {}
 
   // A copy of `values`.
@@ -29,6 +37,8 @@ class Buffer {
   static Buffer of_value(const T& value) {
     return of(std::span<const T>(&value, 1));
   }
+
+  Buffer copy() const { return of(std::span<const std::byte>(bytes_.get(), size_)); }
 
   std::byte* data() { return bytes_.get(); }
   const std::byte* data() const { return bytes_.get(); }

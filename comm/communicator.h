@@ -16,7 +16,9 @@
 
 namespace delray::comm {
 
-// 0 <= tag < kReservedTags is the caller's; collectives use tags from kReservedTags on.
+// 0 <= tag < kReservedTags is the caller's; collectives use tags from kReservedTags on. kAnyTag
+// stands for any of the caller's tags, never for a collective's: a rank that waits for anything
+// does not take what a faster rank has already sent for the next collective.
 using Tag = int;
 inline constexpr int kAnyRank = -1;
 inline constexpr Tag kAnyTag = -1;
@@ -62,6 +64,8 @@ enum class Work : std::uint8_t {
   rays,
   points,
 };
+inline constexpr int kWorkKinds = 6;
+const char* name(Work kind);
 
 // REQUIRES for every rank: 0 <= rank < size().
 class Communicator {
@@ -73,9 +77,14 @@ class Communicator {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
+  // The number that `rank` has in the run's first communicator, the one that was never split.
+  virtual int world_rank(int rank) const = 0;
+  // Time since the run began: wall-clock, or this rank's virtual clock on the simulated machine.
+  // Code that measures itself asks here, so that it behaves alike on both.
+  virtual double seconds() const = 0;
 
   // Hands `message` over; never blocks. A rank may send to itself. Any size, 2 GiB and more
-  // included.
+  // included. Every message should be received before the communicator is destroyed.
   virtual void send(int to, Tag tag, Buffer&& message) = 0;
   // Waits for a message and takes it; first in, first out per source and tag.
   virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;

@@ -1,0 +1,51 @@
+#include "comm/communicator.h"
+
+namespace delray::comm {
+
+const char* name(Phase phase) {
+  switch (phase) {
+    case Phase::other:
+      return "other";
+    case Phase::load:
+      return "load";
+    case Phase::transform:
+      return "transform";
+    case Phase::redistribute:
+      return "redistribute";
+    case Phase::bin:
+      return "bin";
+    case Phase::rasterize:
+      return "rasterize";
+    case Phase::trace:
+      return "trace";
+    case Phase::shade:
+      return "shade";
+    case Phase::compose:
+      return "compose";
+    case Phase::gather:
+      return "gather";
+    case Phase::collective:
+      return "collective";
+  }
+  return "unknown";
+}
+
+const char* name(Work kind) {
+  switch (kind) {
+    case Work::seconds_e9:
+      return "nanoseconds";
+    case Work::pixels_composited:
+      return "pixels composited";
+    case Work::primitives:
+      return "primitives";
+    case Work::fragments:
+      return "fragments";
+    case Work::rays:
+      return "rays";
+    case Work::points:
+      return "points";
+  }
+  return "unknown";
+}
+
+}  // namespace delray::comm

@@ -1,0 +1,271 @@
+#include "comm/threads.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <condition_variable>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "comm/collectives.h"
+#include "comm/internal/first_failure.h"
+#include "comm/internal/group.h"
+#include "parallel/arena.h"
+
+namespace delray::comm {
+namespace {
+
+using internal::Group;
+using Clock = std::chrono::steady_clock;
+
+// Where messages for one rank arrive, whatever its communicators. `mutex` guards the rank's queues
+// in all groups and the fields below.
+struct alignas(64) Inbox {
+  std::mutex mutex;
+  std::condition_variable changed;
+  // What the rank sleeps for; a sender that delivers it clears `waiting`.
+  bool waiting = false;
+  bool counted_as_blocked = false;
+  const Group* group = nullptr;
+  int from = 0;
+  Tag tag = 0;
+
+  // Read by other ranks only to word a failure and to spin.
+  std::atomic<Phase> phase{Phase::other};
+  std::atomic<std::uint32_t> deliveries{0};
+};
+
+class World {
+ public:
+  World(int ranks, const ThreadsOptions& options)
+      : inboxes(ranks), timeout(options.timeout), running_(ranks) {
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    spins = ranks <= cores ? 2000 : 0;
+  }
+
+  std::vector<Inbox> inboxes;  // indexed by world rank
+  std::chrono::nanoseconds timeout;
+  int spins;  // how often a rank looks for a message before it sleeps; 0 where cores are scarce
+  Clock::time_point start = Clock::now();
+  internal::FirstFailure failure;
+
+  template <class Why>
+  void fail(int rank, Why&& why) {
+    if (!failure.record(rank, inboxes[rank].phase, std::forward<Why>(why))) return;
+    for (Inbox& inbox : inboxes) {
+      // Locked, so that a rank between its look at the failure and its sleep is not missed.
+      { const std::scoped_lock lock(inbox.mutex); }
+      inbox.changed.notify_all();
+    }
+  }
+
+  // `running_` counts the ranks that have neither returned nor sleep without a deadline. A sender
+  // counts the rank that it wakes before it goes on, so at zero nobody can send: a deadlock unless
+  // all have returned. True for the one caller that brings it to zero.
+  bool stop_running() { return running_.fetch_sub(1, std::memory_order_acq_rel) == 1; }
+  void resume_running() { running_.fetch_add(1, std::memory_order_acq_rel); }
+
+  // REQUIRES: the caller holds no lock.
+  void report_deadlock() {
+    std::string why;
+    int first = -1, others = 0;
+    for (std::size_t rank = 0; rank < inboxes.size(); ++rank) {
+      const std::scoped_lock lock(inboxes[rank].mutex);
+      if (!inboxes[rank].waiting) continue;
+      if (first < 0) {
+        first = static_cast<int>(rank);
+        why = "deadlock: it waits for a message from " +
+              internal::describe_pattern(inboxes[rank].from, inboxes[rank].tag);
+      } else {
+        ++others;
+      }
+    }
+    if (first < 0) return;
+    if (others > 0) why += ", and " + std::to_string(others) + " more rank(s) wait in vain";
+    fail(first, std::move(why));
+  }
+
+ private:
+  std::atomic<int> running_;
+};
+
+class ThreadCommunicator final : public Communicator {
+ public:
+  ThreadCommunicator(World& world, std::shared_ptr<Group> group, int rank)
+      : world_(world),
+        group_(std::move(group)),
+        rank_(rank),
+        inbox_(world.inboxes[group_->world_ranks[rank]]) {}
+
+  int rank() const override { return rank_; }
+  int size() const override { return static_cast<int>(group_->world_ranks.size()); }
+  int world_rank(int rank) const override { return group_->world_ranks[rank]; }
+  double seconds() const override {
+    return std::chrono::duration<double>(Clock::now() - world_.start).count();
+  }
+
+  void send(int to, Tag tag, Buffer&& message) override {
+    assert(0 <= to && to < size() && tag >= 0);
+    if (world_.failure.happened()) throw RunEnded{};
+    Inbox& inbox = world_.inboxes[group_->world_ranks[to]];
+    bool wake = false;
+    {
+      const std::scoped_lock lock(inbox.mutex);
+      group_->queues[to].push(rank_, tag, 0, std::move(message));
+      inbox.deliveries.fetch_add(1, std::memory_order_release);
+      if (inbox.waiting && inbox.group == group_.get() &&
+          internal::matches(rank_, tag, inbox.from, inbox.tag)) {
+        wake = true;
+        stop_waiting(inbox);
+      }
+    }
+    if (wake) inbox.changed.notify_one();
+  }
+
+  Buffer receive(int from_or_any, Tag tag_or_any) override {
+    std::unique_lock lock(inbox_.mutex);
+    auto* message = wait(lock, from_or_any, tag_or_any, Deadline::never());
+    return group_->queues[rank_].take(message);
+  }
+
+  std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) override {
+    std::unique_lock lock(inbox_.mutex);
+    const auto* message = wait(lock, from_or_any, tag_or_any, deadline);
+    if (!message) return std::nullopt;
+    return Envelope{message->source, message->tag, message->payload.size()};
+  }
+
+  std::unique_ptr<Communicator> split(int color, int key) override {
+    group_->post_split(rank_, color, key);
+    barrier(*this);
+    auto [group, rank] = group_->take_split(rank_);
+    return std::make_unique<ThreadCommunicator>(world_, std::move(group), rank);
+  }
+
+  void mark(Phase phase, int) override { inbox_.phase.store(phase, std::memory_order_relaxed); }
+  void work(Work, std::uint64_t) override {}
+
+  void abort(std::string why) override {
+    world_.fail(group_->world_ranks[rank_], std::move(why));
+    throw RunEnded{};
+  }
+
+ private:
+  using Message = internal::MessageQueue<Buffer>::Message;
+
+  // REQUIRES: the caller holds inbox.mutex and inbox.waiting.
+  void stop_waiting(Inbox& inbox) {
+    inbox.waiting = false;
+    if (inbox.counted_as_blocked) world_.resume_running();
+  }
+
+  // The first message that matches, once there is one; null when the deadline passes before.
+  Message* wait(std::unique_lock<std::mutex>& lock, int from, Tag tag, Deadline deadline) {
+    constexpr auto kNever = std::chrono::nanoseconds::max();
+    const auto& queue = group_->queues[rank_];
+    const bool forever = deadline.wait == kNever;
+    const auto longest = std::min(deadline.wait, world_.timeout);
+    Clock::time_point end{};
+    bool end_known = false;
+    int spins_left = world_.spins;
+    for (;;) {
+      if (world_.failure.happened()) throw RunEnded{};
+      if (auto* message = queue.find(from, tag)) return message;
+      if (longest != kNever) {
+        if (deadline.wait <= std::chrono::nanoseconds{0}) return nullptr;
+        const auto now = Clock::now();
+        if (!end_known) end = now + longest;
+        end_known = true;
+        if (now >= end) {
+          if (longest == deadline.wait) return nullptr;
+          lock.unlock();
+          abort("stalled: waited " +
+                std::to_string(std::chrono::duration<double>(longest).count()) +
+                " s for a message from " + internal::describe_pattern(from, tag));
+        }
+      }
+      if (spins_left > 0) {
+        spin(lock, spins_left);
+        continue;
+      }
+      sleep(lock, from, tag, forever, longest == kNever ? nullptr : &end);
+    }
+  }
+
+  // Sleeping and being woken takes longer than most answers on a machine with enough cores.
+  void spin(std::unique_lock<std::mutex>& lock, int& spins_left) {
+    const std::uint32_t seen = inbox_.deliveries.load(std::memory_order_relaxed);
+    lock.unlock();
+    while (spins_left > 0 && inbox_.deliveries.load(std::memory_order_acquire) == seen) {
+      --spins_left;
+      if (spins_left % 64 == 0) std::this_thread::yield();
+    }
+    lock.lock();
+  }
+
+  void sleep(std::unique_lock<std::mutex>& lock, int from, Tag tag, bool forever,
+             const Clock::time_point* end) {
+    inbox_.waiting = true;
+    inbox_.counted_as_blocked = forever;
+    inbox_.group = group_.get();
+    inbox_.from = from;
+    inbox_.tag = tag;
+    if (forever && world_.stop_running()) {
+      lock.unlock();
+      world_.report_deadlock();
+      lock.lock();
+    } else if (end) {
+      inbox_.changed.wait_until(lock, *end);
+    } else {
+      inbox_.changed.wait(lock);
+    }
+    if (inbox_.waiting) stop_waiting(inbox_);
+  }
+
+  World& world_;
+  std::shared_ptr<Group> group_;
+  int rank_;
+  Inbox& inbox_;
+};
+
+void run_rank(World& world, const std::shared_ptr<Group>& group, int rank, int threads_per_rank,
+              const std::function<void(Communicator&)>& body) {
+  try {
+    ThreadCommunicator communicator(world, group, rank);
+    parallel::Arena arena(threads_per_rank);
+    arena.execute([&] { body(communicator); });
+  } catch (const RunEnded&) {
+  } catch (...) {
+    world.fail(rank, std::current_exception());
+  }
+  if (world.stop_running()) world.report_deadlock();
+}
+
+}  // namespace
+
+void run_threads(int ranks, int threads_per_rank, const std::function<void(Communicator&)>& body,
+                 const ThreadsOptions& options) {
+  assert(ranks >= 1 && threads_per_rank >= 1);
+  World world(ranks, options);
+  std::vector<int> members(ranks);
+  std::iota(members.begin(), members.end(), 0);
+  const auto group = std::make_shared<Group>(std::move(members));
+  {
+    std::vector<std::jthread> threads;
+    threads.reserve(ranks);
+    try {
+      for (int rank = 0; rank < ranks; ++rank) {
+        threads.emplace_back([&world, &group, rank, threads_per_rank, &body] {
+          run_rank(world, group, rank, threads_per_rank, body);
+        });
+      }
+    } catch (...) {
+      world.fail(static_cast<int>(threads.size()), std::current_exception());
+    }
+  }
+  world.failure.rethrow_if_any();
+}
+
+}  // namespace delray::comm
