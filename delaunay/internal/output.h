@@ -1,0 +1,68 @@
+// A file being written: whole or not at all, in order, formatted in parallel.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "files/atomic_file.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay {
+
+// "-" is standard output. Throws FileError (device) where writing fails.
+class Output {
+ public:
+  explicit Output(const std::filesystem::path& path);
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  void write(std::string_view bytes);
+  // Ends the content: what was written is complete, but not yet in its place.
+  void close();
+  // Puts the file in its place. REQUIRES: closed.
+  void commit();
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::string name_;
+  std::optional<files::AtomicFile> target_;  // none for standard output
+  std::FILE* file_;
+};
+
+void append_number(std::string& text, double value);  // the shortest that reads back equal
+void append_number(std::string& text, std::uint64_t value);
+
+// The bytes of a number, lowest first.
+template <class T>
+void append_bytes(std::string& bytes, T value) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  bytes.append(raw.data(), raw.size());
+}
+
+// Writes what format(i, text) appends to `text` for every i of [0, n), in order.
+template <class F>
+void write_rows(Output& output, std::size_t n, F&& format) {
+  constexpr std::size_t kBlock = 4096;  // rows: about 1 ms of formatting
+  constexpr std::size_t kBlocks = 64;   // held in memory at a time
+  std::vector<std::string> blocks(kBlocks);
+  for (std::size_t begin = 0; begin < n; begin += kBlock * kBlocks) {
+    parallel::parallel_for(0, kBlocks, 1, [&](std::size_t block) {
+      blocks[block].clear();
+      const std::size_t first = begin + block * kBlock;
+      for (std::size_t i = first; i < n && i < first + kBlock; ++i) format(i, blocks[block]);
+    });
+    for (const std::string& block : blocks) output.write(block);
+  }
+}
+
+}  // namespace delray::delaunay

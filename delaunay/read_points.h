@@ -1,0 +1,41 @@
+// Points from files: one reader for each format, behind one table.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "delaunay/points.h"
+#include "files/format.h"
+
+namespace delray::delaunay {
+
+struct Input;
+
+// A way to read points. Every reader checks what a header promises against the size of the file
+// before it allocates, and throws FileError (input) with the line, byte or element at fault for
+// anything that is not a finite number where one is due.
+struct PointReader {
+  files::Format format;
+  std::string_view name;         // "PLY"
+  std::string_view description;  // one line
+  std::string_view suffixes;     // ".xyz .csv .txt"
+  PointCloud (*read)(const Input& input);
+};
+
+std::span<const PointReader> point_readers();
+
+struct ReadOptions {
+  // Overrules content and suffix; `unknown` goes by them.
+  files::Format format = files::Format::unknown;
+};
+
+// Reads the points of a file, row by row as they stand there; of a mesh its vertices. "-" is
+// standard input, whose format follows from its content. Numbers in text become the nearest double,
+// 32-bit floats are widened, LAS integers become integer * scale + offset, computed in double.
+//
+// Throws FileError (input) if the file cannot be read, is of no known point format, is broken, or
+// has no points. O(bytes), text is parsed in parallel.
+PointCloud read_points(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace delray::delaunay

@@ -1,0 +1,270 @@
+#include "files/format.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "files/error.h"
+#include "files/read_file.h"
+
+namespace delray::files {
+namespace {
+
+using Named = std::pair<std::string_view, Format>;
+
+constexpr std::array kSuffixes = {
+    Named{".ply", Format::ply},          Named{".obj", Format::obj},
+    Named{".off", Format::off},          Named{".stl", Format::stl},
+    Named{".gltf", Format::gltf},        Named{".glb", Format::glb},
+    Named{".las", Format::las},          Named{".laz", Format::las},
+    Named{".vtu", Format::vtu},          Named{".node", Format::node},
+    Named{".ele", Format::node},         Named{".xyz", Format::text},
+    Named{".json", Format::json_points}, Named{".csv", Format::text},
+    Named{".txt", Format::text},         Named{".pts", Format::text},
+    Named{".asc", Format::text},         Named{".tsv", Format::text},
+    Named{".png", Format::image},        Named{".jpg", Format::image},
+    Named{".jpeg", Format::image},       Named{".tif", Format::image},
+    Named{".tiff", Format::image},       Named{".exr", Format::image},
+    Named{".hdr", Format::image},        Named{".bmp", Format::image},
+    Named{".tga", Format::image},        Named{".pgm", Format::image},
+    Named{".ppm", Format::image},        Named{".webp", Format::image},
+};
+
+constexpr std::array kMagic = {
+    Named{"LASF", Format::las},
+    Named{"glTF", Format::glb},
+    Named{"\x89PNG", Format::image},
+    Named{"\xff\xd8\xff", Format::image},
+    Named{std::string_view("II*\0", 4), Format::image},
+    Named{std::string_view("MM\0*", 4), Format::image},
+    Named{std::string_view("II+\0", 4), Format::image},
+    Named{std::string_view("MM\0+", 4), Format::image},
+    Named{"\x76\x2f\x31\x01", Format::image},
+    Named{"#?RADIANCE", Format::image},
+    Named{"#?RGBE", Format::image},
+};
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+constexpr std::string_view kObjKeywords[] = {"v", "vn", "vt", "vp", "f",      "l",
+                                             "p", "o",  "g",  "s",  "usemtl", "mtllib"};
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+// Takes the first line from `rest`, without its end.
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find('\n'), rest.size());
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(std::min(end + 1, rest.size()));
+  return line;
+}
+
+std::string_view take_word(std::string_view& rest) {
+  rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
+  const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
+  rest.remove_prefix(word.size());
+  return word;
+}
+
+// The first line that is neither blank nor a comment.
+std::string_view first_content_line(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view line = take_line(text);
+    std::string_view rest = line;
+    const std::string_view word = take_word(rest);
+    if (!word.empty() && word.front() != '#') return line;
+  }
+  return {};
+}
+
+bool is_count(std::string_view word, std::uint64_t& count) {
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+bool ply_has_faces(std::string_view text) {
+  while (!text.empty()) {
+    std::string_view line = take_line(text);
+    const std::string_view keyword = take_word(line);
+    if (keyword == "end_header") return false;
+    if (keyword != "element") continue;
+    const std::string_view element = take_word(line);
+    std::uint64_t count = 0;
+    const bool surface = element == "face" || element == "tristrips";
+    if (surface && is_count(take_word(line), count) && count > 0) return true;
+  }
+  return false;
+}
+
+// OFF, with the prefixes that say what else a vertex has.
+bool is_off_keyword(std::string_view word) {
+  return word.ends_with("OFF") && word.size() <= 7 &&
+         word.substr(0, word.size() - 3).find_first_not_of("STCN4n") == std::string_view::npos;
+}
+
+// The three counts stand after the keyword, on its line or the next.
+bool off_has_faces(std::string_view text) {
+  std::uint64_t counts[2] = {};
+  int found = 0;
+  while (!text.empty() && found < 2) {
+    std::string_view line = take_line(text);
+    line = line.substr(0, line.find('#'));
+    for (auto word = take_word(line); !word.empty() && found < 2; word = take_word(line)) {
+      if (is_count(word, counts[found])) ++found;
+    }
+  }
+  return found == 2 && counts[1] > 0;
+}
+
+bool is_face_line(std::string_view line) {
+  return line.size() > 2 && line[0] == 'f' && (line[1] == ' ' || line[1] == '\t');
+}
+
+bool obj_has_faces(std::string_view text) {
+  while (!text.empty()) {
+    if (is_face_line(take_line(text))) return true;
+  }
+  return false;
+}
+
+bool obj_has_faces(const std::filesystem::path& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (!file) return false;
+  std::string buffer(std::size_t{1} << 20, '\0');
+  std::size_t kept = 0;  // bytes of an unfinished line at the front of the buffer
+  while (true) {
+    const std::size_t got = std::fread(buffer.data() + kept, 1, buffer.size() - kept, file.get());
+    const std::string_view text(buffer.data(), kept + got);
+    if (obj_has_faces(text)) return true;
+    if (got == 0) return false;
+    const std::size_t line = text.rfind('\n') + 1;  // 0 if there is none
+    // A line that fills the whole buffer is no face: drop it.
+    kept = line == 0 && text.size() == buffer.size() ? 0 : text.size() - line;
+    std::memmove(buffer.data(), text.data() + line, kept);
+  }
+}
+
+bool is_binary_stl(std::string_view start, std::uint64_t size) {
+  constexpr std::size_t kHeader = 84, kTriangle = 50;
+  if (start.size() < kHeader) return false;
+  std::uint32_t count = 0;
+  std::memcpy(&count, start.data() + kHeader - sizeof count, sizeof count);
+  return size == kHeader + std::uint64_t{kTriangle} * count;
+}
+
+Format json_format(std::string_view start) {
+  std::string_view rest = start.substr(std::min(start.find_first_not_of(kBlanks), start.size()));
+  if (rest.starts_with('[')) return Format::json_points;
+  const bool asset = rest.find("\"asset\"") != std::string_view::npos ||
+                     rest.find("\"meshes\"") != std::string_view::npos ||
+                     rest.find("\"buffers\"") != std::string_view::npos;
+  return rest.starts_with('{') && asset ? Format::gltf : Format::unknown;
+}
+
+Format xml_format(std::string_view start) {
+  std::string_view rest = start.substr(std::min(start.find_first_not_of(kBlanks), start.size()));
+  const bool xml = rest.starts_with("<?xml") || rest.starts_with("<VTKFile");
+  return xml && rest.substr(0, 4096).find("<VTKFile") != std::string_view::npos ? Format::vtu
+                                                                                : Format::unknown;
+}
+
+Format format_of_content(std::string_view start, std::uint64_t size) {
+  for (const auto& [magic, format] : kMagic) {
+    if (start.starts_with(magic)) return format;
+  }
+  if (start.starts_with("\xef\xbb\xbf")) start.remove_prefix(3);  // UTF-8 byte order mark
+  if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Format::ply;
+  if (is_binary_stl(start, size)) return Format::stl;
+  if (const Format json = json_format(start); json != Format::unknown) return json;
+  if (const Format xml = xml_format(start); xml != Format::unknown) return xml;
+  std::string_view line = first_content_line(start);
+  const std::string_view word = take_word(line);
+  if (is_off_keyword(word)) return Format::off;
+  if (word == "solid" && start.find("facet") != std::string_view::npos) return Format::stl;
+  if (std::ranges::find(kObjKeywords, word) != std::end(kObjKeywords)) return Format::obj;
+  return Format::unknown;
+}
+
+bool looks_like_number(std::string_view word) {
+  word = word.substr(0, word.find_first_of(",;"));
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error != std::errc::invalid_argument && end == word.data() + word.size();
+}
+
+bool has_faces(Format format, std::string_view start) {
+  switch (format) {
+    case Format::ply:
+      return ply_has_faces(start);
+    case Format::off:
+      return off_has_faces(start);
+    case Format::obj:
+      return obj_has_faces(start);
+    case Format::stl:
+    case Format::gltf:
+    case Format::glb:
+    case Format::vtu:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::string_view name(Format format) {
+  if (format == Format::json_points) return "json";
+  if (format == Format::text) return "text";
+  if (format == Format::image) return "image";
+  for (const auto& [suffix, known] : kSuffixes) {
+    if (known == format) return suffix.substr(1);
+  }
+  return "unknown";
+}
+
+Format format_of_suffix(const std::filesystem::path& path) {
+  const std::string suffix = lower(path.extension().string());
+  for (const auto& [known, format] : kSuffixes) {
+    if (known == suffix) return format;
+  }
+  return Format::unknown;
+}
+
+FileKind identify(std::string_view start, std::uint64_t size, const std::filesystem::path& path) {
+  FileKind kind;
+  kind.format = format_of_content(start, size);
+  if (kind.format == Format::unknown) kind.format = format_of_suffix(path);
+  if (kind.format == Format::unknown) {
+    std::string_view line = first_content_line(start);
+    if (looks_like_number(take_word(line))) kind.format = Format::text;
+  }
+  kind.has_faces = has_faces(kind.format, start);
+  // A .node of an .ele is a mesh only together with it; the name says which one the user means.
+  if (kind.format == Format::node) kind.has_faces = lower(path.extension().string()) == ".ele";
+  return kind;
+}
+
+FileKind identify(const std::filesystem::path& path) {
+  constexpr std::size_t kStart = std::size_t{1} << 20;
+  const std::string start = read_start(path, kStart);
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  FileKind kind = identify(start, error ? start.size() : size, path);
+  if (kind.format == Format::obj && !kind.has_faces && start.size() == kStart) {
+    kind.has_faces = obj_has_faces(path);
+  }
+  return kind;
+}
+
+}  // namespace delray::files
