@@ -1,0 +1,74 @@
+#include "scenes/generate.h"
+
+#include <array>
+#include <charconv>
+#include <stdexcept>
+#include <string>
+
+#include "scenes/internal/generators.h"
+
+namespace delray::scenes {
+namespace {
+
+constexpr std::string_view kPrefix = "gen:";
+constexpr std::uint64_t kDefaultSeed = 1;
+constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // 3e9 corners still have 32-bit numbers
+
+constexpr std::array kGenerators = {
+    Generator{"terrain", "fractal height field with lakes, woods and snow", 1'000'000,
+              &internal::generate_terrain},
+    Generator{"cornell", "the Cornell box: two blocks under an area light", 32,
+              &internal::generate_cornell},
+    Generator{"spheres", "reflective and refractive spheres over a chequered plane", 500'000,
+              &internal::generate_spheres},
+    Generator{"city", "blocks of buildings, high in the middle, between streets", 1'000'000,
+              &internal::generate_city},
+    Generator{"field", "a thousand instances of four detailed models on a plain", 13'000'000,
+              &internal::generate_field}};
+
+[[noreturn]] void refuse(std::string_view name, const std::string& why) {
+  std::string message =
+      "'" + std::string(name) + "': " + why + "; gen:KIND[:TRIANGLES[:SEED]], KIND one of";
+  for (const Generator& g : kGenerators) message += std::string(" ") + g.name;
+  throw std::invalid_argument(message);
+}
+
+// Cuts the text up to the next colon off `rest`.
+std::string_view next_field(std::string_view& rest) {
+  const std::size_t colon = rest.find(':');
+  const std::string_view field = rest.substr(0, colon);
+  rest = colon == std::string_view::npos ? std::string_view{} : rest.substr(colon + 1);
+  return field;
+}
+
+std::uint64_t number(std::string_view name, std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    refuse(name, "'" + std::string(text) + "' is not a whole number");
+  }
+  return value;
+}
+
+}  // namespace
+
+std::span<const Generator> generators() { return kGenerators; }
+
+bool is_generated(std::string_view name) { return name.starts_with(kPrefix); }
+
+Scene generate(std::string_view name) {
+  if (!is_generated(name)) refuse(name, "does not start with gen:");
+  std::string_view rest = name.substr(kPrefix.size());
+  const std::string_view kind = next_field(rest), triangles = next_field(rest),
+                         seed = next_field(rest);
+  if (!rest.empty()) refuse(name, "has too many parts");
+  for (const Generator& g : kGenerators) {
+    if (kind != g.name) continue;
+    const std::uint64_t count = triangles.empty() ? g.default_triangles : number(name, triangles);
+    if (count < 1 || count > kMostTriangles) refuse(name, "triangles must be from 1 to 1e9");
+    return g.generate(count, seed.empty() ? kDefaultSeed : number(name, seed));
+  }
+  refuse(name, "there is no such kind of scene");
+}
+
+}  // namespace delray::scenes

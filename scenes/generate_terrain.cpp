@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <cmath>
+
+#include "parallel/parallel_for.h"
+#include "scenes/internal/generators.h"
+#include "scenes/internal/noise.h"
+#include "scenes/internal/shapes.h"
+
+namespace delray::scenes::internal {
+namespace {
+
+constexpr std::size_t kRowsPerBlock = 4;  // hundreds of vertices, each with several octaves
+constexpr float kRelief = 0.30F;          // height of the mountains; the terrain is 2 wide
+constexpr float kWater = -0.035F;         // height of the lakes
+
+// Noise summed over octaves, each damped where those before it are steep, which leaves valleys
+// smooth and ridges rough as erosion does (Quilez 2008).
+float height_at(std::uint64_t seed, glm::vec2 p, int octaves) {
+  float sum = 0, amplitude = 1;
+  glm::vec2 slope(0);
+  for (int octave = 0; octave < octaves; ++octave) {
+    const NoiseSample n = noise(seed + static_cast<std::uint64_t>(octave), p);
+    slope += glm::vec2(n.gradient) * amplitude;
+    sum += amplitude * n.value / (1.0F + glm::dot(slope, slope));
+    amplitude *= 0.5F;
+    // Turned by an angle with tangent 3/4, so that the lattices of the octaves do not line up.
+    p = glm::vec2(0.8F * p.x - 0.6F * p.y, 0.6F * p.x + 0.8F * p.y) * 2.0F;
+  }
+  return std::max(sum * kRelief * 1.6F, kWater);
+}
+
+float blend(float low, float high, float x) {
+  const float t = std::clamp((x - low) / (high - low), 0.0F, 1.0F);
+  return t * t * (3.0F - 2.0F * t);
+}
+
+glm::vec4 colour_at(std::uint64_t seed, const glm::vec3& p, const glm::vec3& normal) {
+  constexpr glm::vec3 kLake{0.035F, 0.11F, 0.17F}, kSand{0.42F, 0.34F, 0.20F};
+  constexpr glm::vec3 kGrass{0.10F, 0.20F, 0.045F}, kForest{0.035F, 0.09F, 0.025F};
+  constexpr glm::vec3 kRock{0.23F, 0.205F, 0.18F}, kSnow{0.85F, 0.88F, 0.92F};
+  if (p.y <= kWater) return {kLake, 1.0F};
+  const float patches = noise(seed + 77, glm::vec2(p.x, p.z) * 9.0F).value;
+  const float height = p.y + 0.03F * patches;
+  glm::vec3 colour = glm::mix(kGrass, kForest, blend(-0.3F, 0.3F, patches));
+  colour = glm::mix(kSand, colour, blend(kWater, kWater + 0.02F, height));
+  colour = glm::mix(colour, kRock, blend(0.10F, 0.20F, height));
+  colour = glm::mix(kRock, colour, blend(0.70F, 0.86F, normal.y));
+  colour = glm::mix(colour, kSnow, blend(0.20F, 0.27F, height) * blend(0.55F, 0.75F, normal.y));
+  return {colour, 1.0F};
+}
+
+Mesh height_field(std::uint32_t n, std::uint64_t seed) {
+  Mesh mesh;
+  mesh.name = "terrain";
+  const std::size_t vertices = std::size_t{n} * n;
+  mesh.positions.resize(vertices);
+  mesh.normals.resize(vertices);
+  mesh.colours.resize(vertices);
+  const float spacing = 2.0F / static_cast<float>(n - 1);
+  int octaves = 4;  // the last one has waves of a few cells
+  while (octaves < 12 && (1U << octaves) * 4 < n) ++octaves;
+  parallel::parallel_for(0, n, kRowsPerBlock, [&](std::size_t row) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const float x = -1.0F + static_cast<float>(i) * spacing;
+      const float z = -1.0F + static_cast<float>(row) * spacing;
+      const float y = height_at(seed, glm::vec2(x, z) * 1.15F, octaves);
+      mesh.positions[row * n + i] = {x, y, z};
+    }
+  });
+  parallel::parallel_for(0, n, kRowsPerBlock, [&](std::size_t row) {
+    const std::size_t below = row == 0 ? row : row - 1,
+                      above = std::min<std::size_t>(row + 1, n - 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t left = i == 0 ? i : i - 1, right = std::min<std::size_t>(i + 1, n - 1);
+      const glm::vec3 x = mesh.positions[row * n + right] - mesh.positions[row * n + left];
+      const glm::vec3 z = mesh.positions[above * n + i] - mesh.positions[below * n + i];
+      const std::size_t v = row * n + i;
+      mesh.normals[v] = glm::normalize(glm::cross(z, x));
+      mesh.colours[v] = colour_at(seed, mesh.positions[v], mesh.normals[v]);
+    }
+  });
+  append_grid_triangles(mesh, n, n, false, false);
+  // Along i runs x and along j runs z, whose cross product points down.
+  parallel::parallel_blocks(0, mesh.triangles.size(), 65536, [&](std::size_t a, std::size_t b) {
+    for (std::size_t t = a; t < b; ++t) std::swap(mesh.triangles[t].y, mesh.triangles[t].z);
+  });
+  return mesh;
+}
+
+}  // namespace
+
+Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed) {
+  const double cells = std::sqrt(static_cast<double>(std::max<std::uint64_t>(triangles, 2)) / 2);
+  const auto n = static_cast<std::uint32_t>(std::lround(std::max(1.0, cells))) + 1;
+  Scene scene;
+  scene.materials.push_back(matte("terrain", glm::vec3(1.0F), 0.9F));
+  add_mesh(scene, height_field(n, seed));
+
+  Light sun;
+  sun.colour = glm::vec3(1.0F, 0.93F, 0.82F) * 2.9F;
+  sun.direction = glm::normalize(glm::vec3(0.62F, -0.55F, -0.42F));
+  scene.lights.push_back(sun);
+  scene.environment.zenith = {0.22F, 0.36F, 0.62F};
+  scene.environment.horizon = {0.52F, 0.60F, 0.68F};
+  scene.environment.ground = {0.10F, 0.10F, 0.09F};
+  Camera camera;
+  camera.eye = {0.35F, 0.95F, 2.05F};
+  camera.at = {0.0F, -0.02F, 0.12F};
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+}  // namespace delray::scenes::internal

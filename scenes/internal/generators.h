@@ -1,0 +1,27 @@
+// The functions behind the table of generators; see scenes/generate.h for their arguments.
+#pragma once
+
+#include <cstdint>
+
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// A fractal height field, y up, 2 units wide, coloured by height and slope.
+Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed);
+
+// The Cornell box (Goral et al. 1984) with its area light and two blocks. Every rectangle is cut
+// into squares of cells to reach the number of triangles; the seed changes nothing.
+Scene generate_cornell(std::uint64_t triangles, std::uint64_t seed);
+
+// Reflective and refractive spheres over a chequered plane, after Whitted (1980). The seed places
+// the small ones.
+Scene generate_spheres(std::uint64_t triangles, std::uint64_t seed);
+
+// Blocks of buildings between streets: high in the middle, low outside.
+Scene generate_city(std::uint64_t triangles, std::uint64_t seed);
+
+// Up to 1008 instances of four detailed models on a plain, most of them far away or hidden.
+Scene generate_field(std::uint64_t triangles, std::uint64_t seed);
+
+}  // namespace delray::scenes::internal
