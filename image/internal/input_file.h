@@ -1,0 +1,54 @@
+// One picture file open for reading: format found, header checked, rows delivered top first.
+#pragma once
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace delray::image::internal {
+
+// Errors are files::FileError (input) with the file's name.
+class InputFile {
+ public:
+  explicit InputFile(const std::filesystem::path& path);
+  // REQUIRES: `bytes` outlives the object.
+  InputFile(std::span<const std::byte> bytes, std::string name);
+
+  const OIIO::ImageSpec& spec() const { return spec_; }
+  const std::string& format() const { return format_; }
+  [[noreturn]] void fail(const std::string& what) const;
+
+  // Calls visit(y, rows, values) for blocks of rows from the top, y counted from 0 in the data
+  // window; `values` are rows * width * channels, interleaved, of OpenImageIO's type `type`, which
+  // is T's.
+  template <class T, class Visit>
+  void read(OIIO::TypeDesc type, Visit&& visit) {
+    const int step = rows_per_block();
+    std::vector<T> block(static_cast<std::size_t>(step) * static_cast<std::size_t>(spec_.width) *
+                         static_cast<std::size_t>(spec_.nchannels));
+    for (int y = 0; y < spec_.height; y += step) {
+      const int rows = std::min(step, spec_.height - y);
+      read_rows(y, rows, type, block.data());
+      visit(y, rows, block.data());
+    }
+  }
+
+ private:
+  void open(const std::string& name, const OIIO::ImageSpec& hints);
+  void check_header() const;
+  int rows_per_block() const;
+  void read_rows(int y, int rows, OIIO::TypeDesc type, void* values);
+
+  std::string name_, format_;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives input_
+  std::unique_ptr<OIIO::ImageInput> input_;
+  OIIO::ImageSpec spec_;
+};
+
+}  // namespace delray::image::internal
