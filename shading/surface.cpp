@@ -47,7 +47,9 @@ Surface evaluate(const Shader& shader, const scenes::Material& material, const P
     normal = normal_mapped(shader, material, point);
   }
   surface.geometric_normal = surface.front ? point.geometric_normal : -point.geometric_normal;
-  surface.normal = surface.front ? normal : -normal;
+  // Meshes exist whose normals contradict their winding; the winding says which side is outside.
+  const bool agree = glm::dot(normal, point.geometric_normal) >= 0.0F;
+  surface.normal = agree == surface.front ? normal : -normal;
 
   glm::vec4 colour = material.base_colour * point.colour;
   if (material.base_colour_texture != scenes::kNone) {

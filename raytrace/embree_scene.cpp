@@ -1,0 +1,333 @@
+#include "raytrace/embree_scene.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <stdexcept>
+#include <vector>
+
+#if __has_include(<embree3/rtcore.h>)
+#include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
+
+namespace delray::raytrace {
+namespace {
+
+static_assert(sizeof(Ray) == sizeof(RTCRayHit) && offsetof(Ray, far) == offsetof(RTCRay, tfar) &&
+              offsetof(Ray, normal_x) == offsetof(RTCRayHit, hit) &&
+              offsetof(Ray, instance) == offsetof(RTCRayHit, hit.instID));
+static_assert(sizeof(RayPacket) == sizeof(RTCRayHit16) &&
+              offsetof(RayPacket, far) == offsetof(RTCRay16, tfar) &&
+              offsetof(RayPacket, normal_x) == offsetof(RTCRayHit16, hit) &&
+              offsetof(RayPacket, instance) == offsetof(RTCRayHit16, hit.instID));
+static_assert(sizeof(ShadowPacket) == sizeof(RTCRay16) &&
+              offsetof(ShadowPacket, far) == offsetof(RTCRay16, tfar));
+static_assert(kMiss == RTC_INVALID_GEOMETRY_ID);
+
+// Embree 4 passes flags beside the context, Embree 3 within it.
+#if RTC_VERSION_MAJOR >= 4
+using Context = RTCRayQueryContext;
+#else
+using Context = RTCIntersectContext;
+#endif
+
+// What occlusion filters find of the query that they belong to.
+struct Query {
+  Context context;
+  SeeThrough* passed = nullptr;  // element i is of the ray with id i
+};
+
+void start(Query& query, bool coherent) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcInitRayQueryContext(&query.context);
+  (void)coherent;
+#else
+  rtcInitIntersectContext(&query.context);
+  if (coherent) query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#endif
+}
+
+#if RTC_VERSION_MAJOR >= 4
+RTCIntersectArguments intersect_arguments(Query& query, bool coherent) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &query.context;
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  return arguments;
+}
+RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &query.context;
+  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  return arguments;
+}
+#endif
+
+// Notes a hit and lets the ray go on. Embree may report one hit several times.
+void note_and_pass(const RTCFilterFunctionNArguments* arguments) {
+  auto* query = reinterpret_cast<Query*>(arguments->context);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const unsigned instance = RTCHitN_instID(arguments->hit, n, i, 0);
+    const Hit hit{RTCRayN_tfar(arguments->ray, n, i),
+                  instance != kMiss ? instance : RTCHitN_geomID(arguments->hit, n, i),
+                  RTCHitN_primID(arguments->hit, n, i), RTCHitN_u(arguments->hit, n, i),
+                  RTCHitN_v(arguments->hit, n, i)};
+    SeeThrough& passed = query->passed[RTCRayN_id(arguments->ray, n, i)];
+    bool known = false;
+    for (int j = 0; j < passed.count; ++j) {
+      known = known || (passed.hits[j].placement == hit.placement &&
+                        passed.hits[j].triangle == hit.triangle);
+    }
+    if (!known) {
+      if (passed.count == SeeThrough::kMost) continue;  // stays valid: ends the ray
+      passed.hits[passed.count++] = hit;
+    }
+    arguments->valid[i] = 0;
+  }
+}
+
+RTCBuildQuality quality(BuildOptions::Quality quality) {
+  switch (quality) {
+    case BuildOptions::Quality::low:
+      return RTC_BUILD_QUALITY_LOW;
+    case BuildOptions::Quality::high:
+      return RTC_BUILD_QUALITY_HIGH;
+    case BuildOptions::Quality::medium:
+      break;
+  }
+  return RTC_BUILD_QUALITY_MEDIUM;
+}
+
+bool count_memory(void* total, ssize_t bytes, bool /*after*/) {
+  static_cast<std::atomic<std::int64_t>*>(total)->fetch_add(bytes, std::memory_order_relaxed);
+  return true;
+}
+
+struct DeviceDeleter {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
+using Tree = std::unique_ptr<RTCSceneTy, SceneDeleter>;
+
+void check(RTCDevice device, const char* doing) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_NONE) return;
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  throw std::runtime_error(std::string("Embree failed with error ") +
+                           std::to_string(static_cast<int>(error)) + " while " + doing);
+}
+
+// Embree loads 16 bytes of the last vertex, of which 12 are ours. The 4 that follow are never used
+// and are readable except where a page ends.
+bool last_vertex_is_readable(const glm::vec3* positions, std::size_t size, std::size_t capacity) {
+  constexpr std::uintptr_t kSmallestPage = 4096;
+  return capacity > size || reinterpret_cast<std::uintptr_t>(positions + size) % kSmallestPage != 0;
+}
+
+}  // namespace
+
+struct EmbreeScene::State {
+  std::atomic<std::int64_t> memory{0};
+  Device device;
+  std::vector<Tree> meshes;  // element i: of mesh i where it is shared, else null
+  Tree top;
+  std::vector<std::unique_ptr<std::vector<glm::vec3>>> copies;  // of positions that were unreadable
+  std::string isa;
+};
+
+namespace {
+
+Tree new_tree(RTCDevice device, const BuildOptions& options) {
+  Tree tree(rtcNewScene(device));
+  check(device, "making a scene");
+  rtcSetSceneBuildQuality(tree.get(), quality(options.quality));
+  rtcSetSceneFlags(tree.get(), options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  return tree;
+}
+
+void commit(RTCDevice device, RTCScene tree) {
+  // Joining keeps the work in the arena of the caller; Embree would use an arena of its own.
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_JOIN_COMMIT_SUPPORTED) != 0) {
+    rtcJoinCommitScene(tree);
+  } else {
+    rtcCommitScene(tree);
+  }
+  check(device, "building the acceleration structure");
+}
+
+void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
+                      const Placement& placement, const BuildOptions& options) {
+  RTCDevice device = state.device.get();
+  const scenes::Mesh& mesh = *placement.mesh;
+  const glm::vec3* positions = placement.positions;
+  const bool moved = !placement.moved.empty();
+  if (!last_vertex_is_readable(positions, mesh.positions.size(),
+                               moved ? mesh.positions.size() + 1 : mesh.positions.capacity())) {
+    auto copy = std::make_unique<std::vector<glm::vec3>>();
+    copy->reserve(mesh.positions.size() + 1);
+    copy->assign(positions, positions + mesh.positions.size());
+    positions = copy->data();
+    state.copies.push_back(std::move(copy));
+  }
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
+                             sizeof(glm::vec3), mesh.positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
+  rtcSetGeometryBuildQuality(geometry, quality(options.quality));
+  if (placement.see_through) rtcSetGeometryOccludedFilterFunction(geometry, note_and_pass);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(tree, geometry, number);
+  rtcReleaseGeometry(geometry);
+  check(device, "adding triangles");
+}
+
+void attach_instance(EmbreeScene::State& state, unsigned number, const Placement& placement,
+                     const BuildOptions& options) {
+  RTCDevice device = state.device.get();
+  Tree& mesh = state.meshes[placement.mesh_number];
+  if (!mesh) {
+    mesh = new_tree(device, options);
+    attach_triangles(state, mesh.get(), 0, placement, options);
+    commit(device, mesh.get());
+  }
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, mesh.get());
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &placement.to_world);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(state.top.get(), geometry, number);
+  rtcReleaseGeometry(geometry);
+  check(device, "adding an instance");
+}
+
+std::string isa_in_use(RTCDevice device) {
+#if defined(__x86_64__)
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) {
+    return "avx512";
+  }
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
+    return __builtin_cpu_supports("avx2") != 0 ? "avx2" : "avx";
+  }
+  return __builtin_cpu_supports("sse4.2") != 0 ? "sse4.2" : "sse2";
+#else
+  (void)device;
+  return "neon";
+#endif
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptions& options)
+    : state_(std::make_unique<State>()) {
+  // No "threads=": with oneTBB that would limit every arena of the process.
+  std::string configuration = "set_affinity=0";
+  if (!options.isa.empty()) configuration += ",isa=" + options.isa;
+  state_->device.reset(rtcNewDevice(configuration.c_str()));
+  if (!state_->device) check(nullptr, "starting");
+  RTCDevice device = state_->device.get();
+  rtcSetDeviceMemoryMonitorFunction(device, count_memory, &state_->memory);
+  state_->isa = isa_in_use(device);
+
+  std::size_t meshes = 0;
+  for (const Placement& p : placements) meshes = std::max<std::size_t>(meshes, p.mesh_number + 1);
+  state_->meshes.resize(meshes);
+  state_->top = new_tree(device, options);
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    const Placement& placement = placements[i];
+    if (placement.mesh == nullptr || placement.mesh->triangles.empty()) continue;
+    has_see_through_ = has_see_through_ || placement.see_through;
+    if (placement.instanced) {
+      attach_instance(*state_, static_cast<unsigned>(i), placement, options);
+    } else {
+      attach_triangles(*state_, state_->top.get(), static_cast<unsigned>(i), placement, options);
+    }
+  }
+  commit(device, state_->top.get());
+}
+
+EmbreeScene::~EmbreeScene() = default;
+EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
+EmbreeScene& EmbreeScene::operator=(EmbreeScene&&) noexcept = default;
+
+void EmbreeScene::intersect(Ray& ray) const {
+  Query query;
+  start(query, false);
+  auto* embree_ray = reinterpret_cast<RTCRayHit*>(&ray);
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments = intersect_arguments(query, false);
+  rtcIntersect1(state_->top.get(), embree_ray, &arguments);
+#else
+  rtcIntersect1(state_->top.get(), &query.context, embree_ray);
+#endif
+}
+
+void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet) const {
+  Query query;
+  start(query, true);
+  auto* rays = reinterpret_cast<RTCRayHit16*>(&packet);
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments = intersect_arguments(query, true);
+  rtcIntersect16(active.ray, state_->top.get(), rays, &arguments);
+#else
+  rtcIntersect16(active.ray, state_->top.get(), &query.context, rays);
+#endif
+}
+
+bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {
+  Query query;
+  start(query, false);
+  query.passed = &passed;
+  passed.count = 0;
+  ray.id = 0;
+  auto* embree_ray = reinterpret_cast<RTCRay*>(&ray);
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments = occluded_arguments(query, false);
+  rtcOccluded1(state_->top.get(), embree_ray, &arguments);
+#else
+  rtcOccluded1(state_->top.get(), &query.context, embree_ray);
+#endif
+  return ray.far < 0.0F;
+}
+
+void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
+                           std::span<SeeThrough, kPacketRays> passed) const {
+  Query query;
+  start(query, true);
+  query.passed = passed.data();
+  for (int i = 0; i < kPacketRays; ++i) {
+    packet.id[i] = static_cast<std::uint32_t>(i);
+    passed[i].count = 0;
+  }
+  auto* rays = reinterpret_cast<RTCRay16*>(&packet);
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments = occluded_arguments(query, true);
+  rtcOccluded16(active.ray, state_->top.get(), rays, &arguments);
+#else
+  rtcOccluded16(active.ray, state_->top.get(), &query.context, rays);
+#endif
+}
+
+std::uint64_t EmbreeScene::memory() const {
+  return static_cast<std::uint64_t>(state_->memory.load(std::memory_order_relaxed));
+}
+
+std::string EmbreeScene::version() const {
+  const auto part = [&](RTCDeviceProperty property) {
+    return std::to_string(rtcGetDeviceProperty(state_->device.get(), property));
+  };
+  return part(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." + part(RTC_DEVICE_PROPERTY_VERSION_MINOR) +
+         "." + part(RTC_DEVICE_PROPERTY_VERSION_PATCH);
+}
+
+std::string EmbreeScene::isa() const { return state_->isa; }
+
+}  // namespace delray::raytrace

@@ -1,0 +1,65 @@
+// The acceleration structure: all that the project knows of Embree is behind this file.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "raytrace/placement.h"
+#include "raytrace/ray.h"
+
+namespace delray::raytrace {
+
+struct BuildOptions {
+  // How much time to spend on a better structure; `high` splits triangles and takes most memory.
+  enum class Quality : std::uint8_t { low, medium, high } quality = Quality::medium;
+  bool robust = true;        // no ray slips between two triangles that share an edge
+  bool share_meshes = true;  // meshes placed more than once become Embree instances
+  std::string isa;           // sse2, sse4.2, avx, avx2, avx512 (where present); empty: the best
+};
+
+// Immutable once made; any number of threads may send rays at the same time.
+class EmbreeScene {
+ public:
+  // Builds in the caller's arena. Buffers of `placements` are used in place and have to outlive the
+  // object. Degenerate triangles are never hit. O(n log n).
+  // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
+  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options);
+  ~EmbreeScene();
+  EmbreeScene(EmbreeScene&&) noexcept;
+  EmbreeScene& operator=(EmbreeScene&&) noexcept;
+
+  // Nearest hits. Of several triangles at exactly the same distance any one is taken, always the
+  // same for the same ray and instruction set.
+  void intersect(Ray& ray) const;
+  void intersect(const ActiveRays& active, RayPacket& packet) const;  // rays close to each other
+
+  // Whether anything opaque is on the way. What can be seen through (Placement::see_through) is put
+  // into `passed` instead, once each. A negative `far` on return: occluded.
+  bool occluded(Ray& ray, SeeThrough& passed) const;
+  void occluded(const ActiveRays& active, ShadowPacket& packet,
+                std::span<SeeThrough, kPacketRays> passed) const;
+
+  bool has_see_through() const { return has_see_through_; }
+  std::uint64_t memory() const;  // bytes that Embree holds for this scene
+  std::string version() const;   // of the library, e.g. "3.13.5"
+  std::string isa() const;       // in use: sse2, sse4.2, avx, avx2, avx512, neon
+
+  struct State;  // Embree's objects
+
+ private:
+  std::unique_ptr<State> state_;
+  bool has_see_through_ = false;
+};
+
+// The hit of a ray that hit something. REQUIRES: ray.triangle != kMiss.
+inline Hit hit_of(const Ray& ray) {
+  return {ray.far, ray.instance != kMiss ? ray.instance : ray.geometry, ray.triangle, ray.u, ray.v};
+}
+inline Hit hit_of(const RayPacket& packet, int i) {
+  return {packet.far[i], packet.instance[i] != kMiss ? packet.instance[i] : packet.geometry[i],
+          packet.triangle[i], packet.u[i], packet.v[i]};
+}
+
+}  // namespace delray::raytrace

@@ -1,0 +1,70 @@
+// Rays and what they hit, in the layout that Embree reads and writes.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace delray::raytrace {
+
+inline constexpr std::uint32_t kMiss = 0xFFFFFFFFU;
+
+// One ray: points origin + t * direction, near <= t <= far; the direction need not have unit
+// length. Intersecting it sets far to the distance of the nearest hit, in units of the direction,
+// and fills in the hit; triangle stays kMiss where there is none.
+struct alignas(16) Ray {
+  float origin_x, origin_y, origin_z, near;
+  float direction_x, direction_y, direction_z, time = 0.0F;
+  float far = std::numeric_limits<float>::infinity();
+  std::uint32_t mask = 0xFFFFFFFFU, id = 0, flags = 0;
+
+  // The hit. Barycentric: the point is (1 - u - v) * vertex 0 + u * vertex 1 + v * vertex 2.
+  float normal_x, normal_y, normal_z;  // as Embree has it: not normalised, in space of the mesh
+  float u, v;
+  std::uint32_t triangle = kMiss;
+  std::uint32_t geometry = kMiss;  // number of the placement, unless instance is set
+  std::uint32_t instance = kMiss;  // number of the placement, if that is an Embree instance
+};
+
+inline constexpr int kPacketRays = 16;
+
+// Sixteen rays of a block of 4 x 4 pixels; element i is ray i.
+struct alignas(64) RayPacket {
+  float origin_x[kPacketRays], origin_y[kPacketRays], origin_z[kPacketRays], near[kPacketRays];
+  float direction_x[kPacketRays], direction_y[kPacketRays], direction_z[kPacketRays],
+      time[kPacketRays];
+  float far[kPacketRays];
+  std::uint32_t mask[kPacketRays], id[kPacketRays], flags[kPacketRays];
+  float normal_x[kPacketRays], normal_y[kPacketRays], normal_z[kPacketRays];
+  float u[kPacketRays], v[kPacketRays];
+  std::uint32_t triangle[kPacketRays], geometry[kPacketRays], instance[kPacketRays];
+};
+
+// The part of a packet that shadow rays need.
+struct alignas(64) ShadowPacket {
+  float origin_x[kPacketRays], origin_y[kPacketRays], origin_z[kPacketRays], near[kPacketRays];
+  float direction_x[kPacketRays], direction_y[kPacketRays], direction_z[kPacketRays],
+      time[kPacketRays];
+  float far[kPacketRays];
+  std::uint32_t mask[kPacketRays], id[kPacketRays], flags[kPacketRays];
+};
+
+// Which rays of a packet take part: -1 yes, 0 no.
+struct alignas(64) ActiveRays {
+  std::int32_t ray[kPacketRays];
+};
+
+// Where a ray met a triangle.
+struct Hit {
+  float distance = 0.0F;  // in units of the ray's direction
+  std::uint32_t placement = kMiss, triangle = kMiss;
+  float u = 0.0F, v = 0.0F;
+};
+
+// What a shadow ray passed on its way that does not stop it altogether, in no particular order.
+struct SeeThrough {
+  static constexpr int kMost = 12;  // beyond that many layers nothing is seen
+  int count = 0;
+  Hit hits[kMost];
+};
+
+}  // namespace delray::raytrace

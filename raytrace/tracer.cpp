@@ -1,0 +1,18 @@
+#include "raytrace/tracer.h"
+
+#include <chrono>
+#include <utility>
+
+namespace delray::raytrace {
+
+Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  shading::Shader shader = shading::make_shader(scene);
+  std::vector<Placement> placements = place(scene, shader, options.share_meshes);
+  const std::uint64_t degenerate = count_degenerate(placements);
+  EmbreeScene embree(placements, options);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  return {std::move(shader), std::move(placements), std::move(embree), degenerate, seconds.count()};
+}
+
+}  // namespace delray::raytrace

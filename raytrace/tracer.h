@@ -1,0 +1,27 @@
+// A scene made ready for tracing: what every rank that traces holds.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/embree_scene.h"
+#include "raytrace/placement.h"
+#include "scenes/scene.h"
+#include "shading/shader.h"
+
+namespace delray::raytrace {
+
+// Refers to the scene it was made from, which has to outlive it. Ranks that are threads of one
+// process may share one.
+struct Tracer {
+  shading::Shader shader;
+  std::vector<Placement> placements;
+  EmbreeScene embree;
+  std::uint64_t degenerate = 0;  // triangles that can never be hit
+  double build_seconds = 0.0;
+};
+
+// Parallel in the caller's arena. Throws what EmbreeScene throws.
+Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options = {});
+
+}  // namespace delray::raytrace
