@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kSide = 5.55F;        // of the box
 constexpr std::uint64_t kQuads = 16;  // five walls, the light, two blocks of five faces
-constexpr glm::vec3 kLightRadiance{20.0F, 16.5F, 11.0F};
+constexpr glm::vec3 kLightRadiance{27.0F, 22.5F, 15.5F};
 
 // Five faces of an upright block: all but the bottom. `along` is the horizontal edge from `corner`,
 // the other one is at its right angle, to the left seen from above.

@@ -10,7 +10,7 @@ namespace delray::scenes::internal {
 namespace {
 
 constexpr std::size_t kRowsPerBlock = 4;  // hundreds of vertices, each with several octaves
-constexpr float kRelief = 0.30F;          // height of the mountains; the terrain is 2 wide
+constexpr float kRelief = 0.46F;          // height of the mountains; the terrain is 2 wide
 constexpr float kWater = -0.035F;         // height of the lakes
 
 // Noise summed over octaves, each damped where those before it are steep, which leaves valleys
@@ -45,7 +45,7 @@ glm::vec4 colour_at(std::uint64_t seed, const glm::vec3& p, const glm::vec3& nor
   colour = glm::mix(kSand, colour, blend(kWater, kWater + 0.02F, height));
   colour = glm::mix(colour, kRock, blend(0.10F, 0.20F, height));
   colour = glm::mix(kRock, colour, blend(0.70F, 0.86F, normal.y));
-  colour = glm::mix(colour, kSnow, blend(0.20F, 0.27F, height) * blend(0.55F, 0.75F, normal.y));
+  colour = glm::mix(colour, kSnow, blend(0.17F, 0.22F, height) * blend(0.55F, 0.75F, normal.y));
   return {colour, 1.0F};
 }
 
@@ -104,8 +104,8 @@ Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed) {
   scene.environment.horizon = {0.52F, 0.60F, 0.68F};
   scene.environment.ground = {0.10F, 0.10F, 0.09F};
   Camera camera;
-  camera.eye = {0.35F, 0.95F, 2.05F};
-  camera.at = {0.0F, -0.02F, 0.12F};
+  camera.eye = {0.30F, 0.80F, 1.62F};
+  camera.at = {0.0F, 0.0F, 0.10F};
   scene.cameras.push_back(camera);
   return scene;
 }

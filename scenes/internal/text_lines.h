@@ -1,0 +1,74 @@
+// Lines and words of a text in memory, without copies.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace delray::scenes::internal {
+
+// The words of one line, separated by blanks.
+class Words {
+ public:
+  explicit Words(std::string_view line) : rest_(line) {}
+
+  // Empty when there are no more.
+  std::string_view next() {
+    std::size_t begin = 0;
+    while (begin < rest_.size() && is_blank(rest_[begin])) ++begin;
+    std::size_t end = begin;
+    while (end < rest_.size() && !is_blank(rest_[end])) ++end;
+    const std::string_view word = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    return word;
+  }
+
+ private:
+  static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+  }
+  std::string_view rest_;
+};
+
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+
+  // The next line without its end ("\n", "\r\n" or "\r"); false after the last.
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    line = rest_.substr(0, end);
+    const bool pair = end + 1 < rest_.size() && rest_[end] == '\r' && rest_[end + 1] == '\n';
+    rest_.remove_prefix(std::min(rest_.size(), end + (pair ? 2 : 1)));
+    ++number_;
+    return true;
+  }
+  // The next line that has words once a comment, from `mark` on, is cut off.
+  bool next_with_words(std::string_view& line, char mark) {
+    while (next(line)) {
+      line = line.substr(0, line.find(mark));
+      if (!Words(line).next().empty()) return true;
+    }
+    return false;
+  }
+
+  std::uint64_t number() const { return number_; }  // of the line last returned, from 1
+  std::string place() const { return "line " + std::to_string(number_); }
+
+ private:
+  std::string_view rest_;
+  std::uint64_t number_ = 0;
+};
+
+// The whole word as a number; false if it is none. A leading '+' is allowed.
+template <class T>
+bool parse(std::string_view word, T& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return end == word.data() + word.size() && !word.empty() &&
+         (error == std::errc{} || error == std::errc::result_out_of_range);
+}
+
+}  // namespace delray::scenes::internal

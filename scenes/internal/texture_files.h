@@ -1,0 +1,43 @@
+// The textures of a scene file, each read once.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "scenes/internal/source.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// How a texture is used; one picture used in two ways becomes two textures.
+struct TextureUse {
+  bool srgb = true;
+  Texture::Wrap wrap_u = Texture::Wrap::repeat, wrap_v = Texture::Wrap::repeat;
+  auto operator<=>(const TextureUse&) const = default;
+};
+
+class TextureFiles {
+ public:
+  TextureFiles(const Source& source, std::vector<Texture>& textures)
+      : source_(source), textures_(textures) {}
+
+  // The number of the texture in a file (relative to the scene's folder, with / or \ between
+  // names), or kNone, with a warning, if it is missing or damaged.
+  std::uint32_t from_file(const std::string& name, const TextureUse& use);
+  // The same for an encoded picture in memory. `name` tells pictures apart.
+  std::uint32_t from_memory(const std::string& name, std::span<const std::byte> bytes,
+                            const TextureUse& use);
+
+ private:
+  template <class Decode>
+  std::uint32_t add(const std::string& name, const TextureUse& use, Decode&& decode);
+
+  const Source& source_;
+  std::vector<Texture>& textures_;
+  std::map<std::pair<std::string, TextureUse>, std::uint32_t> numbers_;
+};
+
+}  // namespace delray::scenes::internal

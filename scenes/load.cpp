@@ -1,0 +1,70 @@
+#include "scenes/load.h"
+
+#include <algorithm>
+
+#include "files/format.h"
+#include "files/read_file.h"
+#include "scenes/internal/check_file.h"
+#include "scenes/internal/finish.h"
+#include "scenes/internal/import.h"
+#include "scenes/internal/load_gltf.h"
+
+namespace delray::scenes {
+namespace {
+
+using files::Format;
+using internal::Source;
+
+// A backslash at the end of a line continues it; blanks instead leave one long line.
+std::string join_continued_lines(std::string text) {
+  for (std::size_t i = text.find('\\'); i != std::string::npos; i = text.find('\\', i + 1)) {
+    std::size_t end = i + 1;
+    while (end < text.size() && text[end] == '\r') ++end;
+    if (end < text.size() && text[end] == '\n') std::fill(&text[i], &text[end] + 1, ' ');
+  }
+  return text;
+}
+
+Scene read(Format format, const Source& source) {
+  switch (format) {
+    case Format::obj:
+      internal::check_obj(source);
+      return internal::import(source, {.suffix = "obj", .keep_vertices = false});
+    case Format::ply:
+      internal::check_ply(source);
+      return internal::import(source, {.suffix = "ply"});
+    case Format::off:
+      internal::check_off(source);
+      return internal::import(source, {.suffix = "off"});
+    case Format::stl:
+      internal::check_stl(source);
+      return internal::import(source,
+                              {.suffix = "stl", .keep_normals = false, .keep_vertices = false});
+    case Format::gltf:
+    case Format::glb:
+      return internal::load_gltf(source);
+    default:
+      source.fail("",
+                  "this is not a scene that can be read; formats: OBJ, PLY, STL, glTF, GLB, OFF");
+  }
+}
+
+}  // namespace
+
+Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings,
+           parallel::Progress* progress) {
+  if (progress) progress->start(3);
+  const Format format = files::identify(path).format;
+  std::string content = files::read_file(path);
+  if (content.empty()) Source{path, content, warnings}.fail("", "the file is empty");
+  if (format == Format::obj) content = join_continued_lines(std::move(content));
+  const Source source{path, content, warnings};
+  if (progress) progress->advance();
+  Scene scene = read(format, source);
+  if (progress) progress->advance();
+  internal::finish(source, scene);
+  if (progress) progress->advance();
+  return scene;
+}
+
+}  // namespace delray::scenes
