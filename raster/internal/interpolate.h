@@ -1,0 +1,102 @@
+// Where in its triangle a pixel lies, perspective-correct.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <glm/glm.hpp>
+
+#include "raster/internal/screen.h"
+
+namespace delray::raster {
+
+// Shares of the three vertices at a point of the triangle: not negative, their sum is 1.
+struct Weights {
+  float of[3];
+  float sum;  // what the planes below add up to there, for derivatives
+};
+
+// Homogeneous barycentric coordinates as planes over the screen (Olano & Greer 1997): vertex k has
+// the share u_k / (u_0 + u_1 + u_2) with u_k = (a[k]*dx + b[k]*dy) + c[k], dx and dy in pixels from
+// pixel (x, y). They come from the triangle as it was before clipping, so that clipping leaves no
+// trace, and are positive in it.
+struct Barycentrics {
+  float a[3], b[3], c[3];
+  int x, y;
+};
+
+// From the vertices in view coordinates. A triangle without area, or seen edge-on, gives planes
+// that are finite.
+inline Barycentrics make_barycentrics(const Screen& screen,
+                                      const std::array<glm::vec3, 3>& vertices) {
+  const scenes::View& view = screen.view;
+  const glm::dvec3 v[3] = {vertices[0], vertices[1], vertices[2]};
+  // The origin is a pixel of the frame amid the triangle: planes lose the least precision there.
+  double low_x = screen.width, high_x = 0, low_y = screen.height, high_y = 0;
+  for (const glm::dvec3& p : v) {
+    const bool in_front = p.z >= view.near;
+    const double x = p.x / p.z * view.scale + view.half_width;
+    const double y = view.half_height - p.y / p.z * view.scale;
+    low_x = in_front ? std::min(low_x, x) : 0;
+    high_x = in_front ? std::max(high_x, x) : screen.width;
+    low_y = in_front ? std::min(low_y, y) : 0;
+    high_y = in_front ? std::max(high_y, y) : screen.height;
+  }
+  const auto amid = [](double low, double high, int size) {
+    const double centre = (std::max(low, 0.0) + std::min(high, double(size))) * 0.5;
+    return static_cast<int>(std::clamp(centre, 0.0, size - 1.0));
+  };
+  Barycentrics result;
+  result.x = amid(low_x, high_x, screen.width);
+  result.y = amid(low_y, high_y, screen.height);
+
+  // The ray of the origin's centre, and one plane per vertex through the eye and the edge opposite.
+  const double ray_x = (result.x + 0.5 - view.half_width) / view.scale;
+  const double ray_y = (view.half_height - (result.y + 0.5)) / view.scale;
+  const double step = 1.0 / view.scale;
+  const double facing = glm::dot(v[0], glm::cross(v[1] - v[0], v[2] - v[0])) < 0 ? -1.0 : 1.0;
+  double plane[3][3], largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3& p = v[(k + 1) % 3];
+    const glm::dvec3 normal = glm::cross(p, v[(k + 2) % 3] - p) * facing;
+    plane[k][0] = normal.x * step;
+    plane[k][1] = -normal.y * step;
+    plane[k][2] = (normal.x * ray_x + normal.y * ray_y) + normal.z;
+    for (const double coefficient : plane[k]) largest = std::max(largest, std::abs(coefficient));
+  }
+  const double scale = largest > 0 ? 1 / largest : 0;
+  for (int k = 0; k < 3; ++k) {
+    result.a[k] = static_cast<float>(plane[k][0] * scale);
+    result.b[k] = static_cast<float>(plane[k][1] * scale);
+    result.c[k] = static_cast<float>(plane[k][2] * scale);
+  }
+  return result;
+}
+
+// At the centre of pixel (x, y). A pixel that snapping moved out of the triangle gets the weights
+// of a point on its border; where all is degenerate, those of the first vertex.
+inline Weights weights_at(const Barycentrics& t, int x, int y) {
+  const auto dx = static_cast<float>(x - t.x);
+  const auto dy = static_cast<float>(y - t.y);
+  float u[3];
+  for (int k = 0; k < 3; ++k) u[k] = std::max((t.a[k] * dx + t.b[k] * dy) + t.c[k], 0.0F);
+  const float sum = (u[0] + u[1]) + u[2];
+  if (!(sum > 0)) return {{1, 0, 0}, 0};
+  return {{u[0] / sum, u[1] / sum, u[2] / sum}, sum};
+}
+
+template <class Value>
+Value interpolate(const Weights& w, const Value (&value)[3]) {
+  return (value[0] * w.of[0] + value[1] * w.of[1]) + value[2] * w.of[2];
+}
+
+// How `value`, whose interpolated value is `here`, changes per pixel along x (slopes = t.a) or y
+// (slopes = t.b). Infinite where it has no bound.
+template <class Value>
+Value derivative(const Weights& w, const float (&slopes)[3], const Value (&value)[3],
+                 const Value& here) {
+  const Value change = ((value[0] - here) * slopes[0] + (value[1] - here) * slopes[1]) +
+                       (value[2] - here) * slopes[2];
+  return change / w.sum;
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,59 @@
+// One rank's rendering: pieces of a scene into regions of an image.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <span>
+#include <vector>
+
+#include "raster/internal/bins.h"
+#include "raster/internal/shade_tile.h"
+#include "raster/render.h"
+
+namespace delray::raster {
+
+// Memory that one frame leaves to the next.
+struct Scratch {
+  std::vector<ScreenVertex> vertices;
+  std::vector<PreparedDraw> draws;
+  std::vector<Bin> bins;
+};
+
+// What rendering took, summed over threads, and what it did.
+struct RegionCounts {
+  Phases phases;
+  TriangleCounts triangles;
+  std::uint64_t fragments = 0, tiles = 0;
+};
+
+// Transforms the vertices of all draws of the list into scratch.vertices and fills scratch.draws.
+// Returns the seconds that its threads took. Parallel.
+double prepare_draws(const Screen& screen, const DrawList& list, const shading::Shader& shader,
+                     bool cull_single_sided, Scratch& scratch);
+
+// Renders the list into those pixels of the image (which has the frame's size) that `regions`
+// cover; depths are -near / distance. The regions are disjoint. Parallel: clusters, then tiles.
+template <class Colour>
+RegionCounts render_regions(const Screen& screen, const DrawList& list,
+                            const shading::Shader& shader, const RenderOptions& options,
+                            std::span<const geometry::Rect> regions, Scratch& scratch,
+                            image::BasicImage<Colour>& image, parallel::Progress* progress);
+
+// Seconds that several threads add to.
+class SharedSeconds {
+ public:
+  // Runs f and adds the time it took.
+  template <class F>
+  void measure(F&& f) {
+    const auto begin = std::chrono::steady_clock::now();
+    f();
+    const auto taken = std::chrono::steady_clock::now() - begin;
+    nanoseconds_.fetch_add(std::chrono::nanoseconds(taken).count(), std::memory_order_relaxed);
+  }
+  double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
+
+ private:
+  std::atomic<std::int64_t> nanoseconds_{0};
+};
+
+}  // namespace delray::raster

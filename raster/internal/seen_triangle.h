@@ -1,0 +1,42 @@
+// Triangles that are seen: what shading looks up at their pixels.
+#pragma once
+
+#include <vector>
+
+#include "raster/internal/draws.h"
+#include "raster/internal/interpolate.h"
+#include "raster/internal/transform.h"
+#include "shading/shader.h"
+#include "shading/surface.h"
+
+namespace delray::raster {
+
+// What of a draw shading needs.
+struct ShadedDraw {
+  ToView to_view;
+  glm::mat3 normal_to_world{1.0F};
+  float handedness = 1;  // -1 where the transform mirrors
+};
+ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
+
+// A triangle with its vertices' attributes in the world.
+struct SeenTriangle {
+  Barycentrics barycentrics;
+  const scenes::Material* material = nullptr;
+  bool has_uv = false, has_tangent = false;
+  glm::vec3 geometric_normal{0, 0, 1};
+  glm::vec3 position[3], normal[3];
+  glm::vec4 tangent[3], colour[3];
+  glm::vec2 uv[3];
+  glm::vec3 radiance[3];  // of the vertices, for Gouraud shading
+};
+
+// Everything but `radiance`. `t` is a triangle of the draw's mesh.
+SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
+                                const Draw& draw, const ShadedDraw& shaded, std::uint32_t t);
+
+// The point of the triangle at a pixel, or its corner k.
+shading::Point point_at(const SeenTriangle& triangle, int x, int y);
+shading::Point corner(const SeenTriangle& triangle, int k);
+
+}  // namespace delray::raster

@@ -1,0 +1,48 @@
+// Colours of a tile's visible pixels (deferred shading: Deering et al. 1988).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "image/image.h"
+#include "raster/internal/seen_triangle.h"
+#include "raster/internal/visibility.h"
+#include "raster/render.h"
+
+namespace delray::raster {
+
+// What all tiles of a frame look up.
+struct FrameShading {
+  const Screen& screen;
+  const shading::Shader& shader;
+  const DrawList& list;
+  std::vector<ShadedDraw> draws;             // of the list's draws
+  std::vector<scenes::Material> untextured;  // the shader's materials without textures; for gouraud
+  Lighting lighting;
+};
+FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
+                                const DrawList& list, Lighting lighting);
+
+// Triangles seen lately; neighbouring pixels mostly show the same few. One per thread.
+class SeenTriangles {
+ public:
+  // Forgets all: another frame may give the same numbers to other triangles.
+  void clear();
+  const SeenTriangle& get(const FrameShading& frame, std::uint32_t number);
+
+ private:
+  static constexpr std::uint32_t kSlots = 64;
+  std::uint32_t numbers_[kSlots];
+  SeenTriangle triangles_[kSlots];
+};
+
+// Whether alpha leaves anything of the triangle at a pixel.
+bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y);
+
+// Writes colour and depth of the pixels of `rect` (of the frame, within the tile) to the image,
+// whose pixel (0, 0) is the frame's. Returns how many of them show something.
+template <class Colour>
+std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
+                         const geometry::Rect& rect, image::BasicImage<Colour>& image);
+
+}  // namespace delray::raster

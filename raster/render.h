@@ -1,0 +1,110 @@
+// The rasterizer: a scene into a picture over any number of ranks and threads.
+//
+// The picture is the same, byte for byte, for every strategy, scheme, partition, number of ranks
+// and number of threads: a pixel shows the primitive with the least (depth, primitive number) of
+// those that cover its centre by the top-left rule, at positions snapped to 1/256 pixel.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "comm/communicator.h"
+#include "image/image.h"
+#include "parallel/progress.h"
+#include "scenes/scene.h"
+#include "shading/shader.h"
+
+namespace delray::raster {
+
+// phong: lit at every pixel. gouraud: lit at the vertices with the material's factors,
+// interpolated, and multiplied by the base colour texture (Gouraud 1971); other textures are not
+// looked at.
+enum class Lighting : std::uint8_t { phong, gouraud };
+
+// What a group of primitives that changes rank consists of: its vertices and indices, as a scene
+// that is shared out needs, or its number, which is enough where every rank has the whole scene.
+enum class Travel : std::uint8_t { geometry, numbers };
+
+struct RenderOptions {
+  int width = 1024, height = 768;
+  bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
+  Lighting lighting = Lighting::phong;
+  // Faces away from the viewer of materials that are not double-sided are not drawn.
+  bool cull_single_sided = false;
+  std::string strategy = "sort-last";
+  std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
+  std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first
+  Travel travel = Travel::geometry;    // sort-first
+};
+
+// Seconds are summed over the threads of a rank where they work, and are the rank's own elsewhere.
+struct Phases {
+  double transform = 0, bin = 0, rasterize = 0, shade = 0;
+  double redistribute = 0, compose = 0, gather = 0;
+
+  void operator+=(const Phases& other);
+};
+
+struct RankStatistics {
+  int rank = 0;
+  double busy = 0;          // transform + bin + rasterize + shade
+  std::uint64_t tasks = 0;  // tiles
+  std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
+};
+
+struct Statistics {
+  Phases phases;                      // summed over ranks
+  std::vector<RankStatistics> ranks;  // ascending
+  double imbalance = 1;               // max over mean of the ranks' busy times; 1 when all are 0
+  // Summed over ranks: with sort-first a primitive counts on each rank that gets it.
+  std::uint64_t triangles_in = 0, triangles_culled = 0, triangles_clipped = 0,
+                triangles_rasterized = 0;
+  std::uint64_t fragments = 0;  // visible pixels, before ranks are composited
+  std::vector<std::string> warnings;
+};
+
+// Depths are distances along the view axis, in the scene's units.
+using Picture = std::variant<image::Image8, image::ImageF>;
+
+struct Result {
+  Picture picture;        // on rank 0; of size 0 elsewhere
+  Statistics statistics;  // on rank 0; empty elsewhere
+};
+
+// Renders frames of one scene, keeping the memory that a frame needs for the next one. One per
+// rank.
+class Renderer {
+ public:
+  // Refers to the scene, which must not change. The shader may be shared among ranks; without one
+  // it is made from the scene.
+  //
+  // REQUIRES: indices of the scene are in range (as scenes::load and the generators leave it).
+  explicit Renderer(const scenes::Scene& scene,
+                    std::shared_ptr<const shading::Shader> shader = nullptr);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  // Collective: every rank calls it with the same scene, camera and options. Uncovered pixels are
+  // transparent black with depth image::kEmptyDepth. Blended materials are drawn opaque, with a
+  // warning. `progress` counts tiles of this rank.
+  //
+  // Throws std::invalid_argument for names that are in no table and for sizes below 1 or above
+  // 65534; parallel::Interrupted when asked to stop.
+  Result render(comm::Communicator& communicator, const scenes::Camera& camera,
+                const RenderOptions& options, parallel::Progress* progress = nullptr);
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+// One frame.
+Result render(comm::Communicator& communicator, const scenes::Scene& scene,
+              const scenes::Camera& camera, const RenderOptions& options,
+              parallel::Progress* progress = nullptr);
+
+}  // namespace delray::raster

@@ -1,0 +1,103 @@
+#include "raster/internal/seen_triangle.h"
+
+#include <cmath>
+
+namespace delray::raster {
+namespace {
+
+// `otherwise` where v has no direction.
+glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
+  const float squared = glm::dot(v, v);
+  const bool usable = squared > 0 && squared <= std::numeric_limits<float>::max();
+  return usable ? v * (1.0F / std::sqrt(squared)) : otherwise;
+}
+
+}  // namespace
+
+ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw) {
+  const glm::mat4x3& m = *draw.transform;
+  ShadedDraw result;
+  result.to_view = to_view(view, m);
+  // Normals go with the inverse transpose, which is the cofactors up to a factor.
+  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+  result.handedness = glm::dot(glm::cross(x, y), z) < 0 ? -1.0F : 1.0F;
+  const glm::dmat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+  double largest = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(cofactors[k][i]));
+  const double scale = largest > 0 ? double{result.handedness} / largest : 0;
+  result.normal_to_world = glm::mat3(cofactors * scale);
+  return result;
+}
+
+SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
+                                const Draw& draw, const ShadedDraw& shaded, std::uint32_t t) {
+  const scenes::Mesh& mesh = *draw.mesh;
+  const glm::mat4x3& to_world = *draw.transform;
+  const glm::uvec3& corners = mesh.triangles[t];
+  SeenTriangle result;
+  result.material = &shading::material(shader, mesh.material);
+  result.has_uv = !mesh.uvs.empty();
+  result.has_tangent = !mesh.tangents.empty();
+  std::array<glm::vec3, 3> view;
+  for (int k = 0; k < 3; ++k) {
+    const glm::vec3& p = mesh.positions[corners[k]];
+    view[k] = shaded.to_view(p);
+    result.position[k] =
+        ((to_world[0] * p.x + to_world[1] * p.y) + to_world[2] * p.z) + to_world[3];
+  }
+  result.barycentrics = make_barycentrics(screen, view);
+  const glm::vec3* p = result.position;
+  result.geometric_normal =
+      unit(glm::cross(p[1] - p[0], p[2] - p[0]) * shaded.handedness, {0, 0, 1});
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t i = corners[k];
+    result.normal[k] = mesh.normals.empty() ? result.geometric_normal
+                                            : unit(shaded.normal_to_world * mesh.normals[i],
+                                                   result.geometric_normal);
+    result.uv[k] = result.has_uv ? mesh.uvs[i] : glm::vec2(0.0F);
+    result.colour[k] = mesh.colours.empty() ? glm::vec4(1.0F) : mesh.colours[i];
+    result.tangent[k] = glm::vec4(0.0F);
+    if (!result.has_tangent) continue;
+    const glm::vec4& tangent = mesh.tangents[i];
+    const glm::vec3 along =
+        (to_world[0] * tangent.x + to_world[1] * tangent.y) + to_world[2] * tangent.z;
+    result.tangent[k] = glm::vec4(unit(along, {1, 0, 0}), tangent.w * shaded.handedness);
+  }
+  return result;
+}
+
+shading::Point point_at(const SeenTriangle& triangle, int x, int y) {
+  const Weights w = weights_at(triangle.barycentrics, x, y);
+  shading::Point point;
+  point.position = interpolate(w, triangle.position);
+  point.geometric_normal = triangle.geometric_normal;
+  point.normal = unit(interpolate(w, triangle.normal), triangle.geometric_normal);
+  point.colour = interpolate(w, triangle.colour);
+  if (triangle.has_uv) {
+    point.uv = interpolate(w, triangle.uv);
+    point.footprint.dx = derivative(w, triangle.barycentrics.a, triangle.uv, point.uv);
+    point.footprint.dy = derivative(w, triangle.barycentrics.b, triangle.uv, point.uv);
+  }
+  if (triangle.has_tangent) {
+    const glm::vec4 tangent = interpolate(w, triangle.tangent);
+    const glm::vec3 along =
+        glm::vec3(tangent) - point.normal * glm::dot(point.normal, glm::vec3(tangent));
+    point.tangent = glm::vec4(unit(along, glm::vec3(0.0F)), triangle.tangent[0].w);
+    if (glm::vec3(point.tangent) == glm::vec3(0.0F)) point.tangent.w = 0;
+  }
+  return point;
+}
+
+shading::Point corner(const SeenTriangle& triangle, int k) {
+  shading::Point point;
+  point.position = triangle.position[k];
+  point.geometric_normal = triangle.geometric_normal;
+  point.normal = triangle.normal[k];
+  point.colour = triangle.colour[k];
+  point.uv = triangle.uv[k];
+  point.tangent = triangle.tangent[k];
+  return point;
+}
+
+}  // namespace delray::raster

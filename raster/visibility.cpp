@@ -1,0 +1,226 @@
+#include "raster/internal/visibility.h"
+
+#include <limits>
+
+#include "image/image.h"
+#include "raster/internal/bins.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/visibility.cpp"
+#include "hwy/foreach_target.h"
+// Highway's own header comes after it.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raster {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = HWY_CAPPED(float, VisibilityTile::kBlockWidth);
+using Ints = hn::RebindToSigned<Floats>;
+using Numbers = hn::RebindToUnsigned<Floats>;
+
+// How the three edge functions of a triangle are known inside a rectangle.
+enum class Inside : bool { tested, certain };
+
+// Pixels [i0, i1) x [j0, j1) of the tile; i0 and i1 are multiples of the vector's length.
+template <Inside inside>
+void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, int j1,
+          VisibilityTile& tile) {
+  const Floats d;
+  const Ints di;
+  const Numbers du;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto slope_x = hn::Set(d, t.slope_x);
+  const auto depth = hn::Set(d, t.depth);
+  const auto nearest = hn::Set(d, t.nearest);
+  const auto farthest = hn::Set(d, t.farthest);
+  const auto numbers = hn::Set(du, number);
+  for (int i = i0; i < i1; i += lanes) {
+    const auto column = hn::Iota(di, i);
+    const auto x = hn::Mul(slope_x, hn::Add(hn::Set(d, t.x), hn::ConvertTo(d, column)));
+    const auto edge0 = hn::Mul(hn::Set(di, t.a[0]), column);
+    const auto edge1 = hn::Mul(hn::Set(di, t.a[1]), column);
+    const auto edge2 = hn::Mul(hn::Set(di, t.a[2]), column);
+    for (int j = j0; j < j1; ++j) {
+      auto take = hn::Eq(x, x);
+      if constexpr (inside == Inside::tested) {
+        const auto value0 = hn::Add(edge0, hn::Set(di, t.b[0] * j + t.c[0]));
+        const auto value1 = hn::Add(edge1, hn::Set(di, t.b[1] * j + t.c[1]));
+        const auto value2 = hn::Add(edge2, hn::Set(di, t.b[2] * j + t.c[2]));
+        const auto all = hn::Or(hn::Or(value0, value1), value2);
+        const auto covered = hn::Gt(all, hn::Set(di, -1));
+        if (hn::AllFalse(di, covered)) continue;
+        take = hn::RebindMask(d, covered);
+      }
+      const auto y = hn::Set(d, t.slope_y * (t.y + static_cast<float>(j)));
+      const auto plane = hn::Add(hn::Add(x, y), depth);
+      const auto z = hn::Min(hn::Max(plane, nearest), farthest);
+      float* depths = tile.depth + j * kTileSize + i;
+      std::uint32_t* owners = tile.number + j * kTileSize + i;
+      const auto old = hn::Load(d, depths);
+      auto nearer = hn::Lt(z, old);
+      const auto equal = hn::And(take, hn::Eq(z, old));
+      if (HWY_UNLIKELY(!hn::AllFalse(d, equal))) {
+        const auto earlier = hn::Lt(numbers, hn::Load(du, owners));
+        nearer = hn::Or(nearer, hn::And(equal, hn::RebindMask(d, earlier)));
+      }
+      take = hn::And(take, nearer);
+      hn::BlendedStore(z, take, d, depths);
+      hn::BlendedStore(numbers, hn::RebindMask(du, take), du, owners);
+    }
+  }
+}
+
+void refresh(int block, VisibilityTile& tile) {
+  const Floats d;
+  const int i0 = block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
+  const int j0 = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight;
+  auto farthest = hn::Set(d, -std::numeric_limits<float>::infinity());
+  for (int j = j0; j < j0 + VisibilityTile::kBlockHeight; ++j)
+    for (int i = i0; i < i0 + VisibilityTile::kBlockWidth; i += static_cast<int>(hn::Lanes(d)))
+      farthest = hn::Max(farthest, hn::Load(d, tile.depth + j * kTileSize + i));
+  tile.farthest[block] = hn::GetLane(hn::MaxOfLanes(d, farthest));
+}
+
+// A triangle that spans many blocks, one block after the other.
+void draw_blocks(const TileTriangle& t, std::uint32_t number, int bx0, int bx1, int by0, int by1,
+                 VisibilityTile& tile) {
+  constexpr int kRight = VisibilityTile::kBlockWidth - 1;
+  constexpr int kDown = VisibilityTile::kBlockHeight - 1;
+  for (int by = by0; by <= by1; ++by)
+    for (int bx = bx0; bx <= bx1; ++bx) {
+      const int block = by * VisibilityTile::kBlocksX + bx;
+      const int i = bx * VisibilityTile::kBlockWidth;
+      const int j = by * VisibilityTile::kBlockHeight;
+      bool outside = false, certain = true;
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t corner = t.a[k] * i + t.b[k] * j + t.c[k];
+        const std::int32_t x = t.a[k] * kRight, y = t.b[k] * kDown;
+        outside |= corner + std::max(x, 0) + std::max(y, 0) < 0;
+        certain &= corner + std::min(x, 0) + std::min(y, 0) >= 0;
+      }
+      if (outside) continue;
+      // Every step of the plane's evaluation is monotone, rounding included: the corner where both
+      // slopes are least is a lower bound of the block's depths, exactly.
+      const float nearest =
+          depth_at(t, t.slope_x < 0 ? i + kRight : i, t.slope_y < 0 ? j + kDown : j);
+      if (nearest > tile.farthest[block]) continue;
+      const int i1 = i + VisibilityTile::kBlockWidth;
+      const int j1 = j + VisibilityTile::kBlockHeight;
+      if (certain)
+        draw<Inside::certain>(t, number, i, i1, j, j1, tile);
+      else
+        draw<Inside::tested>(t, number, i, i1, j, j1, tile);
+      refresh(block, tile);
+      tile.stale &= ~(1U << block);
+    }
+}
+
+void rasterize(const Screen& screen, const geometry::Rect& rect,
+               std::span<const ScreenTriangle> triangles, std::span<const std::uint32_t> entries,
+               VisibilityTile& tile) {
+  constexpr int kBlockWidth = VisibilityTile::kBlockWidth;
+  constexpr int kBlockHeight = VisibilityTile::kBlockHeight;
+  // Refreshing costs as much as drawing a few small triangles.
+  constexpr int kRefreshAfter = 64;
+  const int tile_x = rect.x0 / kTileSize * kTileSize;
+  const int tile_y = rect.y0 / kTileSize * kTileSize;
+  const int lanes = static_cast<int>(hn::Lanes(Floats()));
+  for (const std::uint32_t entry : entries) {
+    if (entry & Bin::kMasked) continue;
+    const ScreenTriangle& triangle = triangles[entry];
+    const ScreenVertex* v = triangle.vertex;
+    const geometry::Rect pixels =
+        geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
+    if (pixels.empty()) continue;
+    const int i0 = pixels.x0 - tile_x, i1 = pixels.x1 - tile_x;
+    const int j0 = pixels.y0 - tile_y, j1 = pixels.y1 - tile_y;
+    const int bx0 = i0 / kBlockWidth, bx1 = (i1 - 1) / kBlockWidth;
+    const int by0 = j0 / kBlockHeight, by1 = (j1 - 1) / kBlockHeight;
+
+    const float nearest = std::min({v[0].depth, v[1].depth, v[2].depth});
+    std::uint32_t touched = 0;
+    bool hidden = true;
+    for (int by = by0; by <= by1; ++by)
+      for (int bx = bx0; bx <= bx1; ++bx) {
+        const int block = by * VisibilityTile::kBlocksX + bx;
+        touched |= 1U << block;
+        hidden &= nearest > tile.farthest[block];
+      }
+    if (hidden) continue;
+    TileTriangle t;
+    if (!make_tile_triangle(triangle, screen, tile_x, tile_y, t)) continue;
+    if (bx1 - bx0 > 1 || by1 - by0 > 1) {
+      draw_blocks(t, triangle.number, bx0, bx1, by0, by1, tile);
+      continue;
+    }
+    draw<Inside::tested>(t, triangle.number, i0 / lanes * lanes, (i1 + lanes - 1) / lanes * lanes,
+                         j0, j1, tile);
+    tile.stale |= touched;
+    if (++tile.since_refresh < kRefreshAfter) continue;
+    tile.since_refresh = 0;
+    for (int block = 0; block < VisibilityTile::kBlocks; ++block)
+      if (tile.stale >> block & 1) refresh(block, tile);
+    tile.stale = 0;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raster {
+
+HWY_EXPORT(rasterize);
+
+void VisibilityTile::clear(const geometry::Rect& rect) {
+  const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
+  const int i1 = i0 + rect.width(), j1 = j0 + rect.height();
+  std::fill_n(number, kTilePixels, kNothing);
+  std::fill_n(depth, kTilePixels, -std::numeric_limits<float>::infinity());
+  for (int j = j0; j < j1; ++j)
+    std::fill(depth + j * kTileSize + i0, depth + j * kTileSize + i1, image::kEmptyDepth);
+  std::fill_n(farthest, kBlocks, image::kEmptyDepth);
+  stale = 0;
+  since_refresh = 0;
+}
+
+void rasterize(const Screen& screen, const geometry::Rect& rect,
+               std::span<const ScreenTriangle> triangles, std::span<const std::uint32_t> entries,
+               VisibilityTile& tile) {
+  HWY_DYNAMIC_DISPATCH(rasterize)(screen, rect, triangles, entries, tile);
+}
+
+void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
+                      std::span<const ScreenTriangle> triangles,
+                      std::span<const std::uint32_t> entries,
+                      const std::function<bool(std::uint32_t, int, int)>& solid,
+                      VisibilityTile& tile) {
+  const int tile_x = rect.x0 / kTileSize * kTileSize;
+  const int tile_y = rect.y0 / kTileSize * kTileSize;
+  for (const std::uint32_t entry : entries) {
+    if (!(entry & Bin::kMasked)) continue;
+    const ScreenTriangle& triangle = triangles[entry & Bin::kIndex];
+    const ScreenVertex* v = triangle.vertex;
+    const geometry::Rect pixels =
+        geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
+    TileTriangle t;
+    if (pixels.empty() || !make_tile_triangle(triangle, screen, tile_x, tile_y, t)) continue;
+    for (int j = pixels.y0 - tile_y; j < pixels.y1 - tile_y; ++j)
+      for (int i = pixels.x0 - tile_x; i < pixels.x1 - tile_x; ++i) {
+        if (!covers(t, i, j)) continue;
+        const float depth = depth_at(t, i, j);
+        float& old = tile.depth[j * kTileSize + i];
+        std::uint32_t& owner = tile.number[j * kTileSize + i];
+        if (!(depth < old || (depth == old && triangle.number < owner))) continue;
+        if (!solid(triangle.number, tile_x + i, tile_y + j)) continue;
+        old = depth;
+        owner = triangle.number;
+      }
+  }
+}
+
+}  // namespace delray::raster
+#endif

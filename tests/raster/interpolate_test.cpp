@@ -1,0 +1,100 @@
+#include "raster/internal/interpolate.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/raster/coverage.h"
+
+namespace delray::raster {
+namespace {
+
+// Intersects the pixel's ray with the triangle's plane in double (Cramer's rule).
+bool exact_weights(const scenes::View& view, const std::array<glm::vec3, 3>& v, int x, int y,
+                   double (&w)[3]) {
+  const glm::dvec3 ray((x + 0.5 - view.half_width) / view.scale,
+                       (view.half_height - (y + 0.5)) / view.scale, 1);
+  const glm::dvec3 a(v[0]), b(v[1]), c(v[2]);
+  const glm::dmat3 m(a, b, c);
+  if (std::abs(glm::determinant(m)) < 1e-9) return false;
+  const glm::dvec3 u = glm::inverse(m) * ray;
+  const double sum = u.x + u.y + u.z;
+  if (sum <= 0) return false;
+  for (int k = 0; k < 3; ++k) w[k] = u[k] / sum;
+  return w[0] >= 0 && w[1] >= 0 && w[2] >= 0;
+}
+
+TEST(Interpolate, IsPerspectiveCorrectAlsoAcrossTheNearPlane) {
+  const Screen screen = make_screen(plain_view(320, 200));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> side(-4, 4), depth(-3, 12);
+  int checked = 0, crossing = 0;
+  for (int round = 0; round < 400; ++round) {
+    std::array<glm::vec3, 3> v;
+    for (glm::vec3& p : v) p = {side(random), side(random), depth(random)};
+    const Barycentrics t = make_barycentrics(screen, v);
+    const bool crosses = v[0].z < 0 || v[1].z < 0 || v[2].z < 0;
+    for (int i = 0; i < 100; ++i) {
+      const int x = static_cast<int>(random() % 320), y = static_cast<int>(random() % 200);
+      double exact[3];
+      if (!exact_weights(screen.view, v, x, y, exact)) continue;
+      const Weights w = weights_at(t, x, y);
+      // The planes are rounded to floats of the size of their largest coefficient, so precision is
+      // lost where their sum is small: near the line where the triangle's plane meets the eye's.
+      const double scale = 1e-4 / w.sum + 1e-5;
+      for (int k = 0; k < 3; ++k) ASSERT_NEAR(w.of[k], exact[k], scale) << "round " << round;
+      ++checked;
+      crossing += crosses;
+    }
+  }
+  EXPECT_GT(checked, 2000);
+  EXPECT_GT(crossing, 500);
+}
+
+TEST(Interpolate, DerivativesMatchDifferences) {
+  const Screen screen = make_screen(plain_view(320, 200));
+  const std::array<glm::vec3, 3> v{glm::vec3(-2, -1, 3), glm::vec3(2, -1, 4), glm::vec3(0, 2, 9)};
+  const glm::vec2 uv[3] = {{0, 0}, {1, 0}, {0, 1}};
+  const Barycentrics t = make_barycentrics(screen, v);
+  const auto uv_at = [&](int x, int y) { return interpolate(weights_at(t, x, y), uv); };
+  for (int y = 90; y < 110; y += 5)
+    for (int x = 150; x < 170; x += 5) {
+      const Weights w = weights_at(t, x, y);
+      const glm::vec2 dx = derivative(w, t.a, uv, uv_at(x, y));
+      const glm::vec2 dy = derivative(w, t.b, uv, uv_at(x, y));
+      const glm::vec2 difference_x = (uv_at(x + 1, y) - uv_at(x - 1, y)) * 0.5F;
+      const glm::vec2 difference_y = (uv_at(x, y + 1) - uv_at(x, y - 1)) * 0.5F;
+      for (int k = 0; k < 2; ++k) {
+        EXPECT_NEAR(dx[k], difference_x[k], 2e-5F);
+        EXPECT_NEAR(dy[k], difference_y[k], 2e-5F);
+      }
+    }
+}
+
+TEST(Interpolate, DegenerateTrianglesGiveFiniteWeights) {
+  const Screen screen = make_screen(plain_view(320, 200));
+  const std::array<glm::vec3, 3> cases[] = {
+      {glm::vec3(0, 0, 1), glm::vec3(0, 0, 1), glm::vec3(0, 0, 1)},
+      {glm::vec3(0, 0, 0), glm::vec3(0, 0, 0), glm::vec3(0, 0, 0)},
+      {glm::vec3(0, 0, 1), glm::vec3(0, 0, 2), glm::vec3(0, 0, 3)},
+      {glm::vec3(-1, 0, 1), glm::vec3(1, 0, 1), glm::vec3(0, 0, 5)},
+      {glm::vec3(3e38F, 3e38F, 3e38F), glm::vec3(-3e38F, 0, 1), glm::vec3(0, 3e38F, -3e38F)},
+      {glm::vec3(1e-40F, 0, 1e-40F), glm::vec3(0, 1e-40F, 1e-40F), glm::vec3(0, 0, 1e-40F)}};
+  for (const auto& v : cases) {
+    const Barycentrics t = make_barycentrics(screen, v);
+    for (const int x : {0, 160, 319})
+      for (const int y : {0, 100, 199}) {
+        const Weights w = weights_at(t, x, y);
+        float sum = 0;
+        for (const float share : w.of) {
+          EXPECT_GE(share, 0.0F);
+          EXPECT_LE(share, 1.0F);
+          sum += share;
+        }
+        EXPECT_NEAR(sum, 1.0F, 1e-5F);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace delray::raster

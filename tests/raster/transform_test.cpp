@@ -1,0 +1,91 @@
+#include "raster/internal/transform.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "tests/raster/coverage.h"
+#include "tests/raster/targets.h"
+
+namespace delray::raster {
+namespace {
+
+TEST(Transform, SnapsWhereTheCameraSays) {
+  scenes::Camera camera;
+  camera.eye = {3, 2, 5};
+  camera.at = {0.5F, 0, 0};
+  const scenes::View view = scenes::make_view(camera, 641, 480);
+  const Screen screen = make_screen(view);
+  const glm::mat4x3 place({0.5F, 0, 0}, {0, 2, 0}, {0, 0, 1}, {0.1F, 0.2F, 0.3F});
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> coordinate(-1, 1);
+  std::vector<glm::vec3> positions(777);
+  for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), coordinate(random)};
+  std::vector<ScreenVertex> vertices(positions.size());
+  transform(to_view(view, place), screen, positions, vertices);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::dvec3 world = glm::dmat4x3(place) * glm::dvec4(positions[i], 1);
+    const glm::dvec3 way = world - glm::dvec3(view.eye);
+    const double z = glm::dot(way, glm::dvec3(view.forward));
+    const double x = view.half_width + glm::dot(way, glm::dvec3(view.right)) / z * view.scale;
+    const double y = view.half_height - glm::dot(way, glm::dvec3(view.up)) / z * view.scale;
+    ASSERT_NE(vertices[i].x, kOutside);
+    EXPECT_NEAR(vertices[i].x / 256.0 + screen.centre_x, x, 0.6 / 256);
+    EXPECT_NEAR(vertices[i].y / 256.0 + screen.centre_y, y, 0.6 / 256);
+    EXPECT_NEAR(vertices[i].depth, -view.near / z, 1e-6 * view.near / z);
+    EXPECT_NEAR(distance_of(vertices[i].depth, view.near), z, 1e-5 * z);
+  }
+}
+
+TEST(Transform, IsTheSameOnEveryTargetForEveryCount) {
+  const Screen screen = make_screen(plain_view(640, 480));
+  const ToView map = to_view(screen.view, glm::mat4x3(1.0F));
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> coordinate(-10, 10);
+  for (std::size_t n = 0; n < 40; ++n) {
+    std::vector<glm::vec3> positions(n);
+    for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), coordinate(random)};
+    std::vector<ScreenVertex> first;
+    for_each_target([&] {
+      std::vector<ScreenVertex> vertices(n + 1);
+      vertices[n] = {7, 7, 7};
+      transform(map, screen, positions, std::span(vertices).first(n));
+      EXPECT_EQ(vertices[n].x, 7);
+      if (first.empty()) first = vertices;
+      for (std::size_t i = 0; i < n; ++i) {
+        ASSERT_EQ(vertices[i].x, first[i].x);
+        if (vertices[i].x == kOutside) continue;
+        ASSERT_EQ(vertices[i].y, first[i].y);
+        ASSERT_EQ(vertices[i].depth, first[i].depth);
+      }
+    });
+  }
+}
+
+TEST(Transform, MarksWhatCannotBeProjected) {
+  const Screen screen = make_screen(plain_view(640, 480));
+  const float infinity = std::numeric_limits<float>::infinity();
+  const glm::vec3 positions[] = {{0, 0, 1},
+                                 {0, 0, 0},
+                                 {0, 0, -0.009F},
+                                 {1e6F, 0, -1},
+                                 {0, -1e6F, -1},
+                                 {infinity, 0, -1},
+                                 {0, std::nanf(""), -1},
+                                 {0, 0, -infinity},
+                                 {0, 0, std::nanf("")},
+                                 {0, 0, -1},
+                                 {0, 0, -0.01F}};
+  for_each_target([&] {
+    std::vector<ScreenVertex> vertices(std::size(positions));
+    transform(to_view(screen.view, glm::mat4x3(1.0F)), screen, positions, vertices);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(vertices[i].x, kOutside) << i;
+    EXPECT_EQ(vertices[9].x, 0);
+    EXPECT_EQ(vertices[9].y, 0);
+    EXPECT_EQ(vertices[10].depth, -1.0F);
+  });
+}
+
+}  // namespace
+}  // namespace delray::raster
