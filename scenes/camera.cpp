@@ -93,7 +93,9 @@ Placement place(const Axes& axes, const glm::dvec3& half, const glm::dvec2& tang
   }
   const glm::dvec2 room = (high - low) / (2.0 * tangent);
   const double along = std::min({room.x, room.y, nearest - kClosest * 2 * glm::length(half)});
-  const glm::dvec2 across = (low + high) * 0.5;
+  // Where there is room, the middle of the box comes into the middle of the frame.
+  const glm::dvec2 first = low + tangent * along, last = high - tangent * along;
+  const glm::dvec2 across = glm::max(first, glm::min(last, glm::dvec2(0)));
   return {axes.right * across.x + axes.up * across.y + axes.forward * along, -along,
           nearest - along};
 }

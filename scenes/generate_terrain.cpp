@@ -43,9 +43,9 @@ glm::vec4 colour_at(std::uint64_t seed, const glm::vec3& p, const glm::vec3& nor
   const float height = p.y + 0.03F * patches;
   glm::vec3 colour = glm::mix(kGrass, kForest, blend(-0.3F, 0.3F, patches));
   colour = glm::mix(kSand, colour, blend(kWater, kWater + 0.02F, height));
-  colour = glm::mix(colour, kRock, blend(0.10F, 0.20F, height));
+  colour = glm::mix(colour, kRock, blend(0.08F, 0.16F, height));
   colour = glm::mix(kRock, colour, blend(0.70F, 0.86F, normal.y));
-  colour = glm::mix(colour, kSnow, blend(0.17F, 0.22F, height) * blend(0.55F, 0.75F, normal.y));
+  colour = glm::mix(colour, kSnow, blend(0.15F, 0.20F, height) * blend(0.55F, 0.75F, normal.y));
   return {colour, 1.0F};
 }
 

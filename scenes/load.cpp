@@ -8,6 +8,7 @@
 #include "scenes/internal/finish.h"
 #include "scenes/internal/import.h"
 #include "scenes/internal/load_gltf.h"
+#include "scenes/internal/up_axis.h"
 
 namespace delray::scenes {
 namespace {
@@ -63,6 +64,8 @@ Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings
   Scene scene = read(format, source);
   if (progress) progress->advance();
   internal::finish(source, scene);
+  const bool says_up = format == Format::gltf || format == Format::glb;  // y
+  scene.z_up = !says_up && internal::guess_z_up(scene, format == Format::stl);
   if (progress) progress->advance();
   return scene;
 }
