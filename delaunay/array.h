@@ -1,0 +1,85 @@
+// Large arrays of plain values whose contents start undefined.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace delray::delaunay {
+
+// Large ones come straight from the system, in huge pages where it has them: no time is spent on
+// zeros that are overwritten at once, and random access misses fewer translations.
+template <class T>
+class Array {
+ public:
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+  Array() = default;
+  // Errors: std::bad_alloc.
+  explicit Array(std::size_t size) : size_(size), bytes_(size * sizeof(T)) {
+    if (bytes_ < kMappedFrom) {
+      data_ = static_cast<T*>(::operator new(bytes_));
+      return;
+    }
+    mapped_ = true;
+    void* memory =
+        mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    data_ = static_cast<T*>(memory);
+#ifdef MADV_HUGEPAGE
+    if (bytes_ >= kHugeFrom) madvise(memory, bytes_, MADV_HUGEPAGE);
+#endif
+  }
+  Array(Array&& other) noexcept { swap(other); }
+  Array& operator=(Array&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Array() {
+    if (!mapped_) {
+      ::operator delete(data_);
+    } else if (bytes_ > 0) {
+      munmap(data_, bytes_);
+    }
+  }
+
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+
+  // Forgets the values from `size` on and gives their memory back to the system if it came from
+  // there. REQUIRES: size <= size().
+  void shrink(std::size_t size) {
+    const std::size_t kept = (size * sizeof(T) + kPage - 1) / kPage * kPage;
+    if (mapped_ && kept < bytes_) {
+      munmap(reinterpret_cast<std::byte*>(data_) + kept, bytes_ - kept);
+      bytes_ = kept;
+    }
+    size_ = size;
+  }
+
+ private:
+  static constexpr std::size_t kPage = 65536;  // a multiple of every system's
+  static constexpr std::size_t kMappedFrom = std::size_t{1} << 20;
+  // Below this a huge page would mostly be empty.
+  static constexpr std::size_t kHugeFrom = std::size_t{4} << 20;
+
+  void swap(Array& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(bytes_, other.bytes_);
+    std::swap(mapped_, other.mapped_);
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t bytes_ = 0;
+  bool mapped_ = false;
+};
+
+}  // namespace delray::delaunay

@@ -1,0 +1,21 @@
+// Seconds between calls.
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+namespace delray::delaunay::internal {
+
+class Stopwatch {
+ public:
+  // Seconds since construction or the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,108 @@
+#include "delaunay/methods.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "delaunay/internal/divide.h"
+#include "delaunay/internal/insertion.h"
+
+namespace delray::delaunay {
+namespace {
+
+constexpr std::string_view kAuto = "auto", kNone = "none";
+
+std::string list(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) {
+    text += (text.empty() ? "" : ", ") + std::string(name);
+  }
+  return text;
+}
+
+bool serves(const Method& method, int dim) {
+  return std::ranges::find(method.dims, dim) != method.dims.end();
+}
+
+const Method& choose_method(const Options& options) {
+  std::vector<std::string_view> legal;
+  for (const Method& method : methods()) {
+    if (!serves(method, options.dim)) continue;
+    if (options.method == kAuto || options.method == method.name) return method;
+    legal.push_back(method.name);
+  }
+  throw std::invalid_argument(
+      "there is no method \"" + options.method + "\" in " + std::to_string(options.dim) +
+      "D; methods: " + (legal.empty() ? "none yet" : "auto, " + list(legal)));
+}
+
+std::string choose(const char* what, const std::string& wanted,
+                   std::span<const std::string_view> legal, std::string_view method) {
+  if (wanted == kAuto) return std::string(legal.empty() ? kNone : legal.front());
+  if (legal.empty() && wanted == kNone) return wanted;
+  if (std::ranges::find(legal, wanted) != legal.end()) return wanted;
+  const std::string name(method);
+  if (legal.empty()) {
+    throw std::invalid_argument("method \"" + name + "\" leaves no choice of " + what);
+  }
+  throw std::invalid_argument("method \"" + name + "\" has no " + what + " \"" + wanted +
+                              "\"; it has: " + list(legal));
+}
+
+}  // namespace
+
+// The first method of a dimension is what "auto" means there.
+std::span<const Method> methods() {
+  static const std::array<Method, 2> table = {{
+      {.name = "divide-and-conquer",
+       .description =
+           "halves of the points on either side of a line, knitted together; the fastest",
+       .dims = {2},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .triangulate = internal::divide_and_conquer},
+      {.name = "insertion",
+       .description = "one point after the other, made Delaunay again by flips",
+       .dims = {2},
+       .locations = {"walk"},
+       .splits = {},
+       .orders = {"brio", "hilbert", "random"},
+       .triangulate = internal::insert_all},
+  }};
+  return table;
+}
+
+std::span<const Choice> locations() {
+  static constexpr std::array<Choice, 1> table = {{
+      {"walk", "from the last simplex towards the point, by edges in random order"},
+  }};
+  return table;
+}
+
+std::span<const Choice> splits() { return {}; }
+
+std::span<const Choice> orders() {
+  static constexpr std::array<Choice, 3> table = {{
+      {"brio", "random rounds of doubling size, each along a Hilbert curve"},
+      {"hilbert", "along a Hilbert curve"},
+      {"random", "in random order"},
+  }};
+  return table;
+}
+
+Options resolve(const Options& options) {
+  const Method& method = choose_method(options);
+  Options result = options;
+  result.method = method.name;
+  result.location = choose("location", options.location, method.locations, method.name);
+  result.split = choose("split", options.split, method.splits, method.name);
+  result.order = choose("order", options.order, method.orders, method.name);
+  return result;
+}
+
+const Method& method_of(const Options& resolved) {
+  return *std::ranges::find(methods(), resolved.method, &Method::name);
+}
+
+}  // namespace delray::delaunay

@@ -1,0 +1,43 @@
+// The table of triangulation methods: command line, tests, benchmarks and messages read it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "delaunay/points.h"
+#include "delaunay/triangulate.h"
+
+namespace delray::delaunay {
+
+struct Choice {
+  std::string_view name;
+  std::string_view description;
+};
+
+struct Method {
+  std::string_view name;
+  std::string_view description;
+  std::vector<int> dims;
+  // What goes with the method, the default first; empty if it leaves no such choice.
+  std::vector<std::string_view> locations, splits, orders;
+  // REQUIRES: options that resolve() returned.
+  Triangulation (*triangulate)(PointView<double> points, const Options& options);
+};
+
+std::span<const Method> methods();
+std::span<const Choice> locations();
+std::span<const Choice> splits();
+std::span<const Choice> orders();
+
+// The options with every "auto" replaced by what will be used; "none" where the method leaves no
+// choice.
+//
+// Errors: std::invalid_argument that names the legal values.
+Options resolve(const Options& options);
+
+// The method of resolved options.
+const Method& method_of(const Options& resolved);
+
+}  // namespace delray::delaunay

@@ -1,0 +1,61 @@
+#include "delaunay/triangulation.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <tuple>
+#include <utility>
+
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay {
+namespace {
+
+// A block takes some tens of microseconds.
+constexpr std::size_t kSimplicesPerBlock = 4096;
+
+template <std::size_t Corners>
+Hash128 hash_of_range(const Triangulation& triangulation, std::size_t first, std::size_t last) {
+  Hash128 sum;
+  for (std::size_t t = first; t < last; ++t) {
+    std::array<std::uint64_t, Corners> rows;
+    std::copy_n(&triangulation.vertices[t * Corners], Corners, rows.begin());
+    for (std::size_t i = 1; i < Corners; ++i) {
+      for (std::size_t j = i; j > 0; --j) {
+        std::tie(rows[j - 1], rows[j]) = std::minmax({rows[j - 1], rows[j]});
+      }
+    }
+    const XXH128_hash_t simplex = XXH3_128bits(rows.data(), sizeof rows);
+    sum = sum + Hash128{simplex.high64, simplex.low64};
+  }
+  return sum;
+}
+
+}  // namespace
+
+Hash128 operator+(const Hash128& a, const Hash128& b) {
+  const std::uint64_t low = a.low + b.low;
+  return {a.high + b.high + (low < a.low ? 1 : 0), low};
+}
+
+std::string to_string(const Hash128& hash) {
+  std::array<char, 33> text;
+  std::snprintf(text.data(), text.size(), "%016llx%016llx",
+                static_cast<unsigned long long>(hash.high),
+                static_cast<unsigned long long>(hash.low));
+  return text.data();
+}
+
+Hash128 hash(const Triangulation& triangulation) {
+  return parallel::parallel_reduce(
+      0, triangulation.size(), kSimplicesPerBlock, Hash128{},
+      [&](std::size_t first, std::size_t last) {
+        return triangulation.dim == 2 ? hash_of_range<3>(triangulation, first, last)
+                                      : hash_of_range<4>(triangulation, first, last);
+      },
+      [](const Hash128& a, const Hash128& b) { return a + b; });
+}
+
+}  // namespace delray::delaunay
