@@ -1,28 +1,20 @@
 #include "delaunay/internal/extract.h"
 
+#include <utility>
+
 namespace delray::delaunay::internal {
 
 Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows) {
   Triangulation result;
   result.dim = 2;
   result.distinct = rows.size();
-  const auto size = static_cast<SimplexNumber>(mesh.size());
-  std::size_t finite = 0, ghosts = 0;
-  for (SimplexNumber t = 0; t < size; ++t) {
-    if (mesh.is_dead(t)) continue;
-    ++(mesh.is_ghost(t) ? ghosts : finite);
-  }
+  std::size_t live = 0;
+  for (SimplexNumber t = 0; t < mesh.size(); ++t) live += mesh.is_dead(t) ? 0 : 1;
+  Array<VertexNumber> vertices = std::move(mesh).take_finite();
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = rows[vertices[i]];
+  result.vertices.assign(vertices.data(), vertices.data() + vertices.size());
   // Of collinear points only ghosts are left, and those bound nothing.
-  if (finite == 0) return result;
-  result.hull_facets = ghosts;
-  result.vertices.resize(3 * finite);
-  std::size_t next = 0;
-  for (SimplexNumber t = 0; t < size; ++t) {
-    if (mesh.is_dead(t) || mesh.is_ghost(t)) continue;
-    for (unsigned k = 0; k < 3; ++k) {
-      result.vertices[next++] = rows[mesh.vertex(corner_of(t, k))];
-    }
-  }
+  if (!result.vertices.empty()) result.hull_facets = live - result.size();
   return result;
 }
 

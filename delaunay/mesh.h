@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "delaunay/array.h"
 
@@ -36,21 +37,19 @@ class Mesh {
 
   Mesh() = default;
   // `simplices` slots, contents undefined. REQUIRES: simplices <= kMaximumSimplices.
-  explicit Mesh(std::size_t simplices) : slots_(simplices * kCorners) {}
+  explicit Mesh(std::size_t simplices) : numbers_(2 * kCorners * simplices) {}
 
-  std::size_t size() const { return slots_.size() / kCorners; }
+  std::size_t size() const { return numbers_.size() / (2 * kCorners); }
   // Drops the slots from `simplices` on.
-  void shrink(std::size_t simplices) { slots_.shrink(simplices * kCorners); }
+  void shrink(std::size_t simplices) { numbers_.shrink(2 * kCorners * simplices); }
 
-  VertexNumber vertex(CornerNumber corner) const { return slots_[slot(corner)].vertex; }
-  CornerNumber neighbour(CornerNumber corner) const { return slots_[slot(corner)].neighbour; }
-  void set_vertex(CornerNumber corner, VertexNumber vertex) {
-    slots_[slot(corner)].vertex = vertex;
-  }
+  VertexNumber vertex(CornerNumber corner) const { return numbers_[place(corner)]; }
+  CornerNumber neighbour(CornerNumber corner) const { return numbers_[place(corner) + 1]; }
+  void set_vertex(CornerNumber corner, VertexNumber vertex) { numbers_[place(corner)] = vertex; }
   // Makes the facets opposite to two corners one.
   void link(CornerNumber a, CornerNumber b) {
-    slots_[slot(a)].neighbour = b;
-    slots_[slot(b)].neighbour = a;
+    numbers_[place(a) + 1] = b;
+    numbers_[place(b) + 1] = a;
   }
 
   bool is_ghost(SimplexNumber simplex) const {
@@ -62,19 +61,27 @@ class Mesh {
   }
   bool is_dead(SimplexNumber simplex) const { return vertex(corner_of(simplex, 0)) == kDeadVertex; }
 
- private:
-  // Vertex and neighbour lie side by side: a step over a facet needs both.
-  struct Slot {
-    VertexNumber vertex;
-    CornerNumber neighbour;
-  };
-
-  // Triangles are stored without gaps although their corners are numbered by fours.
-  static constexpr std::size_t slot(CornerNumber corner) {
-    return D == 3 ? corner : corner - (corner >> 2);
+  // The vertices of the finite live simplices, D + 1 each, as one flat array in the same memory;
+  // the rest of it is given back. O(simplices).
+  Array<VertexNumber> take_finite() && {
+    const auto simplices = static_cast<SimplexNumber>(size());
+    std::size_t next = 0;
+    for (SimplexNumber t = 0; t < simplices; ++t) {
+      if (is_dead(t) || is_ghost(t)) continue;
+      for (unsigned k = 0; k < kCorners; ++k) numbers_[next++] = vertex(corner_of(t, k));
+    }
+    numbers_.shrink(next);
+    return std::move(numbers_);
   }
 
-  Array<Slot> slots_;
+ private:
+  // Vertex and neighbour lie side by side, since a step over a facet needs both. Triangles are
+  // stored without gaps although their corners are numbered by fours.
+  static constexpr std::size_t place(CornerNumber corner) {
+    return 2 * std::size_t{D == 3 ? corner : corner - (corner >> 2)};
+  }
+
+  Array<std::uint32_t> numbers_;
 };
 
 // The corners of a triangle counterclockwise after `corner`, and before it.
