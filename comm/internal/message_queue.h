@@ -76,7 +76,8 @@ class MessageQueue {
     return payload;
   }
 
-  bool empty() const { return by_source_and_tag_.empty(); }
+  // Some message, collectives' included; null when there is none.
+  Message* any() const { return by_tag_.empty() ? nullptr : by_tag_.begin()->second; }
 
  private:
   using Order = std::pair<double, std::uint64_t>;

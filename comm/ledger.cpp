@@ -1,0 +1,56 @@
+#include "comm/ledger.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "comm/collectives.h"
+
+namespace delray::comm {
+
+Totals totals(std::span<const Event> events, int self, std::optional<Phase> phase) {
+  Totals sum;
+  bool counted_round = false;
+  std::pair last_round(Phase::other, 0);
+  for (const Event& event : events) {
+    if (phase && event.phase != *phase) continue;
+    const std::pair round(event.phase, event.round);
+    if (event.kind == Event::Kind::mark) continue;
+    if (event.kind == Event::Kind::work) {
+      sum.work[static_cast<std::size_t>(event.work)] += event.amount;
+      continue;
+    }
+    if (event.peer == self) continue;
+    const bool sent = event.kind == Event::Kind::send;
+    (sent ? sum.bytes_sent : sum.bytes_received) += event.amount;
+    (sent ? sum.messages_sent : sum.messages_received) += 1;
+    if (!counted_round || round != last_round) ++sum.rounds;
+    counted_round = true;
+    last_round = round;
+  }
+  return sum;
+}
+
+Totals totals(const Ledger& ledger, std::optional<Phase> phase) {
+  Totals sum;
+  for (std::size_t rank = 0; rank < ledger.ranks.size(); ++rank) {
+    const Totals one = totals(ledger.ranks[rank], static_cast<int>(rank), phase);
+    sum.bytes_sent += one.bytes_sent;
+    sum.bytes_received += one.bytes_received;
+    sum.messages_sent += one.messages_sent;
+    sum.messages_received += one.messages_received;
+    sum.rounds = std::max(sum.rounds, one.rounds);
+    for (std::size_t i = 0; i < sum.work.size(); ++i) sum.work[i] += one.work[i];
+  }
+  return sum;
+}
+
+Ledger gather_ledger(Communicator& communicator, std::span<const Event> events) {
+  Ledger ledger;
+  for (const Buffer& buffer : gather(communicator, 0, Buffer::of(events))) {
+    const std::span<const Event> rank = buffer.as<Event>();
+    ledger.ranks.emplace_back(rank.begin(), rank.end());
+  }
+  return ledger;
+}
+
+}  // namespace delray::comm

@@ -1,0 +1,51 @@
+// What the ranks of a run did, in program order: the raw material of counts, timelines and
+// predictions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "comm/communicator.h"
+
+namespace delray::comm {
+
+struct Event {
+  enum class Kind : std::uint8_t { send, receive, work, mark };
+  Kind kind = Kind::mark;
+  Phase phase = Phase::other;
+  Work work = Work::seconds_e9;  // of kind work
+  std::int32_t round = 0;
+  std::int32_t peer = -1;     // world rank of the other side of a message
+  Tag tag = -1;               // of a message; collectives' are >= kReservedTags
+  std::uint64_t amount = 0;   // bytes of a message, amount of work
+  double begin = 0, end = 0;  // Communicator::seconds; equal where the call took no time
+};
+
+// Indexed by world rank.
+struct Ledger {
+  std::vector<std::vector<Event>> ranks;
+};
+
+// Counted exactly. Messages of a rank to itself cross no network and are left out.
+struct Totals {
+  std::uint64_t bytes_sent = 0, bytes_received = 0;
+  std::uint64_t messages_sent = 0, messages_received = 0;
+  // Changes of phase or round between marks that were followed by a message.
+  std::uint64_t rounds = 0;
+  std::array<std::uint64_t, kWorkKinds> work{};  // indexed by Work
+};
+
+// Of one rank's events: `self` is its world rank. With a phase, of that phase only. O(events).
+Totals totals(std::span<const Event> events, int self, std::optional<Phase> phase = std::nullopt);
+
+// Over all ranks: sums, and the largest number of rounds.
+Totals totals(const Ledger& ledger, std::optional<Phase> phase = std::nullopt);
+
+// Collective: every rank's events on rank 0, nothing elsewhere. Call it on the communicator that
+// was recorded, not on the recording.
+Ledger gather_ledger(Communicator& communicator, std::span<const Event> events);
+
+}  // namespace delray::comm

@@ -1,0 +1,43 @@
+// Ranks that are MPI processes.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+#include "comm/communicator.h"
+
+namespace delray::comm {
+
+struct MpiOptions {
+  // A rank that waits longer than this for one message is taken for stalled.
+  std::chrono::nanoseconds timeout = std::chrono::nanoseconds::max();
+  // A message of this size or more travels in pieces of it. REQUIRES: 1 <= piece_bytes < 2^31.
+  std::size_t piece_bytes = std::size_t{1} << 30;
+};
+
+// Whether a launcher (mpirun, mpiexec, srun) started this process, and as which rank (0 when none
+// did). From the environment: MPI need not be initialised.
+bool launched_by_mpi();
+int launched_rank();
+
+// Runs body(communicator) over MPI_COMM_WORLD. Initialises MPI (MPI_THREAD_FUNNELED) unless
+// somebody has, and finalises it if so; at most once in a process.
+//
+// An exception in one rank ends all: a line on stderr with rank, phase and reason, then MPI_Abort
+// with exit code 5 (for errors of one rank alone that are nobody's fault: 3 for bad input, 1 for a
+// failing device, 130 when interrupted). An exception that all ranks agreed on
+// (comm/agree_on_failure.h) is rethrown on every rank after MPI was finalised. When the launcher
+// ends this process (SIGTERM, as after the death of another rank), a line on stderr names the
+// phase.
+void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& body,
+             const MpiOptions& options = {});
+
+// A communicator over the caller's: `mpi_communicator` is the address of an MPI_Comm, which is
+// duplicated. Collective, and so is the destruction of the result. Its abort calls MPI_Abort(5).
+// REQUIRES: MPI is initialised with MPI_THREAD_FUNNELED or more and outlives the result.
+std::unique_ptr<Communicator> make_mpi_communicator(const void* mpi_communicator,
+                                                    const MpiOptions& options = {});
+
+}  // namespace delray::comm

@@ -1,0 +1,148 @@
+#include "comm/mpi.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "comm/agree_on_failure.h"
+#include "comm/failure.h"
+#include "comm/internal/first_failure.h"
+#include "comm/internal/mpi_end.h"
+#include "comm/internal/mpi_header.h"
+#include "files/error.h"
+#include "parallel/progress.h"
+
+namespace delray::comm {
+namespace internal {
+namespace {
+std::atomic<Phase> current_phase{Phase::other};
+}  // namespace
+
+void note_phase(Phase phase) { current_phase.store(phase, std::memory_order_relaxed); }
+Phase noted_phase() { return current_phase.load(std::memory_order_relaxed); }
+
+void end_all_ranks(MPI_Comm communicator, int rank, Phase phase, const std::string& why,
+                   int exit_code) {
+  const std::string line = std::string("delray: ") + RankFailure(rank, phase, why).what() + "\n";
+  // One call, so that lines of several ranks do not mix.
+  std::fwrite(line.data(), 1, line.size(), stderr);
+  std::fflush(stderr);
+  MPI_Abort(communicator, exit_code);
+  std::_Exit(exit_code);
+}
+
+}  // namespace internal
+
+namespace {
+
+// What Open MPI, MPICH and its kin, and PMIx launchers tell their processes.
+constexpr std::array kSizeVariables = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK",
+                                       "MPI_LOCALNRANKS"};
+constexpr std::array kRankVariables = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
+
+int world_rank_for_signals = 0;
+
+// Async-signal-safe: writes fixed pieces only.
+extern "C" void report_termination(int signal) {
+  std::array<char, 160> line{};
+  std::size_t length = 0;
+  const auto put = [&](const char* text) {
+    while (*text && length < line.size()) line[length++] = *text++;
+  };
+  std::array<char, 12> digits{};
+  std::size_t first = digits.size() - 1;
+  int rest = world_rank_for_signals;
+  do {
+    digits[--first] = static_cast<char>('0' + rest % 10);
+    rest /= 10;
+  } while (rest > 0);
+  put("delray: rank ");
+  put(&digits[first]);
+  put(" was told to end in phase ");
+  put(name(internal::noted_phase()));
+  put("\n");
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, line.data(), length);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void report_termination_signals(int rank) {
+  world_rank_for_signals = rank;
+  struct sigaction old = {};
+  if (sigaction(SIGTERM, nullptr, &old) != 0 || old.sa_handler != SIG_DFL) return;
+  struct sigaction action = {};
+  action.sa_handler = report_termination;
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int exit_code_of(const std::exception_ptr& exception) {
+  try {
+    std::rethrow_exception(exception);
+  } catch (const files::FileError& error) {
+    return error.cause() == files::Cause::input ? 3 : 1;
+  } catch (const parallel::Interrupted&) {
+    return 130;
+  } catch (...) {
+    return internal::kExitRankLost;
+  }
+}
+
+bool is_agreed(const std::exception_ptr& exception) {
+  try {
+    std::rethrow_exception(exception);
+  } catch (const AgreedFailure&) {
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
+}  // namespace
+
+bool launched_by_mpi() {
+  for (const char* variable : kSizeVariables) {
+    if (std::getenv(variable)) return true;
+  }
+  return false;
+}
+
+int launched_rank() {
+  for (const char* variable : kRankVariables) {
+    if (const char* value = std::getenv(variable)) return std::atoi(value);
+  }
+  return 0;
+}
+
+void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& body,
+             const MpiOptions& options) {
+  int initialized = 0;
+  MPI_Initialized(&initialized);
+  if (!initialized) {
+    int provided = 0;
+    MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+  }
+  std::exception_ptr failure;
+  {
+    const MPI_Comm world = MPI_COMM_WORLD;
+    const auto communicator = make_mpi_communicator(&world, options);
+    report_termination_signals(communicator->rank());
+    try {
+      body(*communicator);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    if (failure && !is_agreed(failure)) {
+      internal::end_all_ranks(world, communicator->rank(), internal::noted_phase(),
+                              internal::describe(failure), exit_code_of(failure));
+    }
+  }
+  if (!initialized) MPI_Finalize();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace delray::comm

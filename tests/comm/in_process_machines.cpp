@@ -1,0 +1,30 @@
+#include <gtest/gtest.h>
+
+#include "comm/simulated.h"
+#include "comm/threads.h"
+#include "tests/comm/machine.h"
+
+namespace delray::comm::testing {
+namespace {
+
+void run_over_threads(int ranks, const Body& body) { run_threads(ranks, 1, body); }
+
+void run_over_seeds(int ranks, const Body& body) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    run_simulated(ranks, any_order(), seed, body);
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+void run_over_a_network(int ranks, const Body& body) { run_simulated(ranks, Network{}, 1, body); }
+
+}  // namespace
+
+std::vector<Machine> machines() {
+  return {{"threads", 9, run_over_threads, run_over_threads},
+          {"simulated", 9, run_over_seeds, run_over_a_network},
+          {"simulated_network", 9, run_over_a_network, run_over_a_network}};
+}
+
+}  // namespace delray::comm::testing

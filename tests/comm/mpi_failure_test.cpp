@@ -1,0 +1,95 @@
+// How programs end when one of their MPI processes fails: by what the launcher prints and returns.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;
+  double seconds = 0;
+};
+
+// Runs comm_failing_rank with 4 processes.
+Outcome launch(const std::string& arguments) {
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
+  setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 1);
+  const std::string command = std::string(DELRAY_MPIEXEC) + " -n 4 " + DELRAY_FAILING_RANK + " " +
+                              arguments + " 2>&1 < /dev/null";
+  const auto begin = std::chrono::steady_clock::now();
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return outcome;
+  std::array<char, 4096> chunk;
+  while (const std::size_t n = fread(chunk.data(), 1, chunk.size(), pipe)) {
+    outcome.output.append(chunk.data(), n);
+  }
+  const int status = pclose(pipe);
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return outcome;
+}
+
+class MpiFailure : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(DELRAY_MPIEXEC)) GTEST_SKIP() << "no mpirun";
+  }
+};
+
+TEST_F(MpiFailure, ExceptionEndsAllWithFiveAndNamesTheRank) {
+  const Outcome outcome = launch("throw 2");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
+  EXPECT_NE(outcome.output.find("rank 2 failed in phase compose: the disk is on fire"),
+            std::string::npos)
+      << outcome.output;
+  // Generous: the promise is 10 s, and a hang is what this is about.
+  EXPECT_LT(outcome.seconds, 10);
+}
+
+TEST_F(MpiFailure, AbortIsAFailure) {
+  const Outcome outcome = launch("abort 3");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
+  EXPECT_NE(outcome.output.find("rank 3 failed in phase compose: nothing left to do"),
+            std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(MpiFailure, BadInputOfOneRankEndsAllWithThree) {
+  const Outcome outcome = launch("file 1");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
+  EXPECT_NE(outcome.output.find("broken.ply: line 7: not a number"), std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(MpiFailure, AgreedBadInputIsThrownOnAllRanks) {
+  const Outcome outcome = launch("agreed 1");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
+  EXPECT_NE(outcome.output.find("all agree: broken.ply: line 7: not a number"), std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(outcome.output.find("failed in phase"), std::string::npos) << outcome.output;
+}
+
+TEST_F(MpiFailure, StallEndsAllWithFive) {
+  const Outcome outcome = launch("stall 0");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
+  EXPECT_NE(outcome.output.find("for a message from rank 0 with tag 2"), std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(MpiFailure, MessagesThatNobodyReceivesDoNotHinderTheEnd) {
+  const Outcome outcome = launch("none");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_LT(outcome.seconds, 10);
+}
+
+}  // namespace
