@@ -1,0 +1,30 @@
+#include "composite/internal/range.h"
+#include "composite/scheme.h"
+
+namespace delray::composite {
+
+Part gather(comm::Communicator& communicator, Part&& part, int root) {
+  using namespace internal;
+  communicator.mark(comm::Phase::gather, 0);
+  if (communicator.rank() != root) {
+    communicator.send(root, kTagGatherRanges,
+                      comm::Buffer::of(std::span<const PixelRange>(part.ranges)));
+    for (const PixelRange& range : part.ranges) {
+      communicator.send(root, kTagGatherPixels, part.layer->cut(range));
+    }
+    return {{}, std::move(part.layer)};
+  }
+  for (int from = 0; from < communicator.size(); ++from) {
+    if (from == root) continue;
+    const comm::Buffer ranges = communicator.receive(from, kTagGatherRanges);
+    for (const PixelRange& range : ranges.as<PixelRange>()) {
+      part.layer->replace(range, communicator.receive(from, kTagGatherPixels));
+    }
+  }
+  const PixelRange all{0, part.layer->pixels()};
+  part.ranges.clear();
+  if (all.size() > 0) part.ranges.push_back(all);
+  return std::move(part);
+}
+
+}  // namespace delray::composite
