@@ -131,6 +131,13 @@ std::vector<Quantity> named_columns(const Input& input, std::size_t line_number,
   return columns;
 }
 
+// Whether a first field is no number, not even a broken one.
+bool is_name(std::string_view field) {
+  double value = 0;
+  return (field.empty() || std::string_view("0123456789+-.").find(field[0]) == field.npos) &&
+         parse_number(field, value) == NumberError::not_a_number;
+}
+
 struct Counts {
   std::size_t points = 0, edges = 0;
   bool single = false;  // the line holds the number of points alone
@@ -195,9 +202,8 @@ Layout find_layout(const Input& input) {
 
   Layout layout;
   layout.begin = first.blocks[0];
-  double value = 0;
   const auto counts = counts_of(fields);
-  if (!fields.empty() && parse_number(fields[0], value) == NumberError::not_a_number) {
+  if (!fields.empty() && is_name(fields[0])) {
     layout.columns = named_columns(input, line_number, split_names(input, line));
     layout.begin = rest;
   } else if (counts && (counts->single || is_outline(input, *counts, rest))) {

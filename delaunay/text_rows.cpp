@@ -14,6 +14,12 @@ std::string_view without_blanks_before(std::string_view text) {
   return text;
 }
 
+// from_chars knows no plus sign.
+std::string_view without_plus(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  return text;
+}
+
 // A field as it may appear in a message: short and printable.
 std::string quoted(std::string_view field) {
   constexpr std::size_t kLongest = 40;
@@ -111,7 +117,7 @@ void Fields::fail(const std::string& what) const {
 }
 
 NumberError parse_number(std::string_view text, double& value) {
-  if (text.starts_with('+')) text.remove_prefix(1);
+  text = without_plus(text);
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, value);
   if (parsed.ec == std::errc::invalid_argument || parsed.ptr != end) {
@@ -125,7 +131,7 @@ NumberError parse_number(std::string_view text, double& value) {
 }
 
 bool parse_integer(std::string_view text, std::int64_t& value) {
-  if (text.starts_with('+')) text.remove_prefix(1);
+  text = without_plus(text);
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, value);
   return parsed.ec == std::errc() && parsed.ptr == end;
