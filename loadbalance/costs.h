@@ -1,10 +1,10 @@
 // What a partition knows of the work: a grid of costs and boxes with weights, never primitives.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "comm/communicator.h"
 #include "geometry/rect.h"
 
 namespace delray::loadbalance {
@@ -17,13 +17,15 @@ struct WeightedBox {
 };
 
 // Costs over a frame, gathered from boxes or measured. Cell (i, j) of the grid covers the pixels
-//   [x0 + i*width/columns, x0 + (i+1)*width/columns) x [y0 + j*height/rows, ...) of `frame`.
+//   [x0 + i*width/columns, x0 + (i+1)*width/columns) x [y0 + j*height/rows, ...) of `frame`,
+// divisions rounded down.
 struct Costs {
   geometry::Rect frame;
   int columns = 0, rows = 0;
   std::vector<double> cells;  // rows * columns, row-major
-  std::vector<double>
-      cross_right;  // cost crossing the edge between cells (i, j) and (i+1, j); last column 0
+  // Cost that crosses the edge between cells (i, j) and (i+1, j); last column 0. A box shares its
+  // cost among the edges of a column that it crosses, so that a straight cut costs it once.
+  std::vector<double> cross_right;
   std::vector<double> cross_down;  // ... (i, j) and (i, j+1); last row 0
   std::vector<WeightedBox> boxes;
 
@@ -31,8 +33,14 @@ struct Costs {
 };
 
 // Each box adds its cost, split evenly, to the cells that it overlaps (Mueller 1995), so that it
-// counts once; boxes outside the frame add nothing. The boxes are kept. O(boxes + cells touched).
+// counts once; boxes outside the frame add nothing. The boxes are kept. A frame with fewer pixels
+// than `columns` or `rows` gets a grid of so many cells, at least one. O(boxes + cells touched).
 // REQUIRES: columns, rows >= 1; costs finite and >= 0.
 Costs make_costs(geometry::Rect frame, int columns, int rows, std::span<const WeightedBox> boxes);
+
+// Adds up the costs that the ranks know of and strings their boxes together by rank; every rank
+// gets the same, bit by bit. Collective: two rounds of messages, cells once and boxes once.
+// REQUIRES: all ranks have the same frame, columns and rows.
+void sum_over_ranks(Costs& costs, comm::Communicator& communicator);
 
 }  // namespace delray::loadbalance

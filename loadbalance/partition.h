@@ -24,7 +24,7 @@ struct Partition {
 struct Partitioner {
   const char* name;
   const char* description;
-  // REQUIRES: parts >= 1; owners are 0 .. parts-1.
+  // Owners are 0 .. parts-1. REQUIRES: parts >= 1; frame == costs.frame.
   Partition (*partition)(const Costs& costs, geometry::Rect frame, int parts);
 };
 
@@ -32,8 +32,8 @@ struct Partitioner {
 std::span<const Partitioner> partitioners();
 const Partitioner* find_partitioner(std::string_view name);  // nullptr when there is none
 
-// The cost of each owner's regions, from the cells (a cell cut by a border counts by area). Size:
-// owners.
+// The cost of each owner's regions, from the cells: a cell cut by a border counts by area, one
+// without pixels not at all. Size: owners. REQUIRES: partition.frame == costs.frame.
 std::vector<double> loads(const Costs& costs, const Partition& partition, int owners);
 
 }  // namespace delray::loadbalance

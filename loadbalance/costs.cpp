@@ -1,0 +1,103 @@
+#include "loadbalance/costs.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include "comm/collectives.h"
+
+namespace delray::loadbalance {
+namespace {
+
+using geometry::Rect;
+
+// The first pixel of cell i of `cells` over `pixels` pixels.
+int border(int i, int cells, int pixels) {
+  return static_cast<int>(std::int64_t{i} * pixels / cells);
+}
+
+// The last cell that begins at or before pixel x.
+int cell_of(int x, int cells, int pixels) {
+  return static_cast<int>(((std::int64_t{x} + 1) * cells - 1) / pixels);
+}
+
+// The cells that a box within the frame overlaps.
+Rect cells_of(const Rect& box, const Costs& costs) {
+  const Rect& frame = costs.frame;
+  return {cell_of(box.x0 - frame.x0, costs.columns, frame.width()),
+          cell_of(box.y0 - frame.y0, costs.rows, frame.height()),
+          cell_of(box.x1 - 1 - frame.x0, costs.columns, frame.width()) + 1,
+          cell_of(box.y1 - 1 - frame.y0, costs.rows, frame.height()) + 1};
+}
+
+void add(Costs& costs, const WeightedBox& box) {
+  const Rect visible = geometry::intersection(box.box, costs.frame);
+  if (visible.empty()) return;
+  const Rect cells = cells_of(visible, costs);
+  const double share = box.cost / static_cast<double>(cells.area());
+  const double right = box.cost / cells.height(), down = box.cost / cells.width();
+  for (int j = cells.y0; j < cells.y1; ++j) {
+    const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(costs.columns);
+    for (int i = cells.x0; i < cells.x1; ++i) {
+      const std::size_t k = row + static_cast<std::size_t>(i);
+      costs.cells[k] += share;
+      if (i + 1 < cells.x1) costs.cross_right[k] += right;
+      if (j + 1 < cells.y1) costs.cross_down[k] += down;
+    }
+  }
+}
+
+}  // namespace
+
+Rect Costs::cell(int i, int j) const {
+  return {frame.x0 + border(i, columns, frame.width()), frame.y0 + border(j, rows, frame.height()),
+          frame.x0 + border(i + 1, columns, frame.width()),
+          frame.y0 + border(j + 1, rows, frame.height())};
+}
+
+Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox> boxes) {
+  assert(columns >= 1 && rows >= 1);
+  Costs costs;
+  costs.frame = frame;
+  costs.columns = std::clamp(columns, 1, std::max(1, frame.width()));
+  costs.rows = std::clamp(rows, 1, std::max(1, frame.height()));
+  const std::size_t size =
+      static_cast<std::size_t>(costs.columns) * static_cast<std::size_t>(costs.rows);
+  costs.cells.resize(size);
+  costs.cross_right.resize(size);
+  costs.cross_down.resize(size);
+  costs.boxes.assign(boxes.begin(), boxes.end());
+  for (const WeightedBox& box : boxes) {
+    assert(std::isfinite(box.cost) && box.cost >= 0);
+    add(costs, box);
+  }
+  return costs;
+}
+
+void sum_over_ranks(Costs& costs, comm::Communicator& communicator) {
+  const std::size_t size = costs.cells.size();
+  std::vector<double> values;
+  values.reserve(3 * size);
+  for (const auto* plane : {&costs.cells, &costs.cross_right, &costs.cross_down}) {
+    assert(plane->size() == size);
+    values.insert(values.end(), plane->begin(), plane->end());
+  }
+  comm::all_reduce(communicator, std::span<double>(values), std::plus<>());
+  auto from = values.begin();
+  for (auto* plane : {&costs.cells, &costs.cross_right, &costs.cross_down}) {
+    std::copy_n(from, size, plane->begin());
+    from += static_cast<std::ptrdiff_t>(size);
+  }
+
+  const auto all =
+      comm::all_gather(communicator, comm::Buffer::of(std::span<const WeightedBox>(costs.boxes)));
+  costs.boxes.clear();
+  for (const comm::Buffer& buffer : all) {
+    const auto boxes = buffer.as<WeightedBox>();
+    costs.boxes.insert(costs.boxes.end(), boxes.begin(), boxes.end());
+  }
+}
+
+}  // namespace delray::loadbalance
