@@ -62,7 +62,8 @@ struct Statistics {
   // Summed over ranks: with sort-first a primitive counts on each rank that gets it.
   std::uint64_t triangles_in = 0, triangles_culled = 0, triangles_clipped = 0,
                 triangles_rasterized = 0;
-  std::uint64_t fragments = 0;  // visible pixels, before ranks are composited
+  std::uint64_t triangles_travelled = 0;  // sent from one rank to another, once per receiver
+  std::uint64_t fragments = 0;            // visible pixels, before ranks are composited
   std::vector<std::string> warnings;
 };
 

@@ -81,7 +81,7 @@ void expect_each_pixel_once(int reach, int step, int points, unsigned seed) {
 }
 
 TEST(Watertight, RandomTriangulationsCoverEachPixelOnce) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
     expect_each_pixel_once(60 * kSubpixels, 1, 60, seed);
     expect_each_pixel_once(50 * kSubpixels, 10 * kHalfPixel, 40, 100 + seed);
     expect_each_pixel_once(48 * kSubpixels, kSubpixels, 60, 200 + seed);

@@ -1,0 +1,49 @@
+// What a strategy works with on one rank.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "comm/communicator.h"
+#include "raster/internal/regions.h"
+#include "raster/render.h"
+
+namespace delray::raster {
+
+struct Rank {
+  comm::Communicator& communicator;
+  const scenes::Scene& scene;
+  std::span<const std::uint64_t> first_primitives;
+  const shading::Shader& shader;
+  const Screen& screen;
+  const RenderOptions& options;
+  parallel::Progress* progress;
+  Scratch& scratch;
+  RegionCounts counts = {};
+  std::uint64_t triangles_travelled = 0;
+
+  int number() const { return communicator.rank(); }
+  int ranks() const { return communicator.size(); }
+
+  // The primitives that this rank has before anything travels: an equal part of all, in order.
+  std::pair<std::uint64_t, std::uint64_t> own_primitives() const;
+  // Renders `list` into `regions` of `image` and counts.
+  template <class Colour>
+  void render(const DrawList& list, std::span<const geometry::Rect> regions,
+              image::BasicImage<Colour>& image);
+};
+
+// Runs f and adds the seconds that it took on this rank, waiting for others included.
+template <class F>
+auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
+  const double begin = communicator.seconds();
+  auto result = f();
+  seconds += communicator.seconds() - begin;
+  return result;
+}
+
+Picture sort_first(Rank& rank);
+Picture sort_last(Rank& rank);
+
+}  // namespace delray::raster

@@ -1,0 +1,151 @@
+#include "raster/render.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "comm/collectives.h"
+#include "comm/ledger.h"
+#include "comm/recording.h"
+#include "composite/scheme.h"
+#include "loadbalance/partition.h"
+#include "parallel/parallel_for.h"
+#include "raster/internal/rank.h"
+#include "raster/strategies.h"
+
+namespace delray::raster {
+namespace {
+
+// One rank's share of the statistics, as it travels to rank 0.
+struct Report {
+  RankStatistics rank;
+  Phases phases;
+  TriangleCounts triangles;
+  std::uint64_t fragments, triangles_travelled;
+};
+
+void check(const RenderOptions& options) {
+  const auto known = [](bool found, const char* kind, const std::string& name) {
+    if (!found) throw std::invalid_argument("there is no " + std::string(kind) + " '" + name + "'");
+  };
+  known(find_strategy(options.strategy) != nullptr, "strategy", options.strategy);
+  known(composite::find_scheme(options.scheme) != nullptr, "compositing scheme", options.scheme);
+  known(loadbalance::find_partitioner(options.partition) != nullptr, "partition",
+        options.partition);
+  const int longest = std::max(options.width, options.height);
+  if (std::min(options.width, options.height) < 1 || longest > kLargestSide)
+    throw std::invalid_argument("a picture's sides are from 1 to " + std::to_string(kLargestSide) +
+                                " pixels");
+}
+
+void to_distances(std::span<float> depths, float near) {
+  constexpr std::size_t kGrain = 1 << 16;  // pixels: some ten microseconds
+  parallel::parallel_for(0, depths.size(), kGrain, [&](std::size_t i) {
+    if (depths[i] < 0) depths[i] = distance_of(depths[i], near);
+  });
+}
+
+Report make_report(const Rank& rank, std::span<const comm::Event> events) {
+  const comm::Communicator& communicator = rank.communicator;
+  const comm::Totals totals = comm::totals(events, communicator.world_rank(communicator.rank()));
+  const Phases& phases = rank.counts.phases;
+  Report report{};
+  report.rank.rank = communicator.rank();
+  report.rank.busy = phases.transform + phases.bin + phases.rasterize + phases.shade;
+  report.rank.tasks = rank.counts.tiles;
+  report.rank.bytes_sent = totals.bytes_sent;
+  report.rank.bytes_received = totals.bytes_received;
+  report.rank.messages = totals.messages_sent;
+  report.phases = phases;
+  report.triangles = rank.counts.triangles;
+  report.fragments = rank.counts.fragments;
+  report.triangles_travelled = rank.triangles_travelled;
+  return report;
+}
+
+Statistics summarize(std::span<const comm::Buffer> reports) {
+  Statistics statistics;
+  double busiest = 0, sum = 0;
+  for (const comm::Buffer& buffer : reports) {
+    const Report& report = buffer.as<Report>()[0];
+    statistics.phases += report.phases;
+    statistics.ranks.push_back(report.rank);
+    busiest = std::max(busiest, report.rank.busy);
+    sum += report.rank.busy;
+    statistics.triangles_in += report.triangles.in;
+    statistics.triangles_culled += report.triangles.culled;
+    statistics.triangles_clipped += report.triangles.clipped;
+    statistics.triangles_rasterized += report.triangles.rasterized;
+    statistics.triangles_travelled += report.triangles_travelled;
+    statistics.fragments += report.fragments;
+  }
+  if (sum > 0) statistics.imbalance = busiest / (sum / static_cast<double>(reports.size()));
+  return statistics;
+}
+
+bool any_blended(const scenes::Scene& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const scenes::Mesh& mesh) {
+    return mesh.material < scene.materials.size() &&
+           scene.materials[mesh.material].alpha == scenes::Material::Alpha::blend;
+  });
+}
+
+}  // namespace
+
+void Phases::operator+=(const Phases& other) {
+  transform += other.transform;
+  bin += other.bin;
+  rasterize += other.rasterize;
+  shade += other.shade;
+  redistribute += other.redistribute;
+  compose += other.compose;
+  gather += other.gather;
+}
+
+struct Renderer::Memory {
+  const scenes::Scene& scene;
+  std::shared_ptr<const shading::Shader> shader;
+  std::vector<std::uint64_t> first_primitives;
+  bool blended;
+  Scratch scratch = {};
+};
+
+Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
+  if (shader == nullptr)
+    shader = std::make_shared<const shading::Shader>(shading::make_shader(scene));
+  memory_ = std::make_unique<Memory>(
+      Memory{scene, std::move(shader), scenes::first_primitives(scene), any_blended(scene)});
+}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
+                        const RenderOptions& options, parallel::Progress* progress) {
+  check(options);
+  const Screen screen = make_screen(scenes::make_view(camera, options.width, options.height));
+  std::vector<comm::Event> events;
+  comm::Recording recording(communicator, events);
+  Rank rank{recording, memory_->scene, memory_->first_primitives, *memory_->shader, screen,
+            options,   progress,       memory_->scratch};
+  Result result;
+  result.picture = find_strategy(options.strategy)->render(rank);
+
+  const std::vector<comm::Buffer> reports =
+      comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
+  if (communicator.rank() != 0) return result;
+  result.statistics = summarize(reports);
+  if (memory_->blended)
+    result.statistics.warnings.emplace_back("transparent materials are drawn opaque");
+  std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
+             result.picture);
+  return result;
+}
+
+Result render(comm::Communicator& communicator, const scenes::Scene& scene,
+              const scenes::Camera& camera, const RenderOptions& options,
+              parallel::Progress* progress) {
+  return Renderer(scene).render(communicator, camera, options, progress);
+}
+
+}  // namespace delray::raster

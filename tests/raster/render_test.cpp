@@ -1,0 +1,346 @@
+#include "raster/render.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstring>
+#include <mutex>
+
+#include "comm/simulated.h"
+#include "comm/threads.h"
+#include "composite/scheme.h"
+#include "image/srgb.h"
+#include "loadbalance/partition.h"
+#include "raster/strategies.h"
+#include "scenes/generate.h"
+#include "tests/raster/random_scene.h"
+#include "tests/raster/targets.h"
+
+namespace delray::raster {
+namespace {
+
+// As many threads as the tests ask for, on machines with fewer cores too.
+const tbb::global_control kThreads(tbb::global_control::max_allowed_parallelism, 12);
+
+template <class Colour>
+bool same_bytes(const image::BasicImage<Colour>& a, const image::BasicImage<Colour>& b) {
+  return a.width == b.width && a.height == b.height &&
+         std::memcmp(a.colour.data(), b.colour.data(), a.pixels() * sizeof(Colour)) == 0 &&
+         std::memcmp(a.depth.data(), b.depth.data(), a.pixels() * sizeof(float)) == 0;
+}
+bool same_bytes(const Picture& a, const Picture& b) {
+  return a.index() == b.index() &&
+         std::visit(
+             [&](const auto& image) {
+               return same_bytes(image, std::get<std::decay_t<decltype(image)>>(b));
+             },
+             a);
+}
+
+Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
+                const RenderOptions& options, int ranks = 1, int threads = 1) {
+  Result result;
+  comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
+    Result mine = render(communicator, scene, camera, options);
+    if (communicator.rank() == 0) result = std::move(mine);
+  });
+  return result;
+}
+
+std::vector<RenderOptions> every_way(const RenderOptions& base) {
+  std::vector<RenderOptions> ways;
+  for (const Strategy& strategy : strategies()) {
+    RenderOptions options = base;
+    options.strategy = strategy.name;
+    if (options.strategy == "sort-last") {
+      for (const composite::Scheme& scheme : composite::schemes()) {
+        options.scheme = scheme.name;
+        ways.push_back(options);
+      }
+      continue;
+    }
+    for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
+      for (const Travel travel : {Travel::geometry, Travel::numbers}) {
+        options.partition = partitioner.name;
+        options.travel = travel;
+        ways.push_back(options);
+      }
+  }
+  return ways;
+}
+
+std::string described(const RenderOptions& options, int ranks, int threads) {
+  return options.strategy + " " + options.scheme + " " + options.partition +
+         (options.travel == Travel::numbers ? " numbers " : " geometry ") + std::to_string(ranks) +
+         " x " + std::to_string(threads);
+}
+
+TEST(Render, OnePictureForEveryStrategySchemePartitionAndNumberOfRanksAndThreads) {
+  const scenes::Scene scene = random_scene(1);
+  RenderOptions base;
+  base.width = 97;
+  base.height = 71;
+  const Result expected = rendered(scene, random_scene_camera(), base);
+  EXPECT_GT(expected.statistics.fragments, 97U * 71U / 3);
+  for (const RenderOptions& options : every_way(base))
+    for (int ranks = 1; ranks <= 9; ++ranks)
+      for (int threads = ranks <= 3 ? 1 : 1 + ranks % 3; threads <= 3;
+           threads += ranks <= 3 ? 1 : 3) {
+        SCOPED_TRACE(described(options, ranks, threads));
+        const Result result = rendered(scene, random_scene_camera(), options, ranks, threads);
+        EXPECT_TRUE(same_bytes(result.picture, expected.picture));
+        EXPECT_EQ(result.statistics.ranks.size(), static_cast<std::size_t>(ranks));
+      }
+}
+
+TEST(Render, FloatAndGouraudPicturesAreOnePictureToo) {
+  const scenes::Scene scene = random_scene(2);
+  for (const Lighting lighting : {Lighting::phong, Lighting::gouraud}) {
+    RenderOptions base;
+    base.width = 64;
+    base.height = 65;
+    base.float_pixels = true;
+    base.lighting = lighting;
+    base.cull_single_sided = lighting == Lighting::gouraud;
+    const Result expected = rendered(scene, random_scene_camera(), base);
+    ASSERT_TRUE(std::holds_alternative<image::ImageF>(expected.picture));
+    for (const RenderOptions& options : every_way(base))
+      for (const int ranks : {2, 5}) {
+        SCOPED_TRACE(described(options, ranks, 2));
+        const Result result = rendered(scene, random_scene_camera(), options, ranks, 2);
+        EXPECT_TRUE(same_bytes(result.picture, expected.picture));
+      }
+  }
+}
+
+TEST(Render, SimulatedRanksGiveTheSamePicture) {
+  const scenes::Scene scene = random_scene(3);
+  RenderOptions base;
+  base.width = 70;
+  base.height = 50;
+  const Result expected = rendered(scene, random_scene_camera(), base);
+  for (const RenderOptions& options : every_way(base))
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      Picture picture;
+      comm::run_simulated(3 + static_cast<int>(seed), comm::any_order(), seed,
+                          [&](comm::Communicator& communicator) {
+                            Result result =
+                                render(communicator, scene, random_scene_camera(), options);
+                            if (communicator.rank() == 0) picture = std::move(result.picture);
+                          });
+      EXPECT_TRUE(same_bytes(picture, expected.picture)) << described(options, 3, 1);
+    }
+}
+
+TEST(Render, EveryInstructionSetGivesTheSamePicture) {
+  const scenes::Scene scene = random_scene(4);
+  RenderOptions options;
+  options.width = 133;
+  options.height = 77;
+  const Result expected = rendered(scene, random_scene_camera(), options);
+  for_each_target([&] {
+    EXPECT_TRUE(
+        same_bytes(rendered(scene, random_scene_camera(), options).picture, expected.picture));
+  });
+}
+
+TEST(Render, MemoryOfOneFrameLeavesNoTraceInTheNext) {
+  const scenes::Scene scene = random_scene(5);
+  RenderOptions large, small;
+  large.width = 200;
+  large.height = 130;
+  small.width = 33;
+  small.height = 90;
+  small.strategy = "sort-first";
+  scenes::Camera other = random_scene_camera();
+  other.eye = {-3, 0.5F, 1};
+  const Result expected = rendered(scene, random_scene_camera(), small);
+  comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
+    Renderer renderer(scene);
+    renderer.render(communicator, other, large);
+    const Result result = renderer.render(communicator, random_scene_camera(), small);
+    EXPECT_TRUE(same_bytes(result.picture, expected.picture));
+  });
+}
+
+TEST(Render, EmptyScenesAndTinyPicturesWork) {
+  scenes::Scene nothing;
+  nothing.materials.resize(1);
+  scenes::Scene one = nothing;
+  one.meshes.resize(1);
+  one.meshes[0].positions = {{-900, -900, 0}, {900, -900, 0}, {0, 900, 0}};
+  one.meshes[0].triangles = {{0, 1, 2}};
+  one.instances.resize(1);
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 65}, {129, 1}, {2, 3}}) {
+    RenderOptions base;
+    base.width = width;
+    base.height = height;
+    for (const RenderOptions& options : every_way(base))
+      for (const int ranks : {1, 2, 7}) {
+        SCOPED_TRACE(described(options, ranks, 1));
+        const Result empty = rendered(nothing, {}, options, ranks);
+        const auto& blank = std::get<image::Image8>(empty.picture);
+        ASSERT_EQ(blank.pixels(), static_cast<std::size_t>(width * height));
+        for (std::size_t i = 0; i < blank.pixels(); ++i) {
+          EXPECT_EQ(blank.colour[i], image::Rgba8());
+          EXPECT_EQ(blank.depth[i], image::kEmptyDepth);
+        }
+        const Result full = rendered(one, {}, options, ranks);
+        const auto& covered = std::get<image::Image8>(full.picture);
+        for (std::size_t i = 0; i < covered.pixels(); ++i) {
+          EXPECT_EQ(covered.colour[i].a, 255);
+          EXPECT_NEAR(covered.depth[i], 1.0F, 1e-5F);
+        }
+      }
+  }
+}
+
+TEST(Render, NearerWinsAndEqualDepthsGoToTheFirst) {
+  scenes::Scene scene;
+  scene.materials.resize(3);
+  for (int i = 0; i < 3; ++i) {
+    scene.materials[i].base_colour = glm::vec4(0, 0, 0, 1);
+    scene.materials[i].emission[i] = 1;
+    scenes::Mesh mesh;
+    mesh.material = static_cast<std::uint32_t>(i);
+    const float z = i == 2 ? 0.5F : 0.0F;  // the last one is nearer
+    const float right = i == 2 ? 0.0F : 9.0F;
+    mesh.positions = {{-9, -9, z}, {right, -9, z}, {right, 9, z}, {-9, 9, z}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene.meshes.push_back(mesh);
+    scene.instances.push_back({static_cast<std::uint32_t>(i), glm::mat4x3(1.0F)});
+  }
+  scenes::Camera camera;
+  camera.eye = {0, 0, 2};
+  RenderOptions base;
+  base.width = 20;
+  base.height = 10;
+  base.float_pixels = true;
+  for (const RenderOptions& options : every_way(base))
+    for (const int ranks : {1, 2, 3, 6}) {
+      SCOPED_TRACE(described(options, ranks, 1));
+      const Result result = rendered(scene, camera, options, ranks);
+      const auto& picture = std::get<image::ImageF>(result.picture);
+      for (int y = 0; y < 10; ++y)
+        for (int x = 0; x < 20; ++x) {
+          const image::RgbaF& pixel = picture.colour[y * 20 + x];
+          EXPECT_EQ(pixel.g, 0.0F);  // the second is never seen
+          EXPECT_EQ(pixel.r, x < 10 ? 0.0F : 1.0F);
+          EXPECT_EQ(pixel.b, x < 10 ? 1.0F : 0.0F);
+          EXPECT_NEAR(picture.depth[y * 20 + x], x < 10 ? 1.5F : 2.0F, 1e-5F);
+        }
+    }
+}
+
+TEST(Render, CullsBackFacesOnlyOfSingleSidedMaterialsWhenAsked) {
+  scenes::Scene scene;
+  scene.materials.resize(2);
+  scene.materials[1].double_sided = false;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    scenes::Mesh mesh;
+    mesh.material = i;
+    mesh.positions = {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    scene.meshes.push_back(mesh);
+  }
+  glm::mat4x3 mirrored(1.0F);
+  mirrored[2].z = -1;
+  for (const std::uint32_t mesh : {0U, 1U})
+    for (const bool mirror : {false, true})
+      for (const bool behind : {false, true})
+        for (const bool cull : {false, true}) {
+          scene.instances = {{mesh, mirror ? mirrored : glm::mat4x3(1.0F)}};
+          scenes::Camera camera;
+          camera.eye.z = behind ? -1.0F : 1.0F;
+          RenderOptions options;
+          options.width = options.height = 9;
+          options.cull_single_sided = cull;
+          // A mirrored instance is inside out: its outside is where the triangle runs clockwise.
+          const bool hidden = mesh == 1 && cull && behind != mirror;
+          EXPECT_EQ(rendered(scene, camera, options).statistics.fragments, hidden ? 0U : 81U)
+              << mesh << mirror << behind << cull;
+        }
+}
+
+TEST(Render, CountsWhatTravels) {
+  const scenes::Scene scene = random_scene(6);
+  RenderOptions options;
+  options.width = 128;
+  options.height = 128;
+  options.scheme = "centralized";
+  const Result last = rendered(scene, random_scene_camera(), options, 3);
+  const std::uint64_t image_bytes = 128 * 128 * 8;
+  EXPECT_GE(last.statistics.ranks[1].bytes_sent, image_bytes);
+  EXPECT_LE(last.statistics.ranks[1].bytes_sent, image_bytes + 1000);
+  EXPECT_EQ(last.statistics.triangles_travelled, 0U);
+  EXPECT_EQ(last.statistics.triangles_in, scenes::triangle_count(scene));
+
+  options.strategy = "sort-first";
+  const Result geometry = rendered(scene, random_scene_camera(), options, 3);
+  options.travel = Travel::numbers;
+  const Result numbers = rendered(scene, random_scene_camera(), options, 3);
+  EXPECT_GT(numbers.statistics.triangles_travelled, 0U);
+  EXPECT_EQ(geometry.statistics.triangles_travelled, numbers.statistics.triangles_travelled);
+  const auto sent = [](const Statistics& statistics) {
+    std::uint64_t sum = 0, received = 0;
+    for (const RankStatistics& rank : statistics.ranks) {
+      sum += rank.bytes_sent;
+      received += rank.bytes_received;
+    }
+    EXPECT_EQ(sum, received);
+    return sum;
+  };
+  // A triangle has three indices of its own and, here, three vertices of position, normal and uv.
+  EXPECT_GE(sent(geometry.statistics),
+            sent(numbers.statistics) + geometry.statistics.triangles_travelled * 12 * 8 / 2);
+}
+
+TEST(Render, TellsOfWhatItDoesNotKnow) {
+  const scenes::Scene scene = random_scene(7);
+  const auto expect_refused = [&](auto change) {
+    RenderOptions options;
+    options.width = options.height = 8;
+    change(options);
+    comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+      EXPECT_THROW(render(communicator, scene, {}, options), std::invalid_argument);
+    });
+  };
+  expect_refused([](RenderOptions& o) { o.strategy = "sort-of"; });
+  expect_refused([](RenderOptions& o) { o.scheme = "none"; });
+  expect_refused([](RenderOptions& o) { o.partition = "none"; });
+  expect_refused([](RenderOptions& o) { o.width = 0; });
+  expect_refused([](RenderOptions& o) { o.height = 65535; });
+}
+
+TEST(Render, WarnsOfTransparencyAndStopsWhenAsked) {
+  scenes::Scene scene = random_scene(8);
+  RenderOptions options;
+  options.width = options.height = 8;
+  EXPECT_TRUE(rendered(scene, random_scene_camera(), options).statistics.warnings.empty());
+  scene.materials[0].alpha = scenes::Material::Alpha::blend;
+  EXPECT_EQ(rendered(scene, random_scene_camera(), options).statistics.warnings.size(), 1U);
+  parallel::Progress progress;
+  progress.request_stop();
+  comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+    EXPECT_THROW(render(communicator, scene, random_scene_camera(), options, &progress),
+                 parallel::Interrupted);
+  });
+}
+
+TEST(Render, PicturesOfGeneratedScenesDoNotDependOnRanks) {
+  for (const char* name : {"gen:terrain:20000", "gen:city:5000"}) {
+    const scenes::Scene scene = scenes::generate(name);
+    ASSERT_FALSE(scene.cameras.empty());
+    RenderOptions options;
+    options.width = 257;
+    options.height = 190;
+    const Result expected = rendered(scene, scene.cameras[0], options, 1, 2);
+    for (const RenderOptions& way : every_way(options))
+      EXPECT_TRUE(
+          same_bytes(rendered(scene, scene.cameras[0], way, 4, 1).picture, expected.picture))
+          << name << " " << described(way, 4, 1);
+  }
+}
+
+}  // namespace
+}  // namespace delray::raster
