@@ -104,7 +104,7 @@ Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed) {
   scene.environment.horizon = {0.52F, 0.60F, 0.68F};
   scene.environment.ground = {0.10F, 0.10F, 0.09F};
   Camera camera;
-  camera.eye = {0.30F, 0.80F, 1.62F};
+  camera.eye = {0.30F, 0.98F, 1.78F};
   camera.at = {0.0F, 0.0F, 0.10F};
   scene.cameras.push_back(camera);
   return scene;

@@ -1,0 +1,159 @@
+#include "scenes/internal/gltf_material.h"
+
+#include <cmath>
+#include <optional>
+
+namespace delray::scenes::internal {
+namespace {
+
+Texture::Wrap wrap_of(const JsonView& mode) {
+  switch (mode.whole(10497)) {
+    case 33071:
+      return Texture::Wrap::clamp;
+    case 33648:
+      return Texture::Wrap::mirror;
+    default:
+      return Texture::Wrap::repeat;
+  }
+}
+
+std::uint32_t read_image(const GltfDocument& document, std::uint32_t number, const TextureUse& use,
+                         TextureFiles& textures) {
+  const JsonView root = document.root();
+  const JsonView image = root["images"][number];
+  if (image["bufferView"]) {
+    const std::uint32_t view = image["bufferView"].reference(root["bufferViews"].size());
+    const std::string_view bytes = buffer_view(document, view);
+    return textures.from_memory(image.place(), std::as_bytes(std::span(bytes)), use);
+  }
+  const std::string uri = image["uri"].text();
+  std::string bytes;
+  if (decode_data_uri(uri, bytes)) {
+    return textures.from_memory(image.place(), std::as_bytes(std::span(bytes)), use);
+  }
+  return textures.from_file(decode_percent(uri), use);
+}
+
+// What the materials of a file have in common while they are read.
+struct Reader {
+  const GltfDocument& document;
+  TextureFiles& textures;
+
+  // `info` refers to a texture from a material; absent: kNone.
+  std::uint32_t texture(const JsonView& info, bool srgb, std::vector<UvUse>& uses) const {
+    if (!info) return kNone;
+    const JsonView root = document.root();
+    const JsonView all = root["textures"];
+    const std::uint32_t number = info["index"].reference(all.size());
+    if (number == kNone) info["index"].fail("is missing");
+    uses.push_back(uv_use(info));
+    const JsonView texture = all[number];
+    const JsonView samplers = root["samplers"];
+    TextureUse use{srgb, Texture::Wrap::repeat, Texture::Wrap::repeat};
+    const std::uint32_t sampler = texture["sampler"].reference(samplers.size());
+    if (sampler != kNone) {
+      use.wrap_u = wrap_of(samplers[sampler]["wrapS"]);
+      use.wrap_v = wrap_of(samplers[sampler]["wrapT"]);
+    }
+    const std::size_t images = root["images"].size();
+    std::uint32_t image = texture["source"].reference(images);
+    if (image == kNone) {
+      image = texture["extensions"]["EXT_texture_webp"]["source"].reference(images);
+    }
+    if (image != kNone) return read_image(document, image, use, textures);
+    document.source.warn(texture.place() + " has no picture that can be read");
+    return kNone;
+  }
+
+ private:
+  static UvUse uv_use(const JsonView& info) {
+    UvUse use;
+    use.set = info["texCoord"].whole(0);
+    const JsonView transform = info["extensions"]["KHR_texture_transform"];
+    if (!transform) return use;
+    use.set = transform["texCoord"].whole(use.set);
+    const glm::dvec2 offset = transform["offset"].vector<2>({0, 0});
+    const glm::dvec2 scale = transform["scale"].vector<2>({1, 1});
+    const double angle = transform["rotation"].number(0);
+    const double c = std::cos(angle), s = std::sin(angle);
+    use.transform = {c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y};
+    return use;
+  }
+};
+
+glm::vec3 nonnegative(const glm::dvec3& colour) { return glm::max(colour, glm::dvec3(0)); }
+
+void read_base(const Reader& reader, const JsonView& json, std::vector<UvUse>& uses,
+               Material& material) {
+  const JsonView base = json["pbrMetallicRoughness"];
+  // The older way to say a colour; its gloss becomes roughness, its reflections are left out.
+  const JsonView gloss = json["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+  const glm::dvec4 white(1);
+  if (gloss) {
+    material.base_colour = glm::max(gloss["diffuseFactor"].vector<4>(white), glm::dvec4(0));
+    material.metallic = 0;
+    material.roughness = static_cast<float>(1 - gloss["glossinessFactor"].number(1, 0, 1));
+    material.base_colour_texture = reader.texture(gloss["diffuseTexture"], true, uses);
+    return;
+  }
+  material.base_colour = glm::max(base["baseColorFactor"].vector<4>(white), glm::dvec4(0));
+  material.metallic = static_cast<float>(base["metallicFactor"].number(1, 0, 1));
+  material.roughness = static_cast<float>(base["roughnessFactor"].number(1, 0, 1));
+  material.base_colour_texture = reader.texture(base["baseColorTexture"], true, uses);
+  material.metallic_roughness_texture =
+      reader.texture(base["metallicRoughnessTexture"], false, uses);
+}
+
+Material::Alpha alpha_mode(const JsonView& mode) {
+  const std::string name = mode.text("OPAQUE");
+  if (name == "MASK") return Material::Alpha::mask;
+  if (name == "BLEND") return Material::Alpha::blend;
+  if (name != "OPAQUE") mode.fail("should be OPAQUE, MASK or BLEND");
+  return Material::Alpha::opaque;
+}
+
+GltfMaterial read_material(const Reader& reader, const JsonView& json) {
+  GltfMaterial result;
+  Material& material = result.material;
+  std::vector<UvUse> uses;
+  material.name = json["name"].text();
+  read_base(reader, json, uses, material);
+  material.normal_texture = reader.texture(json["normalTexture"], false, uses);
+  material.normal_scale = static_cast<float>(json["normalTexture"]["scale"].number(1));
+  const JsonView extensions = json["extensions"];
+  const double strength =
+      extensions["KHR_materials_emissive_strength"]["emissiveStrength"].number(1, 0, 1e18);
+  material.emission = nonnegative(json["emissiveFactor"].vector<3>({0, 0, 0}) * strength);
+  material.emission_texture = reader.texture(json["emissiveTexture"], true, uses);
+  material.alpha = alpha_mode(json["alphaMode"]);
+  material.alpha_cutoff = static_cast<float>(json["alphaCutoff"].number(0.5, 0, 2));
+  material.double_sided = json["doubleSided"].flag(false);
+  material.transmission = static_cast<float>(
+      extensions["KHR_materials_transmission"]["transmissionFactor"].number(0, 0, 1));
+  material.ior = static_cast<float>(extensions["KHR_materials_ior"]["ior"].number(1.5, 1, 100));
+  if (extensions["KHR_materials_unlit"]) {
+    material.metallic = 0;
+    material.roughness = 1;
+  }
+  if (!uses.empty()) result.uvs = uses.front();
+  for (const UvUse& use : uses) {
+    if (use == result.uvs) continue;
+    reader.document.source.warn(json.place() + ": its textures use different coordinates");
+    break;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<GltfMaterial> read_materials(const GltfDocument& document, TextureFiles& textures) {
+  const Reader reader{document, textures};
+  const JsonView materials = document.root()["materials"];
+  std::vector<GltfMaterial> result;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    result.push_back(read_material(reader, materials[i]));
+  }
+  return result;
+}
+
+}  // namespace delray::scenes::internal

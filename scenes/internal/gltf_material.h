@@ -1,0 +1,29 @@
+// Materials of glTF.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scenes/internal/gltf_document.h"
+#include "scenes/internal/texture_files.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// Which texture coordinates a material uses, and how: uv = transform * (u, v, 1).
+struct UvUse {
+  std::uint64_t set = 0;  // TEXCOORD_<set>
+  glm::dmat3x2 transform{1.0};
+  bool operator==(const UvUse&) const = default;
+};
+
+struct GltfMaterial {
+  Material material;
+  UvUse uvs;
+};
+
+// All materials in the order of the file. Where textures of one material use different coordinates
+// those of the first (base colour, metallic-roughness, normal, emission) are taken, with a warning.
+std::vector<GltfMaterial> read_materials(const GltfDocument& document, TextureFiles& textures);
+
+}  // namespace delray::scenes::internal

@@ -1,0 +1,19 @@
+// Meshes of glTF.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scenes/internal/gltf_document.h"
+#include "scenes/internal/gltf_material.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// The primitives of meshes[number] that are triangles, each as a mesh of its own; strips and fans
+// are taken apart. Vertices that no triangle of the primitive uses are left out. A primitive
+// without a material has material kNone.
+std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
+                            std::span<const GltfMaterial> materials);
+
+}  // namespace delray::scenes::internal
