@@ -245,6 +245,7 @@ EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptio
     const Placement& placement = placements[i];
     if (placement.mesh == nullptr || placement.mesh->triangles.empty()) continue;
     has_see_through_ = has_see_through_ || placement.see_through;
+    has_instances_ = has_instances_ || placement.instanced;
     if (placement.instanced) {
       attach_instance(*state_, static_cast<unsigned>(i), placement, options);
     } else {
@@ -301,7 +302,9 @@ bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {
 void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
                            std::span<SeeThrough, kPacketRays> passed) const {
   Query query;
-  start(query, true);
+  // Embree 3.13.5 with AVX-512 loops forever on coherent occlusion packets that meet an instance.
+  const bool coherent = !has_instances_;
+  start(query, coherent);
   query.passed = passed.data();
   for (int i = 0; i < kPacketRays; ++i) {
     packet.id[i] = static_cast<std::uint32_t>(i);
@@ -309,7 +312,7 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
   }
   auto* rays = reinterpret_cast<RTCRay16*>(&packet);
 #if RTC_VERSION_MAJOR >= 4
-  RTCOccludedArguments arguments = occluded_arguments(query, true);
+  RTCOccludedArguments arguments = occluded_arguments(query, coherent);
   rtcOccluded16(active.ray, state_->top.get(), rays, &arguments);
 #else
   rtcOccluded16(active.ray, state_->top.get(), &query.context, rays);

@@ -51,6 +51,7 @@ class EmbreeScene {
  private:
   std::unique_ptr<State> state_;
   bool has_see_through_ = false;
+  bool has_instances_ = false;
 };
 
 // The hit of a ray that hit something. REQUIRES: ray.triangle != kMiss.

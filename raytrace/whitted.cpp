@@ -250,7 +250,7 @@ Ray single(const RayPacket& packet, int i) {
 // Adds to `lit` what each met surface reflects of one light, as far as shadow rays reach it.
 void add_light(const Tracer& tracer, const Walk& walk, const scenes::Light& light,
                const ActiveRays& hits, const Met* met, glm::vec3* lit, RayCounts& counts) {
-  ShadowPacket packet;
+  ShadowPacket packet{};
   ActiveRays active;
   glm::vec3 reflected[kPacketRays], direction[kPacketRays];
   std::uint64_t count = 0;
