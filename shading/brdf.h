@@ -1,6 +1,10 @@
 // How a surface reflects light: glTF's metallic-roughness model (glTF 2.0, appendix B), a
 // Lambertian lobe under a GGX one (Walter et al. 2007) with Smith's height-correlated shadowing
 // (Heitz 2014) and Schlick's Fresnel term.
+//
+// What enters the diffuse layer is what the specular one lets through, on the way in and on the way
+// out (Shirley et al. 1997): glTF's own weight, Fresnel's term at the half vector, would give back
+// up to 1.3 times the light that arrives.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +21,7 @@ inline constexpr float kMinRoughness = 0.08F;
 
 struct Lobes {
   glm::vec3 diffuse{0.0F};   // albedo
+  glm::vec3 entering{1.0F};  // makes the albedo what it says: 1 over the mean of 1 - Fresnel's term
   glm::vec3 specular{0.0F};  // reflectance at normal incidence
   float grazing = 1.0F;      // reflectance at grazing incidence
   float alpha = 0.36F;       // GGX width: roughness squared
@@ -37,6 +42,8 @@ inline Lobes lobes(const Surface& surface) {
   const float brightest =
       std::max(std::max(result.specular.x, result.specular.y), result.specular.z);
   result.grazing = std::min(50.0F * brightest, 1.0F);
+  const glm::vec3 mean = result.specular + (glm::vec3(result.grazing) - result.specular) / 21.0F;
+  result.entering = glm::vec3(1.0F) / glm::max(glm::vec3(1.0F) - mean, glm::vec3(1e-3F));
   const float wide = std::max(roughness, kMinRoughness);
   result.alpha = wide * wide;
   result.roughness = roughness;
@@ -68,24 +75,15 @@ inline glm::vec3 reflect(const Lobes& lobes, const glm::vec3& normal, const glm:
   const float distribution = a2 / (kPi * d * d);
   const float shadowing =
       n_l * std::sqrt(n_v * n_v * (1.0F - a2) + a2) + n_v * std::sqrt(n_l * n_l * (1.0F - a2) + a2);
-  const glm::vec3 f = fresnel(lobes, v_h);
-  const glm::vec3 specular = f * (distribution * 0.5F / shadowing);
-  const glm::vec3 diffuse = lobes.diffuse * (glm::vec3(1.0F) - f) * kInversePi;
+  const glm::vec3 specular = fresnel(lobes, v_h) * (distribution * 0.5F / shadowing);
+  const glm::vec3 in = glm::vec3(1.0F) - fresnel(lobes, std::min(n_l, 1.0F));
+  const glm::vec3 out = glm::vec3(1.0F) - fresnel(lobes, std::min(n_v, 1.0F));
+  const glm::vec3 diffuse = lobes.diffuse * in * out * lobes.entering * kInversePi;
   return (diffuse + specular) * n_l;
 }
 
 // The fraction of light from everywhere that the specular lobe reflects to a viewer at the given
-// cosine: the fit of Lazarov (2013) in the form of Karis (2014).
-inline glm::vec3 specular_albedo(const Lobes& lobes, float cosine) {
-  const float r = lobes.roughness;
-  const float x = 1.0F - r;
-  const float y = 0.0425F - 0.0275F * r;
-  const float a = std::min(x * x, exp2(-9.28F * cosine)) * x + y;
-  const float scale = -1.04F * a + (1.04F - 0.572F * r);
-  const float bias = 1.04F * a + (0.022F * r - 0.04F);
-  return glm::min(
-      glm::max(lobes.specular * scale + glm::vec3(lobes.grazing * bias), glm::vec3(0.0F)),
-      glm::vec3(1.0F));
-}
+// cosine, 0 to 1, interpolated in a table that the first call computes (within 0.03; Karis 2013).
+glm::vec3 specular_albedo(const Lobes& lobes, float cosine);
 
 }  // namespace delray::shading

@@ -62,7 +62,7 @@ glm::vec3 gradient(const Environment& environment, const glm::vec3& direction) {
   const float height = glm::dot(direction, environment.up);
   const float t = std::min(std::abs(height), 1.0F);
   const glm::vec3& pole = height >= 0.0F ? environment.zenith : environment.ground;
-  return environment.horizon + (pole - environment.horizon) * t;
+  return environment.horizon * (1.0F - t) + pole * t;
 }
 
 bool zero(const glm::vec3& v) { return v.x == 0.0F && v.y == 0.0F && v.z == 0.0F; }
