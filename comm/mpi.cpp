@@ -99,7 +99,7 @@ class Patience {
   }
 
  private:
-  static constexpr int kSpins = 1000, kYields = 500;
+  static constexpr int kSpins = 1000, kYields = 100;
   int looks_;
 };
 

@@ -1,5 +1,6 @@
 #include "comm/mpi.h"
 
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <array>
@@ -80,6 +81,16 @@ void report_termination_signals(int rank) {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+// Open MPI moves large messages between processes of one machine by process_vm_readv, believes that
+// it works wherever the kernel has it, and fails in containers that forbid it.
+void avoid_forbidden_copies() {
+  char source = 1, target = 0;
+  iovec local{&target, 1}, remote{&source, 1};
+  if (process_vm_readv(getpid(), &local, 1, &remote, 1, 0) != 1) {
+    setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", /*overwrite=*/0);
+  }
+}
+
 int exit_code_of(const std::exception_ptr& exception) {
   try {
     std::rethrow_exception(exception);
@@ -123,6 +134,7 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
   int initialized = 0;
   MPI_Initialized(&initialized);
   if (!initialized) {
+    avoid_forbidden_copies();
     int provided = 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
   }

@@ -1,0 +1,205 @@
+#include "comm/simulated.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "comm/collectives.h"
+
+namespace delray::comm {
+namespace {
+
+Network simple() {
+  Network network;
+  network.latency = 1.0;
+  network.overhead = 0.01;
+  network.seconds_per_byte = 0.1;
+  return network;
+}
+
+TEST(Simulated, AMessageCostsWhatTheModelSays) {
+  const Network n = simple();
+  const auto finished = run_simulated(2, n, 0, [](Communicator& c) {
+    if (c.rank() == 0) {
+      c.send(1, 1, Buffer(50));
+    } else {
+      c.receive(0, 1);
+    }
+  });
+  EXPECT_DOUBLE_EQ(finished[0], n.overhead);
+  EXPECT_DOUBLE_EQ(finished[1], n.overhead + 50 * n.seconds_per_byte + n.latency + n.overhead);
+}
+
+TEST(Simulated, LinksCarryOneMessageAtATime) {
+  const Network n = simple();
+  const auto fan_out = run_simulated(4, n, 0, [](Communicator& c) {
+    if (c.rank() == 0) {
+      for (int to = 1; to < 4; ++to) c.send(to, 1, Buffer(50));
+    } else {
+      c.receive(0, 1);
+    }
+  });
+  // The sender's link is busy from its first overhead on.
+  for (int k = 1; k < 4; ++k) {
+    EXPECT_NEAR(fan_out[k], 0.01 + k * 5.0 + 1.0 + 0.01, 1e-12) << k;
+  }
+  EXPECT_NEAR(fan_out[0], 0.03, 1e-12);
+
+  const auto fan_in = run_simulated(4, n, 0, [](Communicator& c) {
+    if (c.rank() > 0) {
+      c.send(0, 1, Buffer(50));
+    } else {
+      for (int i = 1; i < 4; ++i) c.receive(kAnyRank, 1);
+    }
+  });
+  EXPECT_NEAR(fan_in[0], 0.01 + 1.0 + 3 * 5.0 + 0.01, 1e-12);
+}
+
+TEST(Simulated, WorkTakesTimeByKindAndSlowness) {
+  Network n;
+  n.seconds_per_work[static_cast<std::size_t>(Work::rays)] = 0.5;
+  SimulationOptions options;
+  options.slowness = {1, 10};
+  const auto finished = run_simulated(
+      3, n, 0,
+      [](Communicator& c) {
+        c.work(Work::rays, 4);
+        c.work(Work::seconds_e9, 1'000'000'000);
+      },
+      options);
+  EXPECT_DOUBLE_EQ(finished[0], 3);
+  EXPECT_DOUBLE_EQ(finished[1], 30);
+  EXPECT_DOUBLE_EQ(finished[2], 3);
+}
+
+TEST(Simulated, ASlowRankIsOvertaken) {
+  // Ranks fetch tasks from rank 0, which hands out 100: a rank that is 10 times slower gets about a
+  // tenth of what others get.
+  Network n;
+  n.seconds_per_work[static_cast<std::size_t>(Work::rays)] = 1e-3;
+  SimulationOptions options;
+  options.slowness = {1, 1, 10, 1};
+  std::vector<int> done(4, 0);
+  run_simulated(
+      4, n, 3,
+      [&](Communicator& c) {
+        if (c.rank() == 0) {
+          int left = 210;
+          for (int working = 3; working > 0;) {
+            const auto request = c.probe(kAnyRank, 1, Deadline::never());
+            c.receive(request->source, 1);
+            if (left == 0) --working;
+            c.send(request->source, 2, Buffer::of_value(left > 0));
+            left -= left > 0;
+          }
+          return;
+        }
+        for (;;) {
+          c.send(0, 1, Buffer());
+          if (!c.receive(0, 2).as<bool>()[0]) return;
+          c.work(Work::rays, 1);
+          ++done[c.rank()];
+        }
+      },
+      options);
+  EXPECT_EQ(done[1] + done[2] + done[3], 210);
+  EXPECT_NEAR(done[1], 100, 2);
+  EXPECT_NEAR(done[2], 10, 2);
+}
+
+TEST(Simulated, ProbeWaitsInVirtualTime) {
+  run_simulated(2, simple(), 0, [](Communicator& c) {
+    if (c.rank() == 1) {
+      c.work(Work::seconds_e9, 100'000'000'000);  // 100 s
+      c.send(0, 1, Buffer());
+      return;
+    }
+    EXPECT_FALSE(c.probe(1, 1, Deadline::in(std::chrono::seconds(100))));
+    EXPECT_DOUBLE_EQ(c.seconds(), 100);
+    // On its way, but not here: it arrives at 101.01.
+    EXPECT_FALSE(c.probe(kAnyRank, kAnyTag, Deadline::in(std::chrono::seconds(1))));
+    EXPECT_DOUBLE_EQ(c.seconds(), 101);
+    EXPECT_TRUE(c.probe(1, 1, Deadline::in(std::chrono::hours(1))));
+    EXPECT_NEAR(c.seconds(), 101.01, 1e-9);
+    c.receive(1, 1);
+  });
+}
+
+TEST(Simulated, AnyRankTakesWhatArrivesFirstNotWhatIsSimulatedFirst) {
+  run_simulated(3, simple(), 0, [](Communicator& c) {
+    if (c.rank() == 1) {
+      c.work(Work::seconds_e9, 5'000'000'000);
+      c.send(0, 1, Buffer());
+    } else if (c.rank() == 2) {
+      // Many steps, but all of them earlier.
+      for (int i = 0; i < 10; ++i) {
+        c.send(2, 2, Buffer());
+        c.receive(kAnyRank, 2);
+        c.work(Work::seconds_e9, 100'000'000);
+      }
+      c.send(0, 1, Buffer());
+    } else {
+      EXPECT_EQ(c.probe(kAnyRank, 1, Deadline::never())->source, 2);
+      c.receive(2, 1);
+      c.receive(1, 1);
+    }
+  });
+}
+
+std::vector<int> order_of_arrival(std::uint64_t seed) {
+  std::vector<int> order;
+  run_simulated(4, any_order(), seed, [&](Communicator& c) {
+    if (c.rank() > 0) {
+      c.send(0, 1, Buffer());
+      c.send(0, 1, Buffer());
+      return;
+    }
+    for (int i = 0; i < 6; ++i) {
+      order.push_back(c.probe(kAnyRank, 1, Deadline::never())->source);
+      c.receive(order.back(), 1);
+    }
+  });
+  return order;
+}
+
+TEST(Simulated, SeedsGiveEveryOrderAndEqualSeedsEqualRuns) {
+  std::set<std::vector<int>> orders;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) orders.insert(order_of_arrival(seed));
+  // 6! / 2^3 interleavings of three sources with two messages each.
+  EXPECT_EQ(orders.size(), 90u);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    EXPECT_EQ(order_of_arrival(seed), order_of_arrival(seed)) << "seed " << seed;
+  }
+}
+
+TEST(Simulated, RunsThousandsOfRanks) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  const int ranks = 128, rounds = 7;
+#else
+  const int ranks = 4096, rounds = 12;
+#endif
+  const Network n = simple();
+  const auto finished = run_simulated(ranks, n, 0, [](Communicator& c) { barrier(c); });
+  for (const double seconds : finished) {
+    ASSERT_NEAR(seconds, rounds * (n.latency + 2 * n.overhead), 1e-9);
+  }
+  run_simulated(ranks, n, 0, [](Communicator& c) {
+    const auto half = c.split(c.rank() % 2, -c.rank());
+    EXPECT_EQ(all_reduce_value(*half, 1, std::plus<>()), c.size() / 2);
+  });
+}
+
+TEST(Simulated, NestsInItself) {
+  run_simulated(2, simple(), 0, [](Communicator& outer) {
+    barrier(outer);
+    const auto finished =
+        run_simulated(3, simple(), 1, [](Communicator& inner) { barrier(inner); });
+    EXPECT_EQ(finished.size(), 3u);
+    barrier(outer);
+  });
+}
+
+}  // namespace
+}  // namespace delray::comm
