@@ -1,0 +1,162 @@
+#include "scenes/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+namespace delray::scenes {
+namespace {
+
+const char* const kNames[] = {"default", "front", "back", "left", "right", "top", "bottom", "iso"};
+
+struct Projected {
+  glm::dvec2 pixel;
+  double depth;
+};
+
+Projected project(const View& view, const glm::dvec3& p) {
+  const glm::dvec3 v = p - glm::dvec3(view.eye);
+  const double depth = glm::dot(v, glm::dvec3(view.forward));
+  return {{view.half_width + glm::dot(v, glm::dvec3(view.right)) / depth * view.scale,
+           view.half_height - glm::dot(v, glm::dvec3(view.up)) / depth * view.scale},
+          depth};
+}
+
+glm::dvec3 corner(const geometry::Box3& box, int i) {
+  return {(i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
+          (i & 4) != 0 ? box.high.z : box.low.z};
+}
+
+TEST(Camera, RayThroughTheProjectionOfAPointMeetsThePoint) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    const View view =
+        make_view({vector() * 5.0F, vector(), vector(), 20 + 50 * std::abs(unit(random)), 0},
+                  1 + trial % 700, 1 + trial % 500);
+    const glm::dvec3 p = vector() * 10.0F;
+    const Projected projected = project(view, p);
+    if (projected.depth < 0.5 || glm::length(projected.pixel) > 1e4) continue;
+    const glm::vec3 ray =
+        view.ray(static_cast<float>(projected.pixel.x), static_cast<float>(projected.pixel.y));
+    const glm::dvec3 met = glm::dvec3(view.eye) + glm::dvec3(ray) * projected.depth;
+    EXPECT_LT(glm::distance(met, p), 2e-5 * (10 + glm::length(p))) << "trial " << trial;
+    EXPECT_NEAR(glm::dot(ray, view.forward), 1, 1e-5);
+  }
+}
+
+TEST(Camera, ViewHasItsAxesAtRightAnglesAndItsFieldOfView) {
+  const View view = make_view({{3, 2, 5}, {1, 0, -1}, {0, 1, 0}, 60, 0}, 640, 480);
+  EXPECT_NEAR(glm::length(view.right), 1, 1e-6);
+  EXPECT_NEAR(glm::dot(view.right, view.up), 0, 1e-6);
+  EXPECT_NEAR(glm::dot(view.up, view.forward), 0, 1e-6);
+  EXPECT_GT(view.up.y, 0.5F);
+  EXPECT_LT(glm::distance(glm::cross(view.right, view.up), -view.forward), 1e-6F);
+  // The ray through the middle of the upper edge is half the field of view above the axis.
+  const glm::vec3 top = view.ray(320, 0);
+  EXPECT_NEAR(glm::dot(top, view.up) / glm::dot(top, view.forward), std::tan(3.14159265 / 6), 1e-6);
+  EXPECT_NEAR(view.near, 1e-3F * glm::distance(glm::vec3(3, 2, 5), glm::vec3(1, 0, -1)), 1e-6F);
+}
+
+TEST(Camera, DegenerateCamerasGiveSomeView) {
+  const Camera cameras[] = {{{1, 2, 3}, {1, 2, 3}, {0, 1, 0}, 40, 0},
+                            {{0, 0, 0}, {0, 5, 0}, {0, 1, 0}, 40, 0},
+                            {{0, 0, 0}, {0, 0, -5}, {0, 0, 3}, 40, 0},
+                            {{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, 40, 0}};
+  for (const Camera& camera : cameras) {
+    const View view = make_view(camera, 10, 10);
+    EXPECT_NEAR(glm::length(view.right), 1, 1e-6);
+    EXPECT_NEAR(glm::length(view.up), 1, 1e-6);
+    EXPECT_NEAR(glm::length(view.forward), 1, 1e-6);
+    EXPECT_NEAR(glm::dot(view.right, view.forward), 0, 1e-6);
+    EXPECT_GT(view.near, 0);
+  }
+}
+
+TEST(CameraAround, ShowsAllCornersOfTheBoxAndFillsTheFrame) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const float scale = std::pow(10.0F, 8 * unit(random) - 4);
+    geometry::Box3 box;
+    box.low = (glm::vec3(unit(random), unit(random), unit(random)) - 0.5F) * (20 * scale);
+    box.high = box.low + glm::vec3(unit(random), unit(random), unit(random)) * scale;
+    const int width = trial % 2 == 0 ? 1920 : 300, height = trial % 2 == 0 ? 1080 : 500;
+    for (const char* name : kNames) {
+      const Camera camera = camera_around(box, name, trial % 3 == 0,
+                                          static_cast<float>(width) / static_cast<float>(height));
+      const View view = make_view(camera, width, height);
+      glm::dvec2 low(1e9), high(-1e9);
+      for (int i = 0; i < 8; ++i) {
+        const Projected p = project(view, corner(box, i));
+        ASSERT_GT(p.depth, view.near) << name << ", trial " << trial;
+        low = glm::min(low, p.pixel);
+        high = glm::max(high, p.pixel);
+      }
+      ASSERT_GT(low.x, 0) << name << ", trial " << trial;
+      ASSERT_GT(low.y, 0) << name << ", trial " << trial;
+      ASSERT_LT(high.x, width) << name << ", trial " << trial;
+      ASSERT_LT(high.y, height) << name << ", trial " << trial;
+      const double filled = std::max((high.x - low.x) / width, (high.y - low.y) / height);
+      ASSERT_GT(filled, 0.8) << name << ", trial " << trial;
+    }
+  }
+}
+
+TEST(CameraAround, NamesSayWhereTheEyeStands) {
+  const geometry::Box3 box{{-1, -1, -1}, {1, 1, 1}};
+  const auto eye = [&](const char* name, bool z_up) {
+    return glm::normalize(camera_around(box, name, z_up, 1.5F).eye);
+  };
+  EXPECT_GT(eye("front", false).z, 0.99F);
+  EXPECT_LT(eye("back", false).z, -0.99F);
+  EXPECT_GT(eye("right", false).x, 0.99F);
+  EXPECT_LT(eye("left", false).x, -0.99F);
+  EXPECT_GT(eye("top", false).y, 0.99F);
+  EXPECT_LT(eye("bottom", false).y, -0.99F);
+  EXPECT_LT(eye("front", true).y, -0.99F);
+  EXPECT_GT(eye("top", true).z, 0.99F);
+  EXPECT_GT(eye("default", true).z, 0.1F);
+  // Seen from the top, the far side of the front view is at the upper edge.
+  EXPECT_GT(make_view(camera_around(box, "top", false, 1), 9, 9).up.z, -1.01F);
+  EXPECT_LT(make_view(camera_around(box, "top", false, 1), 9, 9).up.z, -0.99F);
+  EXPECT_GT(make_view(camera_around(box, "top", true, 1), 9, 9).up.y, 0.99F);
+}
+
+TEST(CameraAround, DegenerateBoxesGiveFiniteCameras) {
+  constexpr float kHuge = 1e18F;
+  const geometry::Box3 boxes[] = {{},
+                                  {{2, 3, 4}, {2, 3, 4}},
+                                  {{0, 0, 0}, {5, 0, 0}},
+                                  {{0, 0, 0}, {0, 0, 5}},
+                                  {{1e6F, 1e6F, 0}, {1e6F, 1e6F, 0}},
+                                  {{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}}};
+  for (const geometry::Box3& box : boxes) {
+    for (const char* name : kNames) {
+      for (const bool z_up : {false, true}) {
+        const Camera camera = camera_around(box, name, z_up, 16.0F / 9);
+        const View view = make_view(camera, 160, 90);
+        ASSERT_TRUE(std::isfinite(glm::length(glm::dvec3(camera.eye)))) << name;
+        ASSERT_NE(camera.eye, camera.at) << name;
+        ASSERT_GT(view.near, 0) << name;
+        if (box.empty()) continue;
+        for (int i = 0; i < 8; ++i) {
+          const Projected p = project(view, corner(box, i));
+          ASSERT_GT(p.depth, 0) << name;
+          ASSERT_TRUE(p.pixel.x > 0 && p.pixel.x < 160 && p.pixel.y > 0 && p.pixel.y < 90) << name;
+        }
+      }
+    }
+  }
+}
+
+TEST(CameraAround, RefusesOtherNames) {
+  EXPECT_THROW(camera_around({}, "inside", false, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace delray::scenes

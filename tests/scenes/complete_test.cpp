@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "scenes/generate.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes {
+namespace {
+
+// The cube [-1, 1]^3 with shared corners; its faces' normals point outwards.
+Mesh cube() {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.emplace_back((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1,
+                                (i & 4) != 0 ? 1 : -1);
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+Scene with_mesh(Mesh mesh) {
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.emplace_back();
+  return scene;
+}
+
+glm::vec3 face_normal(const Mesh& mesh, const glm::uvec3& t) {
+  const glm::vec3 p = mesh.positions[t.x];
+  return glm::normalize(glm::cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p));
+}
+
+TEST(Complete, SplitsACubeAlongItsEdgesOnly) {
+  Scene scene = with_mesh(cube());
+  complete(scene, Camera{}, 60);
+  const Mesh& mesh = scene.meshes[0];
+  EXPECT_EQ(mesh.positions.size(), 24U);
+  EXPECT_EQ(mesh.triangles.size(), 12U);
+  for (const glm::uvec3& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_LT(glm::distance(mesh.normals[t[k]], face_normal(mesh, t)), 1e-6F);
+    }
+  }
+}
+
+TEST(Complete, SmoothsACubeWhereNoAngleIsACrease) {
+  Scene scene = with_mesh(cube());
+  complete(scene, Camera{}, 120);
+  const Mesh& mesh = scene.meshes[0];
+  ASSERT_EQ(mesh.positions.size(), 8U);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_GT(glm::dot(mesh.normals[i], glm::normalize(mesh.positions[i])), 0.8F);
+  }
+}
+
+TEST(Complete, NormalsOfASphereAreItsDirections) {
+  // As triangles that share nothing, as STL has them.
+  const Scene generated = generate("gen:spheres:20000");
+  const Mesh& sphere = generated.meshes[1];
+  Mesh loose;
+  for (const glm::uvec3& t : sphere.triangles) {
+    const auto first = static_cast<std::uint32_t>(loose.positions.size());
+    for (int k = 0; k < 3; ++k) loose.positions.push_back(sphere.positions[t[k]]);
+    loose.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  Scene scene = with_mesh(loose);
+  complete(scene, Camera{});
+  ASSERT_EQ(scene.meshes[0].positions.size(), loose.positions.size());
+  for (std::size_t i = 0; i < loose.positions.size(); ++i) {
+    ASSERT_GT(glm::dot(scene.meshes[0].normals[i], loose.positions[i]), 0.99F);
+  }
+}
+
+TEST(Complete, DegenerateTrianglesGetSomeUnitNormal) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 4, 2}};
+  Scene scene = with_mesh(mesh);
+  complete(scene, Camera{});
+  ASSERT_EQ(scene.meshes[0].normals.size(), scene.meshes[0].positions.size());
+  for (const glm::vec3& n : scene.meshes[0].normals) EXPECT_NEAR(glm::length(n), 1, 1e-6);
+  const std::uint32_t corner = scene.meshes[0].triangles[1].z;
+  EXPECT_EQ(scene.meshes[0].normals[corner], glm::vec3(0, 0, 1));
+}
+
+TEST(Complete, AFanOfThousandsOfTrianglesAroundOneVertexIsSmooth) {
+  constexpr std::uint32_t kSides = 20'000;
+  Mesh mesh;
+  mesh.positions.emplace_back(0, 0, 0.1F);
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    mesh.positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+    mesh.triangles.emplace_back(0, i + 1, (i + 1) % kSides + 1);
+  }
+  Scene scene = with_mesh(mesh);
+  complete(scene, Camera{});
+  EXPECT_EQ(scene.meshes[0].positions.size(), mesh.positions.size());
+  EXPECT_LT(glm::distance(scene.meshes[0].normals[0], glm::vec3(0, 0, 1)), 1e-4F);
+}
+
+TEST(Complete, KeepsNormalsLightsAndMaterialsThatAreThere) {
+  Scene scene = generate("gen:cornell");
+  const Scene before = scene;
+  complete(scene, scene.cameras[0]);
+  EXPECT_EQ(scene.lights.size(), before.lights.size());
+  EXPECT_EQ(scene.materials.size(), before.materials.size());
+  EXPECT_EQ(scene.environment.zenith, before.environment.zenith);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    EXPECT_EQ(scene.meshes[i].normals, before.meshes[i].normals);
+  }
+}
+
+TEST(Complete, IsIdempotent) {
+  Scene once = with_mesh(cube());
+  const Camera camera = camera_around(bounds(once), "default", false, 1.5F);
+  complete(once, camera);
+  Scene twice = once;
+  complete(twice, camera);
+  EXPECT_EQ(twice.meshes[0].positions, once.meshes[0].positions);
+  EXPECT_EQ(twice.meshes[0].normals, once.meshes[0].normals);
+  EXPECT_EQ(twice.lights.size(), once.lights.size());
+  EXPECT_EQ(twice.materials.size(), once.materials.size());
+}
+
+// What a diffuse surface of albedo 0.8 with normal n sends back under the key light and a sky whose
+// radiance is linear in height: half of the upper and lower hemisphere at right angles to up.
+TEST(Complete, LightsAGreySurfaceThatFacesTheKeyLightToThreeQuarters) {
+  Scene scene = with_mesh(cube());
+  for (const bool z_up : {false, true}) {
+    scene.lights.clear();
+    scene.environment = {};
+    scene.z_up = z_up;
+    complete(scene, camera_around(bounds(scene), "default", z_up, 1.5F));
+    ASSERT_EQ(scene.lights.size(), 1U);
+    const Light& key = scene.lights[0];
+    ASSERT_EQ(key.kind, Light::Kind::directional);
+    const glm::dvec3 n(-key.direction);
+    const glm::dvec3 up(scene.environment.up);
+    EXPECT_GT(glm::dot(n, up), 0.3);
+    glm::dvec3 sky(0);
+    constexpr int kSteps = 400;
+    double weight = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {
+        const double height = -1 + 2 * (i + 0.5) / kSteps,
+                     angle = 2 * std::numbers::pi * j / kSteps;
+        const double level = std::sqrt(1 - height * height);
+        const glm::dvec3 d =
+            z_up ? glm::dvec3(level * std::cos(angle), level * std::sin(angle), height)
+                 : glm::dvec3(level * std::cos(angle), height, level * std::sin(angle));
+        const double cosine = glm::dot(n, d);
+        if (cosine <= 0) continue;
+        const Environment& e = scene.environment;
+        sky += cosine * glm::mix(glm::dvec3(e.horizon),
+                                 glm::dvec3(height > 0 ? e.zenith : e.ground), std::abs(height));
+        weight += cosine;
+      }
+    }
+    const glm::dvec3 out = 0.8 * (glm::dvec3(key.colour) / std::numbers::pi + sky / weight);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(out[k], 0.75, 0.05);
+  }
+}
+
+TEST(Complete, AddsTangentsForNormalTexturesAndSplitsMirroredOnes) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
+  // v grows downwards; the right half repeats the left one mirrored.
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}, {0, 1}, {0, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+  Scene scene = with_mesh(mesh);
+  Material material;
+  material.normal_texture = 0;
+  scene.materials.push_back(material);
+  scene.textures.push_back({"flat", 1, 1, {{128, 128, 255, 255}}, false});
+  complete(scene, Camera{});
+  const Mesh& done = scene.meshes[0];
+  EXPECT_EQ(done.positions.size(), 8U);
+  ASSERT_EQ(done.tangents.size(), done.positions.size());
+  EXPECT_EQ(done.tangents[0], glm::vec4(1, 0, 0, 1));
+  EXPECT_EQ(done.tangents[4], glm::vec4(-1, 0, 0, -1));
+  for (std::size_t i = 0; i < done.tangents.size(); ++i) {
+    // The bitangent points up the texture, against v.
+    const glm::vec3 bitangent =
+        done.tangents[i].w * glm::cross(done.normals[i], glm::vec3(done.tangents[i]));
+    EXPECT_EQ(bitangent, glm::vec3(0, 1, 0)) << i;
+  }
+}
+
+TEST(Complete, AnEmptySceneStaysEmptyAndGetsAMaterial) {
+  Scene scene;
+  complete(scene, Camera{});
+  EXPECT_EQ(scene.materials.size(), 1U);
+  EXPECT_TRUE(bounds(scene).empty());
+  EXPECT_EQ(triangle_count(scene), 0U);
+  EXPECT_EQ(first_primitives(scene), std::vector<std::uint64_t>{0});
+}
+
+}  // namespace
+}  // namespace delray::scenes
