@@ -38,8 +38,9 @@ class SeamFilter {
       return;
     }
     const double unit = common_unit(points);
+    if (unit < kSmallest) return;
     exact_cross_ = 0x1p+52 * unit * unit;
-    exact_circle_ = unit > 0x1p-200 ? exact_cross_ * unit * unit : 0;
+    exact_circle_ = exact_cross_ * unit * unit;
   }
 
   // Whether c lies strictly to the right of the line from a to b.
@@ -47,7 +48,7 @@ class SeamFilter {
     const SeamView seen(a, b, c);
     const double error = kCrossError * seen.spread + underflow_;
     if (std::abs(seen.cross) > error) return seen.cross < 0;
-    if (seen.spread <= exact_cross_) return seen.cross < 0;
+    if (seen.spread < exact_cross_) return seen.cross < 0;
     return orient2d(a, b, c) < 0;
   }
 
@@ -56,7 +57,7 @@ class SeamFilter {
              const SeamView& seen) const {
     const double error = kCrossError * seen.spread + underflow_;
     if (std::abs(seen.cross) > error) return seen.cross > 0;
-    if (seen.spread <= exact_cross_) return seen.cross > 0;
+    if (seen.spread < exact_cross_) return seen.cross > 0;
     return orient2d(a, b, p) > 0;
   }
 
@@ -67,7 +68,7 @@ class SeamFilter {
     const double spreads = seen_p.spread * seen_q.spread;
     const double error = kIncircleError * spreads + underflow_;
     if (std::abs(determinant) > error) return determinant > 0;
-    if (spreads <= exact_circle_) {
+    if (spreads < exact_circle_) {
       return determinant != 0 ? determinant > 0 : cocircular_inside(a, b, p, q);
     }
     return circle_conflict(a, b, p, q);
@@ -76,6 +77,8 @@ class SeamFilter {
  private:
   // Up to here a product that underflows, off by 2^-1075, is multiplied by less than 2^410.
   static constexpr double kLargest = 0x1p+200;
+  // Down to here a product of four coordinates does not underflow.
+  static constexpr double kSmallest = 0x1p-200;
   // 4 roundings, as in kIncircleError, and room for second-order terms.
   static constexpr double kCrossError = 4.5 * kRoundOff;
 
@@ -95,7 +98,7 @@ class SeamFilter {
   }
 
   double underflow_ = 0x1p-600;  // what underflow may add to an error
-  // Where the spread, or the product of two, is at most this, nothing above is rounded at all.
+  // Where the spread, or the product of two, is below this, nothing above is rounded at all.
   double exact_cross_ = 0, exact_circle_ = 0;
 };
 
