@@ -1,0 +1,58 @@
+// CGAL as the oracle for 2D triangulations: same simplices on the report's six distributions and on
+// sets that are hard.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "bench/peers/cgal2.h"
+#include "delaunay/generate.h"
+#include "delaunay/methods.h"
+#include "delaunay/triangulate.h"
+#include "tests/delaunay/hard_points.h"
+
+namespace delray::delaunay {
+namespace {
+
+void expect_same(const std::vector<glm::dvec3>& points, const std::string& name) {
+  const Triangulation expected = bench::triangulate_with_cgal2(points);
+  for (const Method& method : methods()) {
+    if (std::ranges::find(method.dims, 2) == method.dims.end()) continue;
+    Options options;
+    options.method = method.name;
+    const Triangulation actual = triangulate(view(points), options);
+    EXPECT_EQ(hash(actual), hash(expected)) << name << ", " << method.name;
+    EXPECT_EQ(actual.size(), expected.size()) << name << ", " << method.name;
+    if (expected.size() > 0) {
+      EXPECT_EQ(actual.hull_facets, expected.hull_facets) << name << ", " << method.name;
+    }
+    EXPECT_EQ(actual.distinct, expected.distinct) << name << ", " << method.name;
+  }
+}
+
+TEST(Cgal2, AgreesOnGeneratedPoints) {
+  for (const PointGenerator& generator : point_generators()) {
+    for (const std::size_t n : {100, 20000}) {
+      expect_same(generator.generate(n, 2, n).positions, std::string(generator.name));
+    }
+  }
+}
+
+TEST(Cgal2, AgreesOnHardPoints) {
+  for (const HardPoints& kind : hard_points()) {
+    // Beyond these sizes CGAL's own construction of the bounding box overflows or underflows.
+    if (kind.name == "largest" || kind.name == "of all sizes") continue;
+    for (const std::size_t n : {10, 30, 300}) {
+      for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        std::vector<glm::dvec3> points;
+        for (const auto& p : kind.make(n, seed)) points.emplace_back(p, 0);
+        expect_same(points,
+                    kind.name + ", n " + std::to_string(n) + ", seed " + std::to_string(seed));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace delray::delaunay
