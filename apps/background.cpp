@@ -1,0 +1,82 @@
+#include "apps/background.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "apps/session.h"
+#include "image/srgb.h"
+#include "parallel/parallel_for.h"
+#include "shading/environment.h"
+
+namespace delray::apps {
+namespace {
+
+using image::Rgba8;
+using image::RgbaF;
+
+constexpr std::size_t kRows = 8;  // rows a block: some microseconds of work
+
+void blend(RgbaF& pixel, const RgbaF& behind) {
+  const float through = 1.0F - pixel.a;
+  pixel = {pixel.r + behind.r * through, pixel.g + behind.g * through, pixel.b + behind.b * through,
+           pixel.a + behind.a * through};
+}
+
+// Partly covered pixels are blended in linear light.
+void blend(Rgba8& pixel, const RgbaF& behind) {
+  if (pixel.a == 255) return;
+  RgbaF linear = image::to_float(pixel);
+  blend(linear, behind);
+  pixel = image::to_8bit(linear);
+}
+
+template <class Colour>
+void put_behind_picture(image::BasicImage<Colour>& picture, const Background& background,
+                        const shading::Shader& shader, const scenes::View& view) {
+  if (background.kind == Background::Kind::transparent) return;
+  const bool sky = background.kind == Background::Kind::environment;
+  const auto width = static_cast<std::size_t>(picture.width);
+  parallel::parallel_for(0, static_cast<std::size_t>(picture.height), kRows, [&](std::size_t y) {
+    RgbaF behind = background.colour;
+    for (std::size_t x = 0; x < width; ++x) {
+      if (sky) {
+        const glm::vec3 direction =
+            glm::normalize(view.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F));
+        const glm::vec3 light = radiance(shader.environment, shader.textures, direction);
+        behind = {light.x, light.y, light.z, 1.0F};
+      }
+      blend(picture.colour[y * width + x], behind);
+    }
+  });
+}
+
+}  // namespace
+
+Background parse_background(const std::string& text) {
+  if (text == "environment") return {};
+  if (text == "transparent") return {Background::Kind::transparent, {}};
+  unsigned code = 0;
+  const char* const begin = text.data() + 1;
+  const char* const end = text.data() + text.size();
+  if (text.size() == 7 && text[0] == '#' && std::from_chars(begin, end, code, 16).ptr == end) {
+    const auto channel = [code](int shift) {
+      return image::decode_srgb(static_cast<std::uint8_t>(code >> shift));
+    };
+    return {Background::Kind::colour, {channel(16), channel(8), channel(0), 1.0F}};
+  }
+  throw UsageError(
+      fmt::format("--background: '{}' is not environment, transparent or #rrggbb", text));
+}
+
+void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,
+                const scenes::View& view) {
+  put_behind_picture(picture, background, shader, view);
+}
+
+void put_behind(image::Image8& picture, const Background& background, const shading::Shader& shader,
+                const scenes::View& view) {
+  put_behind_picture(picture, background, shader, view);
+}
+
+}  // namespace delray::apps

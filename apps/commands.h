@@ -1,0 +1,14 @@
+// The subcommands: each adds itself to the command line and, when chosen, sets session.run.
+#pragma once
+
+#include "apps/session.h"
+
+namespace delray::apps {
+
+void add_info(CLI::App& program, Session& session);
+void add_generate(CLI::App& program, Session& session);
+void add_triangulate(CLI::App& program, Session& session);
+void add_verify(CLI::App& program, Session& session);
+void add_render(CLI::App& program, Session& session);
+
+}  // namespace delray::apps

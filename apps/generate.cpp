@@ -1,0 +1,86 @@
+// delray generate points|scene: inputs that the program makes itself.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+#include "apps/list.h"
+#include "delaunay/generate.h"
+#include "delaunay/write_points.h"
+#include "scenes/generate.h"
+#include "scenes/write_glb.h"
+
+namespace delray::apps {
+namespace {
+
+struct Options {
+  std::string kind, output;
+  std::uint64_t count = 0;
+  int dim = 2;
+  std::uint64_t seed = 1;
+  bool list = false;
+};
+
+void require(const Options& options) {
+  if (options.kind.empty()) throw UsageError("generate: KIND is missing (--list names them)");
+  if (options.output.empty()) throw UsageError("generate: -o FILE is missing");
+}
+
+int generate_points(const Options& options) {
+  if (options.list) {
+    print_table(delaunay::point_generators());
+    return kDone;
+  }
+  require(options);
+  find_entry(delaunay::point_generators(), options.kind, "KIND");
+  if (options.output != "-") delaunay::point_writer_for(options.output);
+  const std::size_t count = options.count > 0 ? options.count : 1000;
+  delaunay::write_points(options.output,
+                         delaunay::generate_points(options.kind, count, options.dim, options.seed));
+  return kDone;
+}
+
+int generate_scene(const Options& options) {
+  if (options.list) {
+    print_table(scenes::generators());
+    return kDone;
+  }
+  require(options);
+  const scenes::Generator& generator = find_entry(scenes::generators(), options.kind, "KIND");
+  if (!options.output.ends_with(".glb")) {
+    throw UsageError(fmt::format("-o: '{}' is not a .glb file", options.output));
+  }
+  const std::uint64_t triangles = options.count > 0 ? options.count : generator.default_triangles;
+  scenes::write_glb(options.output, generator.generate(triangles, options.seed));
+  return kDone;
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program, Session& session) {
+  CLI::App* generate = program.add_subcommand("generate", "make points or a scene");
+  generate->require_subcommand(1);
+  const auto options = std::make_shared<Options>();
+  const auto add = [&](const char* name, const char* description, const char* kind,
+                       const char* count, int (*run)(const Options&), const char* examples) {
+    CLI::App* command = generate->add_subcommand(name, description);
+    command->add_option("KIND", options->kind, kind);
+    command->add_option("-n", options->count, count)->check(CLI::PositiveNumber);
+    command->add_option("--seed", options->seed, "seed of everything random (default 1)");
+    command->add_option("-o,--output", options->output, "the file to write");
+    command->add_flag("--list", options->list, "list the kinds");
+    add_common_options(*command, session, examples);
+    command->callback([&session, options, run] { session.run = [=] { return run(*options); }; });
+    return command;
+  };
+  add("points", "make points", "what they are like", "how many (default 1000)", generate_points,
+      "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
+      "generate points --list")
+      ->add_option("--dim", options->dim, "2 or 3 (default 2)")
+      ->check(CLI::IsMember({2, 3}));
+  add("scene", "make a scene", "what it shows", "about how many triangles", generate_scene,
+      "generate scene terrain -n 1000000 -o terrain.glb\n"
+      "generate scene field -o field.glb");
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,144 @@
+// delray info: what is in a scene, point, mesh or picture file.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <variant>
+
+#include "apps/commands.h"
+#include "apps/scene_input.h"
+#include "apps/statistics.h"
+#include "delaunay/read_mesh.h"
+#include "delaunay/read_points.h"
+#include "files/format.h"
+#include "geometry/box.h"
+#include "image/io.h"
+#include "scenes/describe.h"
+#include "scenes/generate.h"
+#include "scenes/load.h"
+
+namespace delray::apps {
+namespace {
+
+template <class Vector>
+Json numbers(const Vector& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+Json describe_points(const delaunay::PointCloud& points) {
+  geometry::Box3d box;
+  for (const glm::dvec3& p : points.positions) box.include(p);
+  Json attributes = Json::array();
+  if (!points.colours.empty()) attributes.push_back("rgb");
+  if (!points.intensity.empty()) attributes.push_back("intensity");
+  if (!points.classification.empty()) attributes.push_back("classification");
+  return {{"points", points.size()},
+          {"dim", points.has_z ? 3 : 2},
+          {"low", numbers(box.low)},
+          {"high", numbers(box.high)},
+          {"attributes", attributes}};
+}
+
+Json describe_mesh(const delaunay::PointMesh& mesh) {
+  Json description = describe_points(mesh.points);
+  description["simplices"] = mesh.triangulation.size();
+  description["simplex"] = mesh.triangulation.dim == 2 ? "triangle" : "tetrahedron";
+  return description;
+}
+
+Json describe_scene(const scenes::Scene& scene) {
+  const scenes::Description d = scenes::describe(scene);
+  Json textures = Json::array();
+  for (const scenes::TextureDescription& t : d.textures) {
+    textures.push_back({{"name", t.name}, {"width", t.width}, {"height", t.height}});
+  }
+  return {
+      {"triangles", d.triangles},
+      {"vertices", d.vertices},
+      {"meshes", d.meshes},
+      {"instances", d.instances},
+      {"stored_triangles", d.stored_triangles},
+      {"stored_vertices", d.stored_vertices},
+      {"low", numbers(glm::dvec3(d.bounds.low) + scene.origin)},
+      {"high", numbers(glm::dvec3(d.bounds.high) + scene.origin)},
+      {"up", d.z_up ? "z" : "y"},
+      {"normals", d.has_normals},
+      {"texture_coordinates", d.has_uvs},
+      {"vertex_colours", d.has_colours},
+      {"lights",
+       {{"point", d.point_lights}, {"directional", d.directional_lights}, {"area", d.area_lights}}},
+      {"cameras", d.cameras},
+      {"materials", d.materials},
+      {"textures", textures},
+      {"bytes", d.bytes}};
+}
+
+Json describe_picture(const std::string& path) {
+  const image::PictureInfo info = image::read_info(path);
+  Json attributes = Json::object();
+  for (const image::Attribute& attribute : info.attributes) {
+    std::visit([&](const auto& value) { attributes[attribute.name] = value; }, attribute.value);
+  }
+  return {{"width", info.width}, {"height", info.height},     {"format", info.format},
+          {"type", info.type},   {"channels", info.channels}, {"attributes", attributes}};
+}
+
+Json describe(const std::string& path) {
+  if (scenes::is_generated(path)) {
+    SceneInput input;
+    input.file.path = path;
+    return describe_scene(load_scene(input, nullptr));
+  }
+  switch (input_kind(path)) {
+    case InputKind::picture:
+      return describe_picture(path);
+    case InputKind::points:
+      return describe_points(delaunay::read_points(path));
+    case InputKind::mesh:
+      return describe_mesh(delaunay::read_mesh(path));
+    case InputKind::scene:
+      break;
+  }
+  std::vector<std::string> warnings;
+  const scenes::Scene scene = scenes::load(path, warnings);
+  for (const std::string& warning : warnings) spdlog::warn("{}: {}", path, warning);
+  return describe_scene(scene);
+}
+
+// A line for each key; lists of objects as one line for each.
+void print(const Json& description) {
+  for (const auto& [key, value] : description.items()) {
+    if (value.is_array() && !value.empty() && value[0].is_object()) {
+      fmt::print("{}: {}\n", key, value.size());
+      for (const Json& row : value) fmt::print("  {}\n", row.dump());
+    } else {
+      fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Session& session) {
+  struct Options {
+    std::string path, statistics;
+  };
+  CLI::App* command = program.add_subcommand("info", "say what is in a file");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->path, "a scene, mesh, point or picture file");
+  command->add_option("--stats", options->statistics, "write it as JSON; - for stdout");
+  add_common_options(*command, session, "info model.glb\ninfo points.las --stats -");
+  command->callback([&session, options] {
+    session.run = [options] {
+      if (options->path.empty()) throw UsageError("info: FILE is missing");
+      const Json description = describe(options->path);
+      if (options->statistics != "-") print(description);
+      Json statistics = {{"schema", "delray.info/1"}, {"file", options->path}};
+      statistics.update(description);
+      write_statistics(options->statistics, statistics);
+      return int{kDone};
+    };
+  });
+}
+
+}  // namespace delray::apps

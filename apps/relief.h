@@ -1,0 +1,18 @@
+// Points and their triangulation as a scene.
+#pragma once
+
+#include <string>
+
+#include "delaunay/points.h"
+#include "delaunay/triangulation.h"
+#include "scenes/scene.h"
+
+namespace delray::apps {
+
+// One mesh of the triangles (2D) or of the hull (3D); z is up. Positions are relative to
+// Scene::origin, the middle of the points, so that 32-bit floats do for coordinates far away.
+// Heights are multiplied by `exaggeration` for the picture.
+scenes::Scene relief(const delaunay::PointCloud& points,
+                     const delaunay::Triangulation& triangulation, double exaggeration);
+
+}  // namespace delray::apps

@@ -1,0 +1,114 @@
+// delray render: a scene, points or a mesh to a picture.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/commands.h"
+#include "apps/list.h"
+#include "apps/progress_bar.h"
+#include "apps/render_frames.h"
+#include "apps/render_options.h"
+#include "apps/render_statistics.h"
+#include "comm/agree_on_failure.h"
+#include "composite/scheme.h"
+#include "image/hash.h"
+#include "image/io.h"
+#include "image/srgb.h"
+#include "loadbalance/partition.h"
+#include "parallel/arena.h"
+#include "raster/strategies.h"
+#include "raytrace/integrator.h"
+#include "raytrace/tiles.h"
+
+namespace delray::apps {
+namespace {
+
+int print_lists() {
+  print_table(raster::strategies());
+  print_table(loadbalance::partitioners());
+  print_table(composite::schemes());
+  print_table(raytrace::integrators());
+  print_table(raytrace::schedules());
+  return kDone;
+}
+
+const image::Image8& as_8bit(const image::Image8& picture, image::Image8&) { return picture; }
+const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& converted) {
+  converted = image::to_8bit(picture);
+  return converted;
+}
+
+// Rank 0: background, file, statistics.
+void finish(const RenderRequest& request, const Session& session, const Prepared& prepared,
+            Frames& frames) {
+  Stopwatch watch;
+  const scenes::View view = scenes::make_view(prepared.camera, request.width, request.height);
+  image::Image8 converted;
+  const image::Image8* codes = nullptr;
+  const std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION},
+                                                    {"CommandLine", session.command_line}};
+  std::visit(
+      [&](auto& picture) {
+        put_behind(picture, request.behind, prepared.shading(), view);
+        codes = &as_8bit(picture, converted);
+        image::WriteOptions options;
+        options.attributes = attributes;
+        if (request.output.ends_with(".exr") || request.output.ends_with(".EXR")) {
+          write_image(request.output, picture, options);
+        } else {
+          write_image(request.output, *codes, options);
+        }
+      },
+      frames.picture);
+  const double write_seconds = watch.lap();
+  const Json statistics =
+      render_statistics(request, prepared, frames, image::hash(*codes), write_seconds);
+  write_statistics(request.statistics, statistics);
+  spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", request.output, request.width,
+               request.height, scenes::triangle_count(prepared.scene),
+               statistics["seconds"]["frame"].get<double>());
+}
+
+int run(Session& session, const CLI::App& command, RenderRequest request) {
+  if (request.list) return print_lists();
+  check(command, request);
+  const ProgressBar bar(session, "render");
+  parallel::Progress* const progress = &session.progress;
+  std::shared_ptr<const Prepared> shared;  // by the ranks of this process
+  if (!session.under_mpi) {
+    const int ranks = std::max(1, request.launch.ranks);
+    parallel::Arena arena(threads_per_rank(request.launch, ranks) * ranks);
+    shared = arena.execute([&] { return prepare(request, progress); });
+  }
+  run_ranks(session, request.launch, [&](comm::Communicator& communicator) {
+    std::shared_ptr<const Prepared> prepared = shared;
+    if (!prepared) {
+      communicator.mark(comm::Phase::load, 0);
+      prepared = comm::all_or_none(communicator, comm::Phase::load,
+                                   [&] { return prepare(request, progress); });
+    }
+    Frames frames = render_frames(communicator, *prepared, request, progress);
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() == 0) finish(request, session, *prepared, frames);
+    });
+  });
+  return kDone;
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, Session& session) {
+  CLI::App* command = program.add_subcommand("render", "make a picture of a scene, mesh or points");
+  const auto request = std::make_shared<RenderRequest>();
+  add_render_options(*command, *request);
+  add_common_options(*command, session,
+                     "render model.glb -o model.png --engine raytrace --spp 16\n"
+                     "render points.las -o relief.png --color-by z --view iso");
+  command->callback([&session, request, command] {
+    session.run = [&session, request, command] { return run(session, *command, *request); };
+  });
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,117 @@
+#include "apps/render_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <initializer_list>
+
+#include "apps/list.h"
+#include "composite/scheme.h"
+#include "image/io.h"
+#include "loadbalance/partition.h"
+#include "raster/strategies.h"
+#include "raytrace/integrator.h"
+#include "raytrace/tiles.h"
+
+namespace delray::apps {
+namespace {
+
+constexpr int kLargestSide = 32768;
+
+void parse_size(RenderRequest& request) {
+  const char* const end = request.size.data() + request.size.size();
+  const auto [x, error] = std::from_chars(request.size.data(), end, request.width);
+  const bool fine = error == std::errc() && x != end && *x == 'x' &&
+                    std::from_chars(x + 1, end, request.height).ptr == end;
+  if (!fine || request.width < 1 || request.height < 1 || request.width > kLargestSide ||
+      request.height > kLargestSide) {
+    throw UsageError(fmt::format("--size: '{}' is not WIDTHxHEIGHT, each from 1 to {}",
+                                 request.size, kLargestSide));
+  }
+}
+
+// Throws UsageError if one of the options was given.
+void refuse(const CLI::App& command, std::initializer_list<const char*> options,
+            const std::string& with) {
+  for (const char* option : options) {
+    if (command.count(option) > 0) {
+      throw UsageError(fmt::format("{} has no effect with {}", option, with));
+    }
+  }
+}
+
+void check_raster(const CLI::App& command, const RenderRequest& request) {
+  refuse(command, {"--integrator", "--spp", "--depth", "--schedule", "--data"}, "--engine raster");
+  find_entry(raster::strategies(), request.strategy, "--strategy");
+  find_entry(loadbalance::partitioners(), request.partition, "--partition");
+  find_entry(composite::schemes(), request.scheme, "--compose");
+  if (request.strategy == "sort-last") refuse(command, {"--partition"}, "--strategy sort-last");
+  if (request.strategy == "sort-first") refuse(command, {"--compose"}, "--strategy sort-first");
+}
+
+void check_raytrace(const CLI::App& command, const RenderRequest& request) {
+  refuse(command, {"--strategy", "--partition", "--compose", "--shading"}, "--engine raytrace");
+  find_entry(raytrace::integrators(), request.integrator, "--integrator");
+  find_entry(raytrace::schedules(), request.schedule, "--schedule");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderRequest& request) {
+  add_scene_options(command, request.scene);
+  command.add_option("-o,--output", request.output, "the picture: .png .exr .tif .jpg");
+  command.add_option("--size", request.size, "WIDTHxHEIGHT (default 1280x720)");
+  command.add_option("--engine", request.engine, "raster (default) or raytrace")
+      ->check(CLI::IsMember({"raster", "raytrace"}));
+  command
+      .add_option("--frames", request.frames,
+                  "render so often and report the median time (default 1)")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--background", request.background,
+                     "environment (default), transparent or #rrggbb");
+  add_camera_options(command, request.camera);
+  add_launch_options(command, request.launch);
+  const std::string raster = "Rasterizer";
+  command.add_option("--strategy", request.strategy, "how ranks share the work")->group(raster);
+  command.add_option("--partition", request.partition, "of the screen, sort-first")->group(raster);
+  command.add_option("--compose", request.scheme, "compositing scheme, sort-last")->group(raster);
+  command.add_option("--shading", request.lighting, "phong (default) or gouraud")
+      ->check(CLI::IsMember({"phong", "gouraud"}))
+      ->group(raster);
+  const std::string raytrace = "Ray tracer";
+  command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);
+  command.add_option("--spp", request.samples, "samples per pixel (default 1)")
+      ->check(CLI::Range(1, 65536))
+      ->group(raytrace);
+  command.add_option("--depth", request.depth, "mirrored or refracted how often (default 8)")
+      ->check(CLI::Range(0, 64))
+      ->group(raytrace);
+  command.add_option("--schedule", request.schedule, "how ranks share the tiles")->group(raytrace);
+  command.add_option("--data", request.data, "how ranks share the scene")
+      ->check(CLI::IsMember({"replicated"}))
+      ->group(raytrace);
+  command.add_option("--stats", request.statistics, "write statistics as JSON; - for stdout");
+  command.add_flag("--list", request.list,
+                   "list strategies, partitions, schemes, integrators, schedules");
+}
+
+void check(const CLI::App& command, RenderRequest& request) {
+  if (request.scene.file.path.empty()) throw UsageError("render: SCENE is missing");
+  if (request.output.empty()) throw UsageError("render: -o IMAGE is missing");
+  if (!image::is_picture_suffix(request.output)) {
+    std::string legal;
+    for (const char* suffix : image::picture_suffixes()) legal += std::string(" ") + suffix;
+    throw UsageError(fmt::format("-o: '{}' does not end in one of{}", request.output, legal));
+  }
+  parse_size(request);
+  request.behind = parse_background(request.background);
+  request.kind = request.engine == "raster" ? Engine::raster : Engine::raytrace;
+  if (request.kind == Engine::raster) {
+    check_raster(command, request);
+  } else {
+    check_raytrace(command, request);
+  }
+}
+
+}  // namespace delray::apps

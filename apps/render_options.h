@@ -1,0 +1,44 @@
+// The options of `delray render`.
+#pragma once
+
+#include <string>
+
+#include "apps/background.h"
+#include "apps/camera_options.h"
+#include "apps/launch.h"
+#include "apps/scene_input.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+namespace delray::apps {
+
+enum class Engine { raster, raytrace };
+
+struct RenderRequest {
+  SceneInput scene;
+  CameraOptions camera;
+  Launch launch;
+  std::string output, statistics;
+  std::string size = "1280x720", engine = "raster", background = "environment";
+  int frames = 1;
+  bool list = false;
+  // raster
+  std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",
+              lighting = "phong";
+  // raytrace
+  std::string integrator = "whitted", schedule = "interlaced", data = "replicated";
+  int samples = 1, depth = 8;
+
+  // Set by check:
+  int width = 0, height = 0;
+  Engine kind = Engine::raster;
+  Background behind;
+};
+
+void add_render_options(CLI::App& command, RenderRequest& request);
+
+// Completes and checks a request. Throws UsageError for values that are not legal and for options
+// that have no effect with the others.
+void check(const CLI::App& command, RenderRequest& request);
+
+}  // namespace delray::apps

@@ -1,0 +1,120 @@
+#include "apps/render_statistics.h"
+
+#include <algorithm>
+
+namespace delray::apps {
+namespace {
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+Json options_of(const RenderRequest& request, int ranks) {
+  Json options = {{"size", request.size},
+                  {"engine", request.engine},
+                  {"frames", request.frames},
+                  {"background", request.background},
+                  {"camera", request.camera.camera},
+                  {"view", request.camera.view},
+                  {"color_by", request.scene.colour_by},
+                  {"ranks", ranks},
+                  {"threads", request.launch.threads}};
+  if (request.kind == Engine::raster) {
+    options["strategy"] = request.strategy;
+    options["shading"] = request.lighting;
+    if (request.strategy == "sort-first") options["partition"] = request.partition;
+    if (request.strategy == "sort-last") options["compose"] = request.scheme;
+  } else {
+    options["integrator"] = request.integrator;
+    options["spp"] = request.samples;
+    options["depth"] = request.depth;
+    options["schedule"] = request.schedule;
+    options["data"] = request.data;
+  }
+  return options;
+}
+
+Json phases_of(const raster::Statistics& s) {
+  const raster::Phases& p = s.phases;
+  return {{"transform", p.transform}, {"bin", p.bin},
+          {"rasterize", p.rasterize}, {"trace", 0},
+          {"shade", p.shade},         {"redistribute", p.redistribute},
+          {"compose", p.compose},     {"gather", p.gather}};
+}
+
+Json phases_of(const raytrace::Statistics& s) {
+  return {{"transform", 0}, {"bin", 0},          {"rasterize", 0}, {"trace", s.trace_seconds},
+          {"shade", 0},     {"redistribute", 0}, {"compose", 0},   {"gather", s.gather_seconds}};
+}
+
+raytrace::RayCounts rays_of(const raster::Statistics&) { return {}; }
+raytrace::RayCounts rays_of(const raytrace::Statistics& s) { return s.rays; }
+
+Json embree_of(const raster::Statistics&) { return {{"version", nullptr}, {"isa", nullptr}}; }
+Json embree_of(const raytrace::Statistics& s) {
+  return {{"version", s.embree_version}, {"isa", s.embree_isa}};
+}
+
+// In-process ranks share the memory of the process: each is told its peak.
+template <class Ranks>
+Json ranks_of(const Ranks& ranks) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    rows.push_back({{"rank", i},
+                    {"busy", ranks[i].busy},
+                    {"tasks", ranks[i].tasks},
+                    {"steals", 0},
+                    {"bytes_sent", ranks[i].bytes_sent},
+                    {"bytes_received", ranks[i].bytes_received},
+                    {"messages", ranks[i].messages},
+                    {"peak_rss", peak_memory()}});
+  }
+  return rows;
+}
+
+template <class Ranks>
+double imbalance_of(const Ranks& ranks) {
+  double sum = 0, most = 0;
+  for (const auto& rank : ranks) {
+    sum += rank.busy;
+    most = std::max(most, rank.busy);
+  }
+  return sum > 0 ? most * static_cast<double>(ranks.size()) / sum : 1.0;
+}
+
+}  // namespace
+
+Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
+                       const std::string& hash, double write_seconds) {
+  return std::visit(
+      [&](const auto& s) -> Json {
+        const raytrace::RayCounts rays = rays_of(s);
+        return {
+            {"schema", "delray.render/1"},
+            {"scene",
+             {{"file", request.scene.file.path},
+              {"triangles", scenes::triangle_count(prepared.scene)},
+              {"vertices", scenes::vertex_count(prepared.scene)},
+              {"instances", prepared.scene.instances.size()}}},
+            {"options", options_of(request, static_cast<int>(s.ranks.size()))},
+            {"image", {{"width", request.width}, {"height", request.height}, {"hash", hash}}},
+            {"seconds",
+             {{"load", prepared.load_seconds},
+              {"build", prepared.build_seconds},
+              {"frame", median(frames.seconds)},
+              {"frame_min", *std::min_element(frames.seconds.begin(), frames.seconds.end())},
+              {"write", write_seconds}}},
+            {"embree", embree_of(s)},
+            {"phases", phases_of(s)},
+            {"rays",
+             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}}},
+            {"imbalance", imbalance_of(s.ranks)},
+            {"ranks", ranks_of(s.ranks)},
+        };
+      },
+      frames.statistics);
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,66 @@
+#include "apps/session.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "apps/interrupt.h"
+#include "comm/failure.h"
+#include "files/error.h"
+
+namespace delray::apps {
+namespace {
+
+// The exit code of the exception in flight, after telling what it was.
+int report_failure() {
+  try {
+    throw;
+  } catch (const UsageError& error) {
+    spdlog::error("{}", error.what());
+    return kUsage;
+  } catch (const files::FileError& error) {
+    spdlog::error("{}", error.what());
+    return error.cause() == files::Cause::input ? kBadInput : kFailed;
+  } catch (const parallel::Interrupted&) {
+    spdlog::error("interrupted: nothing was written");
+    return kInterrupted;
+  } catch (const comm::RankFailure& failure) {
+    spdlog::error("{}", failure.what());
+    return kRankLost;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory");
+    return kFailed;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, Session& session, const std::string& examples) {
+  command.add_flag("-q,--quiet", session.quiet, "say nothing but errors");
+  command.add_flag("-v,--verbose", session.verbose, "say more");
+  std::string footer = "Examples:\n";
+  for (std::size_t start = 0; start < examples.size();) {
+    const std::size_t end = std::min(examples.find('\n', start), examples.size());
+    footer += "  delray " + examples.substr(start, end - start) + "\n";
+    start = end + 1;
+  }
+  command.footer(footer);
+}
+
+int run_guarded(Session& session) {
+  spdlog::set_level(session.quiet     ? spdlog::level::err
+                    : session.verbose ? spdlog::level::debug
+                                      : spdlog::level::info);
+  const StopOnInterrupt stop(session.progress);
+  try {
+    return session.run();
+  } catch (...) {
+    return report_failure();
+  }
+}
+
+}  // namespace delray::apps

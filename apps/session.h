@@ -1,0 +1,47 @@
+// What all subcommands share: how loud to be, how to stop, how to fail.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "parallel/progress.h"
+
+namespace CLI {
+class App;
+}
+
+namespace delray::apps {
+
+enum ExitCode {
+  kDone = 0,
+  kFailed = 1,       // while running: disk full, device, out of memory
+  kUsage = 2,        // wrong usage
+  kBadInput = 3,     // a file is not what it should be
+  kNotVerified = 4,  // verification failed
+  kRankLost = 5,     // a rank was lost or timed out
+  kInterrupted = 130,
+};
+
+// Options that cannot be, or cannot be together: exit code 2.
+struct UsageError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+struct Session {
+  bool quiet = false;
+  bool verbose = false;
+  bool under_mpi = false;
+  bool first_process = true;  // the one that speaks; the only one without MPI
+  std::string command_line;
+  parallel::Progress progress;
+  std::function<int()> run;  // set by the subcommand that was chosen
+};
+
+// Adds -q and -v and the examples at the end of --help. `examples` are two lines, without "delray".
+void add_common_options(CLI::App& command, Session& session, const std::string& examples);
+
+// Runs what the subcommand set and turns exceptions into messages on stderr and exit codes.
+int run_guarded(Session& session);
+
+}  // namespace delray::apps

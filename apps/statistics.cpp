@@ -1,0 +1,19 @@
+#include "apps/statistics.h"
+
+#include <sys/resource.h>
+
+#include "files/atomic_file.h"
+
+namespace delray::apps {
+
+void write_statistics(const std::string& path, const Json& statistics) {
+  if (!path.empty()) files::write_file(path, statistics.dump(2) + "\n");
+}
+
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kibibytes
+}
+
+}  // namespace delray::apps

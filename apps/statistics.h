@@ -1,0 +1,33 @@
+// --stats: what a run did, as JSON.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace delray::apps {
+
+using Json = nlohmann::ordered_json;
+
+// Writes to a file, whole or not at all, or to stdout for "-"; nothing for an empty path.
+void write_statistics(const std::string& path, const Json& statistics);
+
+// Seconds since it was made or last read.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// The most memory that this process has had, bytes.
+std::uint64_t peak_memory();
+
+}  // namespace delray::apps

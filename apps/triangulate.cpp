@@ -1,0 +1,158 @@
+// delray triangulate: points to a Delaunay triangulation.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+#include "apps/list.h"
+#include "apps/point_input.h"
+#include "apps/progress_bar.h"
+#include "apps/statistics.h"
+#include "delaunay/methods.h"
+#include "delaunay/triangulate.h"
+#include "delaunay/write_mesh.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+struct Options {
+  PointInput input;
+  std::string output, statistics;
+  delaunay::Options how;
+  int threads = 0;
+  bool list = false;
+};
+
+struct Seconds {
+  double read = 0, triangulate = 0, write = 0;
+};
+
+Json statistics_of(const Options& options, const delaunay::PointCloud& points,
+                   const delaunay::Triangulation& result, const delaunay::Statistics& phases,
+                   const Seconds& seconds) {
+  const delaunay::Options& how = options.how;
+  return {
+      {"schema", "delray.triangulate/1"},
+      {"input",
+       {{"file", options.input.path},
+        {"points", points.size()},
+        {"distinct", result.distinct},
+        {"dim", how.dim}}},
+      {"options",
+       {{"method", how.method},
+        {"location", how.location},
+        {"split", how.split},
+        {"order", how.order},
+        {"threads", how.threads},
+        {"seed", how.seed},
+        {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
+      {"result",
+       {{"simplices", result.size()},
+        {"hull_facets", result.hull_facets},
+        {"hash", to_string(hash(result))}}},
+      {"seconds",
+       {{"read", seconds.read},
+        {"triangulate", seconds.triangulate},
+        {"write", seconds.write},
+        {"order", phases.order},
+        {"locate", phases.locate},
+        {"subdivide", phases.subdivide},
+        {"legalize", phases.legalize},
+        {"extract", phases.extract}}},
+      {"memory", {{"peak_rss", peak_memory()}}},
+      {"sync",
+       {{"lock_calls", 0},
+        {"already_locked", 0},
+        {"free", 0},
+        {"waits", 0},
+        {"deadlocks", 0},
+        {"rollbacks", 0},
+        {"repaired", 0},
+        {"fragments", 0}}},
+  };
+}
+
+int run(Session& session, Options options) {
+  if (options.list) {
+    print_table(delaunay::methods());
+    return kDone;
+  }
+  if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
+  if (options.output.empty() && options.statistics.empty()) {
+    throw UsageError("triangulate: -o MESH is missing");
+  }
+  if (options.output == "-" && options.statistics == "-") {
+    throw UsageError("triangulate: mesh and statistics cannot both go to standard output");
+  }
+  if (!options.output.empty() && options.output != "-") {
+    delaunay::mesh_writer_for(options.output);
+  }
+  delaunay::Options& how = options.how;
+  how.threads = options.threads > 0 ? options.threads : parallel::arena_threads();
+  try {
+    how = resolve(how);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+
+  Stopwatch watch;
+  Seconds seconds;
+  const delaunay::PointCloud points = load_points(options.input, how.dim);
+  seconds.read = watch.lap();
+  delaunay::Statistics phases;
+  how.statistics = options.statistics.empty() ? nullptr : &phases;
+  how.progress = &session.progress;
+  delaunay::Triangulation result;
+  {
+    const ProgressBar bar(session, "triangulate");
+    parallel::Arena arena(how.threads);
+    watch.lap();
+    result = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });
+    seconds.triangulate = watch.lap();
+  }
+  if (result.size() == 0) {
+    spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
+                 how.dim == 2 ? "line" : "plane");
+  }
+  watch.lap();
+  if (!options.output.empty()) write_mesh(options.output, points, result);
+  seconds.write = watch.lap();
+  write_statistics(options.statistics, statistics_of(options, points, result, phases, seconds));
+  spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", points.size(), result.distinct,
+               result.size(), how.dim == 2 ? "triangles" : "tetrahedra", seconds.triangulate);
+  return kDone;
+}
+
+}  // namespace
+
+void add_triangulate(CLI::App& program, Session& session) {
+  CLI::App* command =
+      program.add_subcommand("triangulate", "compute the Delaunay triangulation of points");
+  const auto options = std::make_shared<Options>();
+  command->add_option("POINTS", options->input.path, "a file of points, or - for standard input");
+  command->add_option("-o,--output", options->output,
+                      "the mesh: .ply .obj .off .stl .vtu .node; - for PLY on standard output");
+  command->add_option("--dim", options->how.dim, "2 (z is carried along) or 3; default 2")
+      ->check(CLI::IsMember({2, 3}));
+  command->add_option("--method", options->how.method, "how (--list names the methods)");
+  command->add_option("--location", options->how.location, "how a point's simplex is found");
+  command->add_option("--split", options->how.split, "which thread gets which points");
+  command->add_option("--order", options->how.order,
+                      "order of insertion: auto, random, brio, hilbert");
+  command->add_option("--threads", options->threads, "workers (default: cores)")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--seed", options->how.seed, "seed of everything random (default 1)");
+  command->add_option("--stats", options->statistics, "write statistics as JSON; - for stdout");
+  command->add_flag("--list", options->list, "list the methods");
+  add_point_options(*command, options->input);
+  add_common_options(*command, session,
+                     "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"
+                     "generate points gauss -n 100000 -o - | delray triangulate - -o mesh.vtu");
+  command->callback([&session, options] {
+    session.run = [&session, options] { return run(session, *options); };
+  });
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,68 @@
+// The two engines see the same scene through the same camera.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "comm/threads.h"
+#include "image/compare.h"
+#include "image/srgb.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+#include "scenes/generate.h"
+#include "scenes/load.h"
+
+namespace delray::tests {
+namespace {
+
+constexpr int kWidth = 1920, kHeight = 1080;
+
+// Pixels that only one of the engines covers.
+std::uint64_t coverage_difference(scenes::Scene scene) {
+  const scenes::Camera camera = scenes::camera_around(scenes::bounds(scene), "default", scene.z_up,
+                                                      static_cast<float>(kWidth) / kHeight);
+  complete(scene, camera);
+  std::uint64_t differs = 0;
+  comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
+    raster::RenderOptions raster_options;
+    raster_options.width = kWidth;
+    raster_options.height = kHeight;
+    raster_options.float_pixels = true;
+    raster_options.lighting = raster::Lighting::gouraud;
+    raytrace::RenderOptions trace_options;
+    trace_options.width = kWidth;
+    trace_options.height = kHeight;
+    trace_options.trace.depth = 0;
+    const raster::Result drawn = raster::render(communicator, scene, camera, raster_options);
+    const raytrace::Result traced = raytrace::render(communicator, scene, camera, trace_options);
+    differs = compare(std::get<image::ImageF>(drawn.picture), traced.image).coverage_differs;
+  });
+  return differs;
+}
+
+// A shift by half a pixel would differ in 0.08 % of the pixels.
+constexpr std::uint64_t kAllowed = static_cast<std::uint64_t>(kWidth) * kHeight / 20000;  // 0.005 %
+
+class GeneratedScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(GeneratedScenes, HaveTheSameSilhouettes) {
+  EXPECT_LE(coverage_difference(scenes::generate(GetParam())), kAllowed);
+}
+INSTANTIATE_TEST_SUITE_P(Engines, GeneratedScenes,
+                         testing::Values("gen:terrain:50000", "gen:spheres:20000", "gen:city:20000",
+                                         "gen:field:100000"));
+
+class RealModels : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealModels, HaveTheSameSilhouettes) {
+  const std::filesystem::path path = std::filesystem::path(DELRAY_SHARED_DATA) / GetParam();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is missing";
+  std::vector<std::string> warnings;
+  EXPECT_LE(coverage_difference(scenes::load(path, warnings)), kAllowed);
+}
+INSTANTIATE_TEST_SUITE_P(Engines, RealModels,
+                         testing::Values("stanford-bunny.obj", "teapot.obj", "spot.obj",
+                                         "armadillo.obj", "nefertiti.obj", "2CylinderEngine.glb",
+                                         "drone/scene.gltf"));
+
+}  // namespace
+}  // namespace delray::tests

@@ -1,0 +1,133 @@
+// delray render as a user runs it: one picture however the work is shared out.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using nlohmann::json;
+
+const std::string kMpirun =
+    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+    "OMPI_MCA_btl_vader_single_copy_mechanism=none mpirun --oversubscribe -n 4 ";
+
+// The statistics of a rendering that must succeed.
+json statistics(const std::string& command, const Folder& folder) {
+  const Ran ran = run(command + " --stats stats.json -q", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << command << "\n" << ran.err;
+  return json::parse(folder.read("stats.json"));
+}
+
+TEST(RenderCommand, OnePictureForEveryStrategyRankCountAndThreadCount) {
+  const Folder folder;
+  const std::string base = "delray render gen:city:4000 -o a.png --size 161x97 ";
+  const std::string hash = statistics(base, folder)["image"]["hash"];
+  const std::string bytes = folder.read("a.png");
+  for (const std::string options :
+       {"--ranks 3", "--ranks 4 --threads 2", "--strategy sort-first --ranks 3",
+        "--strategy sort-first --partition interlaced --ranks 5 --threads 1",
+        "--strategy sort-last --compose centralized --ranks 2 --threads 3",
+        "--frames 2 --ranks 2"}) {
+    EXPECT_EQ(statistics(base + options, folder)["image"]["hash"], hash) << options;
+  }
+  for (const std::string options :
+       {"--strategy sort-last --compose binary-swap", "--strategy sort-first --threads 2"}) {
+    EXPECT_EQ(statistics(kMpirun + base + options, folder)["image"]["hash"], hash) << options;
+  }
+  // The same bytes in the file but for the command line that it tells.
+  EXPECT_EQ(folder.read("a.png").substr(0, 16), bytes.substr(0, 16));
+}
+
+TEST(RenderCommand, RayTracerGivesOnePictureToo) {
+  const Folder folder;
+  const std::string base =
+      "delray render gen:spheres:3000 -o a.png --size 95x61 --engine raytrace --spp 2 ";
+  const std::string hash = statistics(base + "--threads 1", folder)["image"]["hash"];
+  EXPECT_EQ(statistics(base + "--ranks 3 --threads 2", folder)["image"]["hash"], hash);
+  EXPECT_EQ(statistics(kMpirun + base, folder)["image"]["hash"], hash);
+}
+
+TEST(RenderCommand, StatisticsHaveEveryKey) {
+  const Folder folder;
+  for (const std::string engine : {"raster", "raytrace"}) {
+    const json stats = statistics(
+        "delray render gen:cornell -o a.exr --size 64x48 --ranks 2 --frames 3 --engine " + engine,
+        folder);
+    EXPECT_EQ(stats["schema"], "delray.render/1");
+    for (const char* key : {"file", "triangles", "vertices", "instances"}) {
+      EXPECT_TRUE(stats["scene"].contains(key)) << key;
+    }
+    for (const char* key : {"load", "build", "frame", "frame_min", "write"}) {
+      EXPECT_TRUE(stats["seconds"][key].is_number()) << key;
+    }
+    for (const char* key :
+         {"transform", "bin", "rasterize", "trace", "shade", "redistribute", "compose", "gather"}) {
+      EXPECT_TRUE(stats["phases"][key].is_number()) << key;
+    }
+    EXPECT_EQ(stats["image"]["width"], 64);
+    EXPECT_EQ(stats["image"]["hash"].get<std::string>().size(), 32U);
+    EXPECT_EQ(stats["rays"]["primary"], engine == "raster" ? 0 : 64 * 48);
+    EXPECT_EQ(stats["embree"]["version"].is_string(), engine == "raytrace");
+    EXPECT_GE(stats["imbalance"], 1.0);
+    ASSERT_EQ(stats["ranks"].size(), 2U);
+    std::uint64_t sent = 0, received = 0;
+    for (const json& rank : stats["ranks"]) {
+      for (const char* key : {"rank", "busy", "tasks", "steals", "bytes_sent", "bytes_received",
+                              "messages", "peak_rss"}) {
+        EXPECT_TRUE(rank[key].is_number()) << key;
+      }
+      sent += rank["bytes_sent"].get<std::uint64_t>();
+      received += rank["bytes_received"].get<std::uint64_t>();
+    }
+    EXPECT_GT(sent, 0U);
+    EXPECT_EQ(sent, received);
+  }
+}
+
+TEST(RenderCommand, PointsBecomeAReliefInOneCommand) {
+  const Folder folder;
+  std::string rows;
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      rows += std::to_string(500000 + x) + " " + std::to_string(4000000 + y) + " " +
+              std::to_string((x * y) % 7) + "\n";
+    }
+  }
+  folder.write("p.xyz", rows);
+  for (const std::string options : {"", "--color-by z", "--color-by simplex", "--view top"}) {
+    const json stats = statistics("delray render p.xyz -o a.png --size 64x64 " + options, folder);
+    EXPECT_EQ(stats["scene"]["triangles"], 2 * 19 * 19) << options;
+  }
+  ASSERT_EQ(run("delray triangulate p.xyz -o m.ply -q", folder.path()).exit_code, 0);
+  EXPECT_EQ(statistics("delray render m.ply -o b.png --size 64x64", folder)["image"]["hash"],
+            statistics("delray render p.xyz -o a.png --size 64x64", folder)["image"]["hash"]);
+}
+
+TEST(RenderCommand, GlbRendersLikeTheGeneratedScene) {
+  const Folder folder;
+  ASSERT_EQ(run("delray generate scene spheres -n 2000 -o s.glb", folder.path()).exit_code, 0);
+  EXPECT_EQ(
+      statistics("delray render s.glb -o a.png --size 80x60", folder)["image"]["hash"],
+      statistics("delray render gen:spheres:2000 -o b.png --size 80x60", folder)["image"]["hash"]);
+}
+
+TEST(RenderCommand, RanksUnderMpirunAreWrongUsage) {
+  const Folder folder;
+  EXPECT_EQ(run(kMpirun + "delray render gen:cornell -o a.png --ranks 2", folder.path()).exit_code,
+            2);
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(RenderCommand, BadInputUnderMpirunIsThreeOnAllRanks) {
+  const Folder folder;
+  const Ran ran = run(kMpirun + "delray render missing.glb -o a.png", folder.path());
+  EXPECT_EQ(ran.exit_code, 3) << ran.err;
+  EXPECT_NE(ran.err.find("missing.glb"), std::string::npos) << ran.err;
+  EXPECT_TRUE(folder.files().empty());
+}
+
+}  // namespace
+}  // namespace delray::tests
