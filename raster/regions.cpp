@@ -142,6 +142,12 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
     const TileJob& job = tiles.jobs[k];
     const std::span rects = std::span(tiles.rects).subspan(job.first, job.last - job.first);
     const geometry::Rect rect = hull(rects);
+    if (std::none_of(filled.begin(), filled.end(),
+                     [&](const Bin& bin) { return !bin.of_tile(job.tile).empty(); })) {
+      for (const geometry::Rect& r : rects) clear_pixels(r, image);
+      if (progress != nullptr) progress->advance();
+      return;
+    }
     seen.clear();
     rasterize_seconds.measure([&] {
       tile.clear(rect);

@@ -8,6 +8,13 @@
 namespace delray::raster {
 namespace {
 
+// Multipliers of Fibonacci hashing (Knuth 1973, 6.4).
+constexpr std::uint32_t kGoldenRatio32 = 0x9E3779B9U;
+constexpr std::uint64_t kGoldenRatio64 = 0x9E3779B97F4A7C15U;
+
+// Pixels are shaded in squares of this side: a triangle's pixels lie close together in time too.
+constexpr int kSquare = 8;
+
 glm::vec3 to_viewer(const FrameShading& frame, const glm::vec3& position) {
   const glm::vec3 way = frame.screen.view.eye - position;
   const float squared = glm::dot(way, way);
@@ -61,22 +68,49 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
   return frame;
 }
 
-void SeenTriangles::clear() { std::fill_n(numbers_, kSlots, kNothing); }
+void SeenTriangles::clear() {
+  std::fill(std::begin(numbers_), std::end(numbers_), kNothing);
+  std::fill(std::begin(vertices_), std::end(vertices_), kNoVertex);
+}
 
 const SeenTriangle& SeenTriangles::get(const FrameShading& frame, std::uint32_t number) {
-  const std::uint32_t slot = number % kSlots;
+  const std::uint32_t slot = (number * kGoldenRatio32) >> (32 - kSlotBits);
   SeenTriangle& triangle = triangles_[slot];
   if (numbers_[slot] == number) return triangle;
   numbers_[slot] = number;
   const std::uint32_t draw = frame.list.cluster_of(number).draw;
-  triangle = make_seen_triangle(frame.screen, frame.shader, frame.list.draws[draw],
-                                frame.draws[draw], frame.list.triangle_of(number));
-  if (frame.lighting == Lighting::gouraud) {
-    const auto material = triangle.material - frame.shader.materials.data();
-    for (int k = 0; k < 3; ++k)
-      triangle.radiance[k] = radiance(frame, frame.untextured[material], corner(triangle, k));
-  }
+  const std::uint32_t t = frame.list.triangle_of(number);
+  triangle =
+      make_seen_triangle(frame.screen, frame.shader, frame.list.draws[draw], frame.draws[draw], t);
+  if (frame.lighting == Lighting::gouraud)
+    light_vertices(frame, draw, frame.list.draws[draw].mesh->triangles[t], triangle);
   return triangle;
+}
+
+void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw,
+                                   const glm::uvec3& corners, SeenTriangle& triangle) {
+  const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
+  const auto number = triangle.material - frame.shader.materials.data();
+  const scenes::Material& material = frame.untextured[number];
+  for (int k = 0; k < 3; ++k) {
+    const shading::Point point = corner(triangle, k);
+    // A vertex without a normal of its own is lit as its triangle is.
+    if (mesh.normals.empty()) {
+      triangle.radiance[k] = radiance(frame, material, point);
+      continue;
+    }
+    // The same vertex is lit on the other side where a neighbour faces away.
+    const glm::vec3 view = to_viewer(frame, point.position);
+    const bool front = glm::dot(point.geometric_normal, view) >= 0;
+    const std::uint64_t key = (std::uint64_t{draw} << 33) | (std::uint64_t{corners[k]} << 1) |
+                              static_cast<std::uint64_t>(front);
+    const std::uint64_t slot = (key * kGoldenRatio64) >> (64 - kVertexSlotBits);
+    if (vertices_[slot] != key) {
+      vertices_[slot] = key;
+      radiances_[slot] = radiance(frame, material, point);
+    }
+    triangle.radiance[k] = radiances_[slot];
+  }
 }
 
 bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y) {
@@ -91,29 +125,42 @@ std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const V
                          const geometry::Rect& rect, image::BasicImage<Colour>& image) {
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
-  std::uint64_t shaded = 0;
-  for (int y = rect.y0; y < rect.y1; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
-    for (int x = rect.x0; x < rect.x1; ++x) {
-      const int i = (y - tile_y) * kTileSize + (x - tile_x);
-      const std::uint32_t number = tile.number[i];
-      const std::size_t pixel = row + static_cast<std::size_t>(x);
-      image.depth[pixel] = tile.depth[i];
-      if (number == kNothing) {
-        image.colour[pixel] = {};
-        continue;
-      }
-      ++shaded;
-      const SeenTriangle& triangle = seen.get(frame, number);
-      store(frame.lighting == Lighting::gouraud
-                ? gouraud(frame, triangle, x, y)
-                : radiance(frame, *triangle.material, point_at(triangle, x, y)),
-            image.colour[pixel]);
+  const auto shade_pixel = [&](int x, int y) -> bool {
+    const int i = (y - tile_y) * kTileSize + (x - tile_x);
+    const std::uint32_t number = tile.number[i];
+    const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                              static_cast<std::size_t>(x);
+    image.depth[pixel] = tile.depth[i];
+    if (number == kNothing) {
+      image.colour[pixel] = {};
+      return false;
     }
-  }
+    const SeenTriangle& triangle = seen.get(frame, number);
+    store(frame.lighting == Lighting::gouraud
+              ? gouraud(frame, triangle, x, y)
+              : radiance(frame, *triangle.material, point_at(triangle, x, y)),
+          image.colour[pixel]);
+    return true;
+  };
+  std::uint64_t shaded = 0;
+  for (int y0 = rect.y0; y0 < rect.y1; y0 += kSquare)
+    for (int x0 = rect.x0; x0 < rect.x1; x0 += kSquare)
+      for (int y = y0; y < std::min(y0 + kSquare, rect.y1); ++y)
+        for (int x = x0; x < std::min(x0 + kSquare, rect.x1); ++x) shaded += shade_pixel(x, y);
   return shaded;
 }
 
+template <class Colour>
+void clear_pixels(const geometry::Rect& rect, image::BasicImage<Colour>& image) {
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
+    std::fill_n(image.colour.data() + row + rect.x0, rect.width(), Colour());
+    std::fill_n(image.depth.data() + row + rect.x0, rect.width(), image::kEmptyDepth);
+  }
+}
+
+template void clear_pixels(const geometry::Rect&, image::Image8&);
+template void clear_pixels(const geometry::Rect&, image::ImageF&);
 template std::uint64_t shade_tile(const FrameShading&, SeenTriangles&, const VisibilityTile&,
                                   const geometry::Rect&, image::Image8&);
 template std::uint64_t shade_tile(const FrameShading&, SeenTriangles&, const VisibilityTile&,

@@ -23,7 +23,8 @@ struct FrameShading {
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting);
 
-// Triangles seen lately; neighbouring pixels mostly show the same few. One per thread.
+// Triangles seen lately, and their lit vertices; neighbouring pixels mostly show the same few. One
+// per thread.
 class SeenTriangles {
  public:
   // Forgets all: another frame may give the same numbers to other triangles.
@@ -31,9 +32,17 @@ class SeenTriangles {
   const SeenTriangle& get(const FrameShading& frame, std::uint32_t number);
 
  private:
-  static constexpr std::uint32_t kSlots = 64;
-  std::uint32_t numbers_[kSlots];
-  SeenTriangle triangles_[kSlots];
+  static constexpr int kSlotBits = 7;
+  static constexpr int kVertexSlotBits = 9;
+  static constexpr std::uint64_t kNoVertex = ~std::uint64_t{0};
+
+  void light_vertices(const FrameShading& frame, std::uint32_t draw, const glm::uvec3& corners,
+                      SeenTriangle& triangle);
+
+  std::uint32_t numbers_[1 << kSlotBits];
+  SeenTriangle triangles_[1 << kSlotBits];
+  std::uint64_t vertices_[1 << kVertexSlotBits];
+  glm::vec3 radiances_[1 << kVertexSlotBits];
 };
 
 // Whether alpha leaves anything of the triangle at a pixel.
@@ -44,5 +53,9 @@ bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number,
 template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                          const geometry::Rect& rect, image::BasicImage<Colour>& image);
+
+// The same for pixels that show nothing.
+template <class Colour>
+void clear_pixels(const geometry::Rect& rect, image::BasicImage<Colour>& image);
 
 }  // namespace delray::raster
