@@ -1,0 +1,41 @@
+#include "delaunay/array.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <utility>
+
+namespace delray::delaunay {
+namespace {
+
+// From the heap, mapped, and mapped with huge pages.
+constexpr std::size_t kSizes[] = {0, 1, 1000, std::size_t{1} << 18, std::size_t{3} << 20};
+
+TEST(Array, KeepsWhatIsWritten) {
+  for (const std::size_t size : kSizes) {
+    Array<std::uint64_t> array(size);
+    ASSERT_EQ(array.size(), size);
+    std::iota(array.data(), array.data() + size, std::uint64_t{7});
+    Array<std::uint64_t> moved = std::move(array);
+    ASSERT_EQ(moved.size(), size);
+    for (std::size_t i = 0; i < size; ++i) ASSERT_EQ(moved[i], 7 + i);
+  }
+}
+
+TEST(Array, ShrinkKeepsTheFirstValues) {
+  for (const std::size_t size : kSizes) {
+    for (const std::size_t kept : {std::size_t{0}, size / 3, size}) {
+      Array<std::uint64_t> array(size);
+      std::iota(array.data(), array.data() + size, std::uint64_t{0});
+      array.shrink(kept);
+      ASSERT_EQ(array.size(), kept);
+      for (std::size_t i = 0; i < kept; ++i) ASSERT_EQ(array[i], i);
+      array = {};
+      EXPECT_EQ(array.size(), 0U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace delray::delaunay
