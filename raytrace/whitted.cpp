@@ -102,9 +102,10 @@ class Walk {
     glm::vec3 reflectance =
         shading::fresnel(met.lobes, shading::clamp01(glm::dot(s.normal, met.view)));
     // Inside glass there is no environment to stand in for a reflection.
+    const bool inside = glass > 0.0F && !s.front;
     float mirror =
-        s.front ? shading::clamp01((kMatt - met.lobes.roughness) * (1.0F / (kMatt - kMirror)))
-                : 1.0F;
+        inside ? 1.0F
+               : shading::clamp01((kMatt - met.lobes.roughness) * (1.0F / (kMatt - kMirror)));
     Refraction refraction;
     if (glass > 0.0F) {
       refraction = refracted(met.view, s.normal, s.front ? 1.0F / s.ior : s.ior);
@@ -120,7 +121,7 @@ class Walk {
     } else {
       mirror = 0.0F;
     }
-    if (mirror < 1.0F && s.front) {
+    if (mirror < 1.0F && !inside) {
       sum += shading::ambient_specular(tracer_.shader, s, met.lobes, met.view) * (1.0F - mirror);
     }
     if (glass > 0.0F && refraction.reflected < 1.0F) {
