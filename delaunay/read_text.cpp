@@ -20,7 +20,18 @@
 namespace delray::delaunay {
 namespace {
 
-enum Quantity { kX, kY, kZ, kRed, kGreen, kBlue, kIntensity, kClass, kQuantities, kSkipped };
+enum Quantity {
+  kX,
+  kY,
+  kZ,
+  kRed,
+  kGreen,
+  kBlue,
+  kIntensity,
+  kClass,
+  kQuantities,
+  kSkipped = kQuantities
+};
 
 // columns[i] is the quantity in column i of the file.
 struct Layout {
@@ -117,7 +128,7 @@ std::vector<Quantity> unnamed_columns(const std::vector<std::string_view>& first
 std::vector<Quantity> named_columns(const Input& input, std::size_t line_number,
                                     const std::vector<std::string_view>& names) {
   std::vector<Quantity> columns;
-  std::array<bool, kQuantities + 1> seen{};
+  std::array<bool, kQuantities + 1> seen{};  // the last is kSkipped
   for (const std::string_view name : names) {
     Quantity quantity = quantity_of(name);
     if (quantity != kSkipped && seen[quantity]) quantity = kSkipped;

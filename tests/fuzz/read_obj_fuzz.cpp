@@ -1,0 +1,8 @@
+#include "delaunay/internal/point_readers.h"
+#include "tests/fuzz/fuzz_points.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  delray::tests::fuzz_points(data, size, &delray::delaunay::read_obj_points);
+  delray::tests::fuzz_mesh(data, size, &delray::delaunay::read_obj_mesh);
+  return 0;
+}
