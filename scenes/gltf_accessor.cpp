@@ -102,7 +102,12 @@ Accessor accessor_at(const GltfDocument& document, std::size_t number) {
   const Accessor accessor{json, json["count"].whole(), components_of(json),
                           component_of(json["componentType"]), json["normalized"].flag(false)};
   if (accessor.count > 0xFFFFFFFEU) json["count"].fail("is larger than 2^32 - 2");
-  if (!json["bufferView"] && accessor.count > kMostZeros) json.fail("has no data");
+  if (json["bufferView"]) {
+    // Before anything is allocated for as many elements.
+    elements_at(document, json, accessor.count, accessor.component, accessor.element_size());
+  } else if (accessor.count > kMostZeros) {
+    json.fail("has no data");
+  }
   return accessor;
 }
 

@@ -96,7 +96,11 @@ void read_buffers(GltfDocument& document, const Chunks& chunks) {
       const std::string uri = buffer["uri"].text();
       if (!decode_data_uri(uri, own)) {
         if (uri.starts_with("data:")) buffer["uri"].fail("is a malformed data URI");
-        own = files::read_file(document.source.path.parent_path() / decode_percent(uri));
+        try {
+          own = files::read_file(document.source.path.parent_path() / decode_percent(uri));
+        } catch (const files::FileError& e) {
+          buffer["uri"].fail(e.what());
+        }
       }
       bytes = own;
     } else if (i == 0 && chunks.has_binary) {

@@ -1,5 +1,6 @@
 #include "scenes/internal/load_gltf.h"
 
+#include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
@@ -147,7 +148,9 @@ class Placer {
       return document_.source.warn(json.place() + ": only perspective is supported");
     Camera camera;
     camera.eye = glm::dvec3(world[3]);
-    camera.at = glm::dvec3(world[3]) - unit_or(glm::dvec3(world[2]), {0, 0, 1});
+    // Far enough from the eye for the direction to keep its precision.
+    const double distance = std::max(1.0, glm::length(glm::dvec3(world[3])));
+    camera.at = glm::dvec3(world[3]) - unit_or(glm::dvec3(world[2]), {0, 0, 1}) * distance;
     camera.up = unit_or(glm::dvec3(world[1]), {0, 1, 0});
     const double degrees = perspective["yfov"].number(0.7) * (180 / std::numbers::pi);
     if (!(degrees > 0 && degrees < 180)) perspective["yfov"].fail("is not between 0 and pi");

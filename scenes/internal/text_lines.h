@@ -1,10 +1,13 @@
 // Lines and words of a text in memory, without copies.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace delray::scenes::internal {
 
@@ -62,13 +65,20 @@ class Lines {
   std::uint64_t number_ = 0;
 };
 
-// The whole word as a number; false if it is none. A leading '+' is allowed.
+// The whole word as a number; false if it is none. A leading '+' is allowed. A real number too
+// large for its type is infinite, one too small is 0; a whole number that does not fit is none.
 template <class T>
 bool parse(std::string_view word, T& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return end == word.data() + word.size() && !word.empty() &&
-         (error == std::errc{} || error == std::errc::result_out_of_range);
+  if (end != word.data() + word.size() || word.empty()) return false;
+  if constexpr (std::is_floating_point_v<T>) {
+    if (error == std::errc::result_out_of_range) {
+      value = static_cast<T>(std::strtod(std::string(word).c_str(), nullptr));
+      return true;
+    }
+  }
+  return error == std::errc{};
 }
 
 }  // namespace delray::scenes::internal
