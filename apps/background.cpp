@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <utility>
 
 #include "apps/session.h"
 #include "image/srgb.h"
@@ -16,6 +17,9 @@ using image::Rgba8;
 using image::RgbaF;
 
 constexpr std::size_t kRows = 8;  // rows a block: some microseconds of work
+constexpr glm::vec3 kStudioTop{0.93F, 0.94F, 0.96F}, kStudioBottom{0.56F, 0.61F, 0.68F};
+
+RgbaF opaque(const glm::vec3& colour) { return {colour.x, colour.y, colour.z, 1.0F}; }
 
 void blend(RgbaF& pixel, const RgbaF& behind) {
   const float through = 1.0F - pixel.a;
@@ -35,16 +39,20 @@ template <class Colour>
 void put_behind_picture(image::BasicImage<Colour>& picture, const Background& background,
                         const shading::Shader& shader, const scenes::View& view) {
   if (background.kind == Background::Kind::transparent) return;
-  const bool sky = background.kind == Background::Kind::environment;
+  using Kind = Background::Kind;
   const auto width = static_cast<std::size_t>(picture.width);
-  parallel::parallel_for(0, static_cast<std::size_t>(picture.height), kRows, [&](std::size_t y) {
+  const auto height = static_cast<std::size_t>(picture.height);
+  parallel::parallel_for(0, height, kRows, [&](std::size_t y) {
     RgbaF behind = background.colour;
+    if (background.kind == Kind::studio) {
+      const float t = (static_cast<float>(y) + 0.5F) / static_cast<float>(height);
+      behind = opaque(kStudioTop * (1.0F - t) + kStudioBottom * t);
+    }
     for (std::size_t x = 0; x < width; ++x) {
-      if (sky) {
+      if (background.kind == Kind::environment) {
         const glm::vec3 direction =
             glm::normalize(view.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F));
-        const glm::vec3 light = radiance(shader.environment, shader.textures, direction);
-        behind = {light.x, light.y, light.z, 1.0F};
+        behind = opaque(radiance(shader.environment, shader.textures, direction));
       }
       blend(picture.colour[y * width + x], behind);
     }
@@ -54,8 +62,12 @@ void put_behind_picture(image::BasicImage<Colour>& picture, const Background& ba
 }  // namespace
 
 Background parse_background(const std::string& text) {
-  if (text == "environment") return {};
-  if (text == "transparent") return {Background::Kind::transparent, {}};
+  using Kind = Background::Kind;
+  for (const auto& [name, kind] :
+       {std::pair{"auto", Kind::automatic}, std::pair{"environment", Kind::environment},
+        std::pair{"studio", Kind::studio}, std::pair{"transparent", Kind::transparent}}) {
+    if (text == name) return {kind, {}};
+  }
   unsigned code = 0;
   const char* const begin = text.data() + 1;
   const char* const end = text.data() + text.size();
@@ -63,10 +75,10 @@ Background parse_background(const std::string& text) {
     const auto channel = [code](int shift) {
       return image::decode_srgb(static_cast<std::uint8_t>(code >> shift));
     };
-    return {Background::Kind::colour, {channel(16), channel(8), channel(0), 1.0F}};
+    return {Kind::colour, {channel(16), channel(8), channel(0), 1.0F}};
   }
-  throw UsageError(
-      fmt::format("--background: '{}' is not environment, transparent or #rrggbb", text));
+  throw UsageError(fmt::format(
+      "--background: '{}' is not auto, environment, studio, transparent or #rrggbb", text));
 }
 
 void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,

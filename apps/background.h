@@ -10,14 +10,21 @@
 namespace delray::apps {
 
 struct Background {
-  enum class Kind { environment, transparent, colour } kind = Kind::environment;
+  enum class Kind {
+    automatic,    // environment where the scene brings one, otherwise studio
+    environment,  // what a ray sees that hits nothing
+    studio,       // a light gradient from top to bottom that any model stands out from
+    transparent,
+    colour,
+  } kind = Kind::automatic;
   image::RgbaF colour;  // linear; for Kind::colour
 };
 
-// "environment", "transparent", or a colour "#rrggbb" in sRGB. Throws UsageError.
+// "auto", "environment", "studio", "transparent", or "#rrggbb" in sRGB. Throws UsageError.
 Background parse_background(const std::string& text);
 
 // Blends the picture over the background, in place; depth stays as it is. Parallel.
+// REQUIRES: the kind is not automatic.
 void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,
                 const scenes::View& view);
 void put_behind(image::Image8& picture, const Background& background, const shading::Shader& shader,

@@ -51,7 +51,7 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
                                                     {"CommandLine", session.command_line}};
   std::visit(
       [&](auto& picture) {
-        put_behind(picture, request.behind, prepared.shading(), view);
+        put_behind(picture, prepared.background, prepared.shading(), view);
         codes = &as_8bit(picture, converted);
         image::WriteOptions options;
         options.attributes = attributes;

@@ -10,6 +10,12 @@ bool wants_floats(const RenderRequest& request) {
   return request.output.ends_with(".exr") || request.output.ends_with(".EXR");
 }
 
+// Whether the scene itself says what is to be seen around it.
+bool has_sky(const scenes::Environment& environment) {
+  return environment.texture != scenes::kNone ||
+         environment.zenith + environment.horizon + environment.ground != glm::vec3(0.0F);
+}
+
 raster::RenderOptions raster_options(const RenderRequest& request) {
   raster::RenderOptions options;
   options.width = request.width;
@@ -60,6 +66,11 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   prepared->camera =
       choose_camera(request.camera, prepared->scene,
                     static_cast<float>(request.width) / static_cast<float>(request.height));
+  prepared->background = request.behind;
+  if (prepared->background.kind == Background::Kind::automatic) {
+    prepared->background.kind = has_sky(prepared->scene.environment) ? Background::Kind::environment
+                                                                     : Background::Kind::studio;
+  }
   complete(prepared->scene, prepared->camera);
   prepared->load_seconds = watch.lap();
   if (request.kind == Engine::raster) {

@@ -16,6 +16,7 @@ namespace delray::apps {
 struct Prepared {
   scenes::Scene scene;
   scenes::Camera camera;
+  Background background;                           // not automatic any more
   std::shared_ptr<const shading::Shader> shader;   // rasterizer
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer
   double load_seconds = 0, build_seconds = 0;

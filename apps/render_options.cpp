@@ -69,7 +69,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
                   "render so often and report the median time (default 1)")
       ->check(CLI::Range(1, 100000));
   command.add_option("--background", request.background,
-                     "environment (default), transparent or #rrggbb");
+                     "auto (default), environment, studio, transparent or #rrggbb");
   add_camera_options(command, request.camera);
   add_launch_options(command, request.launch);
   const std::string raster = "Rasterizer";

@@ -19,7 +19,7 @@ struct RenderRequest {
   CameraOptions camera;
   Launch launch;
   std::string output, statistics;
-  std::string size = "1280x720", engine = "raster", background = "environment";
+  std::string size = "1280x720", engine = "raster", background = "auto";
   int frames = 1;
   bool list = false;
   // raster
