@@ -1,8 +1,10 @@
 #include "raster/internal/regions.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "parallel/parallel_for.h"
+#include "raster/internal/processor_seconds.h"
 
 namespace delray::raster {
 namespace {
@@ -54,6 +56,15 @@ TileJobs make_jobs(const Screen& screen, std::span<const geometry::Rect> regions
   return result;
 }
 
+// Whether alpha may leave nothing of some pixels. Blended materials are drawn opaque, but not where
+// there is nothing of them at all.
+bool may_have_holes(const shading::Shader& shader, const scenes::Material& material,
+                    const scenes::Mesh& mesh) {
+  if (material.alpha == scenes::Material::Alpha::opaque) return false;
+  return material.base_colour_texture != scenes::kNone || !mesh.colours.empty() ||
+         !(shading::coverage(shader, material, {}, {}, 1.0F) > 0);
+}
+
 geometry::Rect hull(std::span<const geometry::Rect> rects) {
   geometry::Rect result = rects[0];
   for (const geometry::Rect& r : rects)
@@ -80,7 +91,7 @@ double prepare_draws(const Screen& screen, const DrawList& list, const shading::
     prepared.draw = &draw;
     prepared.to_view = to_view(screen.view, *draw.transform);
     prepared.vertices = scratch.vertices.data() + offset;
-    prepared.masked = material.alpha == scenes::Material::Alpha::mask;
+    prepared.masked = may_have_holes(shader, material, *draw.mesh);
     prepared.hidden_side = 0;
     if (cull_single_sided && !material.double_sided) {
       // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,
@@ -90,7 +101,7 @@ double prepare_draws(const Screen& screen, const DrawList& list, const shading::
     offset += draw.vertices;
   }
 
-  SharedSeconds seconds;
+  ProcessorSeconds seconds;
   parallel::parallel_for(0, draws, 1, [&](std::size_t i) {
     const PreparedDraw& prepared = scratch.draws[i];
     const Draw& draw = *prepared.draw;
@@ -120,7 +131,7 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
   const auto clusters = static_cast<std::uint32_t>(list.clusters.size());
   const std::uint32_t bins = (clusters + kBinClusters - 1) / kBinClusters;
   if (scratch.bins.size() < bins) scratch.bins.resize(bins);
-  SharedSeconds bin_seconds;
+  ProcessorSeconds bin_seconds;
   parallel::parallel_for(0, bins, 1, [&](std::size_t k) {
     bin_seconds.measure([&] {
       const auto begin = static_cast<std::uint32_t>(k) * kBinClusters;
@@ -134,7 +145,7 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
 
   const FrameShading frame = make_frame_shading(screen, shader, list, options.lighting);
   const std::span<const Bin> filled(scratch.bins.data(), bins);
-  SharedSeconds rasterize_seconds, shade_seconds;
+  ProcessorSeconds rasterize_seconds, shade_seconds;
   std::atomic<std::uint64_t> fragments{0};
   parallel::parallel_for(0, tiles.jobs.size(), 1, [&](std::size_t k) {
     static thread_local VisibilityTile tile;

@@ -40,7 +40,8 @@ struct RenderOptions {
   Travel travel = Travel::geometry;    // sort-first
 };
 
-// Seconds are summed over the threads of a rank where they work, and are the rank's own elsewhere.
+// The first four are seconds of processor time, summed over threads; the others pass on the rank's
+// clock (Communicator::seconds), waiting for other ranks included.
 struct Phases {
   double transform = 0, bin = 0, rasterize = 0, shade = 0;
   double redistribute = 0, compose = 0, gather = 0;
@@ -90,8 +91,8 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   // Collective: every rank calls it with the same scene, camera and options. Uncovered pixels are
-  // transparent black with depth image::kEmptyDepth. Blended materials are drawn opaque, with a
-  // warning. `progress` counts tiles of this rank.
+  // transparent black with depth image::kEmptyDepth. Blended materials are drawn opaque
+  // where their alpha is above 0, with a warning. `progress` counts tiles of this rank.
   //
   // Throws std::invalid_argument for names that are in no table and for sizes below 1 or above
   // 65534; parallel::Interrupted when asked to stop.

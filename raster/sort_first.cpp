@@ -8,6 +8,7 @@
 #include "loadbalance/partition.h"
 #include "parallel/parallel_for.h"
 #include "raster/internal/gather_regions.h"
+#include "raster/internal/processor_seconds.h"
 #include "raster/internal/rank.h"
 #include "raster/internal/travel.h"
 
@@ -43,7 +44,7 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
     draw_of[i] = draw;
   }
   std::vector<loadbalance::WeightedBox> boxes(groups.size());
-  SharedSeconds seconds;
+  ProcessorSeconds seconds;
   parallel::parallel_blocks(0, groups.size(), 4, [&](std::size_t begin, std::size_t end) {
     seconds.measure([&] {
       for (std::size_t i = begin; i < end; ++i) {

@@ -1,8 +1,6 @@
 // One rank's rendering: pieces of a scene into regions of an image.
 #pragma once
 
-#include <atomic>
-#include <chrono>
 #include <span>
 #include <vector>
 
@@ -38,22 +36,5 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
                             const shading::Shader& shader, const RenderOptions& options,
                             std::span<const geometry::Rect> regions, Scratch& scratch,
                             image::BasicImage<Colour>& image, parallel::Progress* progress);
-
-// Seconds that several threads add to.
-class SharedSeconds {
- public:
-  // Runs f and adds the time it took.
-  template <class F>
-  void measure(F&& f) {
-    const auto begin = std::chrono::steady_clock::now();
-    f();
-    const auto taken = std::chrono::steady_clock::now() - begin;
-    nanoseconds_.fetch_add(std::chrono::nanoseconds(taken).count(), std::memory_order_relaxed);
-  }
-  double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
-
- private:
-  std::atomic<std::int64_t> nanoseconds_{0};
-};
 
 }  // namespace delray::raster
