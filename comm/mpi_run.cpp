@@ -72,14 +72,24 @@ extern "C" void report_termination(int signal) {
   std::raise(signal);
 }
 
-void report_termination_signals(int rank) {
-  world_rank_for_signals = rank;
-  struct sigaction old = {};
-  if (sigaction(SIGTERM, nullptr, &old) != 0 || old.sa_handler != SIG_DFL) return;
-  struct sigaction action = {};
-  action.sa_handler = report_termination;
-  sigaction(SIGTERM, &action, nullptr);
-}
+// Has SIGTERM reported as long as it lives, unless the program does something about it itself.
+class TerminationReport {
+ public:
+  explicit TerminationReport(int rank) {
+    world_rank_for_signals = rank;
+    struct sigaction old = {};
+    installed_ = sigaction(SIGTERM, nullptr, &old) == 0 && old.sa_handler == SIG_DFL;
+    if (installed_) std::signal(SIGTERM, report_termination);
+  }
+  ~TerminationReport() {
+    if (installed_) std::signal(SIGTERM, SIG_DFL);
+  }
+  TerminationReport(const TerminationReport&) = delete;
+  TerminationReport& operator=(const TerminationReport&) = delete;
+
+ private:
+  bool installed_ = false;
+};
 
 // Open MPI moves large messages between processes of one machine by process_vm_readv, believes that
 // it works wherever the kernel has it, and fails in containers that forbid it.
@@ -142,7 +152,7 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
   {
     const MPI_Comm world = MPI_COMM_WORLD;
     const auto communicator = make_mpi_communicator(&world, options);
-    report_termination_signals(communicator->rank());
+    const TerminationReport report(communicator->rank());
     try {
       body(*communicator);
     } catch (...) {
