@@ -7,6 +7,7 @@
 #include "scenes/internal/check_file.h"
 #include "scenes/internal/finish.h"
 #include "scenes/internal/import.h"
+#include "scenes/internal/load_content.h"
 #include "scenes/internal/load_gltf.h"
 #include "scenes/internal/up_axis.h"
 
@@ -15,6 +16,8 @@ namespace {
 
 using files::Format;
 using internal::Source;
+
+constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
 
 // A backslash at the end of a line continues it; blanks instead leave one long line.
 std::string join_continued_lines(std::string text) {
@@ -52,22 +55,28 @@ Scene read(Format format, const Source& source) {
 
 }  // namespace
 
+Scene internal::load_content(const std::filesystem::path& path, std::string content,
+                             std::vector<std::string>& warnings, parallel::Progress* progress) {
+  if (content.empty()) Source{path, content, warnings}.fail("", "the file is empty");
+  const std::string_view start = std::string_view(content).substr(0, kStart);
+  const Format format = files::identify(start, content.size(), path).format;
+  if (format == Format::obj) content = join_continued_lines(std::move(content));
+  const Source source{path, content, warnings};
+  Scene scene = read(format, source);
+  if (progress) progress->advance();
+  finish(source, scene);
+  const bool says_up = format == Format::gltf || format == Format::glb;  // y
+  scene.z_up = !says_up && guess_z_up(scene, format == Format::stl);
+  if (progress) progress->advance();
+  return scene;
+}
+
 Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings,
            parallel::Progress* progress) {
   if (progress) progress->start(3);
-  const Format format = files::identify(path).format;
   std::string content = files::read_file(path);
-  if (content.empty()) Source{path, content, warnings}.fail("", "the file is empty");
-  if (format == Format::obj) content = join_continued_lines(std::move(content));
-  const Source source{path, content, warnings};
   if (progress) progress->advance();
-  Scene scene = read(format, source);
-  if (progress) progress->advance();
-  internal::finish(source, scene);
-  const bool says_up = format == Format::gltf || format == Format::glb;  // y
-  scene.z_up = !says_up && internal::guess_z_up(scene, format == Format::stl);
-  if (progress) progress->advance();
-  return scene;
+  return internal::load_content(path, std::move(content), warnings, progress);
 }
 
 }  // namespace delray::scenes

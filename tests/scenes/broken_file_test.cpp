@@ -262,5 +262,15 @@ TEST(BrokenFile, NoTriangles) {
   EXPECT_NE(what.find("triangulate"), std::string::npos);
 }
 
+TEST(BrokenFile, EveryFileOfTheCorpusIsReadOrRefused) {
+  const std::filesystem::path corpus =
+      std::filesystem::path(DELRAY_SOURCE_DIR) / "tests/corpus/scene";
+  if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "no " << corpus;
+  for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+    SCOPED_TRACE(entry.path().filename());
+    is_read(entry.path());
+  }
+}
+
 }  // namespace
 }  // namespace delray::scenes

@@ -1,0 +1,18 @@
+// Scenes from memory.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "parallel/progress.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// As load; `content` is that of the file `path`, which need not exist. Files that the content names
+// are looked for beside `path`.
+Scene load_content(const std::filesystem::path& path, std::string content,
+                   std::vector<std::string>& warnings, parallel::Progress* progress = nullptr);
+
+}  // namespace delray::scenes::internal

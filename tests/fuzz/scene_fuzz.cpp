@@ -1,0 +1,35 @@
+#include "scenes/internal/load_content.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "files/error.h"
+
+// Whatever the bytes, the reader of scenes returns triangles of finite vertices or throws
+// FileError.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace delray;
+  std::vector<std::string> warnings;
+  try {
+    const std::string content(reinterpret_cast<const char*>(data), size);
+    const scenes::Scene scene = scenes::internal::load_content("/nowhere/fuzz", content, warnings);
+    for (const scenes::Instance& i : scene.instances) {
+      if (i.mesh >= scene.meshes.size()) std::abort();
+    }
+    for (const scenes::Mesh& mesh : scene.meshes) {
+      if (mesh.material >= scene.materials.size()) std::abort();
+      for (const glm::vec3& p : mesh.positions) {
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) std::abort();
+      }
+      for (const glm::uvec3& t : mesh.triangles) {
+        if (std::max({t.x, t.y, t.z}) >= mesh.positions.size()) std::abort();
+      }
+    }
+  } catch (const files::FileError&) {
+  }
+  return 0;
+}
