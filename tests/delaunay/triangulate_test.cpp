@@ -139,6 +139,19 @@ TEST(Triangulate, ManyPointsInOneCellOfTheGrid) {
   EXPECT_TRUE(verify_triangles(view(points), result.vertices).canonical);
 }
 
+TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
+  for (const HardPoints& kind : {hard_points().front(), hard_points().back()}) {
+    const Points points = kind.make(20000, 6);
+    const Hash128 expected = hash(triangulate(view(points)));
+    for (Options options : combinations()) {
+      for (const int threads : {2, 3, 8}) {
+        options.threads = threads;
+        EXPECT_EQ(hash(triangulate(view(points), options)), expected) << name_of(options);
+      }
+    }
+  }
+}
+
 TEST(Triangulate, NothingGivesNothing) {
   const Points none;
   for (const Options& options : combinations()) {
@@ -188,7 +201,9 @@ TEST(Triangulate, CountsPhasesOnlyWhenAsked) {
 }
 
 TEST(Triangulate, TellsAboutProgressAndStops) {
-  const Points points = hard_points().front().make(20000, 2);
+  Points points = hard_points().front().make(20000, 2);
+  points.insert(points.end(), points.begin(), points.begin() + 500);
+  points.push_back({1e12, 1e12});  // leaves the others one cell, with a grid of its own
   for (Options options : combinations()) {
     parallel::Progress progress;
     options.progress = &progress;
