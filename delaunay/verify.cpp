@@ -181,37 +181,46 @@ Check check_coverage(const Mesh2& mesh) {
   return check_use(mesh);
 }
 
-// Calls bad(corners, q) for each side of each inner edge, q opposite in the neighbour.
-template <class Bad>
-Check check_circles(const Mesh2& mesh, const char* what, Bad&& bad) {
-  const auto opposite = [&](std::size_t edge) { return mesh.triangles[mesh.edges.mates[edge]]; };
-  const std::size_t found = find_first(mesh.triangles.size(), [&](std::size_t edge) {
-    if (mesh.edges.mates[edge] == FacetMates::kNone) return false;
-    const std::uint32_t* v = mesh.triangles.data() + (edge - edge % 3);
-    return bad(std::array{mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2])}, mesh.at(opposite(edge)));
-  });
-  if (found == kAll) return std::nullopt;
-  return Objection{found / 3, row(opposite(found)) + what};
+// The first edges, as seen from the lower of their triangles, that break the two properties.
+struct BadCircles {
+  std::size_t inside = kAll;  // the opposite vertex of the neighbour is inside
+  std::size_t tie = kAll;     // it is on the circumcircle and counts as inside
+};
+
+// Both triangles at an edge turn left, so what holds on one side of it holds on the other.
+BadCircles find_bad_circles(const Mesh2& mesh) {
+  return parallel::parallel_reduce(
+      0, mesh.triangles.size(), kGrain, BadCircles{},
+      [&](std::size_t first, std::size_t last) {
+        BadCircles bad;
+        for (std::size_t edge = first; edge < last; ++edge) {
+          const std::uint32_t mate = mesh.edges.mates[edge];
+          if (mate == FacetMates::kNone || mate < edge) continue;
+          const std::uint32_t* v = mesh.triangles.data() + (edge - edge % 3);
+          const std::array c = {mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2])};
+          const glm::dvec2 q = mesh.at(mesh.triangles[mate]);
+          const int sign = incircle(c[0], c[1], c[2], q);
+          if (sign > 0) bad.inside = std::min(bad.inside, edge);
+          if (sign == 0 && counts_as_inside(c, q)) bad.tie = std::min(bad.tie, edge);
+        }
+        return bad;
+      },
+      [](const BadCircles& a, const BadCircles& b) {
+        return BadCircles{std::min(a.inside, b.inside), std::min(a.tie, b.tie)};
+      });
 }
 
-Check check_delaunay(const Mesh2& mesh) {
-  return check_circles(mesh, " is inside its circumcircle",
-                       [](const std::array<glm::dvec2, 3>& c, const glm::dvec2& q) {
-                         return incircle(c[0], c[1], c[2], q) > 0;
-                       });
+Check check_circle(const Mesh2& mesh, std::size_t edge, const char* what) {
+  if (edge == kAll) return std::nullopt;
+  return Objection{edge / 3, row(mesh.triangles[mesh.edges.mates[edge]]) + what};
 }
 
-Check check_canonical(const Mesh2& mesh) {
+Check check_representatives(const Mesh2& mesh) {
   const std::size_t bad = find_first(
       mesh.given.size(), [&](std::size_t i) { return mesh.given[i] != mesh.triangles[i]; });
-  if (bad != kAll) {
-    return Objection{bad / 3,
-                     row(mesh.given[bad]) + " is a vertex, but equals " + row(mesh.triangles[bad])};
-  }
-  return check_circles(mesh, " is on its circumcircle and counts as inside",
-                       [](const std::array<glm::dvec2, 3>& c, const glm::dvec2& q) {
-                         return incircle(c[0], c[1], c[2], q) == 0 && counts_as_inside(c, q);
-                       });
+  if (bad == kAll) return std::nullopt;
+  return Objection{bad / 3,
+                   row(mesh.given[bad]) + " is a vertex, but equals " + row(mesh.triangles[bad])};
 }
 
 Mesh2 build(PointView<double> points, std::span<const std::uint32_t> triangles) {
@@ -244,12 +253,18 @@ Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t
     return verdict;
   }
   verdict.valid = true;
-  if (const Check objection = check_delaunay(mesh)) {
+  const BadCircles bad = find_bad_circles(mesh);
+  if (const Check objection = check_circle(mesh, bad.inside, " is inside its circumcircle")) {
     object(verdict, *objection);
     return verdict;
   }
   verdict.delaunay = true;
-  if (const Check objection = check_canonical(mesh)) {
+  if (const Check objection = check_representatives(mesh)) {
+    object(verdict, *objection);
+    return verdict;
+  }
+  if (const Check objection =
+          check_circle(mesh, bad.tie, " is on its circumcircle and counts as inside")) {
     object(verdict, *objection);
     return verdict;
   }

@@ -52,7 +52,7 @@ TEST(Generate, DependsOnTheSeedAndNotOnTheThreads) {
   for (const PointGenerator& generator : point_generators()) {
     for (const int dim : {2, 3}) {
       const std::uint64_t bits = bits_of(generator.generate(20000, dim, 1));
-      parallel::Arena alone(1), several(3);
+      parallel::Arena alone(1), several(2);
       EXPECT_EQ(bits, alone.execute([&] { return bits_of(generator.generate(20000, dim, 1)); }));
       EXPECT_EQ(bits, several.execute([&] { return bits_of(generator.generate(20000, dim, 1)); }));
       const std::set<std::string_view> without_seed = {"grid", "spiral"};
