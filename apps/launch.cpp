@@ -50,6 +50,7 @@ void run_ranks(const Session& session, const Launch& launch,
   if (launch.ranks > 0) throw UsageError("--ranks: under mpirun the ranks are its processes");
   const int threads = threads_per_rank(launch, processes_here());
   comm::run_mpi(nullptr, nullptr, [&](comm::Communicator& communicator) {
+    const parallel::AllowThreads allowed(threads);
     parallel::Arena arena(threads);
     arena.execute([&] { body(communicator); });
   });

@@ -79,7 +79,9 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   std::shared_ptr<const Prepared> shared;  // by the ranks of this process
   if (!session.under_mpi) {
     const int ranks = std::max(1, request.launch.ranks);
-    parallel::Arena arena(threads_per_rank(request.launch, ranks) * ranks);
+    const int threads = threads_per_rank(request.launch, ranks) * ranks;
+    const parallel::AllowThreads allowed(threads);
+    parallel::Arena arena(threads);
     shared = arena.execute([&] { return prepare(request, progress); });
   }
   run_ranks(session, request.launch, [&](comm::Communicator& communicator) {

@@ -16,7 +16,7 @@ namespace {
 int report_failure() {
   try {
     throw;
-  } catch (const UsageError& error) {
+  } catch (const std::invalid_argument& error) {  // UsageError, and names that are in no table
     spdlog::error("{}", error.what());
     return kUsage;
   } catch (const files::FileError& error) {

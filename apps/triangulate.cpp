@@ -107,6 +107,7 @@ int run(Session& session, Options options) {
   delaunay::Triangulation result;
   {
     const ProgressBar bar(session, "triangulate");
+    const parallel::AllowThreads allowed(how.threads);
     parallel::Arena arena(how.threads);
     watch.lap();
     result = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });

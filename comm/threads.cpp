@@ -248,6 +248,7 @@ void run_rank(World& world, const std::shared_ptr<Group>& group, int rank, int t
 void run_threads(int ranks, int threads_per_rank, const std::function<void(Communicator&)>& body,
                  const ThreadsOptions& options) {
   assert(ranks >= 1 && threads_per_rank >= 1);
+  const parallel::AllowThreads allowed(ranks * threads_per_rank);
   World world(ranks, options);
   std::vector<int> members(ranks);
   std::iota(members.begin(), members.end(), 0);

@@ -1,5 +1,6 @@
 #include "files/read_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -24,6 +25,8 @@ std::string read_up_to(const std::filesystem::path& path, std::size_t limit) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> closer(standard_input ? nullptr : file,
                                                                &std::fclose);
   std::string content;
+  const std::uintmax_t size = standard_input ? 0 : std::filesystem::file_size(path, ignored);
+  if (!ignored) content.reserve(std::min<std::uintmax_t>(size, limit));
   while (content.size() < limit) {
     const std::size_t old = content.size();
     content.resize(old + std::min(kChunk, limit - old));

@@ -103,8 +103,8 @@ INSTANTIATE_TEST_SUITE_P(Pictures, GoldenPicture,
                                          Golden{"raster-city", "gen:city:3000", draw, 0},
                                          Golden{"raytrace-spheres", "gen:spheres:4000", trace, 30},
                                          Golden{"raytrace-cornell", "gen:cornell:500", trace, 30}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
+                         [](const auto& test) {
+                           std::string name = test.param.name;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

@@ -50,7 +50,7 @@ TEST(Program, WrongUsageIsTwo) {
                                       "render gen:spheres -o a.png --strategy sort-never",
                                       "render gen:spheres -o a.png --compose nothing",
                                       "render gen:spheres -o a.png --color-by x",
-                                      "render gen:spheres -o a.png --background #12345",
+                                      "render gen:spheres -o a.png --background '#12345'",
                                       "render gen:spheres -o a.png --ranks 0",
                                       "triangulate",
                                       "triangulate p.xyz",
@@ -58,7 +58,7 @@ TEST(Program, WrongUsageIsTwo) {
                                       "triangulate p.xyz -o m.ply --method never",
                                       "triangulate p.xyz -o m.ply --dim 4",
                                       "triangulate p.xyz -o m.ply --duplicates all",
-                                      "triangulate p.xyz -o m.ply --order none",
+                                      "triangulate p.xyz -o m.ply --order never",
                                       "verify p.xyz",
                                       "generate points",
                                       "generate points nothing -o a.ply",
@@ -68,7 +68,7 @@ TEST(Program, WrongUsageIsTwo) {
     const Ran ran = run("delray " + arguments, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << arguments << "\n" << ran.err;
     EXPECT_FALSE(ran.err.empty()) << arguments;
-    EXPECT_EQ(folder.files(), std::vector<std::string>{"p.xyz"}) << arguments;
+    ASSERT_EQ(folder.files(), std::vector<std::string>{"p.xyz"}) << arguments;
   }
 }
 
