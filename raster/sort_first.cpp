@@ -22,7 +22,7 @@ constexpr int kCostCell = 16;
 // What setting up a triangle costs, in pixels shaded.
 constexpr double kTriangleCost = 0.5;
 
-std::vector<Piece> groups_of(std::vector<Piece> pieces) {
+std::vector<Piece> groups_of(std::span<const Piece> pieces) {
   std::vector<Piece> groups;
   for (const Piece& piece : pieces)
     for (std::uint32_t done = 0; done < piece.count; done += kGroupTriangles)
