@@ -2,7 +2,6 @@
 
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/mesh.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
@@ -15,6 +14,7 @@
 #include "image/srgb.h"
 #include "scenes/internal/check_file.h"
 #include "scenes/internal/mtl_material.h"
+#include "scenes/internal/polygon.h"
 #include "scenes/internal/weld.h"
 
 namespace delray::scenes::internal {
@@ -64,7 +64,7 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// What Assimp's own steps, such as cutting polygons into triangles, rely on.
+// What the checks of the formats have seen already, after Assimp has had it in its hands.
 void check_meshes(const Source& source, const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
@@ -93,10 +93,7 @@ const aiScene& read(const Source& source, const std::string& name, Assimp::Impor
   const aiScene* scene = nullptr;
   try {
     scene = importer.ReadFile(name, 0);
-    if (scene) {
-      check_meshes(source, *scene);
-      scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-    }
+    if (scene) check_meshes(source, *scene);
   } catch (const files::FileError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -162,11 +159,8 @@ Mesh convert(const aiMesh& from, const ImportRules& rules, Dropped& dropped) {
   mesh.triangles.reserve(from.mNumFaces);
   for (unsigned f = 0; f < from.mNumFaces; ++f) {
     const aiFace& face = from.mFaces[f];
-    if (face.mNumIndices == 3) {
-      mesh.triangles.emplace_back(face.mIndices[0], face.mIndices[1], face.mIndices[2]);
-    } else {
-      ++dropped.lines_and_points;
-    }
+    if (face.mNumIndices < 3) ++dropped.lines_and_points;
+    triangulate_polygon({face.mIndices, face.mNumIndices}, mesh.positions, mesh.triangles);
   }
   if (!rules.keep_vertices) weld(mesh);
   return mesh;
