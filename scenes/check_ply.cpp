@@ -140,6 +140,12 @@ void check_counts(const Source& source, const Header& header) {
   }
 }
 
+// Faces, or strips of them.
+bool has_lists(const Element& element) {
+  return element.count > 0 && std::any_of(element.properties.begin(), element.properties.end(),
+                                          [](const Property& p) { return p.length != nullptr; });
+}
+
 double decode(const char* data, const ScalarType& type, bool swap) {
   std::array<char, 8> bytes{};
   std::copy_n(data, type.size, bytes.begin());
@@ -237,6 +243,8 @@ void check_list(Body& body, const Header& header, const Property& property) {
 void check_ply(const Source& source) {
   const Header header = read_header(source);
   check_counts(source, header);
+  const bool has_faces = std::any_of(header.elements.begin(), header.elements.end(), has_lists);
+  if (header.vertices == 0 || !has_faces) source.fail("header", kNoTriangles);
   Body body(source, header);
   for (const Element& element : header.elements) {
     if (element.properties.empty()) continue;

@@ -121,6 +121,7 @@ void check_off(const Source& source) {
   }
   const std::int64_t vertices = need_count(counts, "vertices");
   const std::int64_t faces = need_count(counts, "faces");
+  if (vertices == 0 || faces == 0) source.fail(lines.place(), kNoTriangles);
   for (std::int64_t i = 0; i < vertices; ++i) {
     need_line("vertex " + std::to_string(i) + " of " + std::to_string(vertices));
     Words words(line);

@@ -41,7 +41,7 @@ void finish(const Source& source, Scene& scene) {
   }
   drop_empty_meshes(scene);
   if (scene.instances.empty()) {
-    source.fail("", "there are no triangles in the file (if it holds points, triangulate them)");
+    source.fail("", kNoTriangles);
   }
   if (scene.materials.empty()) scene.materials.emplace_back();
 

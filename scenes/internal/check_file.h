@@ -10,6 +10,9 @@ namespace delray::scenes::internal {
 // Coordinates larger than this are refused: products of two would overflow single precision.
 inline constexpr double kLargestCoordinate = 1e18;
 
+inline constexpr const char* kNoTriangles =
+    "there are no triangles in the file (if it holds points, triangulate them)";
+
 // Numbers of vertices (finite), and indices of faces that exist. O(file).
 void check_obj(const Source& source);
 void check_off(const Source& source);
