@@ -47,9 +47,8 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return session.first_process ? program.exit(error) : kDone;
-    if (session.first_process) program.exit(error);
-    return kUsage;
+    if (!session.first_process) return kDone;
+    return program.exit(error) == 0 ? kDone : kUsage;
   }
   return run_guarded(session);
 }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <exception>
 
 #include "apps/commands.h"
 #include "apps/list.h"
@@ -84,18 +85,27 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     parallel::Arena arena(threads);
     shared = arena.execute([&] { return prepare(request, progress); });
   }
+  std::exception_ptr wrong_usage;  // found while loading, by every process alike
   run_ranks(session, request.launch, [&](comm::Communicator& communicator) {
     std::shared_ptr<const Prepared> prepared = shared;
     if (!prepared) {
       communicator.mark(comm::Phase::load, 0);
-      prepared = comm::all_or_none(communicator, comm::Phase::load,
-                                   [&] { return prepare(request, progress); });
+      prepared = comm::all_or_none(communicator, comm::Phase::load, [&] {
+        try {
+          return prepare(request, progress);
+        } catch (const UsageError&) {
+          wrong_usage = std::current_exception();
+          return std::shared_ptr<const Prepared>();
+        }
+      });
     }
+    if (!prepared) return;
     Frames frames = render_frames(communicator, *prepared, request, progress);
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() == 0) finish(request, session, *prepared, frames);
     });
   });
+  if (wrong_usage) std::rethrow_exception(wrong_usage);
   return kDone;
 }
 

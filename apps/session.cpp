@@ -59,7 +59,9 @@ int run_guarded(Session& session) {
   try {
     return session.run();
   } catch (...) {
-    return report_failure();
+    // All processes of mpirun are here with the same failure; one speaks, and exits with the code,
+    // for mpirun ends the others when it does.
+    return session.first_process ? report_failure() : int{kDone};
   }
 }
 

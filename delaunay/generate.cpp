@@ -246,6 +246,30 @@ glm::dvec3 two_lines(Row& row) {
                       : glm::dvec3(t, 0.5, 0);
 }
 
+// Octaves of noise that interpolates random heights of a lattice, each half as wide and high as the
+// one before (Fournier, Fussell and Carpenter 1982), over places all alike.
+glm::dvec3 terrain(Row& row) {
+  glm::dvec3 p(row.random.uniform(), row.random.uniform(), 0);
+  if (row.dim == 2) return p;
+  constexpr int kOctaves = 9;
+  double height = 0.16;
+  for (int octave = 0; octave < kOctaves; ++octave, height /= 2) {
+    const double cells = static_cast<double>(2 << octave);
+    const glm::dvec2 place = glm::dvec2(p) * cells;
+    const glm::dvec2 cell = glm::floor(place);
+    const glm::dvec2 t = place - cell, smooth = t * t * (3.0 - 2.0 * t);
+    const auto corner = [&](int i, int j) {
+      const auto x = static_cast<std::uint64_t>(cell.x) + static_cast<std::uint64_t>(i);
+      const auto y = static_cast<std::uint64_t>(cell.y) + static_cast<std::uint64_t>(j);
+      const auto which = static_cast<std::uint64_t>(octave) << 40 | x << 20 | y;
+      return RowRandom(row.seed, ~which).uniform(-1, 1);
+    };
+    p.z += height * glm::mix(glm::mix(corner(0, 0), corner(1, 0), smooth.x),
+                             glm::mix(corner(0, 1), corner(1, 1), smooth.x), smooth.y);
+  }
+  return p;
+}
+
 glm::dvec3 far(Row& row) { return uniform(row) + glm::dvec3(1e9); }
 glm::dvec3 large(Row& row) { return uniform(row) * 1e9; }
 glm::dvec3 small(Row& row) { return uniform(row) * 1e-9; }
@@ -268,6 +292,8 @@ constexpr std::array kGenerators = {
     PointGenerator{"parabola", "on a parabola or paraboloid, in [-1, 1]", &generate<parabola>},
     PointGenerator{"spiral", "one spiral from the origin", &generate<spiral>},
     PointGenerator{"two-lines", "on two parallel lines, skew in space", &generate<two_lines>},
+    PointGenerator{"terrain", "fractal heights over the unit square (dimension 3)",
+                   &generate<terrain>},
     PointGenerator{"far", "uniform, 1e9 away from the origin", &generate<far>},
     PointGenerator{"large", "uniform, a thousand million times larger", &generate<large>},
     PointGenerator{"small", "uniform, a thousand million times smaller", &generate<small>},

@@ -7,9 +7,9 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/visibility.cpp"
-#include "hwy/foreach_target.h"
+#include <hwy/foreach_target.h>
 // Highway's own header comes after it.
-#include "hwy/highway.h"
+#include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::raster {

@@ -121,6 +121,14 @@ TEST(RenderCommand, RanksUnderMpirunAreWrongUsage) {
   EXPECT_TRUE(folder.files().empty());
 }
 
+TEST(RenderCommand, WrongUsageFoundWhileLoadingUnderMpirunIsTwo) {
+  const Folder folder;
+  const Ran ran =
+      run(kMpirun + "delray render gen:cornell -o a.png --exaggeration 3", folder.path());
+  EXPECT_EQ(ran.exit_code, 2) << ran.err;
+  EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(RenderCommand, BadInputUnderMpirunIsThreeOnAllRanks) {
   const Folder folder;
   const Ran ran = run(kMpirun + "delray render missing.glb -o a.png", folder.path());

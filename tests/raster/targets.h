@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "hwy/highway.h"
+#include <hwy/highway.h>
 
 namespace delray::raster {
 
