@@ -140,12 +140,6 @@ void check_counts(const Source& source, const Header& header) {
   }
 }
 
-// Faces, or strips of them.
-bool has_lists(const Element& element) {
-  return element.count > 0 && std::any_of(element.properties.begin(), element.properties.end(),
-                                          [](const Property& p) { return p.length != nullptr; });
-}
-
 double decode(const char* data, const ScalarType& type, bool swap) {
   std::array<char, 8> bytes{};
   std::copy_n(data, type.size, bytes.begin());
@@ -219,12 +213,14 @@ void check_value(const Body& body, const Element& element, const Property& prope
   if (std::abs(value) > kLargestCoordinate) body.fail("a coordinate is larger than 1e18");
 }
 
-void check_list(Body& body, const Header& header, const Property& property) {
+// True if the list may hold a triangle: the corners of a face, or those of strips.
+bool check_list(Body& body, const Header& header, const Property& property) {
   const double length = body.next(*property.length);
   if (!(length >= 0) || length != std::floor(length) || length > body.room(*property.value)) {
     body.fail("a list is longer than the file");
   }
   const bool is_index = property.name == "vertex_indices" || property.name == "vertex_index";
+  const bool is_strip = property.name == "tristrips" || property.name == "trindex";
   for (double i = 0; i < length; ++i) {
     const double value = body.next(*property.value);
     if (!is_index) continue;
@@ -236,6 +232,7 @@ void check_list(Body& body, const Header& header, const Property& property) {
                 " (" + std::to_string(header.vertices) + " vertices, from 0)");
     }
   }
+  return (is_index || is_strip) && length >= 3;
 }
 
 }  // namespace
@@ -243,22 +240,22 @@ void check_list(Body& body, const Header& header, const Property& property) {
 void check_ply(const Source& source) {
   const Header header = read_header(source);
   check_counts(source, header);
-  const bool has_faces = std::any_of(header.elements.begin(), header.elements.end(), has_lists);
-  if (header.vertices == 0 || !has_faces) source.fail("header", kNoTriangles);
   Body body(source, header);
+  bool has_triangles = false;
   for (const Element& element : header.elements) {
     if (element.properties.empty()) continue;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       body.start_item();
       for (const Property& property : element.properties) {
         if (property.length) {
-          check_list(body, header, property);
+          has_triangles |= check_list(body, header, property);
         } else {
           check_value(body, element, property, body.next(*property.value));
         }
       }
     }
   }
+  if (!has_triangles) source.fail("", kNoTriangles);
 }
 
 }  // namespace delray::scenes::internal

@@ -13,7 +13,7 @@ void check_text_stl(const Source& source) {
   Lines lines(source.content);
   std::string_view line;
   int vertices = 0;
-  bool ended = false;
+  bool ended = false, has_facets = false;
   while (lines.next(line)) {
     Words words(line);
     const std::string_view key = words.next();
@@ -28,6 +28,7 @@ void check_text_stl(const Source& source) {
       ++vertices;
     } else if (key == "facet") {
       vertices = 0;
+      has_facets = true;
     } else if (key == "endfacet" && vertices != 3) {
       source.fail(lines.place(), "the facet has " + std::to_string(vertices) + " vertices, not 3");
     } else if (key == "solid" || key == "endsolid") {
@@ -35,6 +36,7 @@ void check_text_stl(const Source& source) {
     }
   }
   if (!ended) source.fail(lines.place(), "the file ends before its endsolid");
+  if (!has_facets) source.fail("", kNoTriangles);
 }
 
 }  // namespace
@@ -45,6 +47,7 @@ void check_stl(const Source& source) {
     std::uint32_t count = 0;
     std::memcpy(&count, content.data() + kHeader - sizeof count, sizeof count);
     const std::uint64_t size = kHeader + std::uint64_t{count} * kFacet;
+    if (size == content.size() && count == 0) source.fail("", kNoTriangles);
     if (size == content.size()) return;
     if (!content.starts_with("solid")) {
       source.fail("byte 80", "the header claims " + std::to_string(count) +

@@ -180,7 +180,8 @@ Scene generate_field(std::uint64_t triangles, std::uint64_t seed) {
 
   for (std::uint64_t i = 0; i < count; ++i) {
     Random random(seed, 100 + i);
-    const auto column = static_cast<float>(i % kColumns), row = static_cast<float>(i / kColumns);
+    const auto column = static_cast<float>(i % kColumns),
+               row = std::floor(static_cast<float>(i) / static_cast<float>(kColumns));
     const float x = (column - 0.5F * (kColumns - 1) + random.between(-0.3F, 0.3F)) * kSpacing;
     const float z = (0.5F * kRows - 1.0F - row + random.between(-0.3F, 0.3F)) * kSpacing;
     const float scale = random.between(0.7F, 1.25F);

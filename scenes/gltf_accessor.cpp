@@ -99,8 +99,8 @@ struct Accessor {
 
 Accessor accessor_at(const GltfDocument& document, std::size_t number) {
   const JsonView json = document.root()["accessors"][number];
-  const Accessor accessor{json, json["count"].whole(), components_of(json),
-                          component_of(json["componentType"]), json["normalized"].flag(false)};
+  Accessor accessor{json, json["count"].whole(), components_of(json),
+                    component_of(json["componentType"]), json["normalized"].flag(false)};
   if (accessor.count > 0xFFFFFFFEU) json["count"].fail("is larger than 2^32 - 2");
   if (json["bufferView"]) {
     // Before anything is allocated for as many elements.

@@ -30,16 +30,18 @@ std::string join_continued_lines(std::string text) {
 }
 
 Scene read(Format format, const Source& source) {
+  std::string clean;
   switch (format) {
     case Format::obj:
-      internal::check_obj(source);
-      return internal::import(source, {.suffix = "obj", .keep_vertices = false});
+      clean = internal::clean_obj(source);
+      return internal::import({source.path, clean, source.warnings},
+                              {.suffix = "obj", .keep_vertices = false});
     case Format::ply:
       internal::check_ply(source);
       return internal::import(source, {.suffix = "ply"});
     case Format::off:
-      internal::check_off(source);
-      return internal::import(source, {.suffix = "off"});
+      clean = internal::clean_off(source);
+      return internal::import({source.path, clean, source.warnings}, {.suffix = "off"});
     case Format::stl:
       internal::check_stl(source);
       return internal::import(source,

@@ -1,7 +1,6 @@
 #include "scenes/internal/weld.h"
 
 #include <bit>
-#include <cstring>
 
 #include "scenes/internal/noise.h"
 
@@ -19,7 +18,12 @@ std::uint64_t hash_value(std::uint64_t hash, const std::vector<T>& values, std::
 
 template <class T>
 bool same(const std::vector<T>& values, std::size_t i, std::size_t j) {
-  return values.empty() || std::memcmp(&values[i], &values[j], sizeof(T)) == 0;
+  if (values.empty()) return true;
+  for (int k = 0; k < T::length(); ++k) {
+    const auto bits = [&](std::size_t at) { return std::bit_cast<std::uint32_t>(values[at][k]); };
+    if (bits(i) != bits(j)) return false;
+  }
+  return true;
 }
 
 template <class T>
