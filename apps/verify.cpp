@@ -63,8 +63,8 @@ int run(const Options& options) {
                                  options.mesh, mesh.triangulation.dim));
   }
   require_same_points(options, mesh.points, load_points(options.points, options.dim));
-  const delaunay::Verdict verdict =
-      verify_triangles(delaunay::view(mesh.points.positions), mesh.triangulation.vertices);
+  const delaunay::Verdict verdict = verify_simplices(
+      options.dim, delaunay::view(mesh.points.positions), mesh.triangulation.vertices);
 
   const bool good = options.canonical ? verdict.canonical : verdict.delaunay;
   const std::string where = verdict.simplex ? fmt::format("simplex {}: ", *verdict.simplex) : "";
@@ -91,9 +91,10 @@ void add_verify(CLI::App& program, Session& session) {
   const auto options = std::make_shared<Options>();
   command->add_option("MESH", options->mesh, "the triangulation");
   command->add_option("--points", options->points.path, "the points that it should be of");
-  command->add_option("--dim", options->dim, "2 (default)")->check(CLI::IsMember({2}));
-  command->add_flag("--canonical", options->canonical,
-                    "also demand the choice among cocircular points that delray makes");
+  command->add_option("--dim", options->dim, "2 (default) or 3")->check(CLI::IsMember({2, 3}));
+  command->add_flag(
+      "--canonical", options->canonical,
+      "also demand the choice among cocircular or cospherical points that delray makes");
   command->add_option("--stats", options->statistics, "write the verdict as JSON; - for stdout");
   add_point_options(*command, options->points);
   add_common_options(*command, session,

@@ -2,54 +2,71 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
 namespace {
 
-// A facet within the bucket of its lowest vertex.
+// Vertices ascending; of an edge the last two.
 struct Facet {
-  std::uint32_t middle, high;  // the other vertices, ascending; in 2D middle is 0
+  std::array<std::uint32_t, 3> vertices;
   std::uint32_t number;
-
-  bool same_vertices(const Facet& other) const {
-    return middle == other.middle && high == other.high;
-  }
-  auto operator<=>(const Facet&) const = default;
 };
 
-struct Corners {
-  std::array<std::uint32_t, 3> vertices;  // ascending; in 2D the last two
-  std::uint32_t lowest(int dim) const { return vertices[3 - dim]; }
-};
-
-Corners corners_of(int dim, std::span<const std::uint32_t> simplices, std::size_t facet) {
+Facet facet_of(int dim, std::span<const std::uint32_t> simplices, std::size_t number) {
   const std::size_t corners = static_cast<std::size_t>(dim) + 1;
-  const std::size_t first = facet - facet % corners;
-  Corners result{};
+  const std::size_t first = number - number % corners;
+  Facet facet{{}, static_cast<std::uint32_t>(number)};
+  std::array<std::uint32_t, 3>& v = facet.vertices;
   int k = 3 - dim;
-  for (std::size_t v = first; v < first + corners; ++v) {
-    if (v != facet) result.vertices[k++] = simplices[v];
+  for (std::size_t i = first; i < first + corners; ++i) {
+    if (i != number) v[k++] = simplices[i];
   }
-  std::sort(result.vertices.begin() + (3 - dim), result.vertices.end());
-  return result;
+  if (dim == 3 && v[0] > v[1]) std::swap(v[0], v[1]);
+  if (v[1] > v[2]) std::swap(v[1], v[2]);
+  if (dim == 3 && v[0] > v[1]) std::swap(v[0], v[1]);
+  return facet;
 }
 
-// Pairs the facets of one bucket; returns the lowest number among those shared by more than two.
-std::uint32_t pair_up(std::span<Facet> bucket, std::vector<std::uint32_t>& mates) {
-  std::ranges::sort(bucket);
+std::size_t slot_of(const Facet& facet) {
+  std::uint64_t key = (std::uint64_t{facet.vertices[0]} << 32 | facet.vertices[1]);
+  key = (key ^ (key >> 32)) * 0xd6e8feb86659fd93 + facet.vertices[2];
+  key = (key ^ (key >> 32)) * 0xd6e8feb86659fd93;
+  return key ^ (key >> 32);
+}
+
+// Pairs the facets of one bucket, which come in ascending order; returns the lowest number among
+// those shared by more than two.
+std::uint32_t pair_up(std::span<const Facet> bucket, std::vector<std::uint32_t>& mates) {
+  constexpr std::uint32_t kFree = FacetMates::kNone;
+  const std::size_t mask = std::bit_ceil(2 * bucket.size() + 1) - 1;
+  std::vector<std::uint32_t> table(mask + 1, kFree);  // the first of each set of equal facets
+  std::vector<std::uint8_t> equals(bucket.size(), 0);
   std::uint32_t crowded = FacetMates::kNone;
-  for (std::size_t i = 0; i < bucket.size();) {
-    std::size_t end = i + 1;
-    while (end < bucket.size() && bucket[end].same_vertices(bucket[i])) ++end;
-    if (end - i == 2) {
-      mates[bucket[i].number] = bucket[i + 1].number;
-      mates[bucket[i + 1].number] = bucket[i].number;
-    } else if (end - i > 2) {
-      crowded = std::min(crowded, bucket[i].number);
+  for (std::uint32_t i = 0; i < bucket.size(); ++i) {
+    std::size_t slot = slot_of(bucket[i]) & mask;
+    while (table[slot] != kFree && bucket[table[slot]].vertices != bucket[i].vertices) {
+      slot = (slot + 1) & mask;
     }
-    i = end;
+    if (table[slot] == kFree) {
+      table[slot] = i;
+      continue;
+    }
+    const std::uint32_t first = bucket[table[slot]].number;
+    std::uint8_t& known = equals[table[slot]];
+    if (known == 0) {
+      mates[first] = bucket[i].number;
+      mates[bucket[i].number] = first;
+    } else {
+      if (known == 1) {
+        mates[mates[first]] = FacetMates::kNone;
+        mates[first] = FacetMates::kNone;
+      }
+      crowded = std::min(crowded, first);
+    }
+    known = known == 0 ? 1 : 2;
   }
   return crowded;
 }
@@ -59,25 +76,46 @@ std::uint32_t pair_up(std::span<Facet> bucket, std::vector<std::uint32_t>& mates
 FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::size_t points) {
   FacetMates result;
   result.mates.assign(simplices.size(), FacetMates::kNone);
-  std::vector<std::uint32_t> begin(points + 2, 0);  // begin[v + 1]: where bucket v is filled next
-  for (std::size_t facet = 0; facet < simplices.size(); ++facet) {
-    ++begin[corners_of(dim, simplices, facet).lowest(dim) + 2];
+  if (simplices.empty()) return result;
+  // A bucket holds the facets whose lowest vertex is in a range: in the mean some 4096, so that
+  // they and their table stay in the cache, and facets that were near each other remain so.
+  const int wanted = std::clamp(static_cast<int>(std::bit_width(simplices.size() >> 12)), 0, 12);
+  const int shift = std::max(0, static_cast<int>(std::bit_width(points)) - wanted);
+  const std::size_t buckets = (points >> shift) + 1;
+  const auto bucket_of = [&](const Facet& facet) { return facet.vertices[3 - dim] >> shift; };
+  // Each block counts its facets per bucket and later writes them behind those of earlier blocks.
+  const std::size_t block = std::max<std::size_t>(std::size_t{1} << 16, 8 * buckets);
+  const std::size_t blocks = (simplices.size() + block - 1) / block;
+  std::vector<std::uint32_t> next(blocks * buckets, 0);
+  const auto each_of_block = [&](std::size_t b, auto&& f) {
+    const std::size_t end = std::min(simplices.size(), (b + 1) * block);
+    for (std::size_t i = b * block; i < end; ++i) f(facet_of(dim, simplices, i));
+  };
+  parallel::parallel_for(0, blocks, 1, [&](std::size_t b) {
+    each_of_block(b, [&](const Facet& facet) { ++next[b * buckets + bucket_of(facet)]; });
+  });
+  std::vector<std::uint32_t> begin(buckets + 1, 0);
+  std::uint32_t sum = 0;
+  for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+    begin[bucket] = sum;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::uint32_t count = next[b * buckets + bucket];
+      next[b * buckets + bucket] = sum;
+      sum += count;
+    }
   }
-  for (std::size_t v = 2; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  begin[buckets] = sum;
   std::vector<Facet> facets(simplices.size());
-  for (std::size_t facet = 0; facet < simplices.size(); ++facet) {
-    const Corners corners = corners_of(dim, simplices, facet);
-    const std::uint32_t middle = dim == 3 ? corners.vertices[1] : 0;
-    facets[begin[corners.lowest(dim) + 1]++] = {middle, corners.vertices[2],
-                                                static_cast<std::uint32_t>(facet)};
-  }
-  constexpr std::size_t kGrain = 1024;  // vertices: about 0.1 ms
+  parallel::parallel_for(0, blocks, 1, [&](std::size_t b) {
+    each_of_block(
+        b, [&](const Facet& facet) { facets[next[b * buckets + bucket_of(facet)]++] = facet; });
+  });
   result.crowded = parallel::parallel_reduce(
-      0, points, kGrain, FacetMates::kNone,
+      0, buckets, 1, FacetMates::kNone,
       [&](std::size_t first, std::size_t last) {
         std::uint32_t crowded = FacetMates::kNone;
-        for (std::size_t v = first; v < last; ++v) {
-          const std::span bucket(facets.data() + begin[v], begin[v + 1] - begin[v]);
+        for (std::size_t b = first; b < last; ++b) {
+          const std::span bucket(facets.data() + begin[b], begin[b + 1] - begin[b]);
           crowded = std::min(crowded, pair_up(bucket, result.mates));
         }
         return crowded;

@@ -2,274 +2,270 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <vector>
 
 #include "delaunay/internal/equal_points.h"
-#include "delaunay/internal/facets.h"
-#include "delaunay/predicates.h"
-#include "parallel/parallel_for.h"
+#include "delaunay/internal/verified_mesh.h"
 
 namespace delray::delaunay {
 namespace {
 
-constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-constexpr std::size_t kGrain = 4096;  // triangles or points: about 0.2 ms
+using internal::Check;
+using internal::find_first;
+using internal::kAll;
+using internal::kVerifyGrain;
+using internal::Objection;
+using internal::row;
+using internal::turn_of;
+using internal::VerifiedMesh;
 
-// The lowest i of [0, n) for which bad(i), or kAll.
-template <class Bad>
-std::size_t find_first(std::size_t n, Bad&& bad) {
-  return parallel::parallel_reduce(
-      0, n, kGrain, kAll,
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-          if (bad(i)) return i;
-        }
-        return kAll;
-      },
-      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+template <int D>
+struct Words;
+template <>
+struct Words<2> {
+  static constexpr const char *simplex = "triangle", *simplices = "triangles", *facet = "edge",
+                              *flat = "collinear", *mirrored = "it is oriented clockwise",
+                              *ball = "circumcircle";
+};
+template <>
+struct Words<3> {
+  static constexpr const char *simplex = "tetrahedron", *simplices = "tetrahedra", *facet = "face",
+                              *flat = "coplanar", *mirrored = "it is negatively oriented",
+                              *ball = "circumsphere";
+};
+
+// The rule about ties is written for this file alone: an error in that of the triangulations must
+// not repeat itself here.
+template <class Point>
+bool before(const Point& a, const Point& b) {
+  for (int k = 0; k < Point::length(); ++k) {
+    if (a[k] != b[k]) return a[k] < b[k];
+  }
+  return false;
 }
 
-std::string row(std::uint32_t vertex) { return "row " + std::to_string(vertex); }
+int in_ball(const std::array<glm::dvec2, 3>& p, const glm::dvec2& q) {
+  return incircle(p[0], p[1], p[2], q);
+}
+int in_ball(const std::array<glm::dvec3, 4>& p, const glm::dvec3& q) {
+  return insphere(p[0], p[1], p[2], p[3], q);
+}
 
-// Something to say against a triangulation; `simplex` is kAll where it is about no single one.
-struct Objection {
-  std::size_t simplex = kAll;
-  std::string reason;
-};
-using Check = std::optional<Objection>;
-
-// The triangles with each vertex replaced by the lowest row of its equals.
-struct Mesh2 {
-  PointView<double> points;
-  std::span<const std::uint32_t> given;
-  std::vector<std::uint32_t> lowest;     // per row
-  std::vector<std::uint32_t> triangles;  // 3 per triangle
-  std::size_t distinct = 0;
-  FacetMates edges;
-
-  std::size_t size() const { return given.size() / 3; }
-  glm::dvec2 at(std::uint32_t i) const { return {points(i, 0), points(i, 1)}; }
-  // Edge number 3 t + i runs from start to end, to the left of which lies triangle t.
-  std::uint32_t start(std::size_t edge) const {
-    return triangles[edge - edge % 3 + (edge + 1) % 3];
-  }
-  std::uint32_t end(std::size_t edge) const { return triangles[edge - edge % 3 + (edge + 2) % 3]; }
-};
-
-// The rules about the order and the positions are written for this file alone: an error in those of
-// the triangulations must not repeat itself here.
-bool before(const glm::dvec2& a, const glm::dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
-
-// REQUIRES: corners turn left; q is on their circumcircle and none of them.
-bool counts_as_inside(const std::array<glm::dvec2, 3>& corners, const glm::dvec2& q) {
-  std::array<int, 4> order = {0, 1, 2, 3};  // 3 is q
-  const auto point = [&](int i) { return i == 3 ? q : corners[i]; };
-  std::ranges::sort(order, [&](int i, int j) { return before(point(j), point(i)); });
-  for (const int i : order) {
-    if (i == 3) return false;
-    std::array<glm::dvec2, 3> replaced = corners;
+// REQUIRES: corners are positively oriented; q is on their circumsphere and none of them.
+template <class Point, std::size_t N>
+bool counts_as_inside(const std::array<Point, N>& corners, const Point& q) {
+  std::array<std::size_t, N + 1> order;
+  for (std::size_t i = 0; i <= N; ++i) order[i] = i;
+  const auto point = [&](std::size_t i) { return i == N ? q : corners[i]; };
+  std::ranges::sort(order,
+                    [&](std::size_t i, std::size_t j) { return before(point(j), point(i)); });
+  for (const std::size_t i : order) {
+    if (i == N) return false;
+    std::array<Point, N> replaced = corners;
     replaced[i] = q;
-    const int sign = orient2d(replaced[0], replaced[1], replaced[2]);
+    const int sign = turn_of(replaced);
     if (sign != 0) return sign > 0;
   }
   return false;
 }
 
-Check check_rows(PointView<double> points, std::span<const std::uint32_t> triangles) {
+template <int D>
+Check check_rows(PointView<double> points, std::span<const std::uint32_t> simplices) {
   const std::size_t bad =
-      find_first(triangles.size(), [&](std::size_t i) { return triangles[i] >= points.size(); });
+      find_first(simplices.size(), [&](std::size_t i) { return simplices[i] >= points.size(); });
   if (bad == kAll) return std::nullopt;
-  return Objection{bad / 3,
-                   "vertex " + std::to_string(triangles[bad]) + " is not a row of the points"};
+  return Objection{bad / (D + 1),
+                   "vertex " + std::to_string(simplices[bad]) + " is not a row of the points"};
 }
 
-Check check_orientation(const Mesh2& mesh) {
-  const std::size_t bad = find_first(mesh.size(), [&](std::size_t t) {
-    const std::uint32_t* v = mesh.triangles.data() + 3 * t;
-    return orient2d(mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2])) <= 0;
-  });
+template <int D>
+Check check_orientation(const VerifiedMesh<D>& mesh) {
+  const std::size_t bad =
+      find_first(mesh.size(), [&](std::size_t t) { return turn_of(mesh.corners(t)) <= 0; });
   if (bad == kAll) return std::nullopt;
-  const std::uint32_t* v = mesh.triangles.data() + 3 * bad;
-  const int sign = orient2d(mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2]));
-  return Objection{bad, sign == 0 ? "its vertices are collinear" : "it is oriented clockwise"};
+  return Objection{bad, turn_of(mesh.corners(bad)) == 0
+                            ? std::string("its vertices are ") + Words<D>::flat
+                            : Words<D>::mirrored};
 }
 
-Check check_edges(const Mesh2& mesh) {
-  const std::size_t crowded = mesh.edges.crowded;
+template <int D>
+std::string facet_name(const VerifiedMesh<D>& mesh, std::size_t facet) {
+  const auto v = mesh.outward(facet);
+  std::string text = std::string("the ") + Words<D>::facet + " between ";
+  for (int k = 0; k < D; ++k) text += (k == 0 ? "" : k + 1 < D ? ", " : " and ") + row(v[k]);
+  return text;
+}
+
+// Whether two facets with the same vertices have their simplices on the same side.
+template <int D>
+bool same_side(const VerifiedMesh<D>& mesh, std::size_t facet, std::size_t mate) {
+  const auto a = mesh.outward(facet), b = mesh.outward(mate);
+  const auto shift = std::ranges::find(b, a[0]) - b.begin();
+  return D == 2 ? shift == 0 : b[(shift + 1) % D] == a[1];
+}
+
+template <int D>
+Check check_facets(const VerifiedMesh<D>& mesh) {
+  const std::size_t crowded = mesh.facets.crowded;
   if (crowded != FacetMates::kNone) {
-    return Objection{crowded / 3, "the edge between " + row(mesh.start(crowded)) + " and " +
-                                      row(mesh.end(crowded)) + " has three triangles or more"};
+    return Objection{crowded / (D + 1),
+                     facet_name(mesh, crowded) + " has three " + Words<D>::simplices + " or more"};
   }
-  const std::size_t bad = find_first(mesh.triangles.size(), [&](std::size_t edge) {
-    const std::uint32_t mate = mesh.edges.mates[edge];
-    return mate != FacetMates::kNone && mesh.start(edge) == mesh.start(mate);
+  const std::size_t bad = find_first(mesh.vertices.size(), [&](std::size_t facet) {
+    const std::uint32_t mate = mesh.facets.mates[facet];
+    return mate != FacetMates::kNone && same_side(mesh, facet, mate);
   });
   if (bad == kAll) return std::nullopt;
-  return Objection{bad / 3, "triangle " + std::to_string(mesh.edges.mates[bad] / 3) +
-                                " lies on the same side of the edge between " +
-                                row(mesh.start(bad)) + " and " + row(mesh.end(bad))};
+  return Objection{bad / (D + 1), std::string(Words<D>::simplex) + " " +
+                                      std::to_string(mesh.facets.mates[bad] / (D + 1)) +
+                                      " lies on the same side of " + facet_name(mesh, bad)};
 }
 
-// Whether the path a, b, c turns left or goes straight on.
-bool is_convex(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-  const int turn = orient2d(a, b, c);
-  return turn > 0 || (turn == 0 && before(a, b) == before(b, c));
-}
-
-// A polygon whose corners are all convex winds once around its inside if it has one lexicographic
-// minimum, and so do several only if they are one.
-Check check_hull(const Mesh2& mesh) {
-  std::vector<std::uint32_t> leaving(mesh.points.size(),
-                                     FacetMates::kNone);  // hull edge per vertex
-  for (std::size_t edge = 0; edge < mesh.triangles.size(); ++edge) {
-    if (mesh.edges.mates[edge] != FacetMates::kNone) continue;
-    std::uint32_t& known = leaving[mesh.start(edge)];
-    if (known != FacetMates::kNone) {
-      return Objection{edge / 3, "the boundary passes " + row(mesh.start(edge)) + " twice"};
-    }
-    known = static_cast<std::uint32_t>(edge);
-  }
-  bool has_minimum = false;
-  for (std::size_t edge = 0; edge < mesh.triangles.size(); ++edge) {
-    if (mesh.edges.mates[edge] != FacetMates::kNone) continue;
-    // Every boundary edge that enters a vertex has one that leaves it, since triangles are cycles.
-    const std::uint32_t next = leaving[mesh.end(edge)];
-    const glm::dvec2 a = mesh.at(mesh.start(edge)), b = mesh.at(mesh.end(edge));
-    const glm::dvec2 c = mesh.at(mesh.end(next));
-    if (!is_convex(a, b, c)) {
-      return Objection{edge / 3, "the boundary is not convex at " + row(mesh.end(edge))};
-    }
-    if (before(b, a) && before(b, c)) {
-      if (has_minimum) {
-        return Objection{edge / 3,
-                         "the boundary is more than one polygon at " + row(mesh.end(edge))};
-      }
-      has_minimum = true;
-    }
-  }
-  return std::nullopt;
-}
-
-Check check_use(const Mesh2& mesh) {
+template <int D>
+Check check_use(const VerifiedMesh<D>& mesh) {
   std::vector<std::uint8_t> used(mesh.points.size(), 0);
-  for (const std::uint32_t vertex : mesh.triangles) used[vertex] = 1;
+  for (const std::uint32_t vertex : mesh.vertices) used[vertex] = 1;
   const std::size_t bad = find_first(
       mesh.points.size(), [&](std::size_t i) { return mesh.lowest[i] == i && used[i] == 0; });
   if (bad == kAll) return std::nullopt;
-  return Objection{kAll, row(static_cast<std::uint32_t>(bad)) + " is in no triangle"};
+  return Objection{kAll, row(bad) + " is in no " + Words<D>::simplex};
 }
 
-Check check_no_triangles(const Mesh2& mesh) {
+bool collinear(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return orient2d(a, b, c) == 0;
+}
+bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  return collinear({a.x, a.y}, {b.x, b.y}, glm::dvec2(c.x, c.y)) &&
+         collinear({a.y, a.z}, {b.y, b.z}, glm::dvec2(c.y, c.z)) &&
+         collinear({a.z, a.x}, {b.z, b.x}, glm::dvec2(c.z, c.x));
+}
+
+// Without simplices all points must be flat: looks for D + 1 that are not.
+template <int D>
+Check check_no_simplices(const VerifiedMesh<D>& mesh) {
   const std::size_t n = mesh.points.size();
-  const std::size_t other = find_first(n, [&](std::size_t i) { return mesh.lowest[i] != 0; });
-  if (other == kAll) return std::nullopt;
-  const glm::dvec2 a = mesh.at(0), b = mesh.at(static_cast<std::uint32_t>(other));
-  const std::size_t aside = find_first(n, [&](std::size_t i) {
-    return orient2d(a, b, mesh.at(static_cast<std::uint32_t>(i))) != 0;
-  });
-  if (aside == kAll) return std::nullopt;
-  return Objection{kAll, "there are no triangles, but rows 0, " + std::to_string(other) + " and " +
-                             std::to_string(aside) + " are not collinear"};
+  std::vector<std::size_t> frame = {0};
+  const auto add = [&](auto&& independent) {
+    const std::size_t found = find_first(n, independent);
+    if (found != kAll) frame.push_back(found);
+    return found != kAll;
+  };
+  if (!add([&](std::size_t i) { return mesh.lowest[i] != 0; })) return std::nullopt;
+  const auto a = mesh.at(0), b = mesh.at(frame[1]);
+  if (!add([&](std::size_t i) { return !collinear(a, b, mesh.at(i)); })) return std::nullopt;
+  if constexpr (D == 3) {
+    const auto c = mesh.at(frame[2]);
+    if (!add([&](std::size_t i) { return orient3d(a, b, c, mesh.at(i)) != 0; })) {
+      return std::nullopt;
+    }
+  }
+  std::string rows;
+  for (int k = 0; k <= D; ++k) {
+    rows += (k == 0 ? "" : k < D ? ", " : " and ") + std::to_string(frame[k]);
+  }
+  return Objection{kAll, std::string("there are no ") + Words<D>::simplices + ", but rows " + rows +
+                             " are not " + Words<D>::flat};
 }
 
-Check check_coverage(const Mesh2& mesh) {
-  if (mesh.size() == 0) return check_no_triangles(mesh);
+template <int D>
+Check check_coverage(const VerifiedMesh<D>& mesh) {
+  if (mesh.size() == 0) return check_no_simplices(mesh);
   if (Check objection = check_orientation(mesh)) return objection;
-  if (Check objection = check_edges(mesh)) return objection;
-  if (Check objection = check_hull(mesh)) return objection;
+  if (Check objection = check_facets(mesh)) return objection;
+  if (Check objection = internal::check_hull(mesh)) return objection;
   return check_use(mesh);
 }
 
-// The first edges, as seen from the lower of their triangles, that break the two properties.
-struct BadCircles {
+// The first facets, as seen from the lower of their simplices, that break the two properties.
+struct BadBalls {
   std::size_t inside = kAll;  // the opposite vertex of the neighbour is inside
-  std::size_t tie = kAll;     // it is on the circumcircle and counts as inside
+  std::size_t tie = kAll;     // it is on the circumsphere and counts as inside
 };
 
-// Both triangles at an edge turn left, so what holds on one side of it holds on the other.
-BadCircles find_bad_circles(const Mesh2& mesh) {
+// Both simplices at a facet are positively oriented, so what holds on one side of it holds on the
+// other.
+template <int D>
+BadBalls find_bad_balls(const VerifiedMesh<D>& mesh) {
   return parallel::parallel_reduce(
-      0, mesh.triangles.size(), kGrain, BadCircles{},
+      0, mesh.vertices.size(), kVerifyGrain, BadBalls{},
       [&](std::size_t first, std::size_t last) {
-        BadCircles bad;
-        for (std::size_t edge = first; edge < last; ++edge) {
-          const std::uint32_t mate = mesh.edges.mates[edge];
-          if (mate == FacetMates::kNone || mate < edge) continue;
-          const std::uint32_t* v = mesh.triangles.data() + (edge - edge % 3);
-          const std::array c = {mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2])};
-          const glm::dvec2 q = mesh.at(mesh.triangles[mate]);
-          const int sign = incircle(c[0], c[1], c[2], q);
-          if (sign > 0) bad.inside = std::min(bad.inside, edge);
-          if (sign == 0 && counts_as_inside(c, q)) bad.tie = std::min(bad.tie, edge);
+        BadBalls bad;
+        for (std::size_t facet = first; facet < last; ++facet) {
+          const std::uint32_t mate = mesh.facets.mates[facet];
+          if (mate == FacetMates::kNone || mate < facet) continue;
+          const auto corners = mesh.corners(facet / (D + 1));
+          const auto q = mesh.at(mesh.vertices[mate]);
+          const int sign = in_ball(corners, q);
+          if (sign > 0) bad.inside = std::min(bad.inside, facet);
+          if (sign == 0 && counts_as_inside(corners, q)) bad.tie = std::min(bad.tie, facet);
         }
         return bad;
       },
-      [](const BadCircles& a, const BadCircles& b) {
-        return BadCircles{std::min(a.inside, b.inside), std::min(a.tie, b.tie)};
+      [](const BadBalls& a, const BadBalls& b) {
+        return BadBalls{std::min(a.inside, b.inside), std::min(a.tie, b.tie)};
       });
 }
 
-Check check_circle(const Mesh2& mesh, std::size_t edge, const char* what) {
-  if (edge == kAll) return std::nullopt;
-  return Objection{edge / 3, row(mesh.triangles[mesh.edges.mates[edge]]) + what};
+template <int D>
+Check check_ball(const VerifiedMesh<D>& mesh, std::size_t facet, const std::string& where) {
+  if (facet == kAll) return std::nullopt;
+  return Objection{facet / (D + 1), row(mesh.vertices[mesh.facets.mates[facet]]) + where};
 }
 
-Check check_representatives(const Mesh2& mesh) {
+template <int D>
+Check check_representatives(const VerifiedMesh<D>& mesh) {
   const std::size_t bad = find_first(
-      mesh.given.size(), [&](std::size_t i) { return mesh.given[i] != mesh.triangles[i]; });
+      mesh.given.size(), [&](std::size_t i) { return mesh.given[i] != mesh.vertices[i]; });
   if (bad == kAll) return std::nullopt;
-  return Objection{bad / 3,
-                   row(mesh.given[bad]) + " is a vertex, but equals " + row(mesh.triangles[bad])};
+  return Objection{bad / (D + 1),
+                   row(mesh.given[bad]) + " is a vertex, but equals " + row(mesh.vertices[bad])};
 }
 
-Mesh2 build(PointView<double> points, std::span<const std::uint32_t> triangles) {
-  Mesh2 mesh{points, triangles, lowest_equal_rows(points, 2), {}, 0, {}};
+template <int D>
+VerifiedMesh<D> build(PointView<double> points, std::span<const std::uint32_t> simplices) {
+  VerifiedMesh<D> mesh{points, simplices, lowest_equal_rows(points, D), {}, 0, {}};
   for (std::size_t i = 0; i < points.size(); ++i) mesh.distinct += mesh.lowest[i] == i ? 1 : 0;
-  mesh.triangles.resize(triangles.size());
-  parallel::parallel_for(0, triangles.size(), kGrain,
-                         [&](std::size_t i) { mesh.triangles[i] = mesh.lowest[triangles[i]]; });
-  mesh.edges = match_facets(2, mesh.triangles, points.size());
+  mesh.vertices.resize(simplices.size());
+  parallel::parallel_for(0, simplices.size(), kVerifyGrain,
+                         [&](std::size_t i) { mesh.vertices[i] = mesh.lowest[simplices[i]]; });
+  mesh.facets = match_facets(D, mesh.vertices, points.size());
   return mesh;
 }
 
-void object(Verdict& verdict, const Objection& objection) {
-  if (objection.simplex != kAll) verdict.simplex = objection.simplex;
-  verdict.reason = objection.reason;
-}
-
-}  // namespace
-
-Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t> triangles) {
+template <int D>
+Verdict verify(PointView<double> points, std::span<const std::uint32_t> simplices) {
   Verdict verdict;
-  if (const Check objection = check_rows(points, triangles)) {
-    object(verdict, *objection);
-    return verdict;
-  }
-  const Mesh2 mesh = build(points, triangles);
+  const auto objects = [&](const Check& objection) {
+    if (!objection) return false;
+    if (objection->simplex != kAll) verdict.simplex = objection->simplex;
+    verdict.reason = objection->reason;
+    return true;
+  };
+  if (objects(check_rows<D>(points, simplices))) return verdict;
+  const VerifiedMesh<D> mesh = build<D>(points, simplices);
   verdict.distinct = mesh.distinct;
-  if (const Check objection = check_coverage(mesh)) {
-    object(verdict, *objection);
-    return verdict;
-  }
+  if (objects(check_coverage(mesh))) return verdict;
   verdict.valid = true;
-  const BadCircles bad = find_bad_circles(mesh);
-  if (const Check objection = check_circle(mesh, bad.inside, " is inside its circumcircle")) {
-    object(verdict, *objection);
-    return verdict;
-  }
+  const BadBalls bad = find_bad_balls(mesh);
+  const std::string ball = Words<D>::ball;
+  if (objects(check_ball(mesh, bad.inside, " is inside its " + ball))) return verdict;
   verdict.delaunay = true;
-  if (const Check objection = check_representatives(mesh)) {
-    object(verdict, *objection);
-    return verdict;
-  }
-  if (const Check objection =
-          check_circle(mesh, bad.tie, " is on its circumcircle and counts as inside")) {
-    object(verdict, *objection);
+  if (objects(check_representatives(mesh))) return verdict;
+  if (objects(check_ball(mesh, bad.tie, " is on its " + ball + " and counts as inside"))) {
     return verdict;
   }
   verdict.canonical = true;
   return verdict;
+}
+
+}  // namespace
+
+Verdict verify_simplices(int dim, PointView<double> points,
+                         std::span<const std::uint32_t> simplices) {
+  return dim == 2 ? verify<2>(points, simplices) : verify<3>(points, simplices);
+}
+
+Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t> triangles) {
+  return verify<2>(points, triangles);
 }
 
 std::optional<std::size_t> first_different_row(PointView<double> vertices, PointView<double> points,

@@ -23,22 +23,29 @@ struct Verdict {
   std::size_t distinct = 0;            // distinct points
 };
 
-// Checks triangles, three vertices each, exactly:
+// Checks triangles (`dim` 2) or tetrahedra (3), dim + 1 vertices each, exactly:
 //
-// - vertices are rows of `points`, and each triangle turns left;
-// - an edge is shared by two triangles at most, on either side of it, and the edges of one triangle
-//   form one convex polygon. The number of triangles over a place is the winding number of the
-//   polygon around it, so the triangles cover the hull exactly once, and a vertex on an edge or in
-//   a triangle would show as a place that is covered twice (Mehlhorn et al. 1999);
-// - every distinct point is a vertex of a triangle (of none, if all points are collinear);
-// - for each inner edge the opposite vertex of the neighbour is not inside the circumcircle, from
+// - vertices are rows of `points`, and each simplex is positively oriented;
+// - a facet is shared by two simplices at most, on either side of it, and the facets of one simplex
+//   form one convex polygon or polyhedron. The number of simplices over a place is the winding
+//   number of that boundary around it, so the simplices cover the hull exactly once, and a vertex
+//   on a facet or in a simplex would show as a place that is covered twice (Mehlhorn et al. 1999);
+// - every distinct point is a vertex of a simplex (of none, if all points are collinear or
+//   coplanar);
+// - for each inner facet the opposite vertex of the neighbour is not inside the circumsphere, from
 //   which the Delaunay property follows (Delaunay 1934);
-// - canonical: where it is on the circumcircle, it counts as outside when the four points are
+// - canonical: where it is on the circumsphere, it counts as outside when the dim + 2 points are
 //   considered from the lexicographically largest down (Devillers and Teillaud 2011).
 //
-// A vertex may be any of several equal rows. Points may be any finite doubles. O(n), parallel.
+// A vertex may be any of several equal rows. Points may be any finite doubles. O(n) expected,
+// parallel.
 //
-// REQUIRES: fewer than 2^32 - 1 points and triangle corners; triangles.size() is a multiple of 3.
+// REQUIRES: dim is 2 or 3; fewer than 2^32 - 1 points and corners of simplices; simplices.size()
+// is a multiple of dim + 1.
+Verdict verify_simplices(int dim, PointView<double> points,
+                         std::span<const std::uint32_t> simplices);
+
+// The same of triangles.
 Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t> triangles);
 
 // The lowest row in which coordinates 0 .. dim-1 of two point sets differ (-0 equals 0), and be it

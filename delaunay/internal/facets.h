@@ -17,7 +17,7 @@ struct FacetMates {
   std::uint32_t crowded = kNone;     // the lowest facet that is shared by three or more; no mates
 };
 
-// O(n log n) in the worst case, linear where vertices are in few simplices; parallel.
+// O(n) expected, parallel.
 //
 // REQUIRES: dim is 2 or 3; simplices.size() is a multiple of dim + 1 and below 2^32 - 1; vertices
 // are below `points`.
