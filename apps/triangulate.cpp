@@ -33,6 +33,7 @@ Json statistics_of(const Options& options, const delaunay::PointCloud& points,
                    const delaunay::Triangulation& result, const delaunay::Statistics& phases,
                    const Seconds& seconds) {
   const delaunay::Options& how = options.how;
+  const delaunay::Synchronization& sync = phases.synchronization;
   return {
       {"schema", "delray.triangulate/1"},
       {"input",
@@ -45,6 +46,7 @@ Json statistics_of(const Options& options, const delaunay::PointCloud& points,
         {"location", how.location},
         {"split", how.split},
         {"order", how.order},
+        {"deadlocks", how.deadlocks},
         {"threads", how.threads},
         {"seed", how.seed},
         {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
@@ -63,14 +65,17 @@ Json statistics_of(const Options& options, const delaunay::PointCloud& points,
         {"extract", phases.extract}}},
       {"memory", {{"peak_rss", peak_memory()}}},
       {"sync",
-       {{"lock_calls", 0},
-        {"already_locked", 0},
-        {"free", 0},
-        {"waits", 0},
-        {"deadlocks", 0},
-        {"rollbacks", 0},
-        {"repaired", 0},
-        {"fragments", 0}}},
+       {{"lock_calls", sync.lock_calls},
+        {"already_locked", sync.already_locked},
+        {"free", sync.free},
+        {"waits", sync.waits},
+        {"deadlocks", sync.deadlocks},
+        {"rollbacks", sync.rollbacks},
+        {"burglaries", sync.burglaries},
+        {"repaired", sync.repaired},
+        {"rebuilds", sync.rebuilds},
+        {"fragments", sync.fragments},
+        {"dag_nodes", phases.dag_nodes}}},
   };
 }
 
@@ -142,6 +147,10 @@ void add_triangulate(CLI::App& program, Session& session) {
   command->add_option("--split", options->how.split, "which thread gets which points");
   command->add_option("--order", options->how.order,
                       "order of insertion: auto, random, brio, hilbert");
+  command->add_option("--deadlocks", options->how.deadlocks,
+                      "of the optimistic method: detection, priorities");
+  command->add_option("--queue", options->how.queue,
+                      "places in the queue of the batch method (default: by the number of points)");
   command->add_option("--threads", options->threads, "workers (default: cores)")
       ->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->how.seed, "seed of everything random (default 1)");

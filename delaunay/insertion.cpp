@@ -2,34 +2,25 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <vector>
 
+#include "delaunay/dag_location.h"
 #include "delaunay/insertion_order.h"
 #include "delaunay/internal/access.h"
+#include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/extract.h"
 #include "delaunay/internal/finite_points.h"
+#include "delaunay/internal/first_triangle.h"
 #include "delaunay/internal/flip.h"
+#include "delaunay/internal/insert_in_leaf.h"
+#include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/sole_dag_access.h"
 #include "delaunay/internal/stopwatch.h"
 #include "delaunay/mesh.h"
-#include "delaunay/predicates.h"
 #include "delaunay/walk.h"
 
 namespace delray::delaunay::internal {
 namespace {
-
-// The first three points in order that turn, counterclockwise.
-std::optional<std::array<VertexNumber, 3>> first_triangle(std::span<const glm::dvec2> points) {
-  const auto n = static_cast<VertexNumber>(points.size());
-  VertexNumber second = 1;
-  while (second < n && points[second] == points[0]) ++second;
-  for (VertexNumber third = second + 1; third < n; ++third) {
-    const int turn = orient2d(points[0], points[second], points[third]);
-    if (turn > 0) return std::array{VertexNumber{0}, second, third};
-    if (turn < 0) return std::array{VertexNumber{0}, third, second};
-  }
-  return std::nullopt;
-}
 
 // One triangle and the ghosts around it.
 void start_mesh(Mesh<2>& mesh, const std::array<VertexNumber, 3>& triangle) {
@@ -44,14 +35,7 @@ void start_mesh(Mesh<2>& mesh, const std::array<VertexNumber, 3>& triangle) {
   }
 }
 
-std::uint64_t count_distinct(std::vector<glm::dvec2> points) {
-  std::sort(points.begin(), points.end(), lexicographically_less);
-  return static_cast<std::uint64_t>(std::unique(points.begin(), points.end()) - points.begin());
-}
-
-}  // namespace
-
-Triangulation insert_all(PointView<double> input, const Options& options) {
+Triangulation insert_walking(PointView<double> input, const Options& options) {
   Statistics unused;
   Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
   const bool timed = options.statistics != nullptr;
@@ -103,6 +87,35 @@ Triangulation insert_all(PointView<double> input, const Options& options) {
   result.distinct = distinct;
   seconds.extract = watch.lap();
   return result;
+}
+
+// Down the history of the triangulation to the triangle of the next point.
+Triangulation insert_descending(PointView<double> input, const Options& options) {
+  DagRun run(input, options, 1);
+  if (!run.is_flat()) {
+    const DagTriangulation triangulation = run.triangulation();
+    SoleDagAccess access(triangulation.dag, 0);
+    InsertionPhases phases(options);
+    std::vector<NodeNumber> suspects;
+    for (VertexNumber vertex = 0; vertex < run.end(0); ++vertex) {
+      phases.next_point();
+      if (run.is_first(vertex)) continue;
+      const glm::dvec2& q = run.point(vertex);
+      const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                      root_of(triangulation.dag, triangulation.orientation, q), q);
+      phases.located();
+      insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+    }
+    phases.finish();
+  }
+  return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_all(PointView<double> points, const Options& options) {
+  return options.location == "dag" ? insert_descending(points, options)
+                                   : insert_walking(points, options);
 }
 
 }  // namespace delray::delaunay::internal

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <vector>
 
 #include "delaunay/internal/divide.h"
 #include "delaunay/internal/insertion.h"
+#include "delaunay/internal/pessimistic.h"
 
 namespace delray::delaunay {
 namespace {
@@ -53,7 +55,8 @@ std::string choose(const char* what, const std::string& wanted,
 
 // The first method of a dimension is what "auto" means there.
 std::span<const Method> methods() {
-  static const std::array<Method, 2> table = {{
+  static const std::vector<std::string_view> all_splits = {"random", "slabs", "distance", "curve"};
+  static const std::vector<Method> table = {
       {.name = "divide-and-conquer",
        .description =
            "halves of the points on either side of a line, knitted together; the fastest",
@@ -65,22 +68,52 @@ std::span<const Method> methods() {
       {.name = "insertion",
        .description = "one point after the other, made Delaunay again by flips",
        .dims = {2},
-       .locations = {"walk"},
+       .locations = {"walk", "dag"},
        .splits = {},
        .orders = {"brio", "hilbert", "random"},
        .triangulate = internal::insert_all},
-  }};
+      {.name = "pessimistic",
+       .description = "threads locate together and insert in a critical section",
+       .dims = {2},
+       .locations = {"dag"},
+       .splits = all_splits,
+       .orders = {"brio", "random"},
+       .triangulate = internal::insert_pessimistically},
+  };
   return table;
 }
 
 std::span<const Choice> locations() {
-  static constexpr std::array<Choice, 1> table = {{
+  static constexpr std::array<Choice, 2> table = {{
+      {"dag", "down the history of the triangulation; not along a curve, which makes it deep"},
       {"walk", "from the last simplex towards the point, by edges in random order"},
   }};
   return table;
 }
 
-std::span<const Choice> splits() { return {}; }
+std::span<const Choice> splits() {
+  static constexpr std::array<Choice, 4> table = {{
+      {"random", "any points to any thread"},
+      {"slabs", "strips by x"},
+      {"distance", "rings by the distance from the origin"},
+      {"curve", "intervals of a Hilbert curve"},
+  }};
+  return table;
+}
+
+std::span<const Choice> deadlock_strategies() {
+  static constexpr std::array<Choice, 2> table = {{
+      {"detection", "a thread whose waiting would close a circle undoes its insertion"},
+      {"priorities", "a thread waits only for threads of lower priority, or undoes its insertion"},
+  }};
+  return table;
+}
+
+std::vector<std::string_view> orders_for(const Method& method, std::string_view location) {
+  std::vector<std::string_view> result = method.orders;
+  if (location == "dag") std::erase(result, "hilbert");
+  return result;
+}
 
 std::span<const Choice> orders() {
   static constexpr std::array<Choice, 3> table = {{
@@ -97,7 +130,8 @@ Options resolve(const Options& options) {
   result.method = method.name;
   result.location = choose("location", options.location, method.locations, method.name);
   result.split = choose("split", options.split, method.splits, method.name);
-  result.order = choose("order", options.order, method.orders, method.name);
+  result.order = choose("order", options.order, orders_for(method, result.location), method.name);
+  result.deadlocks = choose("deadlock strategy", options.deadlocks, method.deadlocks, method.name);
   return result;
 }
 

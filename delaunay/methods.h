@@ -22,6 +22,7 @@ struct Method {
   std::vector<int> dims;
   // What goes with the method, the default first; empty if it leaves no such choice.
   std::vector<std::string_view> locations, splits, orders;
+  std::vector<std::string_view> deadlocks = {};
   // REQUIRES: options that resolve() returned.
   Triangulation (*triangulate)(PointView<double> points, const Options& options);
 };
@@ -30,6 +31,10 @@ std::span<const Method> methods();
 std::span<const Choice> locations();
 std::span<const Choice> splits();
 std::span<const Choice> orders();
+std::span<const Choice> deadlock_strategies();
+
+// The orders of a method that go with one of its locations, the default first.
+std::vector<std::string_view> orders_for(const Method& method, std::string_view location);
 
 // The options with every "auto" replaced by what will be used; "none" where the method leaves no
 // choice.

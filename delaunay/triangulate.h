@@ -1,6 +1,7 @@
 // Delaunay triangulations of points in memory.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -10,13 +11,30 @@
 
 namespace delray::delaunay {
 
+// What the threads of the methods with locks did about each other, summed over threads. 0 where a
+// method does not have it.
+struct Synchronization {
+  std::uint64_t lock_calls = 0;      // each for all simplices that the next step needs
+  std::uint64_t already_locked = 0;  // simplices that the thread held when it asked for them
+  std::uint64_t free = 0;            // simplices that were locked at once
+  std::uint64_t waits = 0;           // simplices that another thread held
+  std::uint64_t deadlocks = 0;       // found, or (strategy priorities) feared
+  std::uint64_t rollbacks = 0;       // insertions that were undone and tried again
+  std::uint64_t burglaries = 0;      // of simplices of a waiting thread
+  std::uint64_t repaired = 0;        // simplices that the repair at the end replaced
+  std::uint64_t rebuilds = 0;        // repairs that had to start from the points
+  std::uint64_t fragments = 0;       // connected sets of simplices made by one thread
+};
+
 // Seconds of the phases, summed over threads; a phase that a method does not have stays 0.
 struct Statistics {
-  double order = 0;      // sorting the points
-  double locate = 0;     // finding the simplex that a point falls into
-  double subdivide = 0;  // making simplices
-  double legalize = 0;   // flips
-  double extract = 0;    // from the mesh to the result
+  double order = 0;             // sorting the points
+  double locate = 0;            // finding the simplex that a point falls into
+  double subdivide = 0;         // making simplices
+  double legalize = 0;          // flips
+  double extract = 0;           // from the mesh to the result
+  std::uint64_t dag_nodes = 0;  // simplices that ever were, if the method keeps them
+  Synchronization synchronization;
 };
 
 // Names are those of the tables in methods.h; "auto" stands for the best that goes with the others.
@@ -26,6 +44,8 @@ struct Options {
   std::string location = "auto";
   std::string split = "auto";
   std::string order = "auto";
+  std::string deadlocks = "auto";    // what a thread does that must not wait
+  std::size_t queue = 0;             // places in the queue of the batch method; 0: as in the report
   std::uint64_t seed = 1;            // of everything that is random
   int threads = 1;                   // at most
   Statistics* statistics = nullptr;  // filled in if not null

@@ -38,23 +38,30 @@ std::size_t count_distinct(const Points& points) {
   return distinct.size();
 }
 
-// Every legal combination in 2D.
+// Every method in 2D with every location and order that goes with it; dag_methods_test.cpp has all
+// splits and strategies.
 std::vector<Options> combinations() {
   std::vector<Options> result;
   for (const Method& method : methods()) {
     if (std::ranges::find(method.dims, 2) == method.dims.end()) continue;
-    for (const auto order :
-         method.orders.empty() ? std::vector<std::string_view>{"none"} : method.orders) {
-      Options options;
-      options.method = method.name;
-      options.order = order;
-      result.push_back(options);
+    Options options;
+    options.method = method.name;
+    for (const auto location :
+         method.locations.empty() ? std::vector<std::string_view>{"none"} : method.locations) {
+      options.location = location;
+      const auto orders = orders_for(method, location);
+      for (const auto order : orders.empty() ? std::vector<std::string_view>{"none"} : orders) {
+        options.order = order;
+        result.push_back(options);
+      }
     }
   }
   return result;
 }
 
-std::string name_of(const Options& options) { return options.method + ", " + options.order; }
+std::string name_of(const Options& options) {
+  return options.method + ", " + options.location + ", " + options.order;
+}
 
 TEST(Triangulate, IsTheBruteForceTriangulationOfHardPoints) {
   constexpr std::array<std::size_t, 10> kSizes = {1, 2, 3, 4, 5, 6, 7, 9, 14, 26};

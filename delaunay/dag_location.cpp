@@ -1,0 +1,41 @@
+#include "delaunay/dag_location.h"
+
+namespace delray::delaunay {
+
+NodeNumber root_of(const Dag<2>& dag, const Orientation& orientation, const glm::dvec2& q) {
+  for (NodeNumber root = 0; root + 1 < kRoots; ++root) {
+    bool inside = true;
+    for (unsigned k = 0; k < 3 && inside; ++k) {
+      const CornerNumber corner = corner_of(root, k);
+      inside =
+          orientation(dag.vertex(next_corner(corner)), dag.vertex(previous_corner(corner)), q) >= 0;
+    }
+    if (inside) return root;
+  }
+  return kRoots - 1;
+}
+
+NodeNumber descend(const Dag<2>& dag, const Orientation& orientation, NodeNumber node,
+                   const glm::dvec2& q) {
+  for (;;) {
+    const NodeNumber first = dag.child(node, 0);
+    if (first == kNoNode) return node;
+    const NodeNumber second = dag.child(node, 1), third = dag.child(node, 2);
+    const VertexNumber a = dag.vertex(corner_of(first, 0)), b = dag.vertex(corner_of(first, 1)),
+                       apex = dag.vertex(corner_of(first, 2));
+    // Of what is inside the node, only the edges at the apex decide.
+    const int at_b = orientation(b, apex, q);
+    if (third == kNoNode) {
+      node = at_b >= 0 ? first : second;
+      continue;
+    }
+    if (at_b >= 0 && orientation(apex, a, q) >= 0) {
+      node = first;
+      continue;
+    }
+    const VertexNumber c = dag.vertex(corner_of(second, 1));
+    node = at_b <= 0 && orientation(c, apex, q) >= 0 ? second : third;
+  }
+}
+
+}  // namespace delray::delaunay

@@ -1,0 +1,152 @@
+// Insertion by subdivision and flips (Lawson 1977) that leaves the history behind (Kohout 2004, 6).
+//
+// What may be touched when is the matter of an access policy:
+//   Grant acquire({nodes})   before an operation, for all nodes that it writes or decides by
+//   NodeNumber create()      a slot that is acquired already
+//   link(outside, inside)    makes two facets one; `outside` is of an older node, `inside` of a new
+//   retire(node, children)   gives a leaf its children
+// An operation is a subdivision or a flip; between operations the leaves are a triangulation.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "delaunay/conflict.h"
+#include "delaunay/dag.h"
+#include "delaunay/orientation.h"
+
+namespace delray::delaunay::internal {
+
+enum class Grant {
+  kGranted,
+  kRefused,  // nothing will come of it: undo everything
+  kShaken,   // granted, but others have changed acquired nodes meanwhile: look again
+};
+
+struct DagTriangulation {
+  Dag<2>& dag;
+  std::span<const glm::dvec2> points;
+  Orientation orientation;
+};
+
+// As conflict() of a mesh.
+inline bool conflict(const DagTriangulation& triangulation, NodeNumber node, const glm::dvec2& q) {
+  std::array<const glm::dvec2*, 3> p;
+  for (unsigned k = 0; k < 3; ++k) {
+    const VertexNumber vertex = triangulation.dag.vertex(corner_of(node, k));
+    p[k] = vertex == kInfiniteVertex ? nullptr : &triangulation.points[vertex];
+  }
+  for (unsigned k = 0; k < 3; ++k) {
+    if (p[k] != nullptr) continue;
+    const glm::dvec2 &a = *p[(k + 1) % 3], &b = *p[(k + 2) % 3];
+    const int side = orient2d(a, b, q);
+    return side != 0 ? side > 0 : strictly_between(a, b, q);
+  }
+  return circle_conflict(*p[0], *p[1], *p[2], q);
+}
+
+// Cuts a leaf into three around `vertex`, which is corner 2 of all three; they are appended to
+// `suspects`. Writes nothing unless all is granted. REQUIRES: the leaf is acquired.
+template <class Access>
+Grant subdivide(const DagTriangulation& triangulation, NodeNumber leaf, VertexNumber vertex,
+                Access& access, std::vector<NodeNumber>& suspects) {
+  Dag<2>& dag = triangulation.dag;
+  std::array<VertexNumber, 3> old;
+  std::array<CornerNumber, 3> around;
+  for (unsigned k = 0; k < 3; ++k) {
+    old[k] = dag.vertex(corner_of(leaf, k));
+    around[k] = dag.neighbour(corner_of(leaf, k));
+  }
+  const Grant grant =
+      access.acquire({simplex_of(around[0]), simplex_of(around[1]), simplex_of(around[2])});
+  if (grant != Grant::kGranted) return grant;
+  std::array<NodeNumber, 3> children;
+  for (unsigned k = 0; k < 3; ++k) {
+    children[k] = access.create({old[(k + 1) % 3], old[(k + 2) % 3], vertex});
+    suspects.push_back(children[k]);
+  }
+  for (unsigned k = 0; k < 3; ++k) {
+    dag.set_neighbour(corner_of(children[k], 0), corner_of(children[(k + 1) % 3], 1));
+    dag.set_neighbour(corner_of(children[k], 1), corner_of(children[(k + 2) % 3], 0));
+    access.link(around[k], corner_of(children[k], 2));
+  }
+  access.retire(leaf, children);
+  return Grant::kGranted;
+}
+
+// Replaces the edge opposite `corner` by the one between its vertex and the vertex beyond, if that
+// gives triangles that turn left. The vertex of `corner` becomes corner 2 of both new leaves, which
+// replace the old ones in `made`. Writes nothing unless all is granted.
+template <class Access>
+Grant flip(const DagTriangulation& triangulation, CornerNumber corner, Access& access,
+           std::array<NodeNumber, 2>& made) {
+  Dag<2>& dag = triangulation.dag;
+  const CornerNumber beyond = dag.neighbour(corner);
+  const CornerNumber right = next_corner(corner), left = previous_corner(corner);
+  // Right of the corner lies its triangle's next vertex, which is the one before `beyond`.
+  const CornerNumber over_right = dag.neighbour(right), over_left = dag.neighbour(left);
+  const CornerNumber beyond_left = dag.neighbour(previous_corner(beyond)),
+                     beyond_right = dag.neighbour(next_corner(beyond));
+  const Grant grant = access.acquire({simplex_of(over_right), simplex_of(over_left),
+                                      simplex_of(beyond_left), simplex_of(beyond_right)});
+  if (grant != Grant::kGranted) return grant;
+  const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
+  const VertexNumber first = dag.vertex(right), last = dag.vertex(left);
+  made = {access.create({first, far, near}), access.create({far, last, near})};
+  dag.set_neighbour(corner_of(made[0], 0), corner_of(made[1], 1));
+  dag.set_neighbour(corner_of(made[1], 1), corner_of(made[0], 0));
+  access.link(over_left, corner_of(made[0], 1));
+  access.link(over_right, corner_of(made[1], 0));
+  access.link(beyond_right, corner_of(made[0], 2));
+  access.link(beyond_left, corner_of(made[1], 2));
+  access.retire(simplex_of(corner), {made[0], made[1], kNoNode});
+  access.retire(simplex_of(beyond), {made[0], made[1], kNoNode});
+  return Grant::kGranted;
+}
+
+// Flips until no leaf of the new vertex has a neighbour in conflict with it; `suspects` are such
+// leaves, the vertex in corner 2. Never kShaken. After kRefused some are left.
+template <class Access>
+Grant legalize(const DagTriangulation& triangulation, Access& access,
+               std::vector<NodeNumber>& suspects) {
+  const Dag<2>& dag = triangulation.dag;
+  while (!suspects.empty()) {
+    const NodeNumber suspect = suspects.back();
+    if constexpr (Access::kShakes) {
+      if (!dag.is_leaf(suspect)) {
+        suspects.pop_back();
+        continue;
+      }
+    }
+    const CornerNumber corner = corner_of(suspect, 2);
+    const VertexNumber vertex = dag.vertex(corner);
+    const CornerNumber beyond = dag.neighbour(corner);
+    Grant grant = access.acquire({simplex_of(beyond)});
+    if (grant == Grant::kRefused) return grant;
+    if (grant == Grant::kShaken) continue;
+    bool flips = conflict(triangulation, simplex_of(beyond), triangulation.points[vertex]);
+    if constexpr (Access::kShakes) {
+      // Beside an unfinished insertion of another thread circles are no proof of anything.
+      const VertexNumber first = dag.vertex(next_corner(corner)),
+                         last = dag.vertex(previous_corner(corner)), far = dag.vertex(beyond);
+      flips = flips && far != vertex &&
+              triangulation.orientation.of_vertices(first, far, vertex) > 0 &&
+              triangulation.orientation.of_vertices(far, last, vertex) > 0;
+    }
+    if (!flips) {
+      suspects.pop_back();
+      continue;
+    }
+    std::array<NodeNumber, 2> made;
+    grant = flip(triangulation, corner, access, made);
+    if (grant == Grant::kRefused) return grant;
+    if (grant == Grant::kShaken) continue;
+    suspects.back() = made[0];
+    suspects.push_back(made[1]);
+  }
+  return Grant::kGranted;
+}
+
+}  // namespace delray::delaunay::internal

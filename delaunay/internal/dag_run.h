@@ -1,0 +1,67 @@
+// What every method that works on a history does before and after it inserts points.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "delaunay/dag.h"
+#include "delaunay/internal/dag_flip.h"
+#include "delaunay/plan.h"
+#include "delaunay/points.h"
+#include "delaunay/triangulate.h"
+
+namespace delray::delaunay::internal {
+
+// Points in the order of a plan, and a history of the first triangle and the ghosts around it.
+class DagRun {
+ public:
+  // Errors: see triangulate().
+  DagRun(PointView<double> input, const Options& options, std::size_t parts);
+
+  // Whether all points are equal or collinear: then there is nothing to insert.
+  bool is_flat() const { return !first_; }
+  std::size_t parts() const { return begins_.size() - 1; }
+  std::size_t begin(std::size_t part) const { return begins_[part]; }
+  std::size_t end(std::size_t part) const { return begins_[part + 1]; }
+  const glm::dvec2& point(VertexNumber vertex) const { return points_[vertex]; }
+  // Whether a point is a vertex of the first triangle.
+  bool is_first(VertexNumber vertex) const {
+    return vertex == (*first_)[0] || vertex == (*first_)[1] || vertex == (*first_)[2];
+  }
+  // REQUIRES: not flat.
+  DagTriangulation triangulation() { return {dag_, points_, Orientation(points_, *first_)}; }
+
+  // The vertex of a leaf that has the coordinates of a point, or kInfiniteVertex.
+  VertexNumber equal_vertex(NodeNumber leaf, const glm::dvec2& q) const {
+    for (unsigned k = 0; k < 3; ++k) {
+      const VertexNumber vertex = dag_.vertex(corner_of(leaf, k));
+      if (vertex != kInfiniteVertex && points_[vertex] == q) return vertex;
+    }
+    return kInfiniteVertex;
+  }
+  // Notes that a point is equal to a vertex. Any thread.
+  void merge(VertexNumber vertex, VertexNumber point);
+
+  // The result: the finite leaves. Completes the statistics. O(nodes).
+  Triangulation finish();
+
+  const Options& options;
+
+ private:
+  void start_dag();
+  Triangulation leaves() const;
+
+  std::vector<glm::dvec2> points_;
+  std::vector<std::uint32_t> rows_;  // point i was row rows_[i], the lowest of equal ones
+  std::vector<std::size_t> begins_;
+  std::optional<std::array<VertexNumber, 3>> first_;
+  std::atomic<std::uint64_t> duplicates_ = 0;
+  Dag<2> dag_;
+};
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,46 @@
+// The access policy of a thread that is alone with the leaves, always or for the moment.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+
+#include "delaunay/dag.h"
+#include "delaunay/internal/dag_flip.h"
+#include "delaunay/internal/node_cache.h"
+
+namespace delray::delaunay::internal {
+
+// Grants everything. Others may go down the graph meanwhile.
+class SoleDagAccess {
+ public:
+  static constexpr bool kShakes = false;
+
+  SoleDagAccess(Dag<2>& dag, std::uint32_t thread) : dag_(dag), cache_(thread) {}
+  ~SoleDagAccess() { cache_.abandon_rest(dag_); }
+  SoleDagAccess(const SoleDagAccess&) = delete;
+  SoleDagAccess& operator=(const SoleDagAccess&) = delete;
+
+  Grant acquire(std::initializer_list<NodeNumber>) const { return Grant::kGranted; }
+  NodeNumber create(const std::array<VertexNumber, 3>& vertices) {
+    const NodeNumber node = cache_.take(dag_);
+    dag_.set_leaf(node, vertices, 0);
+    ++created_;
+    return node;
+  }
+  void link(CornerNumber outside, CornerNumber inside) {
+    dag_.set_neighbour(outside, inside);
+    dag_.set_neighbour(inside, outside);
+  }
+  void retire(NodeNumber node, const std::array<NodeNumber, 3>& children) {
+    dag_.set_children(node, children);
+  }
+  std::uint64_t created() const { return created_; }
+
+ private:
+  Dag<2>& dag_;
+  NodeCache<2> cache_;
+  std::uint64_t created_ = 0;
+};
+
+}  // namespace delray::delaunay::internal

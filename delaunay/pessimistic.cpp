@@ -1,0 +1,48 @@
+#include "delaunay/internal/pessimistic.h"
+
+#include <mutex>
+#include <vector>
+
+#include "delaunay/dag_location.h"
+#include "delaunay/internal/dag_run.h"
+#include "delaunay/internal/insert_in_leaf.h"
+#include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/sole_dag_access.h"
+#include "delaunay/internal/team.h"
+
+namespace delray::delaunay::internal {
+
+Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
+  DagRun run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation triangulation = run.triangulation();
+  Team team;
+  std::mutex leaves;
+  std::uint64_t entered = 0;
+  const auto work = [&](std::size_t thread) {
+    SoleDagAccess access(triangulation.dag, static_cast<std::uint32_t>(thread));
+    InsertionPhases phases(options);
+    std::vector<NodeNumber> suspects;
+    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
+         ++vertex) {
+      team.check();
+      phases.next_point();
+      if (run.is_first(vertex)) continue;
+      const glm::dvec2& q = run.point(vertex);
+      NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                root_of(triangulation.dag, triangulation.orientation, q), q);
+      const std::lock_guard alone(leaves);
+      ++entered;
+      leaf = descend(triangulation.dag, triangulation.orientation, leaf, q);
+      phases.located();
+      insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+    }
+    const std::lock_guard alone(leaves);
+    phases.finish();
+  };
+  team.run(run.parts(), work);
+  if (options.statistics != nullptr) options.statistics->synchronization.lock_calls = entered;
+  return run.finish();
+}
+
+}  // namespace delray::delaunay::internal

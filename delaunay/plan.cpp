@@ -1,0 +1,73 @@
+#include "delaunay/plan.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "delaunay/insertion_order.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay {
+namespace {
+
+// Puts the smallest keys into the first part and so on. Ties go by number, so that the result does
+// not depend on the library.
+void split_by(std::span<std::uint32_t> numbers, std::span<const double> keys,
+              std::span<const std::size_t> begins) {
+  if (begins.size() <= 2) return;
+  const std::size_t middle = begins.size() / 2;
+  const auto less = [&](std::uint32_t i, std::uint32_t j) {
+    return keys[i] != keys[j] ? keys[i] < keys[j] : i < j;
+  };
+  const auto at = [&](std::size_t place) {
+    return numbers.begin() + static_cast<std::ptrdiff_t>(place - begins.front());
+  };
+  if (begins[middle] < begins.back()) {
+    std::nth_element(numbers.begin(), at(begins[middle]), numbers.end(), less);
+  }
+  split_by({numbers.begin(), at(begins[middle])}, keys, begins.first(middle + 1));
+  split_by({at(begins[middle]), numbers.end()}, keys, begins.subspan(middle));
+}
+
+}  // namespace
+
+Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
+               std::string_view order, std::uint64_t seed) {
+  assert(parts >= 1);
+  Plan plan;
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i <= parts; ++i) plan.begins.push_back(n * i / parts);
+  if (parts == 1) {
+    plan.points = insertion_order(points, order, seed);
+    return plan;
+  }
+  if (split == "slabs" || split == "distance") {
+    plan.points.resize(n);
+    std::iota(plan.points.begin(), plan.points.end(), 0U);
+    std::vector<double> keys(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      keys[i] = split == "slabs" ? points[i].x : std::hypot(points[i].x, points[i].y);
+    }
+    split_by(plan.points, keys, plan.begins);
+  } else {
+    assert(split == "random" || split == "curve");
+    plan.points = insertion_order(points, split == "curve" ? "hilbert" : "random", seed);
+  }
+  parallel::parallel_for(0, parts, 1, [&](std::size_t part) {
+    const std::size_t begin = plan.begins[part], end = plan.begins[part + 1];
+    // Ascending first, so that what is done within the part depends on its points alone.
+    std::sort(plan.points.begin() + static_cast<std::ptrdiff_t>(begin),
+              plan.points.begin() + static_cast<std::ptrdiff_t>(end));
+    std::vector<glm::dvec2> own(end - begin);
+    std::vector<std::uint32_t> numbers(end - begin);
+    for (std::size_t i = begin; i < end; ++i) own[i - begin] = points[plan.points[i]];
+    const std::vector<std::uint32_t> places = insertion_order(own, order, seed + 1 + part);
+    for (std::size_t i = 0; i < places.size(); ++i) numbers[i] = plan.points[begin + places[i]];
+    std::copy(numbers.begin(), numbers.end(),
+              plan.points.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+  return plan;
+}
+
+}  // namespace delray::delaunay
