@@ -63,6 +63,16 @@ class Array {
     size_ = size;
   }
 
+  // Forgets the values [first, last), whose memory goes back to the system as far as it came from
+  // there; they may be written again.
+  void discard(std::size_t first, std::size_t last) {
+    const std::size_t from = (first * sizeof(T) + kPage - 1) / kPage * kPage;
+    const std::size_t to = last * sizeof(T) / kPage * kPage;
+    if (mapped_ && from < to) {
+      madvise(reinterpret_cast<std::byte*>(data_) + from, to - from, MADV_DONTNEED);
+    }
+  }
+
  private:
   static constexpr std::size_t kPage = 65536;  // a multiple of every system's
   static constexpr std::size_t kMappedFrom = std::size_t{1} << 20;

@@ -36,7 +36,7 @@ class Divider {
   Divider(const CellOrder& order, Mesh<2>& mesh, const Options& options)
       : points_(order.points.data()),
         hulls_{order.points.data(), mesh},
-        filter_({order.points.data(), order.points.size()}, order.box),
+        filter_({order.points.data(), order.points.size()}, order.box, options.threads),
         progress_(options.progress),
         parallel_(options.threads > 1) {}
 
@@ -237,29 +237,33 @@ class Divider {
   std::atomic<double> seconds_ = 0;
 };
 
-}  // namespace
-
-Triangulation divide_and_conquer(PointView<double> points, const Options& options) {
+Triangulation run(PointView<double> points, const Options& options) {
   Statistics seconds;
   Stopwatch watch;
-  CellOrder order = cell_order(points);
+  CellOrder order = cell_order(points, options.threads);
   seconds.order = watch.lap();
   const std::size_t n = order.points.size();
   if (options.progress != nullptr) options.progress->advance(points.size() - n);
   Mesh<2> mesh(n < 2 ? 0 : 2 * n - 2);
   if (n >= 2) {
     Divider divider(order, mesh, options);
-    const auto divide = [&] { divider.divide(0, n, CellGrid(order.box)); };
-    // An arena takes longer to set up than a thousand points to triangulate.
-    options.threads > 1 ? parallel::Arena(options.threads).execute(divide) : divide();
+    divider.divide(0, n, CellGrid(order.box));
     seconds.subdivide = divider.seconds();
   }
   watch.lap();
   order.points = {};
-  Triangulation result = extract(std::move(mesh), {order.rows.data(), n});
+  Triangulation result = extract(std::move(mesh), {order.rows.data(), n}, options.threads);
   seconds.extract = watch.lap();
   if (options.statistics != nullptr) *options.statistics = seconds;
   return result;
+}
+
+}  // namespace
+
+Triangulation divide_and_conquer(PointView<double> points, const Options& options) {
+  // An arena takes longer to set up than a thousand points to triangulate.
+  if (options.threads <= 1) return run(points, options);
+  return parallel::Arena(options.threads).execute([&] { return run(points, options); });
 }
 
 }  // namespace delray::delaunay::internal

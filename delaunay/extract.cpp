@@ -1,20 +1,41 @@
 #include "delaunay/internal/extract.h"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
+
+#include "delaunay/internal/blocks.h"
 
 namespace delray::delaunay::internal {
 
-Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows) {
+Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads) {
+  Mesh<2> own = std::move(mesh);
+  const Blocks blocks(own.size(), threads);
+  std::vector<Mesh<2>::Packed> packed(blocks.count());
+  blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
+    packed[block] = own.pack_finite(first, last);
+    for (VertexNumber& vertex : packed[block].vertices) vertex = rows[vertex];
+  });
+  std::vector<std::size_t> begin = {0};
+  std::size_t ghosts = 0;
+  for (const auto& part : packed) {
+    begin.push_back(begin.back() + part.vertices.size());
+    ghosts += part.ghosts;
+  }
+
   Triangulation result;
   result.dim = 2;
   result.distinct = rows.size();
-  std::size_t live = 0;
-  for (SimplexNumber t = 0; t < mesh.size(); ++t) live += mesh.is_dead(t) ? 0 : 1;
-  Array<VertexNumber> vertices = std::move(mesh).take_finite();
-  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = rows[vertices[i]];
-  result.vertices.assign(vertices.data(), vertices.data() + vertices.size());
+  if (blocks.count() == 1) {
+    result.vertices.assign(packed[0].vertices.begin(), packed[0].vertices.end());
+  } else {
+    result.vertices.resize(begin.back());
+    blocks.for_each([&](std::size_t block, std::size_t, std::size_t) {
+      std::ranges::copy(packed[block].vertices, result.vertices.data() + begin[block]);
+    });
+  }
   // Of collinear points only ghosts are left, and those bound nothing.
-  if (!result.vertices.empty()) result.hull_facets = live - result.size();
+  if (!result.vertices.empty()) result.hull_facets = ghosts;
   return result;
 }
 

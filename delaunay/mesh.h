@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "delaunay/array.h"
@@ -72,6 +73,28 @@ class Mesh {
     }
     numbers_.shrink(next);
     return std::move(numbers_);
+  }
+
+  struct Packed {
+    std::span<VertexNumber> vertices;
+    std::size_t ghosts = 0;
+  };
+  // Packs what take_finite() would give for the simplices [first, last) into the memory of these,
+  // which are lost, gives the rest back, and counts the live ghosts among them. Disjoint ranges may
+  // be packed at the same time.
+  Packed pack_finite(std::size_t first, std::size_t last) {
+    const std::size_t begin = 2 * kCorners * first;
+    std::size_t next = begin, ghosts = 0;
+    for (auto t = static_cast<SimplexNumber>(first); t < last; ++t) {
+      if (is_dead(t)) continue;
+      if (is_ghost(t)) {
+        ++ghosts;
+        continue;
+      }
+      for (unsigned k = 0; k < kCorners; ++k) numbers_[next++] = vertex(corner_of(t, k));
+    }
+    numbers_.discard(next, 2 * kCorners * last);
+    return {{numbers_.data() + begin, next - begin}, ghosts};
   }
 
  private:

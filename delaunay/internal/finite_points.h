@@ -15,8 +15,8 @@ inline glm::dvec2 point_at(const PointView<double>& points, std::size_t row) {
 }
 
 // The bounding box. Errors: std::invalid_argument that names the first row with a coordinate that
-// is not finite.
-Box2d finite_box(const PointView<double>& points);
+// is not finite. Several threads are those of the arena that the caller is in.
+Box2d finite_box(const PointView<double>& points, int threads = 1);
 
 // All points, or the same error.
 std::vector<glm::dvec2> finite_points(const PointView<double>& points);

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "delaunay/conflict.h"
+#include "delaunay/internal/blocks.h"
 #include "delaunay/internal/cells.h"
 
 namespace delray::delaunay::internal {
@@ -29,15 +31,15 @@ struct SeamView {
 
 class SeamFilter {
  public:
-  // Looks at all points once.
-  SeamFilter(std::span<const glm::dvec2> points, const Box2d& box) {
+  // Looks at all points once. Several threads are those of the arena that the caller is in.
+  SeamFilter(std::span<const glm::dvec2> points, const Box2d& box, int threads) {
     const double largest = std::max(
         {std::abs(box.low.x), std::abs(box.low.y), std::abs(box.high.x), std::abs(box.high.y)});
     if (largest > kLargest) {
       underflow_ = HUGE_VAL;
       return;
     }
-    const double unit = common_unit(points);
+    const double unit = common_unit(points, threads);
     if (unit < kSmallest) return;
     exact_cross_ = 0x1p+52 * unit * unit;
     exact_circle_ = exact_cross_ * unit * unit;
@@ -82,8 +84,8 @@ class SeamFilter {
   // 4 roundings, as in kIncircleError, and room for second-order terms.
   static constexpr double kCrossError = 4.5 * kRoundOff;
 
-  // The largest power of two that all coordinates are multiples of; 1 if all are 0.
-  static double common_unit(std::span<const glm::dvec2> points) {
+  // The exponent, as it is stored, of the lowest bit of any coordinate; 2046 if all are 0.
+  static int lowest_exponent(std::span<const glm::dvec2> points) {
     int lowest = 2046;
     for (const glm::dvec2& p : points) {
       for (const double x : {p.x, p.y}) {
@@ -93,6 +95,17 @@ class SeamFilter {
         if (x != 0) lowest = std::min(lowest, exponent + std::countr_zero(mantissa) - 52);
       }
     }
+    return lowest;
+  }
+
+  // The largest power of two that all coordinates are multiples of; 1 if all are 0.
+  static double common_unit(std::span<const glm::dvec2> points, int threads) {
+    const Blocks blocks(points.size(), threads);
+    std::vector<int> exponents(blocks.count());
+    blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
+      exponents[block] = lowest_exponent(points.subspan(first, last - first));
+    });
+    const int lowest = *std::ranges::min_element(exponents);
     if (lowest <= 0) return 0;
     return lowest == 2046 ? 1.0 : std::bit_cast<double>(static_cast<std::uint64_t>(lowest) << 52);
   }

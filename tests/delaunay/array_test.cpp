@@ -37,5 +37,22 @@ TEST(Array, ShrinkKeepsTheFirstValues) {
   }
 }
 
+// Values around the discarded ones stay, and all can be written again.
+TEST(Array, DiscardsAPart) {
+  for (const std::size_t size : {std::size_t{100}, std::size_t{3} << 20}) {
+    Array<std::uint32_t> array(size);
+    for (std::size_t i = 0; i < size; ++i) array[i] = static_cast<std::uint32_t>(i);
+    const std::size_t first = size / 3, last = size - size / 5;
+    array.discard(first, last);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size; ++i)
+      kept += array[i] == i && (i < first || i >= last) ? 1 : 0;
+    EXPECT_EQ(kept, size - (last - first));
+    for (std::size_t i = first; i < last; ++i) array[i] = static_cast<std::uint32_t>(i);
+    EXPECT_EQ(array[first], first);
+    EXPECT_EQ(array[last - 1], last - 1);
+  }
+}
+
 }  // namespace
 }  // namespace delray::delaunay

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "delaunay/internal/finite_points.h"
+#include "parallel/arena.h"
 #include "tests/delaunay/hard_points.h"
 
 namespace delray::delaunay::internal {
@@ -28,6 +29,24 @@ TEST(CellOrder, KeepsEachPointOnceWithItsLowestRow) {
         ASSERT_NE(found, lowest.end()) << kind.name;
         EXPECT_EQ(found->second, order.rows[i]) << kind.name;
         lowest[found->first] = 0xffffffffU;  // not a second time
+      }
+    }
+  }
+}
+
+TEST(CellOrder, IsTheSameForEveryNumberOfThreads) {
+  for (const HardPoints& kind : hard_points()) {
+    const Points points = kind.make(40000, 4);
+    const CellOrder expected = cell_order(view(points));
+    for (const int threads : {2, 5}) {
+      const CellOrder order =
+          parallel::Arena(threads).execute([&] { return cell_order(view(points), threads); });
+      EXPECT_EQ(order.box, expected.box) << kind.name;
+      ASSERT_EQ(order.rows.size(), expected.rows.size()) << kind.name;
+      ASSERT_EQ(order.points.size(), expected.points.size()) << kind.name;
+      for (std::size_t i = 0; i < expected.rows.size(); ++i) {
+        ASSERT_EQ(order.rows[i], expected.rows[i]) << kind.name << ", " << i;
+        ASSERT_EQ(order.points[i], expected.points[i]) << kind.name << ", " << i;
       }
     }
   }

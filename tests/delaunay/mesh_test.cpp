@@ -62,5 +62,27 @@ TEST(Mesh, TakeFiniteSkipsGhostsAndTheDead) {
   }
 }
 
+TEST(Mesh, PackFiniteSkipsGhostsAndTheDeadOfEachRange) {
+  constexpr SimplexNumber kSimplices = 200000;
+  Mesh<2> mesh(kSimplices);
+  std::vector<VertexNumber> expected;
+  for (SimplexNumber t = 0; t < kSimplices; ++t) {
+    for (unsigned k = 0; k < 3; ++k) mesh.set_vertex(corner_of(t, k), 3 * t + k);
+    if (t % 5 == 1) mesh.set_vertex(corner_of(t, t % 3), kInfiniteVertex);
+    if (t % 5 == 2) mesh.set_vertex(corner_of(t, 0), kDeadVertex);
+    if (t % 5 == 1 || t % 5 == 2) continue;
+    for (unsigned k = 0; k < 3; ++k) expected.push_back(3 * t + k);
+  }
+  std::vector<VertexNumber> packed;
+  std::size_t ghosts = 0;
+  for (const auto& [first, last] : {std::pair(0U, 70001U), std::pair(70001U, kSimplices)}) {
+    const Mesh<2>::Packed part = mesh.pack_finite(first, last);
+    packed.insert(packed.end(), part.vertices.begin(), part.vertices.end());
+    ghosts += part.ghosts;
+  }
+  EXPECT_EQ(packed, expected);
+  EXPECT_EQ(ghosts, kSimplices / 5);
+}
+
 }  // namespace
 }  // namespace delray::delaunay
