@@ -5,8 +5,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "delaunay/internal/batch.h"
 #include "delaunay/internal/divide.h"
 #include "delaunay/internal/insertion.h"
+#include "delaunay/internal/optimistic.h"
 #include "delaunay/internal/pessimistic.h"
 
 namespace delray::delaunay {
@@ -72,6 +74,13 @@ std::span<const Method> methods() {
        .splits = {},
        .orders = {"brio", "hilbert", "random"},
        .triangulate = internal::insert_all},
+      {.name = "batch",
+       .description = "threads that locate, and one that inserts what a queue brings it",
+       .dims = {2},
+       .locations = {"dag"},
+       .splits = all_splits,
+       .orders = {"brio", "random"},
+       .triangulate = internal::insert_in_batches},
       {.name = "pessimistic",
        .description = "threads locate together and insert in a critical section",
        .dims = {2},
@@ -79,6 +88,14 @@ std::span<const Method> methods() {
        .splits = all_splits,
        .orders = {"brio", "random"},
        .triangulate = internal::insert_pessimistically},
+      {.name = "optimistic",
+       .description = "threads lock the simplices that they need and undo what cannot go on",
+       .dims = {2},
+       .locations = {"dag"},
+       .splits = all_splits,
+       .orders = {"brio", "random"},
+       .deadlocks = {"detection", "priorities"},
+       .triangulate = internal::insert_optimistically},
   };
   return table;
 }

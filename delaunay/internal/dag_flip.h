@@ -139,7 +139,7 @@ Grant legalize(const DagTriangulation& triangulation, Access& access,
       suspects.pop_back();
       continue;
     }
-    std::array<NodeNumber, 2> made;
+    std::array<NodeNumber, 2> made{};
     grant = flip(triangulation, corner, access, made);
     if (grant == Grant::kRefused) return grant;
     if (grant == Grant::kShaken) continue;

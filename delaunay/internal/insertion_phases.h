@@ -22,6 +22,10 @@ class InsertionPhases {
     if (progress_ != nullptr && ++points_ == kPointsPerStep) report();
     if (timed()) watch_.lap();
   }
+  // What came before is nobody's.
+  void resume() {
+    if (timed()) watch_.lap();
+  }
   void located() {
     if (timed()) seconds_.locate += watch_.lap();
   }

@@ -1,0 +1,166 @@
+// The access policy of the optimistic method: a lock in every simplex, and a journal.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <initializer_list>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "delaunay/dag.h"
+#include "delaunay/internal/dag_flip.h"
+#include "delaunay/internal/node_cache.h"
+#include "delaunay/internal/team.h"
+#include "delaunay/internal/thread_waits.h"
+#include "delaunay/triangulate.h"
+
+namespace delray::delaunay::internal {
+
+// What the threads of a run share to decide who waits.
+struct Blocking {
+  explicit Blocking(std::size_t threads) : waits(threads), priorities(threads) {
+    for (std::size_t i = 0; i < threads; ++i) priorities[i].store(i, std::memory_order_relaxed);
+  }
+
+  ThreadWaits waits;
+  std::vector<std::atomic<std::uint64_t>> priorities;
+  std::mutex raising;
+};
+
+// Simplices stay locked until commit() or rollback(). Children are published by commit(), so that
+// no other thread ever sees what is undone. kCounted: whether to count.
+template <bool kCounted>
+class NodeLocks {
+ public:
+  static constexpr bool kShakes = false;
+
+  NodeLocks(Dag<2>& dag, Team& team, Blocking& blocking, std::uint32_t thread, bool priorities)
+      : dag_(dag),
+        team_(team),
+        blocking_(blocking),
+        thread_(thread),
+        priorities_(priorities),
+        cache_(thread) {}
+  ~NodeLocks() { cache_.abandon_rest(dag_); }
+  NodeLocks(const NodeLocks&) = delete;
+  NodeLocks& operator=(const NodeLocks&) = delete;
+
+  Grant acquire(std::initializer_list<NodeNumber> nodes) {
+    if (kCounted) ++counts_.lock_calls;
+    for (const NodeNumber node : nodes) {
+      const std::uint32_t owner = dag_.try_lock(node, thread_ + 1);
+      if (owner == thread_ + 1) {
+        if (kCounted) ++counts_.already_locked;
+        continue;
+      }
+      if (owner != 0) {
+        if (kCounted) ++counts_.waits;
+        if (!(priorities_ ? wait_by_priority(node) : wait_unless_deadlock(node))) {
+          if (kCounted) ++counts_.deadlocks;
+          return Grant::kRefused;
+        }
+      } else if (kCounted) {
+        ++counts_.free;
+      }
+      locked_.push_back(node);
+    }
+    return Grant::kGranted;
+  }
+
+  NodeNumber create(const std::array<VertexNumber, 3>& vertices) {
+    const NodeNumber node = cache_.take(dag_);
+    dag_.set_leaf(node, vertices, thread_ + 1);
+    locked_.push_back(node);
+    created_.push_back(node);
+    return node;
+  }
+  void link(CornerNumber outside, CornerNumber inside) {
+    journal_.push_back({outside, dag_.neighbour(outside)});
+    dag_.set_neighbour(outside, inside);
+    dag_.set_neighbour(inside, outside);
+  }
+  void retire(NodeNumber node, const std::array<NodeNumber, 3>& children) {
+    retired_.push_back({node, children});
+  }
+
+  void commit() {
+    for (const Retired& retired : retired_) dag_.set_children(retired.node, retired.children);
+    unlock();
+  }
+  void rollback() {
+    if (kCounted && !created_.empty()) ++counts_.rollbacks;
+    for (std::size_t i = journal_.size(); i-- > 0;) {
+      dag_.set_neighbour(journal_[i].corner, journal_[i].neighbour);
+    }
+    for (const NodeNumber node : created_) dag_.abandon(node);
+    unlock();
+    if (priorities_) raise_priority();
+    // Whoever waits for what was just unlocked should get it first.
+    std::this_thread::yield();
+  }
+
+  const Synchronization& counts() const { return counts_; }
+
+ private:
+  struct Link {
+    CornerNumber corner, neighbour;
+  };
+  struct Retired {
+    NodeNumber node;
+    std::array<NodeNumber, 3> children;
+  };
+
+  // Waiting is short and rare: the thread yields rather than sleeps (Kohout 2004, 7.7.1).
+  bool wait_unless_deadlock(NodeNumber node) {
+    std::uint32_t owner = 0;
+    if (!blocking_.waits.enter(dag_, thread_, node, false, owner)) return false;
+    while (dag_.try_lock(node, thread_ + 1) != 0) {
+      std::this_thread::yield();
+      team_.check();
+    }
+    blocking_.waits.leave(thread_);
+    return true;
+  }
+  bool wait_by_priority(NodeNumber node) {
+    const std::uint64_t own = blocking_.priorities[thread_].load(std::memory_order_relaxed);
+    for (;;) {
+      const std::uint32_t owner = dag_.try_lock(node, thread_ + 1);
+      if (owner == 0) return true;
+      if (blocking_.priorities[owner - 1].load(std::memory_order_relaxed) >= own) return false;
+      std::this_thread::yield();
+      team_.check();
+    }
+  }
+  void raise_priority() {
+    const std::lock_guard guard(blocking_.raising);
+    std::uint64_t highest = 0;
+    for (const auto& priority : blocking_.priorities) {
+      highest = std::max(highest, priority.load(std::memory_order_relaxed));
+    }
+    blocking_.priorities[thread_].store(highest + 1, std::memory_order_relaxed);
+  }
+
+  void unlock() {
+    for (const NodeNumber node : locked_) dag_.set_owner(node, 0);
+    locked_.clear();
+    created_.clear();
+    journal_.clear();
+    retired_.clear();
+  }
+
+  Dag<2>& dag_;
+  Team& team_;
+  Blocking& blocking_;
+  std::uint32_t thread_;
+  bool priorities_;
+  NodeCache<2> cache_;
+  std::vector<NodeNumber> locked_, created_;
+  std::vector<Link> journal_;
+  std::vector<Retired> retired_;
+  Synchronization counts_;
+};
+
+}  // namespace delray::delaunay::internal

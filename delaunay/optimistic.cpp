@@ -1,0 +1,88 @@
+#include "delaunay/internal/optimistic.h"
+
+#include <mutex>
+#include <vector>
+
+#include "delaunay/dag_location.h"
+#include "delaunay/internal/dag_run.h"
+#include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/node_locks.h"
+#include "delaunay/internal/team.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// Returns whether the point is in; otherwise everything was undone.
+template <class Access>
+bool insert(DagRun& run, const DagTriangulation& triangulation, NodeNumber leaf,
+            VertexNumber vertex, Access& access, std::vector<NodeNumber>& suspects,
+            InsertionPhases& phases) {
+  // Another thread may have been faster between the location and the lock.
+  if (access.acquire({leaf}) != Grant::kGranted || !triangulation.dag.is_leaf(leaf)) return false;
+  phases.located();
+  const VertexNumber equal = run.equal_vertex(leaf, run.point(vertex));
+  if (equal != kInfiniteVertex) {
+    run.merge(equal, vertex);
+    return true;
+  }
+  if (subdivide(triangulation, leaf, vertex, access, suspects) != Grant::kGranted) return false;
+  phases.subdivided();
+  if (legalize(triangulation, access, suspects) != Grant::kGranted) return false;
+  phases.legalized();
+  return true;
+}
+
+void add(Synchronization& sum, const Synchronization& counts) {
+  sum.lock_calls += counts.lock_calls;
+  sum.already_locked += counts.already_locked;
+  sum.free += counts.free;
+  sum.waits += counts.waits;
+  sum.deadlocks += counts.deadlocks;
+  sum.rollbacks += counts.rollbacks;
+}
+
+template <bool kCounted>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation triangulation = run.triangulation();
+  Team team;
+  Blocking blocking(run.parts());
+  std::mutex finishing;
+  const auto work = [&](std::size_t thread) {
+    NodeLocks<kCounted> access(triangulation.dag, team, blocking,
+                               static_cast<std::uint32_t>(thread),
+                               options.deadlocks == "priorities");
+    InsertionPhases phases(options);
+    std::vector<NodeNumber> suspects;
+    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
+         ++vertex) {
+      team.check();
+      phases.next_point();
+      if (run.is_first(vertex)) continue;
+      const glm::dvec2& q = run.point(vertex);
+      NodeNumber node = root_of(triangulation.dag, triangulation.orientation, q);
+      for (;;) {
+        node = descend(triangulation.dag, triangulation.orientation, node, q);
+        if (insert(run, triangulation, node, vertex, access, suspects, phases)) break;
+        access.rollback();
+        suspects.clear();
+      }
+      access.commit();
+    }
+    const std::lock_guard alone(finishing);
+    phases.finish();
+    if (kCounted) add(options.statistics->synchronization, access.counts());
+  };
+  team.run(run.parts(), work);
+  return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_optimistically(PointView<double> points, const Options& options) {
+  return options.statistics != nullptr ? insert_all_points<true>(points, options)
+                                       : insert_all_points<false>(points, options);
+}
+
+}  // namespace delray::delaunay::internal
