@@ -10,6 +10,7 @@
 // oriented, ghosts with the infinite vertex anywhere on the far side.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,6 +42,13 @@ class Mesh {
   explicit Mesh(std::size_t simplices) : numbers_(2 * kCorners * simplices) {}
 
   std::size_t size() const { return numbers_.size() / (2 * kCorners); }
+  // Makes room for `simplices` slots, the new ones undefined. O(size), old and new together in
+  // memory. REQUIRES: size() <= simplices <= kMaximumSimplices.
+  void grow(std::size_t simplices) {
+    Array<std::uint32_t> larger(2 * kCorners * simplices);
+    std::copy_n(numbers_.data(), numbers_.size(), larger.data());
+    numbers_ = std::move(larger);
+  }
   // Drops the slots from `simplices` on.
   void shrink(std::size_t simplices) { numbers_.shrink(2 * kCorners * simplices); }
 
@@ -51,6 +59,11 @@ class Mesh {
   void link(CornerNumber a, CornerNumber b) {
     numbers_[place(a) + 1] = b;
     numbers_[place(b) + 1] = a;
+  }
+
+  // The facet's other side alone, where that side's own link stands or is somebody else's to write.
+  void set_neighbour(CornerNumber corner, CornerNumber neighbour) {
+    numbers_[place(corner) + 1] = neighbour;
   }
 
   bool is_ghost(SimplexNumber simplex) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "delaunay/internal/batch.h"
+#include "delaunay/internal/cavity_insertion.h"
 #include "delaunay/internal/divide.h"
 #include "delaunay/internal/insertion.h"
 #include "delaunay/internal/optimistic.h"
@@ -96,6 +97,14 @@ std::span<const Method> methods() {
        .orders = {"brio", "random"},
        .deadlocks = {"detection", "priorities"},
        .triangulate = internal::insert_optimistically},
+      {.name = "cavity",
+       .description = "random rounds of points along a curve, each joined to the boundary of its "
+                      "cavity; the fastest in 3D",
+       .dims = {3},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .triangulate = internal::insert_by_cavities},
   };
   return table;
 }

@@ -1,0 +1,189 @@
+#include "delaunay/internal/curve_order3.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+constexpr std::size_t kGrain = 8192;  // points: about 0.2 ms
+
+glm::dvec3 point_at3(const PointView<double>& points, std::size_t row) {
+  return {points(row, 0) + 0.0, points(row, 1) + 0.0, points(row, 2) + 0.0};
+}
+
+// One level of the Hilbert curve in a cube that is passed from corner `entry` along axis
+// `direction` (C. Hamilton, Compact Hilbert Indices, 2006).
+struct Turn {
+  std::uint8_t place;  // of the octant along the curve, 0 .. 7
+  std::uint8_t next;   // state inside the octant
+};
+using Turns = std::array<std::array<Turn, 8>, 24>;  // state: 8 * direction + entry
+
+constexpr unsigned rotate_left3(unsigned x, unsigned by) {
+  return ((x << by) | (x >> (3 - by))) & 7U;
+}
+
+constexpr Turns make_turns() {
+  Turns turns = {};
+  for (unsigned direction = 0; direction < 3; ++direction) {
+    for (unsigned entry = 0; entry < 8; ++entry) {
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        const unsigned axis = (direction + 1) % 3;
+        const unsigned gray = rotate_left3(octant ^ entry, (3 - axis) % 3);
+        const unsigned place = gray ^ (gray >> 1) ^ (gray >> 2);
+        const unsigned before = place == 0 ? 0 : 2 * ((place - 1) / 2);
+        const unsigned corner = place == 0 ? 0 : before ^ (before >> 1);
+        const unsigned ones = place == 0 ? 0 : std::countr_one(place % 2 == 0 ? place - 1 : place);
+        const unsigned next_entry = entry ^ rotate_left3(corner, axis);
+        const unsigned next_direction = (direction + ones % 3 + 1) % 3;
+        turns[8 * direction + entry][octant] = {
+            static_cast<std::uint8_t>(place),
+            static_cast<std::uint8_t>(8 * next_direction + next_entry)};
+      }
+    }
+  }
+  return turns;
+}
+
+constexpr Turns kTurns = make_turns();
+
+std::uint64_t place_on_curve(const std::array<std::uint32_t, 3>& cell, int bits) {
+  std::uint64_t place = 0;
+  unsigned state = 0;
+  for (int bit = bits - 1; bit >= 0; --bit) {
+    const unsigned octant =
+        (cell[0] >> bit & 1U) | (cell[1] >> bit & 1U) << 1 | (cell[2] >> bit & 1U) << 2;
+    const Turn turn = kTurns[state][octant];
+    place = place << 3 | turn.place;
+    state = turn.next;
+  }
+  return place;
+}
+
+std::uint64_t scramble(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+  return x ^ (x >> 31);
+}
+
+struct Keyed {
+  std::uint64_t key;
+  std::uint32_t row;
+};
+
+void radix_sort(Array<Keyed>& items, int key_bits) {
+  constexpr int kDigit = 11;
+  Array<Keyed> other(items.size());
+  for (int shift = 0; shift < key_bits; shift += kDigit) {
+    const auto digit = [shift](const Keyed& item) {
+      return (item.key >> shift) & ((1U << kDigit) - 1);
+    };
+    std::vector<std::uint32_t> begin((1U << kDigit) + 1, 0);
+    for (std::size_t i = 0; i < items.size(); ++i) ++begin[digit(items[i]) + 1];
+    for (std::size_t d = 1; d < begin.size(); ++d) begin[d] += begin[d - 1];
+    for (std::size_t i = 0; i < items.size(); ++i) other[begin[digit(items[i])]++] = items[i];
+    std::swap(items, other);
+  }
+}
+
+}  // namespace
+
+PointRange finite_range(const PointView<double>& points) {
+  PointRange range;
+  if (points.size() == 0) return range;
+  constexpr int kNone = 4000;
+  int exponent = kNone;
+  bool finite = true;
+  range.low = range.high = point_at3(points, 0);
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    const glm::dvec3 p = point_at3(points, row);
+    range.low = min(range.low, p);
+    range.high = max(range.high, p);
+    for (int k = 0; k < 3; ++k) {
+      finite &= p[k] - p[k] == 0;
+      if (p[k] == 0) continue;
+      const auto bits = std::bit_cast<std::uint64_t>(p[k]);
+      const auto biased = static_cast<int>(bits >> 52 & 0x7ff);
+      // Denormals have no leading 1, and the exponent of the smallest normal numbers.
+      const std::uint64_t mantissa =
+          (bits & ((std::uint64_t{1} << 52) - 1)) | (biased != 0 ? std::uint64_t{1} << 52 : 0);
+      exponent = std::min(exponent, std::max(biased, 1) - 1075 + std::countr_zero(mantissa));
+    }
+  }
+  if (exponent != kNone) range.grid_exponent = exponent;
+  if (finite) return range;
+  std::size_t row = 0;
+  while (std::isfinite(points(row, 0)) && std::isfinite(points(row, 1)) &&
+         std::isfinite(points(row, 2))) {
+    ++row;
+  }
+  throw std::invalid_argument("row " + std::to_string(row) +
+                              " has a coordinate that is not finite");
+}
+
+CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& range,
+                         std::uint64_t seed) {
+  const std::size_t n = points.size();
+  // Each round is so many times larger than all before it. In small ones the walks are long, but in
+  // large ones the curve alone would visit degenerate sets in a bad order.
+  constexpr unsigned kGrowth = 8;
+  constexpr std::size_t kFirstRound = 500;
+  int rounds = 1;
+  for (std::size_t size = n; size > kFirstRound && rounds < 15; size /= kGrowth) ++rounds;
+  // Cells of about 2^-12 of a point each if points are everywhere alike.
+  const int bits = std::clamp(static_cast<int>(std::bit_width(n)) / 3 + 4, 4, 19);
+
+  // Neither the width nor its reciprocal may overflow.
+  double before = 1;
+  glm::dvec3 size = range.high * 0.25 - range.low * 0.25;
+  const double width = std::max({size.x, size.y, size.z});
+  if (width > 0x1p+900) before = 0x1p-200;
+  if (width < 0x1p-900) before = 0x1p+600;
+  const glm::dvec3 low = range.low * (0.25 * before);
+  const double scale = width > 0 ? (std::ldexp(1.0, bits) - 0.5) / (width * before) : 0;
+
+  Array<Keyed> keys(n);
+  parallel::parallel_for(0, n, kGrain, [&](std::size_t row) {
+    const glm::dvec3 p = (point_at3(points, row) * (0.25 * before) - low) * scale;
+    std::array<std::uint32_t, 3> cell;
+    for (int k = 0; k < 3; ++k) {
+      cell[static_cast<std::size_t>(k)] =
+          static_cast<std::uint32_t>(std::min(p[k], std::ldexp(1.0, bits) - 1));
+    }
+    // Growing rounds: the last one with probability 1 - 1 / kGrowth, and so on.
+    std::uint64_t random = scramble(row + scramble(seed));
+    int round = rounds - 1;
+    while (round > 0 && random % kGrowth == 0) {
+      --round;
+      random /= kGrowth;
+    }
+    keys[row] = {static_cast<std::uint64_t>(round) << (3 * bits) | place_on_curve(cell, bits),
+                 static_cast<std::uint32_t>(row)};
+  });
+  radix_sort(keys, 3 * bits + std::bit_width(static_cast<unsigned>(rounds - 1)));
+
+  CurveOrder3 result;
+  result.vertices = Array<SpaceVertex>(n + 1);
+  result.vertices[0] = {glm::dvec3(0), 0, 0};
+  parallel::parallel_for(0, n, kGrain, [&](std::size_t i) {
+    const std::uint32_t row = keys[i].row;
+    result.vertices[i + 1] = {point_at3(points, row), row, 0};
+  });
+  std::size_t i = 0;
+  for (int round = 0; round < rounds; ++round) {
+    result.rounds.push_back(static_cast<std::uint32_t>(i));
+    while (i < n && static_cast<int>(keys[i].key >> (3 * bits)) == round) ++i;
+  }
+  result.rounds.push_back(static_cast<std::uint32_t>(n));
+  return result;
+}
+
+}  // namespace delray::delaunay::internal

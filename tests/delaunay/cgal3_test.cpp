@@ -1,0 +1,62 @@
+// CGAL as the oracle for 3D triangulations: same simplices on generated sets and on sets that are
+// hard.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "bench/peers/cgal3.h"
+#include "delaunay/generate.h"
+#include "delaunay/methods.h"
+#include "delaunay/triangulate.h"
+#include "tests/delaunay/hard_points3.h"
+
+namespace delray::delaunay {
+namespace {
+
+void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,
+                 const std::vector<int>& threads) {
+  const Triangulation expected = bench::triangulate_with_cgal3(points);
+  for (const Method& method : methods()) {
+    if (std::ranges::find(method.dims, 3) == method.dims.end()) continue;
+    for (const int count : threads) {
+      Options options;
+      options.dim = 3;
+      options.method = method.name;
+      options.threads = count;
+      const Triangulation actual = triangulate(view(points), options);
+      EXPECT_EQ(hash(actual), hash(expected)) << name << ", " << method.name << ", " << count;
+      EXPECT_EQ(actual.size(), expected.size()) << name << ", " << method.name;
+      if (expected.size() > 0) {
+        EXPECT_EQ(actual.hull_facets, expected.hull_facets) << name << ", " << method.name;
+      }
+      EXPECT_EQ(actual.distinct, expected.distinct) << name << ", " << method.name;
+    }
+  }
+}
+
+TEST(Cgal3, AgreesOnGeneratedPoints) {
+  for (const PointGenerator& generator : point_generators()) {
+    for (const std::size_t n : {100, 3000}) {
+      // Lines in space have quadratically many tetrahedra.
+      const bool quadratic = generator.name == "two-lines" || generator.name == "spiral";
+      expect_same(generator.generate(quadratic ? 100 + n / 10 : n, 3, n).positions,
+                  std::string(generator.name), {1, 2});
+    }
+  }
+}
+
+TEST(Cgal3, AgreesOnHardPoints) {
+  for (const HardPoints3& kind : hard_points3()) {
+    for (const std::size_t n : {10, 30, 150}) {
+      for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        expect_same(kind.make(n, seed),
+                    kind.name + ", n " + std::to_string(n) + ", seed " + std::to_string(seed), {1});
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace delray::delaunay
