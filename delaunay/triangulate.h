@@ -62,4 +62,7 @@ struct Options {
 // std::bad_alloc.
 Triangulation triangulate(PointView<double> points, const Options& options = {});
 
+// The same of floats, each as the double that equals it: 8 * dim bytes a point more.
+Triangulation triangulate(PointView<float> points, const Options& options = {});
+
 }  // namespace delray::delaunay
