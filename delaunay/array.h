@@ -4,11 +4,26 @@
 #include <sys/mman.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <type_traits>
 #include <utility>
 
 namespace delray::delaunay {
+
+// Asks for huge pages for memory that was not touched yet, where the system has them: fewer faults
+// on the way, fewer translations to miss later. Below some megabytes they would mostly be empty.
+inline void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  constexpr std::size_t kHugeFrom = std::size_t{4} << 20;
+  constexpr std::uintptr_t kPage = 65536;  // a multiple of every system's
+  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t first = (begin + kPage - 1) / kPage * kPage;
+  if (bytes >= kHugeFrom) {
+    madvise(reinterpret_cast<void*>(first), begin + bytes - first, MADV_HUGEPAGE);
+  }
+#endif
+}
 
 // Large ones come straight from the system, in huge pages where it has them: no time is spent on
 // zeros that are overwritten at once, and random access misses fewer translations.
@@ -29,9 +44,7 @@ class Array {
         mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
     data_ = static_cast<T*>(memory);
-#ifdef MADV_HUGEPAGE
-    if (bytes_ >= kHugeFrom) madvise(memory, bytes_, MADV_HUGEPAGE);
-#endif
+    prefer_huge_pages(memory, bytes_);
   }
   Array(Array&& other) noexcept { swap(other); }
   Array& operator=(Array&& other) noexcept {
@@ -76,8 +89,6 @@ class Array {
  private:
   static constexpr std::size_t kPage = 65536;  // a multiple of every system's
   static constexpr std::size_t kMappedFrom = std::size_t{1} << 20;
-  // Below this a huge page would mostly be empty.
-  static constexpr std::size_t kHugeFrom = std::size_t{4} << 20;
 
   void swap(Array& other) noexcept {
     std::swap(data_, other.data_);

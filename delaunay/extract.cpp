@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "delaunay/array.h"
 #include "delaunay/internal/blocks.h"
 
 namespace delray::delaunay::internal {
@@ -26,6 +27,8 @@ Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int t
   Triangulation result;
   result.dim = 2;
   result.distinct = rows.size();
+  result.vertices.reserve(begin.back());
+  prefer_huge_pages(result.vertices.data(), begin.back() * sizeof(VertexNumber));
   if (blocks.count() == 1) {
     result.vertices.assign(packed[0].vertices.begin(), packed[0].vertices.end());
   } else {
