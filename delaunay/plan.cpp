@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "delaunay/insertion_order.h"
-#include "parallel/parallel_for.h"
+#include "delaunay/internal/team.h"
 
 namespace delray::delaunay {
 namespace {
@@ -54,7 +54,7 @@ Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::strin
     assert(split == "random" || split == "curve");
     plan.points = insertion_order(points, split == "curve" ? "hilbert" : "random", seed);
   }
-  parallel::parallel_for(0, parts, 1, [&](std::size_t part) {
+  const auto order_part = [&](std::size_t part) {
     const std::size_t begin = plan.begins[part], end = plan.begins[part + 1];
     // Ascending first, so that what is done within the part depends on its points alone.
     std::sort(plan.points.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -66,7 +66,15 @@ Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::strin
     for (std::size_t i = 0; i < places.size(); ++i) numbers[i] = plan.points[begin + places[i]];
     std::copy(numbers.begin(), numbers.end(),
               plan.points.begin() + static_cast<std::ptrdiff_t>(begin));
-  });
+  };
+  // A thread takes about as long to start as to put this many points in order.
+  constexpr std::size_t kPointsPerThread = 1024;
+  if (n < parts * kPointsPerThread) {
+    for (std::size_t part = 0; part < parts; ++part) order_part(part);
+  } else {
+    internal::Team team;
+    team.run(parts, order_part);
+  }
   return plan;
 }
 

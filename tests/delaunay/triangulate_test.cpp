@@ -148,7 +148,7 @@ TEST(Triangulate, ManyPointsInOneCellOfTheGrid) {
 
 TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
   for (const HardPoints& kind : {hard_points().front(), hard_points().back()}) {
-    const Points points = kind.make(20000, 6);
+    const Points points = kind.make(8000, 6);
     const Hash128 expected = hash(triangulate(view(points)));
     for (Options options : combinations()) {
       for (const int threads : {2, 3, 8}) {
