@@ -270,11 +270,13 @@ TEST(BrokenFile, NoTriangles) {
 TEST(BrokenFile, EveryFileOfTheCorpusIsReadOrRefused) {
   const std::filesystem::path corpus =
       std::filesystem::path(DELRAY_SOURCE_DIR) / "tests/corpus/scene";
-  if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "no " << corpus;
+  int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
     SCOPED_TRACE(entry.path().filename());
     is_read(entry.path());
+    ++files;
   }
+  EXPECT_GT(files, 0) << corpus;
 }
 
 }  // namespace
