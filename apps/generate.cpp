@@ -13,7 +13,7 @@
 namespace delray::apps {
 namespace {
 
-struct Options {
+struct GenerateOptions {
   std::string kind, output;
   std::uint64_t count = 0;
   int dim = 2;
@@ -21,12 +21,12 @@ struct Options {
   bool list = false;
 };
 
-void require(const Options& options) {
+void require(const GenerateOptions& options) {
   if (options.kind.empty()) throw UsageError("generate: KIND is missing (--list names them)");
   if (options.output.empty()) throw UsageError("generate: -o FILE is missing");
 }
 
-int generate_points(const Options& options) {
+int generate_points(const GenerateOptions& options) {
   if (options.list) {
     print_table(delaunay::point_generators());
     return kDone;
@@ -40,7 +40,7 @@ int generate_points(const Options& options) {
   return kDone;
 }
 
-int generate_scene(const Options& options) {
+int generate_scene(const GenerateOptions& options) {
   if (options.list) {
     print_table(scenes::generators());
     return kDone;
@@ -60,9 +60,10 @@ int generate_scene(const Options& options) {
 void add_generate(CLI::App& program, Session& session) {
   CLI::App* generate = program.add_subcommand("generate", "make points or a scene");
   generate->require_subcommand(1);
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<GenerateOptions>();
   const auto add = [&](const char* name, const char* description, const char* kind,
-                       const char* count, int (*run)(const Options&), const char* examples) {
+                       const char* count, int (*run)(const GenerateOptions&),
+                       const char* examples) {
     CLI::App* command = generate->add_subcommand(name, description);
     command->add_option("KIND", options->kind, kind);
     command->add_option("-n", options->count, count)->check(CLI::PositiveNumber);

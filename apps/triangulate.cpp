@@ -17,7 +17,7 @@
 namespace delray::apps {
 namespace {
 
-struct Options {
+struct TriangulateOptions {
   PointInput input;
   std::string output, statistics;
   delaunay::Options how;
@@ -29,7 +29,7 @@ struct Seconds {
   double read = 0, triangulate = 0, write = 0;
 };
 
-Json statistics_of(const Options& options, const delaunay::PointCloud& points,
+Json statistics_of(const TriangulateOptions& options, const delaunay::PointCloud& points,
                    const delaunay::Triangulation& result, const delaunay::Statistics& phases,
                    const Seconds& seconds) {
   const delaunay::Options& how = options.how;
@@ -79,7 +79,7 @@ Json statistics_of(const Options& options, const delaunay::PointCloud& points,
   };
 }
 
-int run(Session& session, Options options) {
+int run(Session& session, TriangulateOptions options) {
   if (options.list) {
     print_table(delaunay::methods());
     return kDone;
@@ -136,7 +136,7 @@ int run(Session& session, Options options) {
 void add_triangulate(CLI::App& program, Session& session) {
   CLI::App* command =
       program.add_subcommand("triangulate", "compute the Delaunay triangulation of points");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TriangulateOptions>();
   command->add_option("POINTS", options->input.path, "a file of points, or - for standard input");
   command->add_option("-o,--output", options->output,
                       "the mesh: .ply .obj .off .stl .vtu .node; - for PLY on standard output");

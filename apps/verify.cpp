@@ -14,7 +14,7 @@
 namespace delray::apps {
 namespace {
 
-struct Options {
+struct VerifyOptions {
   std::string mesh, statistics;
   PointInput points;
   int dim = 2;
@@ -22,7 +22,7 @@ struct Options {
 };
 
 // Throws FileError where the vertices of the mesh are not the points.
-void require_same_points(const Options& options, const delaunay::PointCloud& vertices,
+void require_same_points(const VerifyOptions& options, const delaunay::PointCloud& vertices,
                          const delaunay::PointCloud& points) {
   const auto row = delaunay::first_different_row(delaunay::view(vertices.positions),
                                                  delaunay::view(points.positions), options.dim);
@@ -34,7 +34,7 @@ void require_same_points(const Options& options, const delaunay::PointCloud& ver
                                            options.points.path, points.size()));
 }
 
-Json statistics_of(const Options& options, const delaunay::PointMesh& mesh,
+Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh,
                    const delaunay::Verdict& verdict) {
   return {
       {"schema", "delray.verify/1"},
@@ -54,7 +54,7 @@ Json statistics_of(const Options& options, const delaunay::PointMesh& mesh,
   };
 }
 
-int run(const Options& options) {
+int run(const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
   if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
   const delaunay::PointMesh mesh = delaunay::read_mesh(options.mesh);
@@ -88,7 +88,7 @@ int run(const Options& options) {
 void add_verify(CLI::App& program, Session& session) {
   CLI::App* command =
       program.add_subcommand("verify", "check a triangulation against its points, exactly");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VerifyOptions>();
   command->add_option("MESH", options->mesh, "the triangulation");
   command->add_option("--points", options->points.path, "the points that it should be of");
   command->add_option("--dim", options->dim, "2 (default) or 3")->check(CLI::IsMember({2, 3}));

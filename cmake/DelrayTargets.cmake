@@ -14,7 +14,9 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
 endif()
 find_program(DELRAY_CCACHE ccache)
 if(DELRAY_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${DELRAY_CCACHE})
+  # Without this ccache does not keep what was compiled with a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${DELRAY_CCACHE})
 endif()
 
 add_library(delray_warnings INTERFACE)

@@ -1,12 +1,12 @@
 // The set of threads that a rank computes with.
 #pragma once
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/task_arena.h>
-
-#include <algorithm>
+#include <memory>
+#include <optional>
+#include <type_traits>
 #include <utility>
+
+#include "parallel/function_ref.h"
 
 namespace delray::parallel {
 
@@ -15,15 +15,30 @@ namespace delray::parallel {
 class Arena {
  public:
   // REQUIRES: threads >= 1.
-  explicit Arena(int threads) : arena_(threads, 1) {}
+  explicit Arena(int threads);
+  ~Arena();
+  Arena(const Arena&) = delete;
+  Arena& operator=(const Arena&) = delete;
 
+  // What f() returns, or throws, when called inside the arena.
   template <class F>
-  decltype(auto) execute(F&& f) {
-    return arena_.execute(std::forward<F>(f));
+  auto execute(F&& f) -> std::invoke_result_t<F> {
+    using Result = std::invoke_result_t<F>;
+    static_assert(!std::is_reference_v<Result>);
+    if constexpr (std::is_void_v<Result>) {
+      run(f);
+    } else {
+      std::optional<Result> result;
+      run([&] { result.emplace(f()); });
+      return std::move(*result);
+    }
   }
 
  private:
-  tbb::task_arena arena_;
+  void run(FunctionRef<void()> f);
+
+  struct Threads;
+  std::unique_ptr<Threads> threads_;
 };
 
 // While it lives, oneTBB may run as many as `threads` workers in this process, and no fewer than
@@ -31,15 +46,17 @@ class Arena {
 // several the least counts, so whoever starts all ranks makes one for all of them.
 class AllowThreads {
  public:
-  explicit AllowThreads(int threads)
-      : control_(tbb::global_control::max_allowed_parallelism,
-                 static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency()))) {}
+  explicit AllowThreads(int threads);
+  ~AllowThreads();
+  AllowThreads(const AllowThreads&) = delete;
+  AllowThreads& operator=(const AllowThreads&) = delete;
 
  private:
-  tbb::global_control control_;
+  struct Limit;
+  std::unique_ptr<Limit> limit_;
 };
 
 // The number of threads of the arena that the caller is in.
-inline int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
+int arena_threads();
 
 }  // namespace delray::parallel

@@ -1,42 +1,27 @@
 // Loops over oneTBB. They run in the arena of the calling thread: wrap a call in Arena::execute to
-// choose the number of threads.
+// choose the number of threads. What a call throws, the loop throws.
 //
 // `grain` is the number of indices below which a block is not split further: large enough that a
 // block takes a few microseconds, small enough that every thread gets several.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_for_each.h>
-#include <tbb/parallel_reduce.h>
-
 #include <cstddef>
-#include <span>
+#include <vector>
 
-#if defined(__SANITIZE_THREAD__)
-#define DELRAY_PLAIN_THREADS 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define DELRAY_PLAIN_THREADS 1
-#endif
-#endif
-#ifdef DELRAY_PLAIN_THREADS
-#include "parallel/internal/plain_threads.h"
-#endif
+#include "parallel/function_ref.h"
 
 namespace delray::parallel {
 
+namespace internal {
+// Calls f(task) for every task of [0, tasks) exactly once.
+void run_tasks(std::size_t tasks, FunctionRef<void(std::size_t task)> f);
+// Appends to `ends` where [begin, end) is cut: halved until no part exceeds the grain.
+void cut(std::size_t begin, std::size_t end, std::size_t grain, std::vector<std::size_t>& ends);
+}  // namespace internal
+
 // Calls f(first, last) for disjoint blocks that cover [begin, end) exactly once.
-template <class F>
-void parallel_blocks(std::size_t begin, std::size_t end, std::size_t grain, F&& f) {
-  if (begin >= end) return;
-#ifdef DELRAY_PLAIN_THREADS
-  internal::parallel_blocks(begin, end, grain, f);
-#else
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, grain),
-                    [&f](const auto& r) { f(r.begin(), r.end()); });
-#endif
-}
+void parallel_blocks(std::size_t begin, std::size_t end, std::size_t grain,
+                     FunctionRef<void(std::size_t first, std::size_t last)> f);
 
 // Calls f(i) for every i of [begin, end) exactly once, in any order.
 template <class F>
@@ -52,23 +37,24 @@ template <class T, class Map, class Combine>
 T parallel_reduce(std::size_t begin, std::size_t end, std::size_t grain, const T& identity,
                   Map&& map, Combine&& combine) {
   if (begin >= end) return identity;
-#ifdef DELRAY_PLAIN_THREADS
-  return internal::parallel_reduce(begin, end, grain, identity, map, combine);
-#else
-  return tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<std::size_t>(begin, end, grain), identity,
-      [&](const auto& r, const T& sum) { return combine(sum, map(r.begin(), r.end())); },
-      [&](const T& a, const T& b) { return combine(a, b); });
-#endif
-}
-
-// Calls f(item, feeder) for every item and for every item that a call adds with feeder.add(item):
-// work whose amount is known only while it is done.
-template <class T, class F>
-void parallel_do(std::span<T> items, F&& f) {
-  tbb::parallel_for_each(
-      items.begin(), items.end(),
-      [&f](T& item, tbb::feeder<std::remove_const_t<T>>& feeder) { f(item, feeder); });
+  struct Block {  // not a bare T: bits of a vector<bool> are not written independently
+    T value;
+  };
+  std::vector<std::size_t> ends = {begin};
+  internal::cut(begin, end, grain, ends);
+  std::vector<Block> blocks(ends.size() - 1, Block{identity});
+  internal::run_tasks(blocks.size(), [&](std::size_t block) {
+    blocks[block].value = combine(identity, map(ends[block], ends[block + 1]));
+  });
+  // The same halving again: both halves of a part are done when it is reached from the leaves up.
+  std::size_t next = 0;
+  const auto combined = [&](const auto& self, std::size_t first, std::size_t last) -> T {
+    if (last - first <= grain) return blocks[next++].value;
+    const std::size_t middle = first + (last - first) / 2;
+    const T lower = self(self, first, middle);
+    return combine(lower, self(self, middle, last));
+  };
+  return combined(combined, begin, end);
 }
 
 }  // namespace delray::parallel

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
+#include <memory>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "parallel/arena.h"
@@ -45,19 +49,39 @@ TEST(ParallelReduce, SumOfFloatsDoesNotDependOnThreads) {
   }
 }
 
-TEST(ParallelDo, FollowsWorkThatAppears) {
-  std::atomic<int> visited{0};
-  std::vector<int> roots = {10, 3};
-  parallel_do(std::span<const int>(roots), [&](int item, auto& feeder) {
-    ++visited;
-    if (item > 0) feeder.add(item - 1);
+TEST(ParallelBlocks, CoverTheRangeOnce) {
+  std::vector<int> calls(1000, 0);
+  Arena(4).execute([&] {
+    parallel_blocks(10, 1000, 7, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) ++calls[i];
+    });
   });
-  EXPECT_EQ(visited.load(), 11 + 4);
+  for (std::size_t i = 0; i < calls.size(); ++i) EXPECT_EQ(calls[i], i < 10 ? 0 : 1) << i;
+}
+
+TEST(ParallelReduce, CombinesInTheOrderOfTheRange) {
+  const std::string letters = "divide and conquer in parallel";
+  const auto map = [&](std::size_t first, std::size_t last) {
+    return letters.substr(first, last - first);
+  };
+  EXPECT_EQ(parallel_reduce(0, letters.size(), 4, std::string(), map, std::plus<>{}), letters);
+}
+
+TEST(ParallelReduce, OfAnEmptyRangeIsTheIdentity) {
+  EXPECT_EQ(parallel_reduce(
+                3, 3, 4, 17, [](std::size_t, std::size_t) { return 1; }, std::plus<>{}),
+            17);
 }
 
 TEST(Arena, GivesItsNumberOfThreads) {
   Arena arena(5);
   EXPECT_EQ(arena.execute([] { return arena_threads(); }), 5);
+}
+
+TEST(Arena, HandsOnWhatIsReturnedAndThrown) {
+  Arena arena(2);
+  EXPECT_EQ(*arena.execute([] { return std::make_unique<int>(3); }), 3);
+  EXPECT_THROW(arena.execute([] { throw std::runtime_error("out"); }), std::runtime_error);
 }
 
 TEST(Progress, StopsALoop) {

@@ -1,7 +1,6 @@
 #include "raster/render.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cstring>
 #include <mutex>
@@ -11,6 +10,7 @@
 #include "composite/scheme.h"
 #include "image/srgb.h"
 #include "loadbalance/partition.h"
+#include "parallel/arena.h"
 #include "raster/strategies.h"
 #include "scenes/generate.h"
 #include "tests/raster/random_scene.h"
@@ -20,7 +20,7 @@ namespace delray::raster {
 namespace {
 
 // As many threads as the tests ask for, on machines with fewer cores too.
-const tbb::global_control kThreads(tbb::global_control::max_allowed_parallelism, 12);
+const parallel::AllowThreads kThreads(12);
 
 template <class Colour>
 bool same_bytes(const image::BasicImage<Colour>& a, const image::BasicImage<Colour>& b) {

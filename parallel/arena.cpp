@@ -1,0 +1,31 @@
+#include "parallel/arena.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace delray::parallel {
+
+struct Arena::Threads {
+  tbb::task_arena arena;
+};
+
+Arena::Arena(int threads) : threads_(new Threads{tbb::task_arena(threads, 1)}) {}
+Arena::~Arena() = default;
+void Arena::run(FunctionRef<void()> f) { threads_->arena.execute(f); }
+
+struct AllowThreads::Limit {
+  tbb::global_control control;
+};
+
+AllowThreads::AllowThreads(int threads)
+    : limit_(new Limit{tbb::global_control(
+          tbb::global_control::max_allowed_parallelism,
+          static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())))}) {}
+AllowThreads::~AllowThreads() = default;
+
+int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
+
+}  // namespace delray::parallel
