@@ -25,12 +25,12 @@ std::size_t default_queue(std::size_t points) {
 
 Triangulation insert_in_batches(PointView<double> points, const Options& options) {
   const auto searching = static_cast<std::size_t>(options.threads > 1 ? options.threads - 1 : 1);
-  DagRun run(points, options, searching);
+  DagRun<2> run(points, options, searching);
   if (run.is_flat()) return run.finish();
-  const DagTriangulation triangulation = run.triangulation();
+  const DagTriangulation<2> triangulation = run.triangulation();
   const Dag<2>& dag = triangulation.dag;
-  const Orientation& orientation = triangulation.orientation;
-  std::optional<SoleDagAccess> access(std::in_place, triangulation.dag, 0);
+  const Orientation<2>& orientation = triangulation.orientation;
+  std::optional<SoleDagAccess<2>> access(std::in_place, triangulation.dag, 0);
   std::vector<NodeNumber> suspects;
   const auto locate = [&](VertexNumber vertex) {
     const glm::dvec2& q = run.point(vertex);

@@ -2,8 +2,8 @@
 
 namespace delray::delaunay {
 
-NodeNumber root_of(const Dag<2>& dag, const Orientation& orientation, const glm::dvec2& q) {
-  for (NodeNumber root = 0; root + 1 < kRoots; ++root) {
+NodeNumber root_of(const Dag<2>& dag, const Orientation<2>& orientation, const glm::dvec2& q) {
+  for (NodeNumber root = 0; root + 1 < kRoots<2>; ++root) {
     bool inside = true;
     for (unsigned k = 0; k < 3 && inside; ++k) {
       const CornerNumber corner = corner_of(root, k);
@@ -12,10 +12,10 @@ NodeNumber root_of(const Dag<2>& dag, const Orientation& orientation, const glm:
     }
     if (inside) return root;
   }
-  return kRoots - 1;
+  return kRoots<2> - 1;
 }
 
-NodeNumber descend(const Dag<2>& dag, const Orientation& orientation, NodeNumber node,
+NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNumber node,
                    const glm::dvec2& q) {
   for (;;) {
     const NodeNumber first = dag.child(node, 0);

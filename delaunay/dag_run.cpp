@@ -1,9 +1,13 @@
 #include "delaunay/internal/dag_run.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "delaunay/conflict.h"
+#include "delaunay/dag_location.h"
 #include "delaunay/internal/finite_points.h"
 #include "delaunay/internal/first_triangle.h"
 #include "delaunay/internal/stopwatch.h"
@@ -11,8 +15,13 @@
 namespace delray::delaunay::internal {
 namespace {
 
+std::optional<std::array<VertexNumber, 3>> first_simplex(std::span<const glm::dvec2> points) {
+  return first_triangle(points);
+}
+
 // Connected sets of live finite leaves that one thread made.
-std::uint64_t count_fragments(const Dag<2>& dag) {
+template <int D>
+std::uint64_t count_fragments(const Dag<D>& dag) {
   std::uint64_t fragments = 0;
   std::vector<bool> seen(dag.size(), false);
   std::vector<NodeNumber> open;
@@ -24,7 +33,7 @@ std::uint64_t count_fragments(const Dag<2>& dag) {
     while (!open.empty()) {
       const NodeNumber node = open.back();
       open.pop_back();
-      for (unsigned k = 0; k < 3; ++k) {
+      for (unsigned k = 0; k <= D; ++k) {
         const NodeNumber next = simplex_of(dag.neighbour(corner_of(node, k)));
         if (seen[next] || dag.is_ghost(next) || dag.maker(next) != dag.maker(start)) continue;
         seen[next] = true;
@@ -37,38 +46,52 @@ std::uint64_t count_fragments(const Dag<2>& dag) {
 
 }  // namespace
 
-DagRun::DagRun(PointView<double> input, const Options& wanted, std::size_t parts)
+template <int D>
+DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t parts)
     : options(wanted) {
   Stopwatch watch;
-  const std::vector<glm::dvec2> points = finite_points(input);
+  const std::vector<Point> points = finite_points(input);
   Plan plan = make_plan(points, parts, options.split, options.order, options.seed);
   points_.reserve(points.size());
   for (const std::uint32_t row : plan.points) points_.push_back(points[row]);
   rows_ = std::move(plan.points);
   begins_ = std::move(plan.begins);
-  first_ = first_triangle(points_);
+  first_ = first_simplex(points_);
   if (first_) start_dag();
   if (options.statistics != nullptr) options.statistics->order = watch.lap();
 }
 
-void DagRun::start_dag() {
+template <int D>
+void DagRun<D>::start_dag() {
   dag_.allocate(0);
   dag_.set_leaf(0, *first_, 0);
-  for (unsigned k = 0; k < 3; ++k) {
-    dag_.set_leaf(1 + k, {(*first_)[(k + 2) % 3], (*first_)[(k + 1) % 3], kInfiniteVertex}, 0);
+  for (unsigned k = 0; k <= D; ++k) {
+    // The infinite vertex lies on the other side of the facet, so two others change places.
+    std::array<VertexNumber, D + 1> ghost = *first_;
+    ghost[k] = kInfiniteVertex;
+    std::swap(ghost[(k + 1) % (D + 1)], ghost[(k + 2) % (D + 1)]);
+    dag_.set_leaf(1 + k, ghost, 0);
   }
+  const auto corner_with = [&](NodeNumber node, VertexNumber vertex) {
+    CornerNumber corner = corner_of(node, 0);
+    while (dag_.vertex(corner) != vertex) ++corner;
+    return corner;
+  };
   const auto link = [&](CornerNumber a, CornerNumber b) {
     dag_.set_neighbour(a, b);
     dag_.set_neighbour(b, a);
   };
-  for (unsigned k = 0; k < 3; ++k) {
-    link(corner_of(1 + k, 2), corner_of(0, k));
-    link(corner_of(1 + k, 1), corner_of(1 + (k + 1) % 3, 0));
+  for (unsigned k = 0; k <= D; ++k) {
+    link(corner_with(1 + k, kInfiniteVertex), corner_of(0, k));
+    for (unsigned j = 0; j < k; ++j) {
+      link(corner_with(1 + k, (*first_)[j]), corner_with(1 + j, (*first_)[k]));
+    }
   }
-  for (NodeNumber node = 4; node < Dag<2>::kCacheSize; ++node) dag_.abandon(node);
+  for (NodeNumber node = kRoots<D>; node < Dag<D>::kCacheSize; ++node) dag_.abandon(node);
 }
 
-void DagRun::merge(VertexNumber vertex, VertexNumber point) {
+template <int D>
+void DagRun<D>::merge(VertexNumber vertex, VertexNumber point) {
   // Rows of points that are not vertices never change.
   const std::uint32_t row = rows_[point];
   std::atomic_ref<std::uint32_t> lowest(rows_[vertex]);
@@ -78,8 +101,10 @@ void DagRun::merge(VertexNumber vertex, VertexNumber point) {
   duplicates_.fetch_add(1, std::memory_order_relaxed);
 }
 
-Triangulation DagRun::leaves() const {
+template <int D>
+Triangulation DagRun<D>::leaves() const {
   Triangulation result;
+  result.dim = D;
   if (is_flat()) return result;
   std::uint64_t ghosts = 0;
   for (NodeNumber node = 0; node < dag_.size(); ++node) {
@@ -88,7 +113,7 @@ Triangulation DagRun::leaves() const {
       ++ghosts;
       continue;
     }
-    for (unsigned k = 0; k < 3; ++k) {
+    for (unsigned k = 0; k <= D; ++k) {
       result.vertices.push_back(rows_[dag_.vertex(corner_of(node, k))]);
     }
   }
@@ -96,7 +121,8 @@ Triangulation DagRun::leaves() const {
   return result;
 }
 
-Triangulation DagRun::finish() {
+template <int D>
+Triangulation DagRun<D>::finish() {
   Stopwatch watch;
   Triangulation result = leaves();
   result.distinct = is_flat() ? count_distinct(points_) : points_.size() - duplicates_.load();
@@ -111,5 +137,7 @@ Triangulation DagRun::finish() {
   }
   return result;
 }
+
+template class DagRun<2>;
 
 }  // namespace delray::delaunay::internal

@@ -89,18 +89,19 @@ Triangulation insert_walking(PointView<double> input, const Options& options) {
   return result;
 }
 
-// Down the history of the triangulation to the triangle of the next point.
+// Down the history of the triangulation to the simplex of the next point.
+template <int D>
 Triangulation insert_descending(PointView<double> input, const Options& options) {
-  DagRun run(input, options, 1);
+  DagRun<D> run(input, options, 1);
   if (!run.is_flat()) {
-    const DagTriangulation triangulation = run.triangulation();
-    SoleDagAccess access(triangulation.dag, 0);
+    const DagTriangulation<D> triangulation = run.triangulation();
+    SoleDagAccess<D> access(triangulation.dag, 0);
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
     for (VertexNumber vertex = 0; vertex < run.end(0); ++vertex) {
       phases.next_point();
       if (run.is_first(vertex)) continue;
-      const glm::dvec2& q = run.point(vertex);
+      const auto& q = run.point(vertex);
       const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
                                       root_of(triangulation.dag, triangulation.orientation, q), q);
       phases.located();
@@ -114,7 +115,7 @@ Triangulation insert_descending(PointView<double> input, const Options& options)
 }  // namespace
 
 Triangulation insert_all(PointView<double> points, const Options& options) {
-  return options.location == "dag" ? insert_descending(points, options)
+  return options.location == "dag" ? insert_descending<2>(points, options)
                                    : insert_walking(points, options);
 }
 

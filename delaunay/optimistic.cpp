@@ -13,8 +13,8 @@ namespace delray::delaunay::internal {
 namespace {
 
 // Returns whether the point is in; otherwise everything was undone.
-template <class Access>
-bool insert(DagRun& run, const DagTriangulation& triangulation, NodeNumber leaf,
+template <int D, class Access>
+bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber leaf,
             VertexNumber vertex, Access& access, std::vector<NodeNumber>& suspects,
             InsertionPhases& phases) {
   // Another thread may have been faster between the location and the lock.
@@ -41,18 +41,18 @@ void add(Synchronization& sum, const Synchronization& counts) {
   sum.rollbacks += counts.rollbacks;
 }
 
-template <bool kCounted>
+template <int D, bool kCounted>
 Triangulation insert_all_points(PointView<double> points, const Options& options) {
-  DagRun run(points, options, static_cast<std::size_t>(options.threads));
+  DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
-  const DagTriangulation triangulation = run.triangulation();
+  const DagTriangulation<D> triangulation = run.triangulation();
   Team team;
   Blocking blocking(run.parts());
   std::mutex finishing;
   const auto work = [&](std::size_t thread) {
-    NodeLocks<kCounted> access(triangulation.dag, team, blocking,
-                               static_cast<std::uint32_t>(thread),
-                               options.deadlocks == "priorities");
+    NodeLocks<D, kCounted> access(triangulation.dag, team, blocking,
+                                  static_cast<std::uint32_t>(thread),
+                                  options.deadlocks == "priorities");
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
     for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
@@ -60,7 +60,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       team.check();
       phases.next_point();
       if (run.is_first(vertex)) continue;
-      const glm::dvec2& q = run.point(vertex);
+      const auto& q = run.point(vertex);
       NodeNumber node = root_of(triangulation.dag, triangulation.orientation, q);
       for (;;) {
         node = descend(triangulation.dag, triangulation.orientation, node, q);
@@ -81,8 +81,8 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
 }  // namespace
 
 Triangulation insert_optimistically(PointView<double> points, const Options& options) {
-  return options.statistics != nullptr ? insert_all_points<true>(points, options)
-                                       : insert_all_points<false>(points, options);
+  return options.statistics != nullptr ? insert_all_points<2, true>(points, options)
+                                       : insert_all_points<2, false>(points, options);
 }
 
 }  // namespace delray::delaunay::internal

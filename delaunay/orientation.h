@@ -10,6 +10,9 @@
 
 namespace delray::delaunay {
 
+template <int D>
+class Orientation;  // in space: orientation3.h
+
 // The infinite vertex behaves as if it lay opposite to a point o just inside the first triangle: a
 // hull vertex a and the infinite vertex span the ray from a away from o. Those rays cut what is
 // outside the hull into one region per ghost, whatever the hull is later on, so that ghosts contain
@@ -17,7 +20,8 @@ namespace delray::delaunay {
 //
 // o is the triangle's first vertex moved a little towards its second and less towards its third:
 // the first of them that is not collinear decides.
-class Orientation {
+template <>
+class Orientation<2> {
  public:
   // REQUIRES: `points` outlives it; `first` are vertices of a triangle that turns left.
   Orientation(std::span<const glm::dvec2> points, const std::array<VertexNumber, 3>& first)

@@ -12,15 +12,18 @@
 
 namespace delray::delaunay::internal {
 
-Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
-  DagRun run(points, options, static_cast<std::size_t>(options.threads));
+namespace {
+
+template <int D>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
-  const DagTriangulation triangulation = run.triangulation();
+  const DagTriangulation<D> triangulation = run.triangulation();
   Team team;
   std::mutex leaves;
   std::uint64_t entered = 0;
   const auto work = [&](std::size_t thread) {
-    SoleDagAccess access(triangulation.dag, static_cast<std::uint32_t>(thread));
+    SoleDagAccess<D> access(triangulation.dag, static_cast<std::uint32_t>(thread));
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
     for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
@@ -28,7 +31,7 @@ Triangulation insert_pessimistically(PointView<double> points, const Options& op
       team.check();
       phases.next_point();
       if (run.is_first(vertex)) continue;
-      const glm::dvec2& q = run.point(vertex);
+      const auto& q = run.point(vertex);
       NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
                                 root_of(triangulation.dag, triangulation.orientation, q), q);
       const std::lock_guard alone(leaves);
@@ -43,6 +46,12 @@ Triangulation insert_pessimistically(PointView<double> points, const Options& op
   team.run(run.parts(), work);
   if (options.statistics != nullptr) options.statistics->synchronization.lock_calls = entered;
   return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
+  return insert_all_points<2>(points, options);
 }
 
 }  // namespace delray::delaunay::internal

@@ -25,14 +25,19 @@ enum class Grant {
   kShaken,   // granted, but others have changed acquired nodes meanwhile: look again
 };
 
-struct DagTriangulation {
+template <int D>
+struct DagTriangulation;  // in space: dag_flip3.h
+
+template <>
+struct DagTriangulation<2> {
   Dag<2>& dag;
   std::span<const glm::dvec2> points;
-  Orientation orientation;
+  Orientation<2> orientation;
 };
 
 // As conflict() of a mesh.
-inline bool conflict(const DagTriangulation& triangulation, NodeNumber node, const glm::dvec2& q) {
+inline bool conflict(const DagTriangulation<2>& triangulation, NodeNumber node,
+                     const glm::dvec2& q) {
   std::array<const glm::dvec2*, 3> p;
   for (unsigned k = 0; k < 3; ++k) {
     const VertexNumber vertex = triangulation.dag.vertex(corner_of(node, k));
@@ -50,7 +55,7 @@ inline bool conflict(const DagTriangulation& triangulation, NodeNumber node, con
 // Cuts a leaf into three around `vertex`, which is corner 2 of all three; they are appended to
 // `suspects`. Writes nothing unless all is granted. REQUIRES: the leaf is acquired.
 template <class Access>
-Grant subdivide(const DagTriangulation& triangulation, NodeNumber leaf, VertexNumber vertex,
+Grant subdivide(const DagTriangulation<2>& triangulation, NodeNumber leaf, VertexNumber vertex,
                 Access& access, std::vector<NodeNumber>& suspects) {
   Dag<2>& dag = triangulation.dag;
   std::array<VertexNumber, 3> old;
@@ -80,7 +85,7 @@ Grant subdivide(const DagTriangulation& triangulation, NodeNumber leaf, VertexNu
 // gives triangles that turn left. The vertex of `corner` becomes corner 2 of both new leaves, which
 // replace the old ones in `made`. Writes nothing unless all is granted.
 template <class Access>
-Grant flip(const DagTriangulation& triangulation, CornerNumber corner, Access& access,
+Grant flip(const DagTriangulation<2>& triangulation, CornerNumber corner, Access& access,
            std::array<NodeNumber, 2>& made) {
   Dag<2>& dag = triangulation.dag;
   const CornerNumber beyond = dag.neighbour(corner);
@@ -109,7 +114,7 @@ Grant flip(const DagTriangulation& triangulation, CornerNumber corner, Access& a
 // Flips until no leaf of the new vertex has a neighbour in conflict with it; `suspects` are such
 // leaves, the vertex in corner 2. Never kShaken. After kRefused some are left.
 template <class Access>
-Grant legalize(const DagTriangulation& triangulation, Access& access,
+Grant legalize(const DagTriangulation<2>& triangulation, Access& access,
                std::vector<NodeNumber>& suspects) {
   const Dag<2>& dag = triangulation.dag;
   while (!suspects.empty()) {

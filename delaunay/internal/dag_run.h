@@ -17,28 +17,35 @@
 
 namespace delray::delaunay::internal {
 
-// Points in the order of a plan, and a history of the first triangle and the ghosts around it.
+// Points in the order of a plan, and a history of the first simplex and the ghosts around it.
+template <int D>
 class DagRun {
  public:
+  using Point = glm::vec<D, double, glm::defaultp>;
+
   // Errors: see triangulate().
   DagRun(PointView<double> input, const Options& options, std::size_t parts);
 
-  // Whether all points are equal or collinear: then there is nothing to insert.
+  // Whether all points are equal or collinear or, in space, coplanar: then there is nothing to
+  // insert.
   bool is_flat() const { return !first_; }
   std::size_t parts() const { return begins_.size() - 1; }
   std::size_t begin(std::size_t part) const { return begins_[part]; }
   std::size_t end(std::size_t part) const { return begins_[part + 1]; }
-  const glm::dvec2& point(VertexNumber vertex) const { return points_[vertex]; }
-  // Whether a point is a vertex of the first triangle.
+  const Point& point(VertexNumber vertex) const { return points_[vertex]; }
+  // Whether a point is a vertex of the first simplex.
   bool is_first(VertexNumber vertex) const {
-    return vertex == (*first_)[0] || vertex == (*first_)[1] || vertex == (*first_)[2];
+    for (const VertexNumber first : *first_) {
+      if (vertex == first) return true;
+    }
+    return false;
   }
   // REQUIRES: not flat.
-  DagTriangulation triangulation() { return {dag_, points_, Orientation(points_, *first_)}; }
+  DagTriangulation<D> triangulation() { return {dag_, points_, Orientation<D>(points_, *first_)}; }
 
   // The vertex of a leaf that has the coordinates of a point, or kInfiniteVertex.
-  VertexNumber equal_vertex(NodeNumber leaf, const glm::dvec2& q) const {
-    for (unsigned k = 0; k < 3; ++k) {
+  VertexNumber equal_vertex(NodeNumber leaf, const Point& q) const {
+    for (unsigned k = 0; k <= D; ++k) {
       const VertexNumber vertex = dag_.vertex(corner_of(leaf, k));
       if (vertex != kInfiniteVertex && points_[vertex] == q) return vertex;
     }
@@ -56,12 +63,12 @@ class DagRun {
   void start_dag();
   Triangulation leaves() const;
 
-  std::vector<glm::dvec2> points_;
+  std::vector<Point> points_;
   std::vector<std::uint32_t> rows_;  // point i was row rows_[i], the lowest of equal ones
   std::vector<std::size_t> begins_;
-  std::optional<std::array<VertexNumber, 3>> first_;
+  std::optional<std::array<VertexNumber, D + 1>> first_;
   std::atomic<std::uint64_t> duplicates_ = 0;
-  Dag<2> dag_;
+  Dag<D> dag_;
 };
 
 }  // namespace delray::delaunay::internal

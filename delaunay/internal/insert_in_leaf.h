@@ -11,9 +11,10 @@
 namespace delray::delaunay::internal {
 
 // REQUIRES: the leaf contains the point; `suspects` is empty and will be again.
-inline void insert_in_leaf(DagRun& run, const DagTriangulation& triangulation, NodeNumber leaf,
-                           VertexNumber vertex, SoleDagAccess& access,
-                           std::vector<NodeNumber>& suspects, InsertionPhases& phases) {
+template <int D>
+void insert_in_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber leaf,
+                    VertexNumber vertex, SoleDagAccess<D>& access,
+                    std::vector<NodeNumber>& suspects, InsertionPhases& phases) {
   const VertexNumber equal = run.equal_vertex(leaf, run.point(vertex));
   if (equal != kInfiniteVertex) {
     run.merge(equal, vertex);

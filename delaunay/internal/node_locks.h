@@ -32,12 +32,12 @@ struct Blocking {
 
 // Simplices stay locked until commit() or rollback(). Children are published by commit(), so that
 // no other thread ever sees what is undone. kCounted: whether to count.
-template <bool kCounted>
+template <int D, bool kCounted>
 class NodeLocks {
  public:
   static constexpr bool kShakes = false;
 
-  NodeLocks(Dag<2>& dag, Team& team, Blocking& blocking, std::uint32_t thread, bool priorities)
+  NodeLocks(Dag<D>& dag, Team& team, Blocking& blocking, std::uint32_t thread, bool priorities)
       : dag_(dag),
         team_(team),
         blocking_(blocking),
@@ -70,7 +70,7 @@ class NodeLocks {
     return Grant::kGranted;
   }
 
-  NodeNumber create(const std::array<VertexNumber, 3>& vertices) {
+  NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
     const NodeNumber node = cache_.take(dag_);
     dag_.set_leaf(node, vertices, thread_ + 1);
     locked_.push_back(node);
@@ -82,7 +82,7 @@ class NodeLocks {
     dag_.set_neighbour(outside, inside);
     dag_.set_neighbour(inside, outside);
   }
-  void retire(NodeNumber node, const std::array<NodeNumber, 3>& children) {
+  void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
     retired_.push_back({node, children});
   }
 
@@ -110,7 +110,7 @@ class NodeLocks {
   };
   struct Retired {
     NodeNumber node;
-    std::array<NodeNumber, 3> children;
+    std::array<NodeNumber, D + 1> children;
   };
 
   // Waiting is short and rare: the thread yields rather than sleeps (Kohout 2004, 7.7.1).
@@ -151,12 +151,12 @@ class NodeLocks {
     retired_.clear();
   }
 
-  Dag<2>& dag_;
+  Dag<D>& dag_;
   Team& team_;
   Blocking& blocking_;
   std::uint32_t thread_;
   bool priorities_;
-  NodeCache<2> cache_;
+  NodeCache<D> cache_;
   std::vector<NodeNumber> locked_, created_;
   std::vector<Link> journal_;
   std::vector<Retired> retired_;

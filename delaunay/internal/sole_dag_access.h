@@ -12,17 +12,18 @@
 namespace delray::delaunay::internal {
 
 // Grants everything. Others may go down the graph meanwhile.
+template <int D>
 class SoleDagAccess {
  public:
   static constexpr bool kShakes = false;
 
-  SoleDagAccess(Dag<2>& dag, std::uint32_t thread) : dag_(dag), cache_(thread) {}
+  SoleDagAccess(Dag<D>& dag, std::uint32_t thread) : dag_(dag), cache_(thread) {}
   ~SoleDagAccess() { cache_.abandon_rest(dag_); }
   SoleDagAccess(const SoleDagAccess&) = delete;
   SoleDagAccess& operator=(const SoleDagAccess&) = delete;
 
   Grant acquire(std::initializer_list<NodeNumber>) const { return Grant::kGranted; }
-  NodeNumber create(const std::array<VertexNumber, 3>& vertices) {
+  NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
     const NodeNumber node = cache_.take(dag_);
     dag_.set_leaf(node, vertices, 0);
     ++created_;
@@ -32,14 +33,14 @@ class SoleDagAccess {
     dag_.set_neighbour(outside, inside);
     dag_.set_neighbour(inside, outside);
   }
-  void retire(NodeNumber node, const std::array<NodeNumber, 3>& children) {
+  void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
     dag_.set_children(node, children);
   }
   std::uint64_t created() const { return created_; }
 
  private:
-  Dag<2>& dag_;
-  NodeCache<2> cache_;
+  Dag<D>& dag_;
+  NodeCache<D> cache_;
   std::uint64_t created_ = 0;
 };
 

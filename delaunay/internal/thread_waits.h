@@ -19,7 +19,8 @@ class ThreadWaits {
   // Enters `thread` (from 0) unless its waiting for `node` would close a circle: then returns
   // false, and if `rob`, the owner of the node is told that its simplices are being changed. It
   // waits until `thread` unlocks.
-  bool enter(const Dag<2>& dag, std::uint32_t thread, NodeNumber node, bool rob,
+  template <int D>
+  bool enter(const Dag<D>& dag, std::uint32_t thread, NodeNumber node, bool rob,
              std::uint32_t& owner) {
     const std::lock_guard guard(mutex_);
     owner = dag.owner(node);
