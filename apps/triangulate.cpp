@@ -3,6 +3,8 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/list.h"
@@ -10,6 +12,7 @@
 #include "apps/progress_bar.h"
 #include "apps/statistics.h"
 #include "delaunay/methods.h"
+#include "delaunay/simplify_terrain.h"
 #include "delaunay/triangulate.h"
 #include "delaunay/write_mesh.h"
 #include "parallel/arena.h"
@@ -21,15 +24,41 @@ struct TriangulateOptions {
   PointInput input;
   std::string output, statistics;
   delaunay::Options how;
+  std::optional<double> max_error;
   int threads = 0;
   bool list = false;
 };
 
 struct Seconds {
-  double read = 0, triangulate = 0, write = 0;
+  double read = 0, triangulate = 0;
 };
 
-Json statistics_of(const TriangulateOptions& options, const delaunay::PointCloud& points,
+// Throws UsageError for options that mean nothing to the insertion that is bounded by an error.
+void require_plain(const TriangulateOptions& options) {
+  const delaunay::Options defaults;
+  const delaunay::Options& how = options.how;
+  if (how.dim != 2) throw UsageError("--max-error is for terrains, which are --dim 2");
+  if (how.method != defaults.method || how.location != defaults.location ||
+      how.split != defaults.split || how.order != defaults.order ||
+      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
+      how.seed != defaults.seed) {
+    throw UsageError(
+        "--max-error leaves no choice of method, location, split, order, deadlocks, queue and "
+        "seed");
+  }
+}
+
+// Replaces the points by those that are kept, and the vertices, which are their rows, by their new
+// rows.
+void keep_rows(const std::vector<std::uint32_t>& kept, delaunay::PointCloud& points,
+               delaunay::Triangulation& result) {
+  points = select_rows(points, kept);
+  for (std::uint32_t& vertex : result.vertices) {
+    vertex = static_cast<std::uint32_t>(std::ranges::lower_bound(kept, vertex) - kept.begin());
+  }
+}
+
+Json statistics_of(const TriangulateOptions& options, std::size_t points,
                    const delaunay::Triangulation& result, const delaunay::Statistics& phases,
                    const Seconds& seconds) {
   const delaunay::Options& how = options.how;
@@ -38,7 +67,7 @@ Json statistics_of(const TriangulateOptions& options, const delaunay::PointCloud
       {"schema", "delray.triangulate/1"},
       {"input",
        {{"file", options.input.path},
-        {"points", points.size()},
+        {"points", points},
         {"distinct", result.distinct},
         {"dim", how.dim}}},
       {"options",
@@ -57,7 +86,7 @@ Json statistics_of(const TriangulateOptions& options, const delaunay::PointCloud
       {"seconds",
        {{"read", seconds.read},
         {"triangulate", seconds.triangulate},
-        {"write", seconds.write},
+        {"write", 0.0},  // not yet
         {"order", phases.order},
         {"locate", phases.locate},
         {"subdivide", phases.subdivide},
@@ -96,6 +125,7 @@ int run(Session& session, TriangulateOptions options) {
   }
   delaunay::Options& how = options.how;
   how.threads = options.threads > 0 ? options.threads : parallel::arena_threads();
+  if (options.max_error) require_plain(options);
   try {
     how = resolve(how);
   } catch (const std::invalid_argument& error) {
@@ -104,30 +134,52 @@ int run(Session& session, TriangulateOptions options) {
 
   Stopwatch watch;
   Seconds seconds;
-  const delaunay::PointCloud points = load_points(options.input, how.dim);
+  delaunay::PointCloud points = load_points(options.input, how.dim);
+  if (options.max_error && !points.has_z) {
+    throw UsageError("--max-error: " + options.input.path + " has no z");
+  }
+  const std::size_t rows = points.size();
   seconds.read = watch.lap();
   delaunay::Statistics phases;
   how.statistics = options.statistics.empty() ? nullptr : &phases;
   how.progress = &session.progress;
   delaunay::Triangulation result;
+  std::optional<delaunay::SimplifiedTerrain> simplified;
   {
     const ProgressBar bar(session, "triangulate");
     const parallel::AllowThreads allowed(how.threads);
     parallel::Arena arena(how.threads);
     watch.lap();
-    result = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });
+    if (options.max_error) {
+      simplified =
+          simplify_terrain(delaunay::view(points.positions), *options.max_error, &session.progress);
+      result = std::move(simplified->triangulation);
+    } else {
+      result = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });
+    }
     seconds.triangulate = watch.lap();
   }
   if (result.size() == 0) {
     spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
                  how.dim == 2 ? "line" : "plane");
   }
+  Json statistics = statistics_of(options, rows, result, phases, seconds);
+  if (simplified) {
+    statistics["options"].update({{"method", "simplify"}, {"max_error", *options.max_error}});
+    statistics["result"].update(
+        {{"kept", simplified->kept.size()}, {"largest_error", simplified->largest_error}});
+    keep_rows(simplified->kept, points, result);
+  }
   watch.lap();
   if (!options.output.empty()) write_mesh(options.output, points, result);
-  seconds.write = watch.lap();
-  write_statistics(options.statistics, statistics_of(options, points, result, phases, seconds));
-  spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", points.size(), result.distinct,
-               result.size(), how.dim == 2 ? "triangles" : "tetrahedra", seconds.triangulate);
+  statistics["seconds"]["write"] = watch.lap();
+  write_statistics(options.statistics, statistics);
+  spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", rows, result.distinct, result.size(),
+               how.dim == 2 ? "triangles" : "tetrahedra", seconds.triangulate);
+  if (simplified) {
+    spdlog::info("{} points kept, largest error {:.6g}", simplified->kept.size(),
+                 simplified->largest_error);
+  }
   return kDone;
 }
 
@@ -151,6 +203,11 @@ void add_triangulate(CLI::App& program, Session& session) {
                       "of the optimistic method: detection, priorities");
   command->add_option("--queue", options->how.queue,
                       "places in the queue of the batch method (default: by the number of points)");
+  command
+      ->add_option("--max-error", options->max_error,
+                   "keep only points of a terrain such that no other is farther than this above or "
+                   "below it, in units of z; the mesh has the points that are kept")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--threads", options->threads, "workers (default: cores)")
       ->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->how.seed, "seed of everything random (default 1)");
@@ -159,6 +216,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   add_point_options(*command, options->input);
   add_common_options(*command, session,
                      "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"
+                     "triangulate heights.png --terrain-rgb -o mesh.ply --max-error 2.5\n"
                      "generate points gauss -n 100000 -o - | delray triangulate - -o mesh.vtu");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(session, *options); };

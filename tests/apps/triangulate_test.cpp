@@ -40,6 +40,43 @@ TEST(TriangulateCommand, WritesStatisticsWithEveryKey) {
   EXPECT_EQ(stats["result"]["hash"].get<std::string>().size(), 32U);
 }
 
+TEST(TriangulateCommand, WritesStatisticsInSpace) {
+  const Folder folder;
+  // A lattice with its first point twice.
+  std::string text;
+  for (int i = 0; i < 27; ++i) {
+    text += std::to_string(i % 3) + " " + std::to_string(i / 3 % 3) + " " + std::to_string(i / 9) +
+            "\n";
+  }
+  folder.write("p.xyz", text + "0 0 0\n");
+  const Ran ran =
+      run("delray triangulate p.xyz --dim 3 -o m.vtu --threads 2 --stats -", folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const json stats = json::parse(ran.out);
+  EXPECT_EQ(stats["schema"], "delray.triangulate/1");
+  EXPECT_EQ(stats["input"]["dim"], 3);
+  EXPECT_EQ(stats["input"]["points"], 28);
+  EXPECT_EQ(stats["input"]["distinct"], 27);
+  EXPECT_EQ(stats["options"]["threads"], 2);
+  // Two triangles for each of the 4 squares of each of the 6 sides.
+  EXPECT_EQ(stats["result"]["hull_facets"], 48);
+  EXPECT_GE(stats["result"]["simplices"], 5 * 8);
+  EXPECT_LE(stats["result"]["simplices"], 6 * 8);
+  for (const char* key :
+       {"read", "triangulate", "write", "order", "locate", "subdivide", "legalize", "extract"}) {
+    EXPECT_TRUE(stats["seconds"][key].is_number()) << key;
+  }
+  EXPECT_GT(stats["memory"]["peak_rss"], 0);
+  const Ran verified =
+      run("delray verify m.vtu --dim 3 --points p.xyz --canonical --stats -", folder.path());
+  ASSERT_EQ(verified.exit_code, 0) << verified.err;
+  const json verdict = json::parse(verified.out);
+  EXPECT_EQ(verdict["dim"], 3);
+  EXPECT_EQ(verdict["result"]["hash"], stats["result"]["hash"]);
+  EXPECT_EQ(verdict["result"]["distinct"], 27);
+  EXPECT_EQ(verdict["result"]["simplices"], stats["result"]["simplices"]);
+}
+
 TEST(TriangulateCommand, EveryMeshFormatVerifies) {
   const Folder folder;
   for (const std::string dim : {"2", "3"}) {
@@ -47,11 +84,15 @@ TEST(TriangulateCommand, EveryMeshFormatVerifies) {
                   .exit_code,
               0);
     std::string hash;
-    for (const std::string suffix : {"ply", "obj", "off", "vtu", "node"}) {
-      const std::string mesh = "m." + suffix;
-      ASSERT_EQ(run("delray triangulate p.ply -o " + mesh, folder.path()).exit_code, 0) << mesh;
+    for (const std::string& suffix :
+         dim == "2" ? std::vector<std::string>{"ply", "obj", "off", "vtu", "node"}
+                    : std::vector<std::string>{"vtu", "node"}) {
+      const std::string mesh = "m." + suffix, options = " --dim " + dim;
+      ASSERT_EQ(run("delray triangulate p.ply -o " + mesh + options, folder.path()).exit_code, 0)
+          << mesh;
       const Ran ran =
-          run("delray verify " + mesh + " --points p.ply --canonical --stats -", folder.path());
+          run("delray verify " + mesh + " --points p.ply --canonical --stats -" + options,
+              folder.path());
       ASSERT_EQ(ran.exit_code, 0) << mesh << ran.err;
       const json stats = json::parse(ran.out);
       if (hash.empty()) hash = stats["result"]["hash"];
@@ -95,6 +136,39 @@ TEST(TriangulateCommand, DuplicatesChooseTheHeight) {
   }
 }
 
+TEST(TriangulateCommand, MaxErrorKeepsWhatTheBoundNeeds) {
+  const Folder folder;
+  // A plane with one peak and one bump below the bound.
+  std::string text;
+  for (int i = 0; i < 100; ++i) {
+    const int x = i % 10, y = i / 10;
+    const double height = 2 * x - y + (i == 55 ? 7 : i == 22 ? 0.25 : 0);
+    text += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(height) + "\n";
+  }
+  folder.write("p.xyz", text);
+  const Ran ran = run("delray triangulate p.xyz -o m.ply --max-error 0.5 --stats -", folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const json stats = json::parse(ran.out);
+  EXPECT_EQ(stats["options"]["max_error"], 0.5);
+  EXPECT_EQ(stats["input"]["points"], 100);
+  EXPECT_LE(stats["result"]["largest_error"], 0.5);
+  const int kept = stats["result"]["kept"];
+  EXPECT_GE(kept, 5);
+  EXPECT_LT(kept, 40);
+  const json mesh = json::parse(run("delray info m.ply --stats -", folder.path()).out);
+  EXPECT_EQ(mesh["points"], kept);
+  EXPECT_EQ(mesh["simplices"], stats["result"]["simplices"]);
+  EXPECT_EQ(run("delray verify m.ply --points m.ply --canonical", folder.path()).exit_code, 0);
+  folder.write("flat.xyz", "0 0\n1 0\n0 1\n");
+  for (const std::string arguments :
+       {"p.xyz --max-error -1", "p.xyz --max-error 1 --dim 3", "p.xyz --max-error 1 --seed 2",
+        "p.xyz --max-error 1 --method insertion", "flat.xyz --max-error 1"}) {
+    const Ran refused = run("delray triangulate " + arguments + " -o n.ply", folder.path());
+    EXPECT_EQ(refused.exit_code, 2) << arguments << refused.err;
+  }
+  EXPECT_EQ(folder.files().size(), 3U);
+}
+
 TEST(VerifyCommand, FindsAWrongMesh) {
   const Folder folder;
   folder.write("p.xyz", "0 0\n4 0\n5 3\n0 3\n");
@@ -109,6 +183,49 @@ TEST(VerifyCommand, FindsAWrongMesh) {
   EXPECT_NE(flipped.out.find("valid: yes\ndelaunay: no\n"), std::string::npos) << flipped.out;
   EXPECT_EQ(run("delray verify hole.off --points p.xyz", folder.path()).exit_code, 4);
   EXPECT_EQ(run("delray verify moved.off --points p.xyz", folder.path()).exit_code, 3);
+}
+
+TEST(VerifyCommand, FindsAWrongMeshInSpace) {
+  const Folder folder;
+  // Two tetrahedra on one face, or three around the edge between their tips.
+  const std::string points = "0 0 0\n3 0 0\n0 3 0\n1 1 9\n1 1 -9\n";
+  folder.write("p.xyz", points);
+  const auto write = [&](const std::string& name, const std::string& nodes,
+                         const std::string& elements) {
+    std::string rows;
+    int row = 0;
+    for (std::size_t at = 0; at < nodes.size(); at = nodes.find('\n', at) + 1) {
+      rows += std::to_string(row++) + " " + nodes.substr(at, nodes.find('\n', at) - at) + "\n";
+    }
+    folder.write(name + ".node", "5 3 0 0\n" + rows);
+    folder.write(name + ".ele", elements);
+  };
+  write("good", points, "2 4 0\n0 0 1 2 3\n1 0 2 1 4\n");
+  write("flipped", points, "3 4 0\n0 0 1 4 3\n1 1 2 4 3\n2 2 0 4 3\n");
+  write("mirrored", points, "2 4 0\n0 0 1 2 3\n1 0 1 2 4\n");
+  write("doubled", points, "3 4 0\n0 0 1 2 3\n1 0 2 1 4\n2 0 1 2 3\n");
+  write("unused", points, "1 4 0\n0 0 1 2 3\n");
+  write("beyond", points, "2 4 0\n0 0 1 2 3\n1 0 2 1 5\n");
+  write("moved", "0 0 0\n3 0 0\n0 3 0\n1 1 9\n1 1 -8\n", "2 4 0\n0 0 1 2 3\n1 0 2 1 4\n");
+  const auto verify = [&](const std::string& name) {
+    return run("delray verify " + name + ".node --dim 3 --points p.xyz", folder.path());
+  };
+  const Ran good = verify("good");
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_NE(good.out.find("valid: yes\ndelaunay: yes\n"), std::string::npos) << good.out;
+  const Ran flipped = verify("flipped");
+  EXPECT_EQ(flipped.exit_code, 4);
+  EXPECT_NE(flipped.err.find("circumsphere"), std::string::npos) << flipped.err;
+  EXPECT_NE(flipped.out.find("valid: yes\ndelaunay: no\n"), std::string::npos) << flipped.out;
+  for (const std::string name : {"mirrored", "doubled", "unused"}) {
+    const Ran ran = verify(name);
+    EXPECT_EQ(ran.exit_code, 4) << name << ran.err;
+    EXPECT_NE(ran.out.find("valid: no\n"), std::string::npos) << name << ran.out;
+  }
+  EXPECT_NE(verify("mirrored").err.find("simplex 1"), std::string::npos);
+  EXPECT_EQ(verify("beyond").exit_code, 3);
+  EXPECT_EQ(verify("moved").exit_code, 3);
+  EXPECT_EQ(run("delray verify good.node --points p.xyz", folder.path()).exit_code, 2);
 }
 
 TEST(VerifyCommand, CanonicalIsReportedSeparately) {
