@@ -1,30 +1,28 @@
 #include "delaunay/dynamic.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "delaunay/conflict.h"
 #include "delaunay/insertion_order.h"
-#include "delaunay/internal/flip.h"
-#include "delaunay/internal/refill.h"
+#include "delaunay/internal/moving_mesh.h"
+#include "delaunay/internal/sites.h"
 #include "delaunay/predicates.h"
-#include "delaunay/walk.h"
 
 namespace delray::delaunay {
 namespace {
 
-// -0 made equal to 0 in every bit.
-glm::dvec2 checked(double x, double y, std::size_t row) {
-  if (!std::isfinite(x) || !std::isfinite(y)) {
-    throw std::invalid_argument("row " + std::to_string(row) +
-                                " has a coordinate that is not finite");
-  }
-  return {x + 0.0, y + 0.0};
-}
+constexpr SimplexNumber kNowhere = kDeadVertex;
+
+// A mesh has at most 2 triangles, and as a rule less than 7 tetrahedra, to a point.
+template <int D>
+constexpr std::size_t kMaximumRows = kMaximumSimplices / (D == 2 ? 2 : 8);
 
 std::uint32_t next_random(std::uint32_t& state) {
   state ^= state << 13;
@@ -33,229 +31,267 @@ std::uint32_t next_random(std::uint32_t& state) {
   return state;
 }
 
+// Whether a point is outside what the frame, up to D points of which that holds, spans.
+bool is_independent(std::span<const glm::dvec2> frame, const glm::dvec2& q) {
+  return frame.size() < 2 || orient2d(frame[0], frame[1], q) != 0;
+}
+bool is_independent(std::span<const glm::dvec3> frame, const glm::dvec3& q) {
+  if (frame.size() == 3) return orient3d(frame[0], frame[1], frame[2], q) != 0;
+  const auto turns = [&](int i, int j) {
+    const auto project = [&](const glm::dvec3& p) { return glm::dvec2(p[i], p[j]); };
+    return orient2d(project(frame[0]), project(frame[1]), project(q)) != 0;
+  };
+  return frame.size() < 2 || turns(0, 1) || turns(1, 2) || turns(2, 0);
+}
+
+bool is_positive(const std::array<glm::dvec2, 3>& p) { return orient2d(p[0], p[1], p[2]) > 0; }
+bool is_positive(const std::array<glm::dvec3, 4>& p) {
+  return orient3d(p[0], p[1], p[2], p[3]) > 0;
+}
+
+std::vector<std::uint32_t> order_of(std::span<const glm::dvec2> points) {
+  return insertion_order(points, "brio", 1);
+}
+// Random rounds, each twice as large as the one before, along a Morton curve within each (Amenta,
+// Choi, Rote 2003).
+std::vector<std::uint32_t> order_of(std::span<const glm::dvec3> points) {
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
+  for (const glm::dvec3& p : points) {
+    low = min(low, p);
+    high = max(high, p);
+  }
+  // Halved, since the extent itself may overflow.
+  const glm::dvec3 extent = high * 0.5 - low * 0.5;
+  constexpr int kLevels = 20;
+  std::vector<std::uint64_t> keys(points.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::uint64_t hash = (i + 1) * 0x9e3779b97f4a7c15;
+    hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9;
+    const int level = std::min(kLevels, std::countr_zero(hash ^ (hash >> 32)));
+    std::uint64_t key = static_cast<std::uint64_t>(kLevels - level);
+    std::array<std::uint32_t, 3> cell{};
+    for (int k = 0; k < 3; ++k) {
+      const double place = (points[i][k] * 0.5 - low[k] * 0.5) / extent[k];
+      cell[static_cast<std::size_t>(k)] = place > 0 ? static_cast<std::uint32_t>(place * 16383) : 0;
+    }
+    for (int bit = 13; bit >= 0; --bit) {
+      for (const std::uint32_t c : cell) key = key << 1 | ((c >> bit) & 1);
+    }
+    keys[i] = key;
+  }
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](std::uint32_t i, std::uint32_t j) {
+    return keys[i] != keys[j] ? keys[i] < keys[j] : i < j;
+  });
+  return order;
+}
+
 }  // namespace
 
-std::size_t DynamicTriangulation::KeyHash::operator()(const Key& key) const {
-  std::uint64_t hash = std::bit_cast<std::uint64_t>(key.x) * 0x9e3779b97f4a7c15;
-  hash = (hash ^ (hash >> 32) ^ std::bit_cast<std::uint64_t>(key.y)) * 0xd6e8feb86659fd93;
-  return hash ^ (hash >> 32);
-}
+template <int D>
+struct DynamicTriangulation<D>::State {
+  internal::Sites<D> sites;
+  // Per site: a simplex that once had it; kNowhere as long as it is to be inserted.
+  std::vector<SimplexNumber> near;
 
-SimplexNumber DynamicTriangulation::create() {
-  if (free_slots_.empty()) return used_++;
-  const SimplexNumber slot = free_slots_.back();
-  free_slots_.pop_back();
-  return slot;
-}
+  // While all sites are on one line (3D: plane) there is no mesh, but sites that span what they
+  // are on: none if they have to be found again.
+  bool meshed = false;
+  std::vector<std::uint32_t> frame;
+  internal::MovingMesh<D> mesh;
+  SimplexNumber last = 0;  // a live simplex
+  std::uint32_t random = 1;
 
-void DynamicTriangulation::retire(SimplexNumber simplex) {
-  mesh_.set_vertex(corner_of(simplex, 0), kDeadVertex);
-  free_slots_.push_back(simplex);
-}
+  const Point& at(std::uint32_t site) const { return sites.positions()[site]; }
 
-void DynamicTriangulation::reserve(std::size_t simplices) {
-  if (simplices <= mesh_.size()) return;
-  Mesh<2> larger(std::max<std::size_t>({simplices, 2 * mesh_.size(), 64}));
-  for (SimplexNumber t = 0; t < used_; ++t) {
-    for (unsigned k = 0; k < 3; ++k) {
-      larger.set_vertex(corner_of(t, k), mesh_.vertex(corner_of(t, k)));
-      if (!mesh_.is_dead(t)) larger.link(corner_of(t, k), mesh_.neighbour(corner_of(t, k)));
+  // With -0 made equal to 0 in every bit.
+  static Point checked(Point point, std::size_t row) {
+    if (row >= kMaximumRows<D>) throw std::invalid_argument("too many points");
+    for (int k = 0; k < D; ++k) {
+      if (!std::isfinite(point[k])) {
+        throw std::invalid_argument("row " + std::to_string(row) +
+                                    " has a coordinate that is not finite");
+      }
+      point[k] += 0.0;
+    }
+    return point;
+  }
+
+  // Whether the site is new.
+  bool add_row(const Point& point) {
+    const auto [site, is_new] = sites.add(point);
+    near.resize(sites.size());
+    if (is_new) near[site] = kNowhere;
+    return is_new;
+  }
+
+  SimplexNumber start_near(const Point& q) {
+    const auto distance = [&](const Point& p) { return glm::dot(p - q, p - q); };
+    SimplexNumber best = last;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned k = 0; k <= D; ++k) {
+      const VertexNumber vertex = mesh.mesh().vertex(corner_of(last, k));
+      if (vertex != kInfiniteVertex) least = std::min(least, distance(at(vertex)));
+    }
+    const auto sites_end = static_cast<std::uint32_t>(sites.size());
+    auto samples = static_cast<std::size_t>(std::cbrt(static_cast<double>(sites_end)));
+    for (; samples > 0; --samples) {
+      const std::uint32_t site = next_random(random) % sites_end;
+      const SimplexNumber simplex = near[site];
+      if (!sites.is_used(site) || simplex >= mesh.used() || mesh.mesh().is_dead(simplex)) continue;
+      if (const double d = distance(at(site)); d < least) {
+        least = d;
+        best = simplex;
+      }
+    }
+    return best;
+  }
+
+  void insert_site(std::uint32_t site) {
+    last = mesh.insert(sites.positions(), site, start_near(at(site)));
+    near[site] = last;
+  }
+
+  bool is_independent_of_frame(std::uint32_t site) const {
+    std::array<Point, D> points{};
+    for (std::size_t i = 0; i < frame.size(); ++i) points[i] = at(frame[i]);
+    return is_independent(std::span<const Point>(points.data(), frame.size()), at(site));
+  }
+
+  template <class F>
+  void each_inserted(F&& f) const {
+    for (std::uint32_t site = 0; site < sites.size(); ++site) {
+      if (sites.is_used(site) && near[site] != kNowhere) f(site);
     }
   }
-  mesh_ = std::move(larger);
-}
 
-std::uint32_t DynamicTriangulation::add_row(const glm::dvec2& point) {
-  const auto row = static_cast<std::uint32_t>(site_of_.size());
-  if (row >= kMaximumSimplices / 2) throw std::invalid_argument("more than 2^29 points");
-  const auto [place, is_new] = site_at_.try_emplace({point.x, point.y}, kNoSite);
-  if (is_new) {
-    if (free_sites_.empty()) {
-      place->second = static_cast<std::uint32_t>(positions_.size());
-      positions_.emplace_back();
-      rows_.emplace_back();
-      near_.push_back(0);
-    } else {
-      place->second = free_sites_.back();
-      free_sites_.pop_back();
-    }
-    positions_[place->second] = point;
+  void start_mesh() {
+    std::array<VertexNumber, D + 1> simplex;
+    std::array<Point, D + 1> points;
+    std::ranges::copy(frame, simplex.begin());
+    for (std::size_t k = 0; k <= D; ++k) points[k] = at(simplex[k]);
+    if (!is_positive(points)) std::swap(simplex[0], simplex[1]);
+    mesh.start(simplex);
+    meshed = true;
+    last = 0;
+    each_inserted([&](std::uint32_t site) {
+      if (std::ranges::find(simplex, site) == simplex.end()) {
+        insert_site(site);
+      } else {
+        near[site] = 0;
+      }
+    });
+    frame.clear();
   }
-  rows_[place->second].push_back(row);
-  site_of_.push_back(place->second);
-  ++live_;
-  return row;
-}
 
-// The first triangle, a, b, c counterclockwise, and the ghosts around it.
-void DynamicTriangulation::start_mesh(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  reserve(4);
-  used_ = 4;
-  free_slots_.clear();
-  last_ = 0;
-  meshed_ = true;
-  const std::uint32_t sites[3] = {a, b, c};
-  for (unsigned k = 0; k < 3; ++k) {
-    mesh_.set_vertex(corner_of(0, k), sites[k]);
-    near_[sites[k]] = 0;
-    const SimplexNumber ghost = 1 + k;
-    mesh_.set_vertex(corner_of(ghost, 0), sites[(k + 2) % 3]);
-    mesh_.set_vertex(corner_of(ghost, 1), sites[(k + 1) % 3]);
-    mesh_.set_vertex(corner_of(ghost, 2), kInfiniteVertex);
-    mesh_.link(corner_of(ghost, 2), corner_of(0, k));
-    mesh_.link(corner_of(ghost, 1), corner_of(1 + (k + 1) % 3, 0));
-  }
-}
-
-// The nearest of n^(1/3) random sites and the last place, whose simplex need only be somewhere
-// near (Muecke, Saias, Zhu 1999).
-SimplexNumber DynamicTriangulation::start_near(const glm::dvec2& q) {
-  const auto distance = [&](const glm::dvec2& p) { return glm::dot(p - q, p - q); };
-  SimplexNumber best = last_;
-  double least = std::numeric_limits<double>::infinity();
-  for (unsigned k = 0; k < 3; ++k) {
-    const VertexNumber vertex = mesh_.vertex(corner_of(last_, k));
-    if (vertex != kInfiniteVertex) least = std::min(least, distance(positions_[vertex]));
-  }
-  auto samples = static_cast<std::size_t>(std::cbrt(static_cast<double>(positions_.size())));
-  for (; samples > 0; --samples) {
-    const std::uint32_t site = next_random(random_) % static_cast<std::uint32_t>(positions_.size());
-    const SimplexNumber simplex = near_[site];
-    if (rows_[site].empty() || simplex >= used_ || mesh_.is_dead(simplex)) continue;
-    if (const double d = distance(positions_[site]); d < least) {
-      least = d;
-      best = simplex;
-    }
-  }
-  return best;
-}
-
-void DynamicTriangulation::insert_site(std::uint32_t site) {
-  reserve(std::size_t{used_} + 2);
-  const Place place =
-      walk(mesh_, positions_, start_near(positions_[site]), positions_[site], random_);
-  Access access{*this};
-  internal::subdivide(mesh_, place.simplex, site, access, suspects_);
-  near_[site] = last_ = place.simplex;
-  internal::legalize(mesh_, positions_, access, suspects_);
-}
-
-void DynamicTriangulation::add_site(std::uint32_t site) {
-  if (meshed_) {
-    insert_site(site);
-    return;
-  }
-  // Those before are on one line: any two of them tell whether this one is on it.
-  const auto is_on_line = [&](std::uint32_t s) {
-    return s != site && s < positions_.size() && !rows_[s].empty() && near_[s] != kDeadVertex;
-  };
-  if (line_[0] == line_[1] || !is_on_line(line_[0]) || !is_on_line(line_[1])) {
-    int found = 0;
-    for (std::uint32_t s = 0; s < positions_.size() && found < 2; ++s) {
-      if (is_on_line(s)) line_[found++] = s;
-    }
-    if (found < 2) {
-      line_ = {kNoSite, kNoSite};
-      near_[site] = 0;
+  void add_site(std::uint32_t site) {
+    if (meshed) {
+      insert_site(site);
       return;
     }
+    if (frame.empty()) {
+      each_inserted([&](std::uint32_t other) {
+        if (frame.size() < D && is_independent_of_frame(other)) frame.push_back(other);
+      });
+    }
+    near[site] = 0;
+    if (!is_independent_of_frame(site)) return;
+    frame.push_back(site);
+    if (frame.size() == D + 1) start_mesh();
   }
-  near_[site] = 0;
-  const auto other = line_;
-  const int turn = orient2d(positions_[other[0]], positions_[other[1]], positions_[site]);
-  if (turn == 0) return;
-  start_mesh(other[turn > 0 ? 0 : 1], other[turn > 0 ? 1 : 0], site);
-  for (std::uint32_t s = 0; s < positions_.size(); ++s) {
-    if (s == site || s == other[0] || s == other[1]) continue;
-    if (is_on_line(s)) insert_site(s);
+
+  // Of which no row is left.
+  void remove_site(std::uint32_t site) {
+    if (!meshed) {
+      if (std::ranges::find(frame, site) != frame.end()) frame.clear();
+      return;
+    }
+    const auto found = mesh.remove(sites.positions(), site, start_near(at(site)), sites.distinct());
+    if (!found) {
+      meshed = false;
+      return;
+    }
+    last = *found;
+    for (const VertexNumber vertex : mesh.link()) near[vertex] = last;
   }
+};
+
+template <int D>
+DynamicTriangulation<D>::DynamicTriangulation() : state_(std::make_unique<State>()) {}
+template <int D>
+DynamicTriangulation<D>::~DynamicTriangulation() = default;
+template <int D>
+DynamicTriangulation<D>::DynamicTriangulation(DynamicTriangulation&& other) noexcept = default;
+template <int D>
+DynamicTriangulation<D>& DynamicTriangulation<D>::operator=(DynamicTriangulation&& other) noexcept =
+    default;
+
+template <int D>
+std::size_t DynamicTriangulation<D>::size() const {
+  return state_->sites.live_rows();
 }
 
-std::uint32_t DynamicTriangulation::insert(const glm::dvec2& point) {
-  const auto row = static_cast<std::uint32_t>(site_of_.size());
-  add_row(checked(point.x, point.y, row));
-  if (rows_[site_of_[row]].size() == 1) add_site(site_of_[row]);
+template <int D>
+bool DynamicTriangulation<D>::is_live(std::uint32_t row) const {
+  return state_->sites.is_live(row);
+}
+
+template <int D>
+std::uint32_t DynamicTriangulation<D>::insert(const Point& point) {
+  const auto row = static_cast<std::uint32_t>(state_->sites.rows());
+  const bool is_new = state_->add_row(State::checked(point, row));
+  if (is_new) state_->add_site(state_->sites.site_of(row));
   return row;
 }
 
-std::uint32_t DynamicTriangulation::insert(PointView<double> points) {
-  const std::size_t first = site_of_.size();
-  if (points.size() > kMaximumSimplices / 2 - first) {
-    throw std::invalid_argument("more than 2^29 points");
-  }
-  std::vector<glm::dvec2> batch(points.size());
+template <int D>
+std::uint32_t DynamicTriangulation<D>::insert(PointView<double> points) {
+  const std::size_t first = state_->sites.rows();
+  std::vector<Point> batch(points.size());
   for (std::size_t i = 0; i < batch.size(); ++i) {
-    batch[i] = checked(points(i, 0), points(i, 1), first + i);
+    for (int k = 0; k < D; ++k) batch[i][k] = points(i, k);
+    batch[i] = State::checked(batch[i], first + i);
   }
-  std::vector<bool> is_first(batch.size());
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    const std::uint32_t site = site_of_[add_row(batch[i])];
-    is_first[i] = rows_[site].size() == 1;
-    if (is_first[i]) near_[site] = kDeadVertex;  // not of the mesh yet, nor of the line
-  }
-  reserve(2 * positions_.size() + 2);
-  for (const std::uint32_t i : insertion_order(batch, "brio", 1)) {
-    if (is_first[i]) add_site(site_of_[first + i]);
+  std::vector<bool> is_new(batch.size());
+  for (std::size_t i = 0; i < batch.size(); ++i) is_new[i] = state_->add_row(batch[i]);
+  state_->mesh.reserve_vertices(batch.size());
+  for (const std::uint32_t i : order_of(batch)) {
+    const auto row = static_cast<std::uint32_t>(first) + i;
+    if (is_new[i]) state_->add_site(state_->sites.site_of(row));
   }
   return static_cast<std::uint32_t>(first);
 }
 
-void DynamicTriangulation::flatten() {
-  meshed_ = false;
-  used_ = 0;
-  free_slots_.clear();
-  std::ranges::fill(near_, 0);
-}
-
-void DynamicTriangulation::remove_site(std::uint32_t site) {
-  const Place place =
-      walk(mesh_, positions_, start_near(positions_[site]), positions_[site], random_);
-  CornerNumber corner = corner_of(place.simplex, 0);
-  while (mesh_.vertex(corner) != site) corner = next_corner(corner);
-  internal::Ring ring = internal::ring_around(mesh_, corner);
-  if (ring.vertices.size() == site_at_.size() && internal::is_flat(ring, positions_)) {
-    // Only infinity and points of one line are left.
-    flatten();
-    return;
-  }
-  std::vector<SimplexNumber> slots = ring.simplices;
-  internal::refill(mesh_, positions_, ring, slots);
-  last_ = ring.simplices.back();
-  for (const SimplexNumber slot : slots) retire(slot);
-  for (const VertexNumber vertex : ring.vertices) {
-    if (vertex != kInfiniteVertex) near_[vertex] = last_;
-  }
-}
-
-bool DynamicTriangulation::remove(std::uint32_t row) {
+template <int D>
+bool DynamicTriangulation<D>::remove(std::uint32_t row) {
   if (!is_live(row)) return false;
-  const std::uint32_t site = site_of_[row];
-  std::vector<std::uint32_t>& rows = rows_[site];
-  if (rows.size() == 1) {
-    if (meshed_) remove_site(site);
-    site_at_.erase({positions_[site].x, positions_[site].y});
-    free_sites_.push_back(site);
-  }
-  rows.erase(std::ranges::find(rows, row));
-  site_of_[row] = kNoSite;
-  --live_;
+  const std::uint32_t site = state_->sites.site_of(row);
+  if (state_->sites.remove(row)) state_->remove_site(site);
   return true;
 }
 
-Triangulation DynamicTriangulation::triangulation() const {
+template <int D>
+Triangulation DynamicTriangulation<D>::triangulation() const {
   Triangulation result;
-  result.distinct = site_at_.size();
-  for (SimplexNumber t = 0; meshed_ && t < used_; ++t) {
-    if (mesh_.is_dead(t)) continue;
-    if (mesh_.is_ghost(t)) {
+  result.dim = D;
+  result.distinct = state_->sites.distinct();
+  if (!state_->meshed) return result;
+  const Mesh<D>& mesh = state_->mesh.mesh();
+  for (SimplexNumber t = 0; t < state_->mesh.used(); ++t) {
+    if (mesh.is_dead(t)) continue;
+    if (mesh.is_ghost(t)) {
       ++result.hull_facets;
       continue;
     }
-    for (unsigned k = 0; k < 3; ++k) {
-      result.vertices.push_back(rows_[mesh_.vertex(corner_of(t, k))].front());
+    for (unsigned k = 0; k <= D; ++k) {
+      result.vertices.push_back(state_->sites.lowest_row(mesh.vertex(corner_of(t, k))));
     }
   }
   return result;
 }
+
+template class DynamicTriangulation<2>;
+template class DynamicTriangulation<3>;
 
 }  // namespace delray::delaunay
