@@ -16,13 +16,11 @@ namespace delray::delaunay {
 std::optional<double> interpolate_linear(const Query& query, std::span<const double> values,
                                          const glm::dvec3& q);
 
-// The value at q weighted by the areas that a cell of q would take from the Voronoi cells of its
-// neighbours (Sibson 1981): the value itself at a vertex, linear along the hull, smooth everywhere
-// but at vertices, and exact for linear functions; none outside the hull. Which neighbours, is
-// decided exactly; areas are in floating point, and lose digits where triangles of the hull are
-// almost flat. The cost of Query::locate, plus O(k^2) for k neighbours.
+// The value at q weighted by the shares of its natural neighbours (Sibson 1981): the value itself
+// at a vertex, linear along edges of the hull, smooth everywhere but at vertices, and exact for
+// linear functions; none outside the hull. The cost and the precision of natural_neighbours().
 //
-// REQUIRES: dimension 2; a value per row, as above.
+// REQUIRES: a value per row, as above.
 std::optional<double> interpolate_natural_neighbour(const Query& query,
                                                     std::span<const double> values,
                                                     const glm::dvec3& q);

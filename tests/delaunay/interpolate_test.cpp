@@ -57,6 +57,31 @@ TEST(Interpolate, GivesSibsonsWeights) {
   EXPECT_NEAR(*interpolate_natural_neighbour(query, sides, {0.5, 0.25, 0}), 0, 1e-12);
 }
 
+TEST(Interpolate, ReproducesPlanesInSpace) {
+  for (const char* kind : {"uniform", "grid", "jitter"}) {
+    SCOPED_TRACE(kind);
+    const auto points = generate_points(kind, 700, 3, 3).positions;
+    Options options;
+    options.dim = 3;
+    const Triangulation triangulation = triangulate(view(points), options);
+    const Query query(view(points), triangulation);
+    std::vector<double> values;
+    for (const glm::dvec3& p : points) values.push_back(plane(p));
+    std::mt19937_64 random(1);
+    for (int round = 0; round < 200; ++round) {
+      glm::dvec3 q(0);
+      for (int i = 0; i < 4; ++i) q += points[random() % points.size()] / 4.0;
+      const auto linear = interpolate_linear(query, values, q);
+      const auto natural = interpolate_natural_neighbour(query, values, q);
+      ASSERT_TRUE(linear && natural);
+      EXPECT_NEAR(*linear, plane(q), 1e-9);
+      EXPECT_NEAR(*natural, plane(q), 1e-6);
+    }
+    EXPECT_EQ(interpolate_natural_neighbour(query, values, points[9]), values[9]);
+    EXPECT_FALSE(interpolate_natural_neighbour(query, values, {9, 0, 0}).has_value());
+  }
+}
+
 TEST(Interpolate, LinearInSpace) {
   const std::vector<glm::dvec3> points = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
   Triangulation one;

@@ -10,22 +10,9 @@
 #include "delaunay/generate.h"
 #include "delaunay/predicates.h"
 #include "delaunay/triangulate.h"
-#include "tests/delaunay/brute_force.h"
 
 namespace delray::delaunay {
 namespace {
-
-Triangulation tetrahedra_of(const std::vector<glm::dvec3>& points) {
-  Triangulation result;
-  result.dim = 3;
-  for (auto rows : brute_force<3>(points)) {
-    if (orient3d(points[rows[0]], points[rows[1]], points[rows[2]], points[rows[3]]) < 0) {
-      std::swap(rows[0], rows[1]);
-    }
-    result.vertices.insert(result.vertices.end(), rows.begin(), rows.end());
-  }
-  return result;
-}
 
 bool contains(const Query& query, std::size_t simplex, const glm::dvec3& q) {
   const std::size_t corners = static_cast<std::size_t>(query.triangulation().dim) + 1;
@@ -86,10 +73,14 @@ TEST(Query, LocatesAndFindsTheNearestInThePlane) {
 }
 
 TEST(Query, LocatesAndFindsTheNearestInSpace) {
-  for (const char* kind : {"uniform", "grid", "sphere", "cluster", "coplanar"}) {
-    SCOPED_TRACE(kind);
-    const auto points = generate_points(kind, 22, 3, 5).positions;
-    expect_right(points, tetrahedra_of(points), 6);
+  for (const char* kind : {"uniform", "grid", "sphere", "cluster", "coplanar", "duplicates"}) {
+    for (const std::size_t n : {1, 4, 22, 200}) {
+      SCOPED_TRACE(kind);
+      const auto points = generate_points(kind, n, 3, 5).positions;
+      Options options;
+      options.dim = 3;
+      expect_right(points, triangulate(view(points), options), 6);
+    }
   }
 }
 
