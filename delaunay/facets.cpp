@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "delaunay/array.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -13,20 +14,23 @@ namespace {
 struct Facet {
   std::array<std::uint32_t, 3> vertices;
   std::uint32_t number;
+
+  bool equals(const Facet& other) const {
+    return vertices[0] == other.vertices[0] && vertices[1] == other.vertices[1] &&
+           vertices[2] == other.vertices[2];
+  }
 };
 
-Facet facet_of(int dim, std::span<const std::uint32_t> simplices, std::size_t number) {
-  const std::size_t corners = static_cast<std::size_t>(dim) + 1;
-  const std::size_t first = number - number % corners;
-  Facet facet{{}, static_cast<std::uint32_t>(number)};
+// That of simplex `first / (D + 1)` opposite to its vertex i.
+template <int D>
+Facet facet_of(const std::uint32_t* simplices, std::size_t first, std::size_t i) {
+  Facet facet{{}, static_cast<std::uint32_t>(first + i)};
   std::array<std::uint32_t, 3>& v = facet.vertices;
-  int k = 3 - dim;
-  for (std::size_t i = first; i < first + corners; ++i) {
-    if (i != number) v[k++] = simplices[i];
-  }
-  if (dim == 3 && v[0] > v[1]) std::swap(v[0], v[1]);
+  const std::uint32_t* corners = simplices + first;
+  for (std::size_t k = 0; k < D; ++k) v[3 - D + k] = corners[k < i ? k : k + 1];
+  if (D == 3 && v[0] > v[1]) std::swap(v[0], v[1]);
   if (v[1] > v[2]) std::swap(v[1], v[2]);
-  if (dim == 3 && v[0] > v[1]) std::swap(v[0], v[1]);
+  if (D == 3 && v[0] > v[1]) std::swap(v[0], v[1]);
   return facet;
 }
 
@@ -47,7 +51,7 @@ std::uint32_t pair_up(std::span<const Facet> bucket, std::vector<std::uint32_t>&
   std::uint32_t crowded = FacetMates::kNone;
   for (std::uint32_t i = 0; i < bucket.size(); ++i) {
     std::size_t slot = slot_of(bucket[i]) & mask;
-    while (table[slot] != kFree && bucket[table[slot]].vertices != bucket[i].vertices) {
+    while (table[slot] != kFree && !bucket[table[slot]].equals(bucket[i])) {
       slot = (slot + 1) & mask;
     }
     if (table[slot] == kFree) {
@@ -71,9 +75,8 @@ std::uint32_t pair_up(std::span<const Facet> bucket, std::vector<std::uint32_t>&
   return crowded;
 }
 
-}  // namespace
-
-FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::size_t points) {
+template <int D>
+FacetMates match(std::span<const std::uint32_t> simplices, std::size_t points) {
   FacetMates result;
   result.mates.assign(simplices.size(), FacetMates::kNone);
   if (simplices.empty()) return result;
@@ -82,14 +85,16 @@ FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::
   const int wanted = std::clamp(static_cast<int>(std::bit_width(simplices.size() >> 12)), 0, 12);
   const int shift = std::max(0, static_cast<int>(std::bit_width(points)) - wanted);
   const std::size_t buckets = (points >> shift) + 1;
-  const auto bucket_of = [&](const Facet& facet) { return facet.vertices[3 - dim] >> shift; };
+  const auto bucket_of = [&](const Facet& facet) { return facet.vertices[3 - D] >> shift; };
   // Each block counts its facets per bucket and later writes them behind those of earlier blocks.
-  const std::size_t block = std::max<std::size_t>(std::size_t{1} << 16, 8 * buckets);
+  const std::size_t block = (D + 1) * std::max<std::size_t>(std::size_t{1} << 14, 2 * buckets);
   const std::size_t blocks = (simplices.size() + block - 1) / block;
   std::vector<std::uint32_t> next(blocks * buckets, 0);
   const auto each_of_block = [&](std::size_t b, auto&& f) {
     const std::size_t end = std::min(simplices.size(), (b + 1) * block);
-    for (std::size_t i = b * block; i < end; ++i) f(facet_of(dim, simplices, i));
+    for (std::size_t first = b * block; first < end; first += D + 1) {
+      for (std::size_t i = 0; i <= D; ++i) f(facet_of<D>(simplices.data(), first, i));
+    }
   };
   parallel::parallel_for(0, blocks, 1, [&](std::size_t b) {
     each_of_block(b, [&](const Facet& facet) { ++next[b * buckets + bucket_of(facet)]; });
@@ -105,7 +110,7 @@ FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::
     }
   }
   begin[buckets] = sum;
-  std::vector<Facet> facets(simplices.size());
+  Array<Facet> facets(simplices.size());
   parallel::parallel_for(0, blocks, 1, [&](std::size_t b) {
     each_of_block(
         b, [&](const Facet& facet) { facets[next[b * buckets + bucket_of(facet)]++] = facet; });
@@ -122,6 +127,12 @@ FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::
       },
       [](std::uint32_t a, std::uint32_t b) { return std::min(a, b); });
   return result;
+}
+
+}  // namespace
+
+FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::size_t points) {
+  return dim == 2 ? match<2>(simplices, points) : match<3>(simplices, points);
 }
 
 }  // namespace delray::delaunay

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "delaunay/internal/equal_points.h"
 #include "delaunay/internal/verified_mesh.h"
@@ -123,7 +124,11 @@ Check check_facets(const VerifiedMesh<D>& mesh) {
 template <int D>
 Check check_use(const VerifiedMesh<D>& mesh) {
   std::vector<std::uint8_t> used(mesh.points.size(), 0);
-  for (const std::uint32_t vertex : mesh.vertices) used[vertex] = 1;
+  parallel::parallel_for(0, mesh.vertices.size(), kVerifyGrain, [&](std::size_t i) {
+    // Others write the same at the same time; once is enough.
+    const std::atomic_ref mark(used[mesh.vertices[i]]);
+    if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
+  });
   const std::size_t bad = find_first(
       mesh.points.size(), [&](std::size_t i) { return mesh.lowest[i] == i && used[i] == 0; });
   if (bad == kAll) return std::nullopt;

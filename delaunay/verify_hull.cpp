@@ -71,7 +71,7 @@ Check check_polygon(std::size_t points, const std::vector<Edge>& edges, Point&& 
 struct Surface {
   std::vector<std::uint32_t> facets;     // numbers
   std::vector<std::uint32_t> triangles;  // outward, 3 vertices each
-  std::vector<bool> up;                  // whether a face is seen from above
+  std::vector<std::uint8_t> up;          // whether a face is seen from above
   FacetMates edges;
 };
 
@@ -82,9 +82,13 @@ Surface surface_of(const VerifiedMesh<3>& mesh) {
     const auto face = mesh.outward(facet);
     surface.facets.push_back(static_cast<std::uint32_t>(facet));
     surface.triangles.insert(surface.triangles.end(), face.begin(), face.end());
-    surface.up.push_back(Projection::turn(mesh.at(face[0]), mesh.at(face[1]), mesh.at(face[2])) >
-                         0);
   }
+  surface.up.resize(surface.facets.size());
+  parallel::parallel_for(0, surface.facets.size(), kVerifyGrain, [&](std::size_t i) {
+    const std::uint32_t* face = surface.triangles.data() + 3 * i;
+    surface.up[i] =
+        Projection::turn(mesh.at(face[0]), mesh.at(face[1]), mesh.at(face[2])) > 0 ? 1 : 0;
+  });
   surface.edges = match_facets(2, surface.triangles, mesh.points.size());
   return surface;
 }
@@ -116,21 +120,30 @@ Check check_hull(const VerifiedMesh<3>& mesh) {
     return Objection{simplex(crowded),
                      "more than two faces of the boundary meet between " + name(crowded)};
   }
+  const auto is_open = [&](std::size_t e) {
+    const std::uint32_t mate = surface.edges.mates[e];
+    return mate == kNone || start(mate) != end(e);
+  };
+  const auto is_outline = [&](std::size_t e) {
+    return surface.up[e / 3] != surface.up[surface.edges.mates[e] / 3];
+  };
+  const auto is_hollow = [&](std::size_t e) {
+    const std::uint32_t mate = surface.edges.mates[e];
+    const std::uint32_t* v = surface.triangles.data() + (e - e % 3);
+    return e < mate && !is_outline(e) &&
+           orient3d(mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2]), mesh.at(surface.triangles[mate])) >
+               0;
+  };
+  const std::size_t bad = find_first(surface.triangles.size(),
+                                     [&](std::size_t e) { return is_open(e) || is_hollow(e); });
+  if (bad != kAll) {
+    const char* what = is_open(bad) ? "closed" : "convex";
+    return Objection{simplex(bad),
+                     std::string("the boundary is not ") + what + " between " + name(bad)};
+  }
   std::vector<Edge> outline;
   for (std::size_t e = 0; e < surface.triangles.size(); ++e) {
-    const std::uint32_t mate = surface.edges.mates[e];
-    if (mate == kNone || start(mate) != end(e)) {
-      return Objection{simplex(e), "the boundary is not closed between " + name(e)};
-    }
-    if (surface.up[e / 3] != surface.up[mate / 3]) {
-      if (surface.up[e / 3]) outline.push_back({start(e), end(e), simplex(e)});
-      continue;
-    }
-    const std::uint32_t* v = surface.triangles.data() + (e - e % 3);
-    if (e < mate && orient3d(mesh.at(v[0]), mesh.at(v[1]), mesh.at(v[2]),
-                             mesh.at(surface.triangles[mate])) > 0) {
-      return Objection{simplex(e), "the boundary is not convex between " + name(e)};
-    }
+    if (surface.up[e / 3] && is_outline(e)) outline.push_back({start(e), end(e), simplex(e)});
   }
   return check_polygon<Projection>(mesh.points.size(), outline, [&](auto i) { return mesh.at(i); });
 }
