@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "delaunay/internal/batch.h"
+#include "delaunay/internal/burglary.h"
 #include "delaunay/internal/cavity_insertion.h"
+#include "delaunay/internal/circumcircle.h"
 #include "delaunay/internal/divide.h"
 #include "delaunay/internal/insertion.h"
 #include "delaunay/internal/optimistic.h"
@@ -97,6 +99,21 @@ std::span<const Method> methods() {
        .orders = {"brio", "random"},
        .deadlocks = {"detection", "priorities"},
        .triangulate = internal::insert_optimistically},
+      {.name = "burglary",
+       .description = "as optimistic, but instead of undoing its work a thread uses what a waiting "
+                      "thread has locked",
+       .dims = {2},
+       .locations = {"dag"},
+       .splits = all_splits,
+       .orders = {"brio", "random"},
+       .triangulate = internal::insert_by_burglary},
+      {.name = "circumcircle",
+       .description = "threads wait for simplices in whose circumcircles another's point lies",
+       .dims = {2},
+       .locations = {"dag"},
+       .splits = all_splits,
+       .orders = {"brio", "random"},
+       .triangulate = internal::insert_by_circles},
       {.name = "cavity",
        .description = "random rounds of points along a curve, each joined to the boundary of its "
                       "cavity; the fastest in 3D",

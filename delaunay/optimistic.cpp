@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "delaunay/dag_location.h"
+#include "delaunay/internal/add_counts.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insertion_phases.h"
 #include "delaunay/internal/node_locks.h"
@@ -30,15 +31,6 @@ bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber
   if (legalize(triangulation, access, suspects) != Grant::kGranted) return false;
   phases.legalized();
   return true;
-}
-
-void add(Synchronization& sum, const Synchronization& counts) {
-  sum.lock_calls += counts.lock_calls;
-  sum.already_locked += counts.already_locked;
-  sum.free += counts.free;
-  sum.waits += counts.waits;
-  sum.deadlocks += counts.deadlocks;
-  sum.rollbacks += counts.rollbacks;
 }
 
 template <int D, bool kCounted>

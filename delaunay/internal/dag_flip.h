@@ -5,6 +5,7 @@
 //   NodeNumber create()      a slot that is acquired already
 //   link(outside, inside)    makes two facets one; `outside` is of an older node, `inside` of a new
 //   retire(node, children)   gives a leaf its children
+//   kShakes                  whether it may answer kShaken
 // An operation is a subdivision or a flip; between operations the leaves are a triangulation.
 #pragma once
 
@@ -22,7 +23,7 @@ namespace delray::delaunay::internal {
 enum class Grant {
   kGranted,
   kRefused,  // nothing will come of it: undo everything
-  kShaken,   // granted, but others have changed acquired nodes meanwhile: look again
+  kShaken,   // others may have changed acquired nodes meanwhile: look again
 };
 
 template <int D>
@@ -67,6 +68,11 @@ Grant subdivide(const DagTriangulation<2>& triangulation, NodeNumber leaf, Verte
   const Grant grant =
       access.acquire({simplex_of(around[0]), simplex_of(around[1]), simplex_of(around[2])});
   if (grant != Grant::kGranted) return grant;
+  if constexpr (Access::kShakes) {
+    for (unsigned k = 0; k < 3; ++k) {
+      if (dag.neighbour(corner_of(leaf, k)) != around[k]) return Grant::kShaken;
+    }
+  }
   std::array<NodeNumber, 3> children;
   for (unsigned k = 0; k < 3; ++k) {
     children[k] = access.create({old[(k + 1) % 3], old[(k + 2) % 3], vertex});
@@ -78,6 +84,47 @@ Grant subdivide(const DagTriangulation<2>& triangulation, NodeNumber leaf, Verte
     access.link(around[k], corner_of(children[k], 2));
   }
   access.retire(leaf, children);
+  return Grant::kGranted;
+}
+
+// Cuts the leaf of `corner` and the one beyond into two each around `vertex`, which lies on the
+// edge between them and is corner 2 of all four; they are appended to `suspects`. Where others may
+// look in between operations this takes the place of subdivide(), which would leave them a flat
+// triangle. Writes nothing unless all is granted. REQUIRES: the leaf of `corner` is acquired.
+template <class Access>
+Grant split_edge(const DagTriangulation<2>& triangulation, CornerNumber corner, VertexNumber vertex,
+                 Access& access, std::vector<NodeNumber>& suspects) {
+  Dag<2>& dag = triangulation.dag;
+  const CornerNumber beyond = dag.neighbour(corner);
+  const CornerNumber right = next_corner(corner), left = previous_corner(corner);
+  const CornerNumber over_right = dag.neighbour(right), over_left = dag.neighbour(left);
+  Grant grant = access.acquire({simplex_of(beyond), simplex_of(over_right), simplex_of(over_left)});
+  if (grant != Grant::kGranted) return grant;
+  const CornerNumber beyond_left = dag.neighbour(previous_corner(beyond)),
+                     beyond_right = dag.neighbour(next_corner(beyond));
+  grant = access.acquire({simplex_of(beyond_left), simplex_of(beyond_right)});
+  if (grant != Grant::kGranted) return grant;
+  if (dag.neighbour(corner) != beyond || dag.neighbour(right) != over_right ||
+      dag.neighbour(left) != over_left || dag.neighbour(previous_corner(beyond)) != beyond_left ||
+      dag.neighbour(next_corner(beyond)) != beyond_right) {
+    return Grant::kShaken;
+  }
+  const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
+  const VertexNumber first = dag.vertex(right), last = dag.vertex(left);
+  // Counterclockwise around the vertex.
+  const std::array<NodeNumber, 4> made = {
+      access.create({near, first, vertex}), access.create({first, far, vertex}),
+      access.create({far, last, vertex}), access.create({last, near, vertex})};
+  const std::array<CornerNumber, 4> outside = {over_left, beyond_right, beyond_left, over_right};
+  for (unsigned k = 0; k < 4; ++k) {
+    const CornerNumber ahead = corner_of(made[k], 0), behind = corner_of(made[(k + 1) % 4], 1);
+    dag.set_neighbour(ahead, behind);
+    dag.set_neighbour(behind, ahead);
+    access.link(outside[k], corner_of(made[k], 2));
+    suspects.push_back(made[k]);
+  }
+  access.retire(simplex_of(corner), {made[3], made[0], kNoNode});
+  access.retire(simplex_of(beyond), {made[1], made[2], kNoNode});
   return Grant::kGranted;
 }
 
@@ -97,6 +144,12 @@ Grant flip(const DagTriangulation<2>& triangulation, CornerNumber corner, Access
   const Grant grant = access.acquire({simplex_of(over_right), simplex_of(over_left),
                                       simplex_of(beyond_left), simplex_of(beyond_right)});
   if (grant != Grant::kGranted) return grant;
+  if constexpr (Access::kShakes) {
+    if (dag.neighbour(previous_corner(beyond)) != beyond_left ||
+        dag.neighbour(next_corner(beyond)) != beyond_right) {
+      return Grant::kShaken;
+    }
+  }
   const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
   const VertexNumber first = dag.vertex(right), last = dag.vertex(left);
   made = {access.create({first, far, near}), access.create({far, last, near})};
@@ -131,6 +184,9 @@ Grant legalize(const DagTriangulation<2>& triangulation, Access& access,
     Grant grant = access.acquire({simplex_of(beyond)});
     if (grant == Grant::kRefused) return grant;
     if (grant == Grant::kShaken) continue;
+    if constexpr (Access::kShakes) {
+      if (dag.neighbour(corner) != beyond) continue;
+    }
     bool flips = conflict(triangulation, simplex_of(beyond), triangulation.points[vertex]);
     if constexpr (Access::kShakes) {
       // Beside an unfinished insertion of another thread circles are no proof of anything.

@@ -116,7 +116,7 @@ class NodeLocks {
   // Waiting is short and rare: the thread yields rather than sleeps (Kohout 2004, 7.7.1).
   bool wait_unless_deadlock(NodeNumber node) {
     std::uint32_t owner = 0;
-    if (!blocking_.waits.enter(dag_, thread_, node, false, owner)) return false;
+    if (!blocking_.waits.enter(dag_, thread_, node, owner)) return false;
     while (dag_.try_lock(node, thread_ + 1) != 0) {
       std::this_thread::yield();
       team_.check();

@@ -14,14 +14,12 @@ namespace delray::delaunay::internal {
 // circle to enter sees the whole of it.
 class ThreadWaits {
  public:
-  explicit ThreadWaits(std::size_t threads) : node_(threads, kNoNode), robbed_(threads, false) {}
+  explicit ThreadWaits(std::size_t threads) : node_(threads, kNoNode) {}
 
   // Enters `thread` (from 0) unless its waiting for `node` would close a circle: then returns
-  // false, and if `rob`, the owner of the node is told that its simplices are being changed. It
-  // waits until `thread` unlocks.
+  // false and the owner of the node (1 + its number), which waits until `thread` unlocks.
   template <int D>
-  bool enter(const Dag<D>& dag, std::uint32_t thread, NodeNumber node, bool rob,
-             std::uint32_t& owner) {
+  bool enter(const Dag<D>& dag, std::uint32_t thread, NodeNumber node, std::uint32_t& owner) {
     const std::lock_guard guard(mutex_);
     owner = dag.owner(node);
     NodeNumber wanted = node;
@@ -30,7 +28,6 @@ class ThreadWaits {
       if (holder == 0) break;
       if (holder == thread + 1) {
         if (steps == 0) break;
-        if (rob) robbed_[owner - 1] = true;
         return false;
       }
       const NodeNumber next = node_[holder - 1];
@@ -42,19 +39,14 @@ class ThreadWaits {
     return true;
   }
 
-  // Returns whether the thread was robbed since it entered.
-  bool leave(std::uint32_t thread) {
+  void leave(std::uint32_t thread) {
     const std::lock_guard guard(mutex_);
     node_[thread] = kNoNode;
-    const bool robbed = robbed_[thread];
-    robbed_[thread] = false;
-    return robbed;
   }
 
  private:
   std::mutex mutex_;
   std::vector<NodeNumber> node_;  // what each thread waits for
-  std::vector<bool> robbed_;
 };
 
 }  // namespace delray::delaunay::internal

@@ -1,0 +1,62 @@
+#include "delaunay/internal/burglary.h"
+
+#include <mutex>
+#include <vector>
+
+#include "delaunay/dag_location.h"
+#include "delaunay/internal/add_counts.h"
+#include "delaunay/internal/burglar_locks.h"
+#include "delaunay/internal/dag_run.h"
+#include "delaunay/internal/delaunay_repair.h"
+#include "delaunay/internal/insert_shaken.h"
+#include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/team.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+template <bool kCounted>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation<2> triangulation = run.triangulation();
+  Team team;
+  ThreadWaits waits(run.parts());
+  std::mutex finishing;
+  bool robbed = false;
+  const auto work = [&](std::size_t thread) {
+    BurglarLocks<2, kCounted> access(triangulation.dag, team, waits,
+                                     static_cast<std::uint32_t>(thread), run.parts());
+    InsertionPhases phases(options);
+    std::vector<NodeNumber> suspects;
+    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
+         ++vertex) {
+      team.check();
+      phases.next_point();
+      if (run.is_first(vertex)) continue;
+      const NodeNumber root =
+          root_of(triangulation.dag, triangulation.orientation, run.point(vertex));
+      insert_shaken(run, triangulation, root, vertex, access, suspects, phases);
+      access.commit();
+    }
+    const std::lock_guard alone(finishing);
+    phases.finish();
+    robbed |= access.has_robbed();
+    if (kCounted) add(options.statistics->synchronization, access.counts());
+  };
+  team.run(run.parts(), work);
+  // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
+  // without a burglary; with one, all that came after it may have built on what it left.
+  const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;
+  if (kCounted) options.statistics->synchronization.repaired += repaired;
+  return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_by_burglary(PointView<double> points, const Options& options) {
+  return options.statistics != nullptr ? insert_all_points<true>(points, options)
+                                       : insert_all_points<false>(points, options);
+}
+
+}  // namespace delray::delaunay::internal

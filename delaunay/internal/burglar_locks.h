@@ -1,0 +1,114 @@
+// The access policy of the burglary method: a lock in every simplex, and no journal.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <thread>
+#include <vector>
+
+#include "delaunay/dag.h"
+#include "delaunay/internal/dag_flip.h"
+#include "delaunay/internal/node_cache.h"
+#include "delaunay/internal/team.h"
+#include "delaunay/internal/thread_waits.h"
+#include "delaunay/triangulate.h"
+
+namespace delray::delaunay::internal {
+
+// Simplices stay locked until commit(), but children are published at once: nothing is ever undone.
+//
+// A thread whose waiting would close a circle breaks into the simplices of the thread that it would
+// wait for, until its own commit(). Nobody else uses them meanwhile: their owner waits for a
+// simplex, whose owner waits, and so on to the burglar; of such a chain only the last thread runs,
+// and if that comes to wait another may become the last. Threads wait between operations only, so
+// what is broken into is a triangulation; but whoever has waited may find it changed, be it robbed
+// or a burglar itself, and is told so. kCounted: whether to count.
+template <int D, bool kCounted>
+class BurglarLocks {
+ public:
+  static constexpr bool kShakes = true;
+
+  BurglarLocks(Dag<D>& dag, Team& team, ThreadWaits& waits, std::uint32_t thread,
+               std::size_t threads)
+      : dag_(dag), team_(team), waits_(waits), thread_(thread), cache_(thread), robbed_(threads) {}
+  ~BurglarLocks() { cache_.abandon_rest(dag_); }
+  BurglarLocks(const BurglarLocks&) = delete;
+  BurglarLocks& operator=(const BurglarLocks&) = delete;
+
+  // Never kRefused.
+  Grant acquire(std::initializer_list<NodeNumber> nodes) {
+    if (kCounted) ++counts_.lock_calls;
+    for (const NodeNumber node : nodes) {
+      const std::uint32_t owner = dag_.try_lock(node, thread_ + 1);
+      if (owner == thread_ + 1 || (owner != 0 && robbed_[owner - 1])) {
+        if (kCounted) ++counts_.already_locked;
+        continue;
+      }
+      if (owner == 0) {
+        if (kCounted) ++counts_.free;
+        locked_.push_back(node);
+        continue;
+      }
+      if (kCounted) ++counts_.waits;
+      if (wait_or_rob(node)) return Grant::kShaken;
+    }
+    return Grant::kGranted;
+  }
+
+  NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
+    const NodeNumber node = cache_.take(dag_);
+    dag_.set_leaf(node, vertices, thread_ + 1);
+    locked_.push_back(node);
+    return node;
+  }
+  void link(CornerNumber outside, CornerNumber inside) {
+    dag_.set_neighbour(inside, outside);
+    dag_.set_neighbour(outside, inside);
+  }
+  void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
+    dag_.set_children(node, children);
+  }
+
+  void commit() {
+    for (const NodeNumber node : locked_) dag_.set_owner(node, 0);
+    locked_.clear();
+    if (robs_) robbed_.assign(robbed_.size(), false);
+    robs_ = false;
+  }
+
+  // Whether this thread ever was a burglar.
+  bool has_robbed() const { return has_robbed_; }
+  const Synchronization& counts() const { return counts_; }
+
+ private:
+  // Returns whether it has waited.
+  bool wait_or_rob(NodeNumber node) {
+    std::uint32_t owner = 0;
+    if (!waits_.enter(dag_, thread_, node, owner)) {
+      robbed_[owner - 1] = robs_ = has_robbed_ = true;
+      if (kCounted) ++counts_.deadlocks;
+      if (kCounted) ++counts_.burglaries;
+      return false;
+    }
+    while (dag_.try_lock(node, thread_ + 1) != 0) {
+      std::this_thread::yield();
+      team_.check();
+    }
+    waits_.leave(thread_);
+    locked_.push_back(node);
+    return true;
+  }
+
+  Dag<D>& dag_;
+  Team& team_;
+  ThreadWaits& waits_;
+  std::uint32_t thread_;
+  NodeCache<D> cache_;
+  std::vector<NodeNumber> locked_;
+  std::vector<bool> robbed_;  // thread i, by this one, since its last commit
+  bool robs_ = false, has_robbed_ = false;
+  Synchronization counts_;
+};
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,19 @@
+// Flips that make any triangulation Delaunay.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "delaunay/internal/dag_flip.h"
+
+namespace delray::delaunay::internal {
+
+// Flips edges that are not locally Delaunay until there are none, which ends at the one
+// triangulation that has none (Lawson 1977), and returns how many leaves were replaced. All edges
+// are looked at, by so many threads; they are flipped by one. O(leaves) if few are wrong.
+//
+// REQUIRES: no thread inserts, and all have abandoned what they did not use; the leaves are a
+// triangulation without flat triangles.
+std::uint64_t repair(const DagTriangulation<2>& triangulation, std::size_t threads);
+
+}  // namespace delray::delaunay::internal
