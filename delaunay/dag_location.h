@@ -14,13 +14,17 @@ constexpr NodeNumber kRoots = D + 2;
 
 // The root that contains q. REQUIRES: the roots are the first nodes, the simplex before the ghosts.
 NodeNumber root_of(const Dag<2>& dag, const Orientation<2>& orientation, const glm::dvec2& q);
+NodeNumber root_of(const Dag<3>& dag, const Orientation<3>& orientation, const glm::dvec3& q);
 
 // The leaf below `node` that contains q, its boundary included. May run while other threads insert:
 // what it returns was a leaf when it was read. Children must be as subdivide() and legalize() lay
-// them out (internal/dag_flip.h). Expected O(log n) from a root if the points came in random order.
+// them out (internal/dag_flip.h, flip3.h). Expected O(log n) from a root if the points came in
+// random order.
 //
 // REQUIRES: q lies in `node`, its boundary included.
 NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNumber node,
                    const glm::dvec2& q);
+NodeNumber descend(const Dag<3>& dag, const Orientation<3>& orientation, NodeNumber node,
+                   const glm::dvec3& q);
 
 }  // namespace delray::delaunay

@@ -8,16 +8,11 @@
 
 #include "delaunay/conflict.h"
 #include "delaunay/dag_location.h"
-#include "delaunay/internal/finite_points.h"
-#include "delaunay/internal/first_triangle.h"
+#include "delaunay/internal/insertion_start.h"
 #include "delaunay/internal/stopwatch.h"
 
 namespace delray::delaunay::internal {
 namespace {
-
-std::optional<std::array<VertexNumber, 3>> first_simplex(std::span<const glm::dvec2> points) {
-  return first_triangle(points);
-}
 
 // Connected sets of live finite leaves that one thread made.
 template <int D>
@@ -50,13 +45,14 @@ template <int D>
 DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t parts)
     : options(wanted) {
   Stopwatch watch;
-  const std::vector<Point> points = finite_points(input);
-  Plan plan = make_plan(points, parts, options.split, options.order, options.seed);
+  const std::vector<Point> points = positions<D>(input);
+  Plan plan =
+      make_plan(std::span<const Point>(points), parts, options.split, options.order, options.seed);
   points_.reserve(points.size());
   for (const std::uint32_t row : plan.points) points_.push_back(points[row]);
   rows_ = std::move(plan.points);
   begins_ = std::move(plan.begins);
-  first_ = first_simplex(points_);
+  first_ = first_simplex<D>(points_);
   if (first_) start_dag();
   if (options.statistics != nullptr) options.statistics->order = watch.lap();
 }
@@ -139,5 +135,6 @@ Triangulation DagRun<D>::finish() {
 }
 
 template class DagRun<2>;
+template class DagRun<3>;
 
 }  // namespace delray::delaunay::internal

@@ -9,10 +9,11 @@
 
 namespace delray::delaunay::internal {
 
-Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads) {
-  Mesh<2> own = std::move(mesh);
+template <int D>
+Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads) {
+  Mesh<D> own = std::move(mesh);
   const Blocks blocks(own.size(), threads);
-  std::vector<Mesh<2>::Packed> packed(blocks.count());
+  std::vector<typename Mesh<D>::Packed> packed(blocks.count());
   blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
     packed[block] = own.pack_finite(first, last);
     for (VertexNumber& vertex : packed[block].vertices) vertex = rows[vertex];
@@ -25,7 +26,7 @@ Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int t
   }
 
   Triangulation result;
-  result.dim = 2;
+  result.dim = D;
   result.distinct = rows.size();
   result.vertices.reserve(begin.back());
   prefer_huge_pages(result.vertices.data(), begin.back() * sizeof(VertexNumber));
@@ -41,5 +42,8 @@ Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int t
   if (!result.vertices.empty()) result.hull_facets = ghosts;
   return result;
 }
+
+template Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads);
+template Triangulation extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads);
 
 }  // namespace delray::delaunay::internal

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "delaunay/dag_location.h"
@@ -9,12 +11,14 @@
 #include "delaunay/internal/access.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/extract.h"
-#include "delaunay/internal/finite_points.h"
-#include "delaunay/internal/first_triangle.h"
 #include "delaunay/internal/flip.h"
+#include "delaunay/internal/flip3.h"
 #include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/insertion_start.h"
+#include "delaunay/internal/reusing_access.h"
 #include "delaunay/internal/sole_dag_access.h"
+#include "delaunay/internal/start_mesh.h"
 #include "delaunay/internal/stopwatch.h"
 #include "delaunay/mesh.h"
 #include "delaunay/walk.h"
@@ -22,68 +26,123 @@
 namespace delray::delaunay::internal {
 namespace {
 
-// One triangle and the ghosts around it.
-void start_mesh(Mesh<2>& mesh, const std::array<VertexNumber, 3>& triangle) {
-  for (unsigned k = 0; k < 3; ++k) mesh.set_vertex(corner_of(0, k), triangle[k]);
-  for (unsigned k = 0; k < 3; ++k) {
-    const SimplexNumber ghost = 1 + k;
-    mesh.set_vertex(corner_of(ghost, 0), triangle[(k + 2) % 3]);
-    mesh.set_vertex(corner_of(ghost, 1), triangle[(k + 1) % 3]);
-    mesh.set_vertex(corner_of(ghost, 2), kInfiniteVertex);
-    mesh.link(corner_of(ghost, 2), corner_of(0, k));
-    mesh.link(corner_of(ghost, 1), corner_of(1 + (k + 1) % 3, 0));
-  }
-}
+// A mesh to walk through.
+template <int D>
+class WalkedMesh;
 
+template <>
+class WalkedMesh<2> {
+ public:
+  WalkedMesh(std::span<const glm::dvec2> points, const std::array<VertexNumber, 3>& first,
+             std::uint64_t seed)
+      : points_(points),
+        mesh_(2 * points.size() - 2),
+        random_(static_cast<std::uint32_t>(seed) | 1) {
+    start_mesh(mesh_, first);
+  }
+
+  Place locate(VertexNumber vertex) {
+    const Place place = walk(mesh_, points_, last_, points_[vertex], random_);
+    last_ = place.simplex;
+    return place;
+  }
+  void subdivide(VertexNumber vertex, SimplexNumber simplex) {
+    internal::subdivide(mesh_, simplex, vertex, access_, suspects_);
+  }
+  void legalize() { internal::legalize(mesh_, points_, access_, suspects_); }
+  Mesh<2> take() {
+    mesh_.shrink(access_.used());
+    return std::move(mesh_);
+  }
+
+ private:
+  std::span<const glm::dvec2> points_;
+  Mesh<2> mesh_;
+  SoleAccess access_{4};
+  std::vector<CornerNumber> suspects_;
+  SimplexNumber last_ = 0;
+  std::uint32_t random_;
+};
+
+template <>
+class WalkedMesh<3> {
+ public:
+  WalkedMesh(std::span<const glm::dvec3> points, const std::array<VertexNumber, 4>& first,
+             std::uint64_t seed)
+      : orientation_(points, first),
+        mesh_(kSlotsPerPoint * points.size()),
+        random_(static_cast<std::uint32_t>(seed) | 1) {
+    start_mesh(mesh_, first);
+  }
+
+  Place locate(VertexNumber vertex) {
+    return walk(mesh_, orientation_, access_.last(), orientation_.point(vertex), random_);
+  }
+  void subdivide(VertexNumber vertex, SimplexNumber simplex) { flips_.subdivide(simplex, vertex); }
+  void legalize() { flips_.legalize(); }
+  Mesh<3> take() {
+    mesh_.shrink(access_.used());
+    return std::move(mesh_);
+  }
+
+ private:
+  // Evenly spread points have hardly as many tetrahedra.
+  static constexpr std::size_t kSlotsPerPoint = 7;
+
+  Orientation<3> orientation_;
+  Mesh<3> mesh_;
+  ReusingAccess access_{mesh_, 5};
+  std::vector<CornerNumber> suspects_;
+  Flips3<Mesh<3>, ReusingAccess> flips_{mesh_, orientation_, access_, suspects_};
+  std::uint32_t random_;
+};
+
+template <int D>
 Triangulation insert_walking(PointView<double> input, const Options& options) {
   Statistics unused;
   Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
   const bool timed = options.statistics != nullptr;
   Stopwatch watch;
 
-  std::vector<glm::dvec2> points = finite_points(input);
-  std::vector<std::uint32_t> rows = insertion_order(points, options.order, options.seed);
+  using Points = std::vector<Position<D>>;
+  Points points = positions<D>(input);
+  std::vector<std::uint32_t> rows =
+      insertion_order(std::span<const Position<D>>(points), options.order, options.seed);
   const std::size_t n = points.size();
-  std::vector<glm::dvec2> ordered(n);
+  Points ordered(n);
   for (std::size_t i = 0; i < n; ++i) ordered[i] = points[rows[i]];
   points.swap(ordered);
   ordered = {};
   seconds.order = watch.lap();
 
-  const auto start = first_triangle(points);
+  const auto start = first_simplex<D>(points);
   if (!start) {
     Triangulation result;
+    result.dim = D;
     result.distinct = count_distinct(std::move(points));
     return result;
   }
-  Mesh<2> mesh(2 * n - 2);
-  start_mesh(mesh, *start);
-  SoleAccess access(4);
-  std::vector<CornerNumber> suspects;
-  std::uint64_t distinct = 3;
-  SimplexNumber last = 0;
-  std::uint32_t random = static_cast<std::uint32_t>(options.seed) | 1;
+  WalkedMesh<D> mesh(points, *start, options.seed);
+  std::uint64_t distinct = D + 1;
   for (VertexNumber vertex = 0; vertex < n; ++vertex) {
     if (options.progress != nullptr) options.progress->advance();
     if (std::ranges::find(*start, vertex) != start->end()) continue;
     if (timed) watch.lap();
-    const Place place = walk(mesh, points, last, points[vertex], random);
+    const Place place = mesh.locate(vertex);
     if (timed) seconds.locate += watch.lap();
-    last = place.simplex;
     if (place.equal != kInfiniteVertex) {
       rows[place.equal] = std::min(rows[place.equal], rows[vertex]);
       continue;
     }
     ++distinct;
-    subdivide(mesh, place.simplex, vertex, access, suspects);
+    mesh.subdivide(vertex, place.simplex);
     if (timed) seconds.subdivide += watch.lap();
-    legalize(mesh, points, access, suspects);
+    mesh.legalize();
     if (timed) seconds.legalize += watch.lap();
   }
   watch.lap();
   points = {};
-  mesh.shrink(access.used());
-  Triangulation result = extract(std::move(mesh), rows);
+  Triangulation result = extract(mesh.take(), rows);
   result.distinct = distinct;
   seconds.extract = watch.lap();
   return result;
@@ -115,8 +174,11 @@ Triangulation insert_descending(PointView<double> input, const Options& options)
 }  // namespace
 
 Triangulation insert_all(PointView<double> points, const Options& options) {
-  return options.location == "dag" ? insert_descending<2>(points, options)
-                                   : insert_walking(points, options);
+  const auto insert = [&]<int D>() {
+    return options.location == "dag" ? insert_descending<D>(points, options)
+                                     : insert_walking<D>(points, options);
+  };
+  return options.dim == 2 ? insert.template operator()<2>() : insert.template operator()<3>();
 }
 
 }  // namespace delray::delaunay::internal

@@ -73,8 +73,11 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
 }  // namespace
 
 Triangulation insert_optimistically(PointView<double> points, const Options& options) {
-  return options.statistics != nullptr ? insert_all_points<2, true>(points, options)
-                                       : insert_all_points<2, false>(points, options);
+  const auto insert = [&]<int D>() {
+    return options.statistics != nullptr ? insert_all_points<D, true>(points, options)
+                                         : insert_all_points<D, false>(points, options);
+  };
+  return options.dim == 2 ? insert.template operator()<2>() : insert.template operator()<3>();
 }
 
 }  // namespace delray::delaunay::internal

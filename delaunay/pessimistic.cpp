@@ -51,7 +51,8 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
 }  // namespace
 
 Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
-  return insert_all_points<2>(points, options);
+  return options.dim == 2 ? insert_all_points<2>(points, options)
+                          : insert_all_points<3>(points, options);
 }
 
 }  // namespace delray::delaunay::internal

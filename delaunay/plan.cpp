@@ -30,10 +30,12 @@ void split_by(std::span<std::uint32_t> numbers, std::span<const double> keys,
   split_by({at(begins[middle]), numbers.end()}, keys, begins.subspan(middle));
 }
 
-}  // namespace
+double distance_from_origin(const glm::dvec2& p) { return std::hypot(p.x, p.y); }
+double distance_from_origin(const glm::dvec3& p) { return std::hypot(p.x, p.y, p.z); }
 
-Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
-               std::string_view order, std::uint64_t seed) {
+template <class Point>
+Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view split,
+             std::string_view order, std::uint64_t seed) {
   assert(parts >= 1);
   Plan plan;
   const std::size_t n = points.size();
@@ -47,7 +49,7 @@ Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::strin
     std::iota(plan.points.begin(), plan.points.end(), 0U);
     std::vector<double> keys(n);
     for (std::size_t i = 0; i < n; ++i) {
-      keys[i] = split == "slabs" ? points[i].x : std::hypot(points[i].x, points[i].y);
+      keys[i] = split == "slabs" ? points[i].x : distance_from_origin(points[i]);
     }
     split_by(plan.points, keys, plan.begins);
   } else {
@@ -59,10 +61,13 @@ Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::strin
     // Ascending first, so that what is done within the part depends on its points alone.
     std::sort(plan.points.begin() + static_cast<std::ptrdiff_t>(begin),
               plan.points.begin() + static_cast<std::ptrdiff_t>(end));
-    std::vector<glm::dvec2> own(end - begin);
+    std::vector<Point> own(end - begin);
     std::vector<std::uint32_t> numbers(end - begin);
     for (std::size_t i = begin; i < end; ++i) own[i - begin] = points[plan.points[i]];
-    const std::vector<std::uint32_t> places = insertion_order(own, order, seed + 1 + part);
+    // Threads that keep pace would meet if they began at the same place.
+    const double start = static_cast<double>(part) / static_cast<double>(parts);
+    const std::vector<std::uint32_t> places =
+        insertion_order(std::span<const Point>(own), order, seed + 1 + part, start);
     for (std::size_t i = 0; i < places.size(); ++i) numbers[i] = plan.points[begin + places[i]];
     std::copy(numbers.begin(), numbers.end(),
               plan.points.begin() + static_cast<std::ptrdiff_t>(begin));
@@ -76,6 +81,18 @@ Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::strin
     team.run(parts, order_part);
   }
   return plan;
+}
+
+}  // namespace
+
+Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
+               std::string_view order, std::uint64_t seed) {
+  return plan_of(points, parts, split, order, seed);
+}
+
+Plan make_plan(std::span<const glm::dvec3> points, std::size_t parts, std::string_view split,
+               std::string_view order, std::uint64_t seed) {
+  return plan_of(points, parts, split, order, seed);
 }
 
 }  // namespace delray::delaunay

@@ -23,10 +23,13 @@ struct Plan {
 // - slabs: by x, so that parts are strips;
 // - distance: by the distance from the origin, so that parts are rings;
 // - curve: intervals of a Hilbert curve.
-// Within a part points are in the order called `order`, see insertion_order(). O(n log n).
+// Within a part points are in the order called `order`, see insertion_order(), each part from
+// another place along the curve. O(n log n).
 //
 // REQUIRES: legal names; parts >= 1; finite coordinates.
 Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
+               std::string_view order, std::uint64_t seed);
+Plan make_plan(std::span<const glm::dvec3> points, std::size_t parts, std::string_view split,
                std::string_view order, std::uint64_t seed);
 
 }  // namespace delray::delaunay

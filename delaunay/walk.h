@@ -1,4 +1,4 @@
-// Finding the triangle that a point lies in by walking there.
+// Finding the simplex that a point lies in by walking there.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,12 @@
 #include <span>
 
 #include "delaunay/mesh.h"
+#include "delaunay/orientation.h"
 
 namespace delray::delaunay {
 
-// Where a point lies. A finite triangle contains it, its boundary included; a ghost means that the
-// point is strictly beyond the ghost's edge of the hull.
+// Where a point lies. In the plane: a finite triangle contains it, its boundary included; a ghost
+// means that the point is strictly beyond the ghost's edge of the hull.
 struct Place {
   SimplexNumber simplex;
   VertexNumber equal;  // the vertex with the same coordinates, or kInfiniteVertex
@@ -22,5 +23,11 @@ struct Place {
 // the choices and must not be 0. O(sqrt n) expected from anywhere, O(1) from nearby.
 Place walk(const Mesh<2>& mesh, std::span<const glm::dvec2> points, SimplexNumber start,
            const glm::dvec2& q, std::uint32_t& random);
+
+// The same in space and among the ghosts too, which `orientation` spreads over what is outside: the
+// simplex contains q, its boundary included, in that sense. O(n^(1/3)) expected from anywhere.
+// REQUIRES: the mesh is Delaunay (then no such walk goes round in circles; Edelsbrunner 1990).
+Place walk(const Mesh<3>& mesh, const Orientation<3>& orientation, SimplexNumber start,
+           const glm::dvec3& q, std::uint32_t& random);
 
 }  // namespace delray::delaunay

@@ -11,6 +11,7 @@
 
 #include "delaunay/dag.h"
 #include "delaunay/internal/dag_flip.h"
+#include "delaunay/internal/dag_flip3.h"
 #include "delaunay/plan.h"
 #include "delaunay/points.h"
 #include "delaunay/triangulate.h"

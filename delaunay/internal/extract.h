@@ -12,6 +12,7 @@ namespace delray::delaunay::internal {
 // The finite live simplices, vertex i replaced by rows[i]. Frees the mesh on the way, so that mesh
 // and result are never in memory together as a whole. O(simplices). Several threads are those of
 // the arena that the caller is in.
-Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads = 1);
+template <int D>
+Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads = 1);
 
 }  // namespace delray::delaunay::internal

@@ -1,4 +1,4 @@
-// Incremental insertion in 2D, one thread.
+// Incremental insertion with flips, one thread.
 #pragma once
 
 #include "delaunay/points.h"
@@ -6,7 +6,7 @@
 
 namespace delray::delaunay::internal {
 
-// The report's sequential algorithm with a walk instead of its DAG: find the triangle of the next
+// The report's sequential algorithm with its DAG or a walk instead: find the simplex of the next
 // point, subdivide it, flip until Delaunay (Kohout 2004, sections 6 and 8). Expected O(n log n) in
 // a random or brio order; along the curve alone some inputs make it quadratic.
 //

@@ -9,6 +9,7 @@
 
 #include "delaunay/methods.h"
 #include "tests/delaunay/hard_points.h"
+#include "tests/delaunay/hard_points3.h"
 
 namespace delray::delaunay {
 namespace {
@@ -25,6 +26,38 @@ TEST(InsertionOrder, IsAPermutation) {
       }
     }
   }
+}
+
+TEST(InsertionOrder, IsAPermutationInSpaceToo) {
+  for (const Choice& order : orders()) {
+    for (const HardPoints3& kind : hard_points3()) {
+      for (const std::size_t n : {1, 65, 500}) {
+        const auto points = kind.make(n, 1);
+        std::vector<std::uint32_t> numbers = insertion_order(points, order.name, 5, 0.6);
+        std::sort(numbers.begin(), numbers.end());
+        std::vector<std::uint32_t> expected(n);
+        std::iota(expected.begin(), expected.end(), 0U);
+        EXPECT_EQ(numbers, expected) << order.name << ", " << kind.name << ", " << n;
+      }
+    }
+  }
+}
+
+TEST(InsertionOrder, HilbertVisitsNeighbouringCellsOfSpaceInTurn) {
+  std::vector<glm::dvec3> lattice;
+  for (int i = 0; i < 512; ++i) lattice.emplace_back(i / 64, i / 8 % 8, i % 8);
+  const auto numbers = insertion_order(lattice, "hilbert", 1);
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    const glm::dvec3 step = abs(lattice[numbers[i]] - lattice[numbers[i - 1]]);
+    EXPECT_EQ(step.x + step.y + step.z, 1) << i;
+  }
+}
+
+TEST(InsertionOrder, StartTurnsTheCurveRound) {
+  const Points points = hard_points().front().make(100, 1);
+  auto numbers = insertion_order(points, "hilbert", 1);
+  std::rotate(numbers.begin(), numbers.begin() + 25, numbers.end());
+  EXPECT_EQ(insertion_order(points, "hilbert", 1, 0.25), numbers);
 }
 
 TEST(InsertionOrder, HilbertVisitsNeighbouringCellsInTurn) {
