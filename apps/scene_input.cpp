@@ -60,7 +60,7 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
   } else {
     std::vector<std::string> warnings;
     scene = scenes::load(input.file.path, warnings, progress);
-    for (const std::string& warning : warnings) spdlog::warn("{}: {}", input.file.path, warning);
+    for (const std::string& warning : warnings) spdlog::warn(warning);
   }
   if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
   return scene;

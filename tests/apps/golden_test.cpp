@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
 
 #include "comm/threads.h"
 #include "image/compare.h"
@@ -52,6 +53,7 @@ struct Golden {
   // Pixels that may differ by more than a code of 8 bits: none for the rasterizer, whose arithmetic
   // is fixed; a few silhouettes for Embree, whose is fixed per instruction set.
   std::uint64_t tolerated;
+  friend void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
 };
 
 // The pixels that differ by more than one code of 8 bits.

@@ -125,10 +125,12 @@ TEST(Program, FullDiskIsOneAndLeavesNothing) {
 
 TEST(Program, InterruptEndsWith130AndLeavesNothing) {
   const Folder folder;
-  // A minute of work, interrupted once the program is in it.
+  // Minutes of work, interrupted once the program catches SIGINT: until then it ignores it, as what
+  // a shell runs in the background does.
   const Ran ran =
       run("delray render gen:terrain:100000 -o a.png --engine raytrace --spp 4096 & "
-          "pid=$!; sleep 1.5; kill -INT $pid; wait $pid",
+          "pid=$!; until grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status; do sleep 0.2; done; "
+          "sleep 0.5; kill -INT $pid; wait $pid",
           folder.path());
   EXPECT_EQ(ran.exit_code, 130) << ran.err;
   EXPECT_TRUE(folder.files().empty());

@@ -106,6 +106,15 @@ TEST(RenderCommand, PointsBecomeAReliefInOneCommand) {
             statistics("delray render p.xyz -o a.png --size 64x64", folder)["image"]["hash"]);
 }
 
+TEST(RenderCommand, WarningsNameTheFileOnce) {
+  const Folder folder;
+  folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+  const Ran ran = run("delray render line.obj -o line.png --size 16x16", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.err.find("warning: line.obj: 1 points and lines left out\n"), std::string::npos)
+      << ran.err;
+}
+
 TEST(RenderCommand, GlbRendersLikeTheGeneratedScene) {
   const Folder folder;
   ASSERT_EQ(run("delray generate scene spheres -n 2000 -o s.glb", folder.path()).exit_code, 0);

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <optional>
+#include <ostream>
 
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
@@ -20,6 +21,7 @@ using Body = std::function<void(Communicator&)>;
 struct Runner {
   const char* name;
   void (*run)(int ranks, const Body&);
+  friend void PrintTo(const Runner& runner, std::ostream* out) { *out << runner.name; }
 };
 class FailureTest : public ::testing::TestWithParam<Runner> {
  protected:

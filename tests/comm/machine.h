@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Machine {
   std::function<void(int ranks, const Body&)> run;
   // Runs it once: for bodies that move much.
   std::function<void(int ranks, const Body&)> run_once;
+  friend void PrintTo(const Machine& machine, std::ostream* out) { *out << machine.name; }
 };
 
 // Those that this test program has.

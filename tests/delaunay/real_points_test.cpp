@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ostream>
 #include <string>
 
 #include "delaunay/read_points.h"
@@ -18,6 +19,7 @@ struct Reference {
   const char* file;
   std::size_t simplices;
   const char* hash;
+  friend void PrintTo(const Reference& reference, std::ostream* out) { *out << reference.file; }
 };
 
 class RealPoints : public testing::TestWithParam<Reference> {};
