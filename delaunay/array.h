@@ -36,7 +36,7 @@ class Array {
   // Errors: std::bad_alloc.
   explicit Array(std::size_t size) : size_(size), bytes_(size * sizeof(T)) {
     if (bytes_ < kMappedFrom) {
-      data_ = static_cast<T*>(::operator new(bytes_));
+      data_ = static_cast<T*>(::operator new(bytes_, kAlignment));
       return;
     }
     mapped_ = true;
@@ -53,7 +53,7 @@ class Array {
   }
   ~Array() {
     if (!mapped_) {
-      ::operator delete(data_);
+      ::operator delete(data_, kAlignment);
     } else if (bytes_ > 0) {
       munmap(data_, bytes_);
     }
@@ -87,6 +87,9 @@ class Array {
   }
 
  private:
+  static constexpr std::align_val_t kAlignment{alignof(T) > __STDCPP_DEFAULT_NEW_ALIGNMENT__
+                                                   ? alignof(T)
+                                                   : __STDCPP_DEFAULT_NEW_ALIGNMENT__};
   static constexpr std::size_t kPage = 65536;  // a multiple of every system's
   static constexpr std::size_t kMappedFrom = std::size_t{1} << 20;
 

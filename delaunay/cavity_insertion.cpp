@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <new>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "delaunay/internal/cavity.h"
+#include "delaunay/conflict.h"
+#include "delaunay/internal/blocks.h"
+#include "delaunay/internal/cavity_rounds.h"
 #include "delaunay/internal/curve_order3.h"
+#include "delaunay/internal/slot_pool.h"
 #include "delaunay/internal/sphere_tests.h"
 #include "delaunay/internal/stopwatch.h"
 #include "delaunay/mesh.h"
 #include "delaunay/predicates.h"
+#include "parallel/arena.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -77,44 +81,53 @@ std::uint64_t count_distinct(Array<SpaceVertex> vertices) {
                                     first);
 }
 
-// Seven tetrahedra to a point and some, as evenly spread points have; more where that is not
-// enough.
-std::size_t first_slots(std::size_t n) { return 7 * n + n / 8 + 64; }
-
-void grow(Mesh<3>& mesh) {
-  const std::size_t size = std::min(mesh.size() + mesh.size() / 2, kMaximumSimplices);
-  if (size == mesh.size()) throw std::bad_alloc();
-  mesh.grow(size);
+// Seven tetrahedra to a point and some, as evenly spread points have, and what threads take and do
+// not use; more where that is not enough.
+std::size_t first_slots(std::size_t n, int threads) {
+  const std::size_t several = threads > 1 ? static_cast<std::size_t>(threads) : 0;
+  return 7 * n + n / 8 + 64 + several * SlotPool::kChunk;
 }
 
-Triangulation extract_tetrahedra(Mesh<3>&& mesh, Array<SpaceVertex>&& vertices) {
+Triangulation extract_tetrahedra(Mesh<3>&& mesh, Array<SpaceVertex>&& vertices, int threads) {
+  Mesh<3> own = std::move(mesh);
+  const Blocks blocks(own.size(), threads);
+  std::vector<Mesh<3>::Packed> packed(blocks.count());
+  blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
+    packed[block] = own.pack_finite(first, last);
+    for (VertexNumber& vertex : packed[block].vertices) vertex = vertices[vertex + 1U].row;
+  });
+  vertices = {};
+  std::vector<std::size_t> begin = {0};
   Triangulation result;
   result.dim = 3;
-  std::size_t live = 0;
-  for (SimplexNumber t = 0; t < mesh.size(); ++t) live += mesh.is_dead(t) ? 0 : 1;
-  Array<VertexNumber> corners = std::move(mesh).take_finite();
-  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = vertices[corners[i] + 1].row;
-  vertices = {};
-  result.vertices.assign(corners.data(), corners.data() + corners.size());
-  result.hull_facets = live - result.size();
+  for (const auto& part : packed) {
+    begin.push_back(begin.back() + part.vertices.size());
+    result.hull_facets += part.ghosts;
+  }
+  result.vertices.reserve(begin.back());
+  prefer_huge_pages(result.vertices.data(), begin.back() * sizeof(VertexNumber));
+  if (blocks.count() == 1) {
+    result.vertices.assign(packed[0].vertices.begin(), packed[0].vertices.end());
+  } else {
+    result.vertices.resize(begin.back());
+    blocks.for_each([&](std::size_t block, std::size_t, std::size_t) {
+      std::ranges::copy(packed[block].vertices, result.vertices.data() + begin[block]);
+    });
+  }
   return result;
 }
 
-}  // namespace
-
-Triangulation insert_by_cavities(PointView<double> points, const Options& options) {
+Triangulation run(PointView<double> points, const Options& options) {
   Statistics unused;
   Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
-  const bool timed = options.statistics != nullptr;
   Stopwatch watch;
 
-  const PointRange range = finite_range(points);
-  CurveOrder3 order = curve_order3(points, range, options.seed);
+  const PointRange range = finite_range(points, options.threads);
+  CurveOrder3 order = curve_order3(points, range, options.seed, options.threads);
   const std::size_t n = points.size();
-  SpaceVertex* const vertices = order.vertices.data();
   seconds.order = watch.lap();
 
-  const auto start = first_tetrahedron(vertices, n);
+  const auto start = first_tetrahedron(order.vertices.data(), n);
   if (!start) {
     Triangulation result;
     result.dim = 3;
@@ -122,33 +135,26 @@ Triangulation insert_by_cavities(PointView<double> points, const Options& option
     return result;
   }
   const SphereTests tests(range);
-  Mesh<3> mesh(first_slots(n));
+  Mesh<3> mesh(first_slots(n, options.threads));
   start_mesh(mesh, *start);
-  Cavity<Everywhere> cavity(mesh, vertices, tests, {});
-  cavity.add_slots(5, static_cast<SimplexNumber>(mesh.size()));
-  cavity.start_at(0);
-  std::uint64_t distinct = 4;
-  for (VertexNumber vertex = 0; vertex < n; ++vertex) {
-    if (options.progress != nullptr) options.progress->advance();
-    if (std::ranges::find(*start, vertex) != start->end()) continue;
-    if (timed) watch.lap();
-    SimplexNumber place = 0;
-    const Insertion found = cavity.locate(vertex, place);
-    if (timed) seconds.locate += watch.lap();
-    if (found == Insertion::kEqual) continue;
-    while (cavity.insert(vertex, place) == Insertion::kFull) {
-      grow(mesh);
-      cavity.add_slots(cavity.unused(), static_cast<SimplexNumber>(mesh.size()));
-    }
-    if (timed) seconds.subdivide += watch.lap();
-    ++distinct;
-  }
+  if (options.progress != nullptr) options.progress->advance(start->size());
+  const CavityInput input{mesh, 5, *start, order, range, tests};
+  const auto insert = options.threads > 1 ? insert_together : insert_alone;
+  const std::uint64_t distinct = insert(input, options, options.statistics);
   watch.lap();
-  mesh.shrink(cavity.unused());
-  Triangulation result = extract_tetrahedra(std::move(mesh), std::move(order.vertices));
+  Triangulation result =
+      extract_tetrahedra(std::move(mesh), std::move(order.vertices), options.threads);
   result.distinct = distinct;
   seconds.extract = watch.lap();
   return result;
+}
+
+}  // namespace
+
+Triangulation insert_by_cavities(PointView<double> points, const Options& options) {
+  // An arena takes longer to set up than a thousand points to triangulate.
+  if (options.threads <= 1) return run(points, options);
+  return parallel::Arena(options.threads).execute([&] { return run(points, options); });
 }
 
 }  // namespace delray::delaunay::internal

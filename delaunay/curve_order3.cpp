@@ -7,13 +7,12 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "parallel/parallel_for.h"
+#include "delaunay/internal/blocks.h"
 
 namespace delray::delaunay::internal {
 namespace {
-
-constexpr std::size_t kGrain = 8192;  // points: about 0.2 ms
 
 glm::dvec3 point_at3(const PointView<double>& points, std::size_t row) {
   return {points(row, 0) + 0.0, points(row, 1) + 0.0, points(row, 2) + 0.0};
@@ -79,47 +78,85 @@ struct Keyed {
   std::uint32_t row;
 };
 
-void radix_sort(Array<Keyed>& items, int key_bits) {
+// Stable, by all digits from the lowest.
+void radix_sort(Array<Keyed>& items, int key_bits, const Blocks& blocks) {
   constexpr int kDigit = 11;
+  using Counts = std::array<std::uint32_t, std::size_t{1} << kDigit>;
   Array<Keyed> other(items.size());
+  std::vector<Counts> counts(blocks.count());
   for (int shift = 0; shift < key_bits; shift += kDigit) {
     const auto digit = [shift](const Keyed& item) {
-      return (item.key >> shift) & ((1U << kDigit) - 1);
+      return (item.key >> shift) & ((std::size_t{1} << kDigit) - 1);
     };
-    std::vector<std::uint32_t> begin((1U << kDigit) + 1, 0);
-    for (std::size_t i = 0; i < items.size(); ++i) ++begin[digit(items[i]) + 1];
-    for (std::size_t d = 1; d < begin.size(); ++d) begin[d] += begin[d - 1];
-    for (std::size_t i = 0; i < items.size(); ++i) other[begin[digit(items[i])]++] = items[i];
+    blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
+      counts[block].fill(0);
+      for (std::size_t i = first; i < last; ++i) ++counts[block][digit(items[i])];
+    });
+    std::uint32_t begin = 0;
+    for (std::size_t d = 0; d < counts[0].size(); ++d) {
+      for (Counts& count : counts) begin += std::exchange(count[d], begin);
+    }
+    blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        other[counts[block][digit(items[i])]++] = items[i];
+      }
+    });
     std::swap(items, other);
   }
 }
 
-}  // namespace
-
-PointRange finite_range(const PointView<double>& points) {
-  PointRange range;
-  if (points.size() == 0) return range;
-  constexpr int kNone = 4000;
+struct Found {
+  glm::dvec3 low, high;
   int exponent = kNone;
   bool finite = true;
-  range.low = range.high = point_at3(points, 0);
-  for (std::size_t row = 0; row < points.size(); ++row) {
+
+  static constexpr int kNone = 4000;
+};
+
+// REQUIRES: first < last.
+Found find_range(const PointView<double>& points, std::size_t first, std::size_t last) {
+  Found found;
+  found.low = found.high = point_at3(points, first);
+  for (std::size_t row = first; row < last; ++row) {
     const glm::dvec3 p = point_at3(points, row);
-    range.low = min(range.low, p);
-    range.high = max(range.high, p);
+    found.low = min(found.low, p);
+    found.high = max(found.high, p);
     for (int k = 0; k < 3; ++k) {
-      finite &= p[k] - p[k] == 0;
+      found.finite &= p[k] - p[k] == 0;
       if (p[k] == 0) continue;
       const auto bits = std::bit_cast<std::uint64_t>(p[k]);
       const auto biased = static_cast<int>(bits >> 52 & 0x7ff);
       // Denormals have no leading 1, and the exponent of the smallest normal numbers.
       const std::uint64_t mantissa =
           (bits & ((std::uint64_t{1} << 52) - 1)) | (biased != 0 ? std::uint64_t{1} << 52 : 0);
-      exponent = std::min(exponent, std::max(biased, 1) - 1075 + std::countr_zero(mantissa));
+      found.exponent =
+          std::min(found.exponent, std::max(biased, 1) - 1075 + std::countr_zero(mantissa));
     }
   }
-  if (exponent != kNone) range.grid_exponent = exponent;
-  if (finite) return range;
+  return found;
+}
+
+}  // namespace
+
+PointRange finite_range(const PointView<double>& points, int threads) {
+  PointRange range;
+  if (points.size() == 0) return range;
+  const Blocks blocks(points.size(), threads);
+  std::vector<Found> parts(blocks.count());
+  blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
+    parts[block] = find_range(points, first, last);
+  });
+  Found all = parts[0];
+  for (const Found& part : parts) {
+    all.low = min(all.low, part.low);
+    all.high = max(all.high, part.high);
+    all.exponent = std::min(all.exponent, part.exponent);
+    all.finite &= part.finite;
+  }
+  range.low = all.low;
+  range.high = all.high;
+  if (all.exponent != Found::kNone) range.grid_exponent = all.exponent;
+  if (all.finite) return range;
   std::size_t row = 0;
   while (std::isfinite(points(row, 0)) && std::isfinite(points(row, 1)) &&
          std::isfinite(points(row, 2))) {
@@ -130,7 +167,7 @@ PointRange finite_range(const PointView<double>& points) {
 }
 
 CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& range,
-                         std::uint64_t seed) {
+                         std::uint64_t seed, int threads) {
   const std::size_t n = points.size();
   // Each round is so many times larger than all before it. In small ones the walks are long, but in
   // large ones the curve alone would visit degenerate sets in a bad order.
@@ -150,8 +187,9 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
   const glm::dvec3 low = range.low * (0.25 * before);
   const double scale = width > 0 ? (std::ldexp(1.0, bits) - 0.5) / (width * before) : 0;
 
+  const Blocks blocks(n, threads);
   Array<Keyed> keys(n);
-  parallel::parallel_for(0, n, kGrain, [&](std::size_t row) {
+  const auto make_key = [&](std::size_t row) {
     const glm::dvec3 p = (point_at3(points, row) * (0.25 * before) - low) * scale;
     std::array<std::uint32_t, 3> cell;
     for (int k = 0; k < 3; ++k) {
@@ -167,15 +205,20 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
     }
     keys[row] = {static_cast<std::uint64_t>(round) << (3 * bits) | place_on_curve(cell, bits),
                  static_cast<std::uint32_t>(row)};
+  };
+  blocks.for_each([&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) make_key(row);
   });
-  radix_sort(keys, 3 * bits + std::bit_width(static_cast<unsigned>(rounds - 1)));
+  radix_sort(keys, 3 * bits + std::bit_width(static_cast<unsigned>(rounds - 1)), blocks);
 
   CurveOrder3 result;
   result.vertices = Array<SpaceVertex>(n + 1);
   result.vertices[0] = {glm::dvec3(0), 0, 0};
-  parallel::parallel_for(0, n, kGrain, [&](std::size_t i) {
-    const std::uint32_t row = keys[i].row;
-    result.vertices[i + 1] = {point_at3(points, row), row, 0};
+  blocks.for_each([&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::uint32_t row = keys[i].row;
+      result.vertices[i + 1] = {point_at3(points, row), row, 0};
+    }
   });
   std::size_t i = 0;
   for (int round = 0; round < rounds; ++round) {

@@ -49,6 +49,10 @@ class Mesh {
     std::copy_n(numbers_.data(), numbers_.size(), larger.data());
     numbers_ = std::move(larger);
   }
+  // Asks for a simplex that will be read soon.
+  void prefetch(SimplexNumber simplex) const {
+    __builtin_prefetch(numbers_.data() + place(corner_of(simplex, 0)));
+  }
   // Drops the slots from `simplices` on.
   void shrink(std::size_t simplices) { numbers_.shrink(2 * kCorners * simplices); }
 

@@ -6,6 +6,9 @@ SphereTests::SphereTests(const PointRange& range) {
   const glm::dvec3 size = range.high - range.low;
   orient_error_ = orient_error(size);
   insphere_error_ = insphere_error(size);
+  bounds_ = {.insphere_error = insphere_error_,
+             .has_second_stage = insphere_error_ < std::numeric_limits<double>::infinity(),
+             .ties_are_exact = false};
   const glm::dvec3 farthest = max(abs(range.low), abs(range.high));
   const double largest = std::max({farthest.x, farthest.y, farthest.z});
   // Powers of the grid's step up to the fifth must neither underflow nor overflow.
@@ -17,7 +20,8 @@ SphereTests::SphereTests(const PointRange& range) {
   orient_is_exact_ = steps <= 0x1p16;
   insphere_is_exact_ = steps <= 0x1p9;
   if (orient_is_exact_) orient_error_ = 0;
-  if (insphere_is_exact_) insphere_error_ = 0;
+  if (insphere_is_exact_) bounds_ = {.insphere_error = 0, .ties_are_exact = true};
+  insphere_error_ = bounds_.insphere_error;
 }
 
 int SphereTests::beyond_filter(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,

@@ -28,11 +28,11 @@ struct CurveOrder3 {
 
 // What SphereTests want to know. Errors: std::invalid_argument that names the first row with a
 // coordinate that is not finite.
-PointRange finite_range(const PointView<double>& points);
+PointRange finite_range(const PointView<double>& points, int threads = 1);
 
 // Random rounds of growing size, each along a Hilbert curve (Amenta, Choi and Rote 2003): radix
 // sort, O(n). With -0 made 0.
 CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& range,
-                         std::uint64_t seed);
+                         std::uint64_t seed, int threads = 1);
 
 }  // namespace delray::delaunay::internal

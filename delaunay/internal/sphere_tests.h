@@ -24,9 +24,26 @@ struct PointRange {
   int grid_exponent = 0;
 };
 
+// The part of SphereTests that code for vector registers shares.
+struct SphereBounds {
+  // Of a rounded determinant of the sphere test: for all points of the mesh, and over the product
+  // of the extents and the largest lift of the points at hand.
+  double insphere_error = 0;
+  static constexpr double kInsphereError = 18 * 24 * kRoundOff;
+  // Whether the bound over the points at hand holds: nothing overflows on the way.
+  bool has_second_stage = false;
+  // Whether the signs of all determinants of differences of points are exact, and so is
+  // (x * kTieShift + y) * kTieShift + z for a difference (x, y, z), which then is ordered as the
+  // differences are lexicographically.
+  bool ties_are_exact = false;
+  static constexpr double kTieShift = 0x1p17;
+};
+
 class SphereTests {
  public:
   explicit SphereTests(const PointRange& range);
+
+  const SphereBounds& bounds() const { return bounds_; }
 
   int orient3d(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                const glm::dvec3& d) const {
@@ -50,6 +67,12 @@ class SphereTests {
   int orient_exactly(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                      const glm::dvec3& q) const {
     return beyond_filter(a, b, c, q);
+  }
+
+  // insphere(), decided by the later stages.
+  int insphere_exactly(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+                       const glm::dvec3& d, const glm::dvec3& q) const {
+    return insphere_beyond_filter(a, b, c, d, q);
   }
 
   int insphere(const glm::dvec3& p0, const glm::dvec3& p1, const glm::dvec3& p2,
@@ -88,7 +111,7 @@ class SphereTests {
     const double largest = std::max({1.0, size.x, size.y, size.z});
     if (!(largest < kLargest)) return std::numeric_limits<double>::infinity();
     const double lift = size.x * size.x + size.y * size.y + size.z * size.z;
-    return 18 * kRoundOff * 24 * (size.x * size.y * size.z) * lift +
+    return SphereBounds::kInsphereError * (size.x * size.y * size.z) * lift +
            kUnderflow * largest * largest * largest;
   }
 
@@ -107,6 +130,7 @@ class SphereTests {
                              const glm::dvec3& d, const glm::dvec3& q) const;
 
   double orient_error_, insphere_error_;
+  SphereBounds bounds_;
   double scale_ = 0;  // from coordinates to integers below 2^61; 0 if there is no such grid
   bool orient_is_exact_ = false, insphere_is_exact_ = false;
 };

@@ -23,6 +23,16 @@ TEST(Array, KeepsWhatIsWritten) {
   }
 }
 
+TEST(Array, ValuesAreAlignedAsTheyAskFor) {
+  struct alignas(64) Wide {
+    std::uint64_t values[8];
+  };
+  for (std::size_t size = 1; size < 40; ++size) {
+    const Array<Wide> array(size);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % alignof(Wide), 0U) << size;
+  }
+}
+
 TEST(Array, ShrinkKeepsTheFirstValues) {
   for (const std::size_t size : kSizes) {
     for (const std::size_t kept : {std::size_t{0}, size / 3, size}) {

@@ -8,6 +8,7 @@
 
 #include "tests/delaunay/brute_force.h"
 #include "tests/delaunay/hard_points.h"
+#include "tests/delaunay/hard_points3.h"
 
 namespace delray::delaunay {
 namespace {
@@ -55,6 +56,54 @@ TEST(Conflict, AGhostConflictsBeyondItsEdgeAndStrictlyWithinIt) {
     EXPECT_TRUE(conflict(mesh, points, 0, {2, 1}));
     EXPECT_FALSE(conflict(mesh, points, 0, {6, 3}));
     EXPECT_FALSE(conflict(mesh, points, 0, {-2, -1}));
+  }
+}
+
+TEST(Conflict, FollowsTheRuleForPointsOnACommonSphere) {
+  int cospherical = 0;
+  for (const HardPoints3& kind : hard_points3()) {
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+      const std::vector<glm::dvec3> p = kind.make(5, seed);
+      Mesh<3> mesh(1);
+      Simplex<3> simplex = {p[0], p[1], p[2], p[3]};
+      const int turn = orient(simplex);
+      if (turn == 0 || std::ranges::find(simplex, p[4]) != simplex.end()) continue;
+      for (unsigned k = 0; k < 4; ++k) mesh.set_vertex(corner_of(0, k), k);
+      if (turn < 0) {
+        std::swap(simplex[0], simplex[1]);
+        mesh.set_vertex(corner_of(0, 0), 1);
+        mesh.set_vertex(corner_of(0, 1), 0);
+      }
+      EXPECT_EQ(conflict(mesh, p, 0, p[4]), counts_as_inside<3>(simplex, p[4]))
+          << kind.name << ", seed " << seed;
+      cospherical += in_sphere(simplex, p[4]) == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(cospherical, 100);
+}
+
+// Beyond its facet always, in the plane of the facet as the rule says for its circle.
+TEST(Conflict, AGhostConflictsBeyondItsFacetAndWithinItsCircle) {
+  const std::vector<glm::dvec3> points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 3}};
+  for (unsigned infinite = 0; infinite < 4; ++infinite) {
+    Mesh<3> mesh(2);
+    for (unsigned k = 0; k < 4; ++k) mesh.set_vertex(corner_of(0, k), k);
+    // The ghost below the first three, whose order is turned by even permutations only.
+    constexpr std::array<std::array<VertexNumber, 4>, 4> kGhosts = {{
+        {kInfiniteVertex, 0, 1, 2},
+        {0, kInfiniteVertex, 2, 1},
+        {0, 1, kInfiniteVertex, 2},
+        {0, 2, 1, kInfiniteVertex},
+    }};
+    for (unsigned k = 0; k < 4; ++k) mesh.set_vertex(corner_of(1, k), kGhosts[infinite][k]);
+    mesh.link(corner_of(1, infinite), corner_of(0, 3));
+    EXPECT_TRUE(conflict(mesh, points, 1, {1, 1, -1})) << infinite;
+    EXPECT_TRUE(conflict(mesh, points, 1, {90, 7, -1})) << infinite;
+    EXPECT_FALSE(conflict(mesh, points, 1, {1, 1, 1})) << infinite;
+    EXPECT_TRUE(conflict(mesh, points, 1, {1, 1, 0})) << infinite;
+    EXPECT_TRUE(conflict(mesh, points, 1, {3.5, 3.5, 0})) << infinite;
+    EXPECT_FALSE(conflict(mesh, points, 1, {4.5, 4.5, 0})) << infinite;
+    EXPECT_FALSE(conflict(mesh, points, 1, {4, 4, 0})) << infinite;  // on it, and the last of all
   }
 }
 

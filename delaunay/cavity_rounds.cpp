@@ -1,0 +1,227 @@
+#include "delaunay/internal/cavity_rounds.h"
+
+#include <algorithm>
+#include <deque>
+#include <new>
+#include <numeric>
+#include <vector>
+
+#include "delaunay/internal/cavity_inserter.h"
+#include "delaunay/internal/regions.h"
+#include "delaunay/internal/slot_pool.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// A pass costs a region so many points to be worth while: one that starts a thread takes some tens
+// of microseconds, and most of the points of a small region are at its boundary.
+constexpr std::size_t kPointsPerRegion = 2000;
+// Of the points of a pass that must have been inserted for another pass to be tried.
+constexpr double kWorthwhile = 0.25;
+constexpr int kPasses = 3;
+
+using Kernel = CavityInserter<Box3Region>;
+
+template <class Region>
+void collect(const CavityInserter<Region>& inserter, Statistics* seconds) {
+  if (seconds == nullptr) return;
+  seconds->locate += inserter.locate_seconds();
+  seconds->subdivide += inserter.subdivide_seconds();
+}
+
+class Together {
+ public:
+  Together(const CavityInput& input, const Options& options, bool timed)
+      : input_(input),
+        vertices_(input.order.vertices.data()),
+        pool_(input.used, input.mesh.size()),
+        threads_(static_cast<std::size_t>(options.threads)) {
+    for (std::size_t t = 0; t < threads_; ++t) {
+      kernels_.emplace_back(input.mesh, vertices_, input.tests, pool_, options.progress, timed);
+    }
+    const glm::dvec3 size = input.range.high * 0.5 - input.range.low * 0.5;
+    std::iota(axes_.begin(), axes_.end(), 0);
+    std::sort(axes_.begin(), axes_.end(), [&](int i, int j) { return size[i] > size[j]; });
+  }
+
+  void insert_round(VertexNumber first, VertexNumber last) {
+    std::vector<VertexNumber> waiting;
+    for (VertexNumber vertex = first; vertex < last; ++vertex) {
+      if (std::ranges::find(input_.start, vertex) == input_.start.end()) waiting.push_back(vertex);
+    }
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const std::size_t parts = std::min(threads_, waiting.size() / kPointsPerRegion);
+      if (parts < 2) break;
+      const std::size_t before = waiting.size();
+      insert_pass(waiting, parts, pass);
+      if (static_cast<double>(before - waiting.size()) < kWorthwhile * static_cast<double>(before))
+        break;
+    }
+    insert_rest(waiting);
+  }
+
+  std::uint64_t finish(Statistics* seconds) {
+    std::uint64_t inserted = 0;
+    for (Kernel& inserter : kernels_) {
+      inserter.kernel().retire_unused_slots();
+      inserted += inserter.inserted();
+      collect(inserter, seconds);
+    }
+    input_.mesh.shrink(pool_.used());
+    return inserted;
+  }
+
+ private:
+  const glm::dvec3& at(VertexNumber vertex) const { return vertices_[vertex + 1U].position; }
+
+  void grow_mesh() {
+    grow(input_.mesh);
+    pool_.extend(input_.mesh.size());
+  }
+
+  // Cuts the region of `sample` into `parts`.
+  void cut(std::span<glm::dvec3> sample, std::size_t parts, int depth, const Box3Region& region,
+           std::vector<Box3Region>& regions, int pass) const {
+    if (parts == 1) return regions.push_back(region);
+    // Another axis in every pass; the shift is for cuts along all axes at once.
+    constexpr std::array<double, kPasses> kShift = {0, -0.1, 0.1};
+    const std::size_t low = parts / 2;
+    const double share = static_cast<double>(low) / static_cast<double>(parts) +
+                         (parts > 2 ? kShift[static_cast<std::size_t>(pass)] : 0);
+    const auto middle = static_cast<std::ptrdiff_t>(share * static_cast<double>(sample.size()));
+    const int axis = axes_[static_cast<std::size_t>(pass + depth) % 3];
+    std::nth_element(sample.begin(), sample.begin() + middle, sample.end(),
+                     [axis](const auto& p, const auto& q) { return p[axis] < q[axis]; });
+    const double plane = sample[static_cast<std::size_t>(middle)][axis];
+    const auto below = static_cast<std::size_t>(middle);
+    cut(sample.first(below), low, depth + 1, region.cut(axis, plane, true), regions, pass);
+    cut(sample.subspan(below), parts - low, depth + 1, region.cut(axis, plane, false), regions,
+        pass);
+  }
+
+  std::vector<Box3Region> cut_regions(std::span<const VertexNumber> waiting, std::size_t parts,
+                                      int pass) const {
+    constexpr std::size_t kSamplesPerPart = 1024;
+    std::vector<glm::dvec3> sample(std::min(waiting.size(), parts * kSamplesPerPart));
+    for (std::size_t i = 0; i < sample.size(); ++i) {
+      sample[i] = at(waiting[i * waiting.size() / sample.size()]);
+    }
+    std::vector<Box3Region> regions;
+    cut(sample, parts, 0, {}, regions, pass);
+    return regions;
+  }
+
+  // Gives the kernel a simplex of its region to start from, if one is found.
+  bool find_start(Kernel& inserter, const Box3Region& region,
+                  std::span<const VertexNumber> waiting) {
+    constexpr std::size_t kTries = 64;
+    Cavity<Box3Region>& kernel = inserter.kernel();
+    SimplexNumber from = some_simplex_;
+    for (std::size_t i = 0; i < kTries; ++i) {
+      const VertexNumber vertex = waiting[(2 * i + 1) * waiting.size() / (2 * kTries)];
+      if (!region.contains(at(vertex))) continue;
+      kernel.set_region({});
+      kernel.start_at(from);
+      SimplexNumber place = 0;
+      kernel.locate(vertex, place);
+      if (input_.mesh.is_ghost(place)) continue;
+      from = place;
+      kernel.set_region(region);
+      if (!kernel.owns(place)) continue;
+      kernel.start_at(place);
+      return true;
+    }
+    return false;
+  }
+
+  // Leaves in `waiting`, in the same order, what could not be inserted.
+  void insert_pass(std::vector<VertexNumber>& waiting, std::size_t parts, int pass) {
+    const std::vector<Box3Region> regions = cut_regions(waiting, parts, pass);
+    std::vector<std::uint8_t> done(waiting.size(), 0);
+    std::vector<std::uint8_t> starts(parts), full(parts, 0), some(parts, 0);
+    for (std::size_t t = 0; t < parts; ++t) {
+      starts[t] = find_start(kernels_[t], regions[t], waiting) ? 1 : 0;
+    }
+    parallel::parallel_for(0, parts, 1, [&](std::size_t t) {
+      if (starts[t] == 0) return;
+      for (std::size_t i = 0; i < waiting.size(); ++i) {
+        if (!regions[t].contains(at(waiting[i]))) continue;
+        const Insertion result = kernels_[t].insert(waiting[i]);
+        if (result == Insertion::kFull) {
+          full[t] = 1;
+          return;
+        }
+        if (result == Insertion::kElsewhere) continue;
+        done[i] = 1;
+        if (result == Insertion::kDone) some[t] = 1;
+      }
+    });
+    for (std::size_t t = 0; t < parts; ++t) {
+      // What a kernel made last only it could have removed since.
+      if (some[t] != 0) some_simplex_ = kernels_[t].kernel().last_simplex();
+    }
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < waiting.size(); ++i) {
+      if (done[i] == 0) waiting[left++] = waiting[i];
+    }
+    waiting.resize(left);
+    if (std::ranges::find(full, 1) != full.end()) grow_mesh();
+  }
+
+  void insert_rest(std::span<const VertexNumber> waiting) {
+    Kernel& inserter = kernels_.front();
+    inserter.kernel().set_region({});
+    inserter.kernel().start_at(some_simplex_);
+    for (const VertexNumber vertex : waiting) {
+      while (inserter.insert(vertex) == Insertion::kFull) grow_mesh();
+    }
+    some_simplex_ = inserter.kernel().last_simplex();
+  }
+
+  const CavityInput& input_;
+  SpaceVertex* vertices_;
+  SlotPool pool_;
+  std::size_t threads_;
+  std::deque<Kernel> kernels_;
+  std::array<int, 3> axes_;         // longest extent first
+  SimplexNumber some_simplex_ = 0;  // finite and alive
+};
+
+}  // namespace
+
+void grow(Mesh<3>& mesh) {
+  const std::size_t size = std::min(mesh.size() + mesh.size() / 2, kMaximumSimplices);
+  if (size == mesh.size()) throw std::bad_alloc();
+  mesh.grow(size);
+}
+
+std::uint64_t insert_alone(const CavityInput& input, const Options& options, Statistics* seconds) {
+  SlotPool pool(input.used, input.mesh.size());
+  CavityInserter<Everywhere> inserter(input.mesh, input.order.vertices.data(), input.tests, pool,
+                                      options.progress, seconds != nullptr);
+  inserter.kernel().start_at(0);
+  for (VertexNumber vertex = 0; vertex + 1 < input.order.vertices.size(); ++vertex) {
+    if (std::ranges::find(input.start, vertex) != input.start.end()) continue;
+    while (inserter.insert(vertex) == Insertion::kFull) {
+      grow(input.mesh);
+      pool.extend(input.mesh.size());
+    }
+  }
+  inserter.kernel().retire_unused_slots();
+  input.mesh.shrink(pool.used());
+  collect(inserter, seconds);
+  return inserter.inserted() + input.start.size();
+}
+
+std::uint64_t insert_together(const CavityInput& input, const Options& options,
+                              Statistics* seconds) {
+  Together together(input, options, seconds != nullptr);
+  const std::vector<std::uint32_t>& rounds = input.order.rounds;
+  for (std::size_t round = 0; round + 1 < rounds.size(); ++round) {
+    together.insert_round(rounds[round], rounds[round + 1]);
+  }
+  return together.finish(seconds) + input.start.size();
+}
+
+}  // namespace delray::delaunay::internal
