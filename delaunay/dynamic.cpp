@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "delaunay/insertion_order.h"
+#include "delaunay/internal/first_tetrahedron.h"
 #include "delaunay/internal/moving_mesh.h"
 #include "delaunay/internal/sites.h"
 #include "delaunay/predicates.h"
@@ -37,54 +36,12 @@ bool is_independent(std::span<const glm::dvec2> frame, const glm::dvec2& q) {
 }
 bool is_independent(std::span<const glm::dvec3> frame, const glm::dvec3& q) {
   if (frame.size() == 3) return orient3d(frame[0], frame[1], frame[2], q) != 0;
-  const auto turns = [&](int i, int j) {
-    const auto project = [&](const glm::dvec3& p) { return glm::dvec2(p[i], p[j]); };
-    return orient2d(project(frame[0]), project(frame[1]), project(q)) != 0;
-  };
-  return frame.size() < 2 || turns(0, 1) || turns(1, 2) || turns(2, 0);
+  return frame.size() < 2 || !internal::are_collinear(frame[0], frame[1], q);
 }
 
 bool is_positive(const std::array<glm::dvec2, 3>& p) { return orient2d(p[0], p[1], p[2]) > 0; }
 bool is_positive(const std::array<glm::dvec3, 4>& p) {
   return orient3d(p[0], p[1], p[2], p[3]) > 0;
-}
-
-std::vector<std::uint32_t> order_of(std::span<const glm::dvec2> points) {
-  return insertion_order(points, "brio", 1);
-}
-// Random rounds, each twice as large as the one before, along a Morton curve within each (Amenta,
-// Choi, Rote 2003).
-std::vector<std::uint32_t> order_of(std::span<const glm::dvec3> points) {
-  glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
-  for (const glm::dvec3& p : points) {
-    low = min(low, p);
-    high = max(high, p);
-  }
-  // Halved, since the extent itself may overflow.
-  const glm::dvec3 extent = high * 0.5 - low * 0.5;
-  constexpr int kLevels = 20;
-  std::vector<std::uint64_t> keys(points.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    std::uint64_t hash = (i + 1) * 0x9e3779b97f4a7c15;
-    hash = (hash ^ (hash >> 29)) * 0xbf58476d1ce4e5b9;
-    const int level = std::min(kLevels, std::countr_zero(hash ^ (hash >> 32)));
-    std::uint64_t key = static_cast<std::uint64_t>(kLevels - level);
-    std::array<std::uint32_t, 3> cell{};
-    for (int k = 0; k < 3; ++k) {
-      const double place = (points[i][k] * 0.5 - low[k] * 0.5) / extent[k];
-      cell[static_cast<std::size_t>(k)] = place > 0 ? static_cast<std::uint32_t>(place * 16383) : 0;
-    }
-    for (int bit = 13; bit >= 0; --bit) {
-      for (const std::uint32_t c : cell) key = key << 1 | ((c >> bit) & 1);
-    }
-    keys[i] = key;
-  }
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](std::uint32_t i, std::uint32_t j) {
-    return keys[i] != keys[j] ? keys[i] < keys[j] : i < j;
-  });
-  return order;
 }
 
 }  // namespace
@@ -256,7 +213,7 @@ std::uint32_t DynamicTriangulation<D>::insert(PointView<double> points) {
   std::vector<bool> is_new(batch.size());
   for (std::size_t i = 0; i < batch.size(); ++i) is_new[i] = state_->add_row(batch[i]);
   state_->mesh.reserve_vertices(batch.size());
-  for (const std::uint32_t i : order_of(batch)) {
+  for (const std::uint32_t i : insertion_order(std::span<const Point>(batch), "brio", 1)) {
     const auto row = static_cast<std::uint32_t>(first) + i;
     if (is_new[i]) state_->add_site(state_->sites.site_of(row));
   }

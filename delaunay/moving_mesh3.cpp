@@ -1,6 +1,7 @@
 #include <cassert>
 
 #include "delaunay/conflict.h"
+#include "delaunay/internal/first_tetrahedron.h"
 #include "delaunay/internal/moving_mesh.h"
 #include "delaunay/internal/start_mesh.h"
 #include "delaunay/predicates.h"
@@ -41,26 +42,6 @@ std::array<VertexNumber, 4> vertices_of(const Mesh<3>& mesh, SimplexNumber simpl
   std::array<VertexNumber, 4> result;
   for (unsigned k = 0; k < 4; ++k) result[k] = mesh.vertex(corner_of(simplex, k));
   return result;
-}
-
-bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const auto flat = [&](int i, int j) {
-    return orient2d({a[i], a[j]}, {b[i], b[j]}, {c[i], c[j]}) == 0;
-  };
-  return flat(0, 1) && flat(1, 2) && flat(2, 0);
-}
-
-// The first four distinct points that are not in one plane, positively oriented.
-std::optional<std::array<VertexNumber, 4>> first_tetrahedron(std::span<const glm::dvec3> points) {
-  const auto n = static_cast<VertexNumber>(points.size());
-  VertexNumber c = 2;
-  while (c < n && collinear(points[0], points[1], points[c])) ++c;
-  for (VertexNumber d = c + 1; d < n; ++d) {
-    const int sign = orient3d(points[0], points[1], points[c], points[d]);
-    if (sign > 0) return std::array{0U, 1U, c, d};
-    if (sign < 0) return std::array{0U, c, 1U, d};
-  }
-  return std::nullopt;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "delaunay/internal/first_tetrahedron.h"
 #include "delaunay/predicates.h"
 
 namespace delray::delaunay {
@@ -48,13 +49,6 @@ glm::dvec3 circumcentre(const std::array<glm::dvec3, 4>& p) {
   const glm::dvec3 sum =
       glm::dot(a, a) * bc + glm::dot(b, b) * glm::cross(c, a) + glm::dot(c, c) * glm::cross(a, b);
   return p[0] + sum / (2 * glm::dot(a, bc));
-}
-
-bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const auto flat = [&](int i, int j) {
-    return orient2d({a[i], a[j]}, {b[i], b[j]}, {c[i], c[j]}) == 0;
-  };
-  return flat(0, 1) && flat(1, 2) && flat(2, 0);
 }
 
 // Parts of what neighbours lose.
@@ -254,7 +248,7 @@ std::vector<NaturalNeighbour> neighbours_on_hull(const Query& query,
     }
   }
   return shares_of_area(triangles, [&](std::uint32_t a, std::uint32_t b) {
-    return collinear(query.position(a), query.position(b), q);
+    return internal::are_collinear(query.position(a), query.position(b), q);
   });
 }
 

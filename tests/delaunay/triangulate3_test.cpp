@@ -118,15 +118,5 @@ TEST(Triangulate3, CountsPhasesOnlyWhenAsked) {
   }
 }
 
-TEST(Triangulate3, StopsWhenAsked) {
-  const auto points = hard_points3().front().make(3000, 2);
-  for (Options options : combinations()) {
-    parallel::Progress progress;
-    progress.request_stop();
-    options.progress = &progress;
-    EXPECT_THROW(triangulate(view(points), options), parallel::Interrupted) << name_of(options);
-  }
-}
-
 }  // namespace
 }  // namespace delray::delaunay

@@ -207,21 +207,6 @@ TEST(Triangulate, CountsPhasesOnlyWhenAsked) {
   }
 }
 
-TEST(Triangulate, TellsAboutProgressAndStops) {
-  Points points = hard_points().front().make(20000, 2);
-  points.insert(points.end(), points.begin(), points.begin() + 500);
-  points.push_back({1e12, 1e12});  // leaves the others one cell, with a grid of its own
-  for (Options options : combinations()) {
-    parallel::Progress progress;
-    options.progress = &progress;
-    triangulate(view(points), options);
-    EXPECT_EQ(progress.done(), progress.total()) << name_of(options);
-    EXPECT_EQ(progress.total(), points.size()) << name_of(options);
-    progress.request_stop();
-    EXPECT_THROW(triangulate(view(points), options), parallel::Interrupted) << name_of(options);
-  }
-}
-
 TEST(BruteForce, SimplicesIn3DTileTheHull) {
   std::mt19937_64 random(4);
   for (int round = 0; round < 20; ++round) {
