@@ -125,7 +125,9 @@ class Together {
       kernel.start_at(from);
       SimplexNumber place = 0;
       kernel.locate(vertex, place);
-      if (input_.mesh.is_ghost(place)) continue;
+      if (input_.mesh.is_ghost(place)) {
+        place = simplex_of(input_.mesh.neighbour(corner_of(place, 3)));
+      }
       from = place;
       kernel.set_region(region);
       if (!kernel.owns(place)) continue;

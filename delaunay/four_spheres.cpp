@@ -35,8 +35,10 @@ HWY_INLINE Points load_corners(const SpaceVertex* vertices, const Mesh<3>& mesh,
     return &vertices[mesh.vertex(corner_of(simplices[lane], corner)) + 1U].position.x;
   };
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE && HWY_MAX_BYTES >= 32
-  const V p0 = hn::LoadU(d, at(0)), p1 = hn::LoadU(d, at(1));
-  const V p2 = hn::LoadU(d, at(2)), p3 = hn::LoadU(d, at(3));
+  // What lies behind a position may be written by another thread.
+  const auto three = hn::FirstN(d, 3);
+  const V p0 = hn::MaskedLoad(three, d, at(0)), p1 = hn::MaskedLoad(three, d, at(1));
+  const V p2 = hn::MaskedLoad(three, d, at(2)), p3 = hn::MaskedLoad(three, d, at(3));
   const V xz01 = hn::InterleaveLower(d, p0, p1), xz23 = hn::InterleaveLower(d, p2, p3);
   const V y01 = hn::InterleaveUpper(d, p0, p1), y23 = hn::InterleaveUpper(d, p2, p3);
   return {hn::ConcatLowerLower(d, xz23, xz01), hn::ConcatLowerLower(d, y23, y01),

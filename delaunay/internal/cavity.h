@@ -198,15 +198,17 @@ Insertion Cavity<Region>::locate(VertexNumber vertex, SimplexNumber& place) {
           return sign(0, 2, 1) < 0;
       }
     };
+    // Any facet that the point is beyond leads to it (Devillers, Pion and Teillaud 2002).
     unsigned out = 0;
-    while (out < 4 && (out == entered || !beyond(out))) ++out;
+    bool stuck = false;
+    for (; out < 4; ++out) {
+      if (out == entered || !beyond(out)) continue;
+      if (owns(simplex_of(mesh_.neighbour(corner_of(simplex, out))))) break;
+      stuck = true;
+    }
+    if (out == 4 && stuck) return Insertion::kElsewhere;
     if (out == 4) break;
     const CornerNumber next = mesh_.neighbour(corner_of(simplex, out));
-    if (!owns(simplex_of(next))) {
-      // Points that follow on a curve are near here.
-      last_simplex_ = simplex;
-      return Insertion::kElsewhere;
-    }
     simplex = simplex_of(next);
     entered = next & 3U;
     if (mesh_.vertex(corner_of(simplex, 3)) == kInfiniteVertex) break;
