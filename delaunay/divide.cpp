@@ -4,15 +4,18 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <optional>
 #include <span>
 
 #include "delaunay/conflict.h"
 #include "delaunay/internal/cell_order.h"
 #include "delaunay/internal/cells.h"
 #include "delaunay/internal/extract.h"
+#include "delaunay/internal/four_points.h"
 #include "delaunay/internal/hull_mesh.h"
 #include "delaunay/internal/knit.h"
 #include "delaunay/internal/seam_filter.h"
+#include "delaunay/internal/seam_pair.h"
 #include "delaunay/internal/stopwatch.h"
 #include "delaunay/mesh.h"
 #include "parallel/arena.h"
@@ -119,6 +122,9 @@ class Divider {
   Part divide_cells(std::size_t first, std::span<const std::uint32_t> cells) {
     const std::size_t last = first + cells.size();
     if (cells.size() <= 3) return base(first, last);
+    if (cells.size() == 4) {
+      if (const auto part = four(static_cast<VertexNumber>(first))) return *part;
+    }
     const std::uint32_t low = cells.front(), high = cells.back();
     if (low == high) {
       return cells.size() <= kSmallCell ? divide_sorted(first, last)
@@ -146,7 +152,7 @@ class Divider {
     const VertexNumber a = first, b = first + 1;
     hulls_.set_ghost(there, a, b);
     hulls_.set_ghost(back, b, a);
-    hulls_.mesh.link(corner_of(there, 2), corner_of(back, 2));
+    hulls_.link(there, 2, corner_of(back, 2));
     hulls_.follow(there, back);
     hulls_.follow(back, there);
     const HullVertex at_a{a, there}, at_b{b, back};
@@ -166,9 +172,9 @@ class Divider {
     hulls_.set_ghost(inside + 1, a, b);
     hulls_.set_ghost(inside + 2, b, c);
     hulls_.set_ghost(inside + 3, c, a);
-    hulls_.mesh.link(corner_of(inside, 2), corner_of(inside + 1, 2));
-    hulls_.mesh.link(corner_of(inside, 0), corner_of(inside + 2, 2));
-    hulls_.mesh.link(corner_of(inside, 1), corner_of(inside + 3, 2));
+    hulls_.link(inside, 2, corner_of(inside + 1, 2));
+    hulls_.link(inside, 0, corner_of(inside + 2, 2));
+    hulls_.link(inside, 1, corner_of(inside + 3, 2));
     hulls_.follow(inside + 1, inside + 2);
     hulls_.follow(inside + 2, inside + 3);
     hulls_.follow(inside + 3, inside + 1);
@@ -186,10 +192,51 @@ class Divider {
     hulls_.set_ghost(t + 1, b, c);
     hulls_.set_ghost(t + 2, c, b);
     hulls_.set_ghost(t + 3, b, a);
-    hulls_.mesh.link(corner_of(t, 2), corner_of(t + 3, 2));
-    hulls_.mesh.link(corner_of(t + 1, 2), corner_of(t + 2, 2));
+    hulls_.link(t, 2, corner_of(t + 3, 2));
+    hulls_.link(t + 1, 2, corner_of(t + 2, 2));
     for (SimplexNumber k = 0; k < 4; ++k) hulls_.follow(t + k, t + (k + 1) % 4);
     return extremes({{{a, t}, {a, t}, {c, t + 2}}});
+  }
+
+  // Four points; none if three of them are on a line or all on a circle, or nearly so.
+  std::optional<Part> four(VertexNumber first) {
+    const glm::dvec2* p = points_ + first;
+    const SeamViewPair seen_01(p[0], p[1], PointPair(p[2], p[3]));
+    const SeamViewPair seen_23(p[2], p[3], PointPair(p[0], p[1]));
+    unsigned left = 0, right = 0, bottom = 0, top = 0;
+    for (unsigned i = 1; i < 4; ++i) {
+      left = before(p[i].x, p[i].y, p[left].x, p[left].y) ? i : left;
+      right = before(p[right].x, p[right].y, p[i].x, p[i].y) ? i : right;
+      bottom = before(p[i].y, p[i].x, p[bottom].y, p[bottom].x) ? i : bottom;
+      top = before(p[top].y, p[top].x, p[i].y, p[i].x) ? i : top;
+    }
+    const SeamFilter::Bounds bounds =
+        filter_.bounds((p[right].x - p[left].x) + (p[top].y - p[bottom].y));
+    const double error = std::max(bounds.cross, 0.0);
+    const double determinant =
+        seen_01.dot[0] * seen_01.cross[1] - seen_01.cross[0] * seen_01.dot[1];
+    const unsigned sure =
+        bits_of(absolute(seen_01.cross) > error) & bits_of(absolute(seen_23.cross) > error);
+    if (sure != 3 || !(std::abs(determinant) > bounds.circle)) return std::nullopt;
+    const unsigned turns = bits_of(seen_01.cross > 0) | bits_of(seen_23.cross > 0) << 2;
+    // Of points that turn right the determinant is negative inside.
+    const bool inside = (determinant > 0) == ((turns & 1) != 0);
+    const FourPoints& of = kFourPoints[turns | (inside ? 16 : 0)];
+    const std::array<VertexNumber, 5> vertices = {first, first + 1, first + 2, first + 3,
+                                                  kInfiniteVertex};
+    const SimplexNumber slot = 2 * first;
+    for (unsigned i = 0; i < 18; ++i) {
+      hulls_.mesh.set_vertex(slot + i / 3, i % 3, vertices[of.vertices[i]]);
+      hulls_.mesh.set_neighbour(slot + i / 3, i % 3, corner_of(slot, of.neighbours[i]));
+    }
+    const auto at = [&](unsigned i) { return HullVertex{first + i, slot + of.ghosts[i]}; };
+    return Part{at(left), at(right), at(bottom), at(top)};
+  }
+
+  // Lexicographically, without branches: nobody can guess the outcome.
+  static bool before(double a, double b, double c, double d) {
+    return static_cast<bool>(static_cast<int>(a < c) |
+                             (static_cast<int>(a == c) & static_cast<int>(b < d)));
   }
 
   Part extremes(const std::array<HullVertex, 3>& hull) const {
@@ -208,8 +255,9 @@ class Divider {
   // it. What follows speaks of left and right; a quarter turn makes that of below and above.
   Part merge(const Part& first, const Part& second, std::size_t split, bool by_y) {
     const auto spare = static_cast<SimplexNumber>(2 * split - 2);
-    const auto [lower, upper] = knit(hulls_, filter_, by_y ? first.top : first.right,
-                                     by_y ? second.bottom : second.left, spare);
+    const auto [lower, upper] =
+        knit(hulls_, filter_, by_y ? first.top : first.right, by_y ? second.bottom : second.left,
+             extent_of(first, second), spare);
     // The edges of the hull that start at these two are new; those of the other extremes are not.
     const auto of_first = [&, vertex = lower.left, ghost = lower.ghost](HullVertex v) {
       return v.vertex == vertex ? HullVertex{vertex, ghost} : v;
@@ -217,16 +265,35 @@ class Divider {
     const auto of_second = [&, vertex = upper.right, ghost = upper.ghost](HullVertex v) {
       return v.vertex == vertex ? HullVertex{vertex, ghost} : v;
     };
-    const auto less_of = [&](HullVertex a, HullVertex b, auto less) {
-      return less(points_[b.vertex], points_[a.vertex]) ? of_second(b) : of_first(a);
-    };
-    const auto greater_of = [&](HullVertex a, HullVertex b, auto less) {
-      return less(points_[a.vertex], points_[b.vertex]) ? of_second(b) : of_first(a);
-    };
-    return {less_of(first.left, second.left, lexicographically_less),
-            greater_of(first.right, second.right, lexicographically_less),
-            less_of(first.bottom, second.bottom, less_by_y),
-            greater_of(first.top, second.top, less_by_y)};
+    // Of the direction in which the ranges follow each other the extremes are known.
+    if (by_y) {
+      return {precedes(second.left, first.left) ? of_second(second.left) : of_first(first.left),
+              precedes(first.right, second.right) ? of_second(second.right) : of_first(first.right),
+              of_first(first.bottom), of_second(second.top)};
+    }
+    return {of_first(first.left), of_second(second.right),
+            below(second.bottom, first.bottom) ? of_second(second.bottom) : of_first(first.bottom),
+            below(first.top, second.top) ? of_second(second.top) : of_first(first.top)};
+  }
+
+  // At least |dx| + |dy| of any two points of both, but for rounding.
+  double extent_of(const Part& first, const Part& second) const {
+    const auto x = [&](HullVertex v) { return points_[v.vertex].x; };
+    const auto y = [&](HullVertex v) { return points_[v.vertex].y; };
+    const double width =
+        std::max(x(first.right), x(second.right)) - std::min(x(first.left), x(second.left));
+    const double height =
+        std::max(y(first.top), y(second.top)) - std::min(y(first.bottom), y(second.bottom));
+    return width + height;
+  }
+
+  bool precedes(HullVertex a, HullVertex b) const {
+    const glm::dvec2 &p = points_[a.vertex], &q = points_[b.vertex];
+    return before(p.x, p.y, q.x, q.y);
+  }
+  bool below(HullVertex a, HullVertex b) const {
+    const glm::dvec2 &p = points_[a.vertex], &q = points_[b.vertex];
+    return before(p.y, p.x, q.y, q.x);
   }
 
   const glm::dvec2* points_;

@@ -70,6 +70,20 @@ class Mesh {
     numbers_[place(corner) + 1] = neighbour;
   }
 
+  // The same of corner k of a simplex that is known, in fewer steps.
+  VertexNumber vertex(SimplexNumber simplex, unsigned k) const {
+    return numbers_[place(simplex, k)];
+  }
+  CornerNumber neighbour(SimplexNumber simplex, unsigned k) const {
+    return numbers_[place(simplex, k) + 1];
+  }
+  void set_vertex(SimplexNumber simplex, unsigned k, VertexNumber vertex) {
+    numbers_[place(simplex, k)] = vertex;
+  }
+  void set_neighbour(SimplexNumber simplex, unsigned k, CornerNumber neighbour) {
+    numbers_[place(simplex, k) + 1] = neighbour;
+  }
+
   bool is_ghost(SimplexNumber simplex) const {
     bool ghost = false;
     for (unsigned k = 0; k < kCorners; ++k) {
@@ -119,6 +133,9 @@ class Mesh {
   // stored without gaps although their corners are numbered by fours.
   static constexpr std::size_t place(CornerNumber corner) {
     return 2 * std::size_t{D == 3 ? corner : corner - (corner >> 2)};
+  }
+  static constexpr std::size_t place(SimplexNumber simplex, unsigned k) {
+    return 2 * (kCorners * std::size_t{simplex} + k);
   }
 
   Array<std::uint32_t> numbers_;

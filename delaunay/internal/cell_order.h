@@ -25,9 +25,9 @@ struct CellOrder {
   Array<std::uint32_t> rows;
 };
 
-// Radix sort by cell number; O(n) unless points lie in nested clusters whose sizes differ by more
-// than 2^16. Uses 28 bytes a point while it runs. Several threads are those of the
-// arena that the caller is in.
+// Points go to buckets, runs of cells with so few points that each is sorted in the cache. O(n)
+// unless points lie in nested clusters whose sizes differ by more than 2^16. Uses little more than
+// the 20 bytes a point of the result. Several threads are those of the arena that the caller is in.
 //
 // Errors: std::invalid_argument that names the first row with a coordinate that is not finite.
 CellOrder cell_order(PointView<double> points, int threads = 1);

@@ -32,7 +32,7 @@ class CellGrid {
     const double width = size.x > size.y ? size.x : size.y;
     // Neither the width nor its reciprocal may overflow.
     if (width > 0x1p+1000) before_ = 0x1p-8;
-    if (width < 0x1p-900) before_ = 0x1p+600;
+    if (width > 0 && width < 0x1p-900) before_ = 0x1p+600;
     low_ = box.low * before_;
     const glm::dvec2 scaled = box.high * before_ - low_;
     const double scaled_width = scaled.x > scaled.y ? scaled.x : scaled.y;
@@ -41,11 +41,7 @@ class CellGrid {
 
   // Bits of x and y in turn, y above x. REQUIRES: p is in the box.
   std::uint32_t number(const glm::dvec2& p) const {
-    const auto x =
-        static_cast<std::uint32_t>(static_cast<std::int32_t>((p.x * before_ - low_.x) * scale_));
-    const auto y =
-        static_cast<std::uint32_t>(static_cast<std::int32_t>((p.y * before_ - low_.y) * scale_));
-    std::uint64_t both = x | std::uint64_t{y} << 32;
+    std::uint64_t both = column(p) | std::uint64_t{row(p)} << 32;
     both = (both | both << 8) & 0x00ff00ff00ff00ffU;
     both = (both | both << 4) & 0x0f0f0f0f0f0f0f0fU;
     both = (both | both << 2) & 0x3333333333333333U;
@@ -53,7 +49,29 @@ class CellGrid {
     return static_cast<std::uint32_t>(both | both >> 31);
   }
 
+  // The cells that have the first 2 * bits bits of their numbers in common are a square, and the
+  // squares are numbered by rows, which is faster. REQUIRES: p is in the box; bits <= 16.
+  std::uint32_t square(const glm::dvec2& p, int bits) const {
+    return row(p) >> (16 - bits) << bits | column(p) >> (16 - bits);
+  }
+  // The square whose cells' numbers start with the 2 * bits bits of `place`.
+  static std::uint32_t square_at(std::uint32_t place, int bits) {
+    std::uint32_t row = 0, column = 0;
+    for (int bit = 0; bit < bits; ++bit) {
+      column |= (place >> 2 * bit & 1) << bit;
+      row |= (place >> (2 * bit + 1) & 1) << bit;
+    }
+    return row << bits | column;
+  }
+
  private:
+  std::uint32_t column(const glm::dvec2& p) const {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>((p.x * before_ - low_.x) * scale_));
+  }
+  std::uint32_t row(const glm::dvec2& p) const {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>((p.y * before_ - low_.y) * scale_));
+  }
+
   // Less than 2^16 by more than rounding can add.
   static constexpr double kCellsAcross = 65535.5;
 

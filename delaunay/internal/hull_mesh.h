@@ -24,22 +24,28 @@ struct HullMesh {
   Mesh<2>& mesh;
 
   void set_triangle(SimplexNumber t, VertexNumber a, VertexNumber b, VertexNumber c) {
-    mesh.set_vertex(corner_of(t, 0), a);
-    mesh.set_vertex(corner_of(t, 1), b);
-    mesh.set_vertex(corner_of(t, 2), c);
+    mesh.set_vertex(t, 0, a);
+    mesh.set_vertex(t, 1, b);
+    mesh.set_vertex(t, 2, c);
   }
   // The ghost of the edge of the hull from a to b.
   void set_ghost(SimplexNumber t, VertexNumber a, VertexNumber b) {
     set_triangle(t, b, a, kInfiniteVertex);
   }
+  // Makes the facets opposite to corner k of t and to `other` one.
+  void link(SimplexNumber t, unsigned k, CornerNumber other) {
+    mesh.set_neighbour(t, k, other);
+    mesh.set_neighbour(other, corner_of(t, k));
+  }
   void follow(SimplexNumber ghost, SimplexNumber next) {
-    mesh.link(corner_of(ghost, 1), corner_of(next, 0));
+    mesh.set_neighbour(ghost, 1, corner_of(next, 0));
+    mesh.set_neighbour(next, 0, corner_of(ghost, 1));
   }
   SimplexNumber next_ghost(SimplexNumber ghost) const {
-    return simplex_of(mesh.neighbour(corner_of(ghost, 1)));
+    return simplex_of(mesh.neighbour(ghost, 1));
   }
   SimplexNumber previous_ghost(SimplexNumber ghost) const {
-    return simplex_of(mesh.neighbour(corner_of(ghost, 0)));
+    return simplex_of(mesh.neighbour(ghost, 0));
   }
 };
 

@@ -21,10 +21,11 @@ struct Tangent {
 // are not Delaunay any more are flipped away first, which turns the triangle behind into a ghost.
 //
 // The triangulation on the left of the line is given by the vertex of its hull closest to the line,
-// that on the right likewise; `spare` and `spare` + 1 are free slots of the mesh, which become the
-// ghosts of the tangents. Returns the lower tangent and the upper one. O(edges of the hulls around
-// the seam + edges that are made and removed).
+// that on the right likewise. Of any two points of both |dx| + |dy| is at most `extent`. `spare`
+// and `spare` + 1 are free slots of the mesh, which become the ghosts of the tangents. Returns the
+// lower tangent and the upper one. O(edges of the hulls around the seam + edges that are made and
+// removed).
 std::array<Tangent, 2> knit(HullMesh hulls, const SeamFilter& filter, HullVertex from_left,
-                            HullVertex from_right, SimplexNumber spare);
+                            HullVertex from_right, double extent, SimplexNumber spare);
 
 }  // namespace delray::delaunay::internal

@@ -76,6 +76,18 @@ class SeamFilter {
     return circle_conflict(a, b, p, q);
   }
 
+  // What rounding can add to the cross and to the determinant of points close to each other; below
+  // 0 if nothing is rounded. A cross or a determinant of 0 is never sure by `circle`.
+  struct Bounds {
+    double cross, circle;
+  };
+  // REQUIRES: of any two of the points |dx| + |dy| <= extent but for rounding.
+  Bounds bounds(double extent) const {
+    const double spread = (1 + 16 * kRoundOff) * (extent * extent), spreads = spread * spread;
+    return {spread < exact_cross_ ? -1 : kCrossError * spread + underflow_,
+            spreads < exact_circle_ ? 0 : kIncircleError * spreads + underflow_};
+  }
+
  private:
   // Up to here a product that underflows, off by 2^-1075, is multiplied by less than 2^410.
   static constexpr double kLargest = 0x1p+200;
