@@ -36,7 +36,7 @@ std::vector<Options> combinations(int dim) {
 
 TEST(Interruption, EveryMethodCountsItsPointsAndStopsWhenAsked) {
   for (const int dim : {2, 3}) {
-    auto points = generate_points("uniform", dim == 2 ? 20000 : 3000, dim, 2).positions;
+    auto points = generate_points("uniform", dim == 2 ? 6000 : 1000, dim, 2).positions;
     points.insert(points.end(), points.begin(), points.begin() + 500);
     points.emplace_back(1e12, 1e12, 1e12);  // leaves the others one cell, with a grid of its own
     for (Options options : combinations(dim)) {
