@@ -1,6 +1,7 @@
 #include "delaunay/internal/burglary.h"
 
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "delaunay/dag_location.h"
@@ -9,23 +10,35 @@
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/delaunay_repair.h"
 #include "delaunay/internal/insert_shaken.h"
+#include "delaunay/internal/insertion.h"
 #include "delaunay/internal/insertion_phases.h"
 #include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
 
-template <bool kCounted>
+// From the points, alone.
+Triangulation rebuild(PointView<double> points, const Options& options) {
+  Options alone = options;
+  alone.location = "walk";
+  alone.order = "brio";
+  alone.threads = 1;
+  alone.statistics = nullptr;
+  alone.progress = nullptr;
+  return insert_all(points, alone);
+}
+
+template <int D, bool kCounted>
 Triangulation insert_all_points(PointView<double> points, const Options& options) {
-  DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
+  DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
-  const DagTriangulation<2> triangulation = run.triangulation();
+  const DagTriangulation<D> triangulation = run.triangulation();
   Team team;
   ThreadWaits waits(run.parts());
   std::mutex finishing;
   bool robbed = false;
   const auto work = [&](std::size_t thread) {
-    BurglarLocks<2, kCounted> access(triangulation.dag, team, waits,
+    BurglarLocks<D, kCounted> access(triangulation.dag, team, waits,
                                      static_cast<std::uint32_t>(thread), run.parts());
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
@@ -47,16 +60,23 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   team.run(run.parts(), work);
   // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
   // without a burglary; with one, all that came after it may have built on what it left.
-  const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;
-  if (kCounted) options.statistics->synchronization.repaired += repaired;
-  return run.finish();
+  std::optional<std::uint64_t> repaired = 0;
+  if (robbed) repaired = repair(triangulation, run.parts());
+  if (kCounted) options.statistics->synchronization.repaired += repaired.value_or(0);
+  Triangulation result = run.finish();
+  if (repaired) return result;
+  if (kCounted) ++options.statistics->synchronization.rebuilds;
+  return rebuild(points, options);
 }
 
 }  // namespace
 
 Triangulation insert_by_burglary(PointView<double> points, const Options& options) {
-  return options.statistics != nullptr ? insert_all_points<true>(points, options)
-                                       : insert_all_points<false>(points, options);
+  const auto insert = [&]<int D>() {
+    return options.statistics != nullptr ? insert_all_points<D, true>(points, options)
+                                         : insert_all_points<D, false>(points, options);
+  };
+  return options.dim == 2 ? insert.template operator()<2>() : insert.template operator()<3>();
 }
 
 }  // namespace delray::delaunay::internal

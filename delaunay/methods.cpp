@@ -110,7 +110,7 @@ std::span<const Method> methods() {
       {.name = "burglary",
        .description = "as optimistic, but instead of undoing its work a thread uses what a waiting "
                       "thread has locked",
-       .dims = {2},
+       .dims = {2, 3},
        .locations = {"dag"},
        .splits = all_splits,
        .orders = {"brio", "random"},

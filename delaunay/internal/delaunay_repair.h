@@ -1,10 +1,12 @@
-// Flips that make any triangulation Delaunay.
+// Flips that make a triangulation Delaunay which insertions have left nearly so.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "delaunay/internal/dag_flip.h"
+#include "delaunay/internal/dag_flip3.h"
 
 namespace delray::delaunay::internal {
 
@@ -15,5 +17,8 @@ namespace delray::delaunay::internal {
 // REQUIRES: no thread inserts, and all have abandoned what they did not use; the leaves are a
 // triangulation without flat triangles.
 std::uint64_t repair(const DagTriangulation<2>& triangulation, std::size_t threads);
+
+// The same of facets. In space such flips may get stuck before they are done: then none.
+std::optional<std::uint64_t> repair(const DagTriangulation<3>& triangulation, std::size_t threads);
 
 }  // namespace delray::delaunay::internal

@@ -79,6 +79,15 @@ class Flips3 {
   // kRefused some suspects are left.
   Grant legalize();
 
+  // Flips the facet opposite to a corner of a finite vertex that is in conflict with what lies
+  // beyond, if it can be flipped. REQUIRES: alone; no suspects.
+  void flip_facet(CornerNumber corner) {
+    suspects_.push_back(corner);
+    Turned near = turn(corner);
+    flip(near, simplices_.neighbour(corner));
+    suspects_.clear();
+  }
+
  private:
   using Children = std::array<SimplexNumber, 4>;
 
