@@ -5,8 +5,9 @@
 //
 // Before anything is timed all must give the same simplices. Then CGAL and Delray with each number
 // of threads take turns, and the table has the medians: seconds of CGAL and of Delray, their ratio,
-// the time over that with the first number of threads, and what Delray's memory peaks at beyond the
-// points, in bytes per point. Every FILE of points is a group of rows of its own.
+// the time over that with the first number of threads, the ratio over that of uniform points if
+// those are in the table, and what Delray's memory peaks at beyond the points, in bytes per point.
+// Every FILE of points is a group of rows of its own.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -99,6 +100,14 @@ double seconds_of(auto&& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// The ratio in the row of uniform points and so many threads; 0 if there is none.
+double uniform_ratio(const nlohmann::json& rows, int threads) {
+  for (const nlohmann::json& row : rows) {
+    if (row["points"] == "uniform" && row["threads"] == threads) return row["ratio"];
+  }
+  return 0;
+}
+
 // Prints the rows of one set of points and appends them to `rows`; returns whether the simplices
 // were the same.
 bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
@@ -131,8 +140,6 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
   for (std::size_t kind = 0; kind < kinds; ++kind) {
     const double seconds = median(ours[kind]), ratio = seconds / median(cgal);
     const double over_first = seconds / median(ours.front());
-    std::printf("%-20s %9zu %7d %9.4f %9.4f %8.3f %10.3f %11.1f\n", name.c_str(), points.size(),
-                arguments.threads[kind], median(cgal), seconds, ratio, over_first, bytes[kind]);
     rows.push_back({{"points", name},
                     {"n", points.size()},
                     {"threads", arguments.threads[kind]},
@@ -141,6 +148,16 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
                     {"ratio", ratio},
                     {"over_first_threads", over_first},
                     {"bytes_per_point", bytes[kind]}});
+    std::printf("%-20s %9zu %7d %9.4f %9.4f %8.3f %10.3f", name.c_str(), points.size(),
+                arguments.threads[kind], median(cgal), seconds, ratio, over_first);
+    const double uniform = uniform_ratio(rows, arguments.threads[kind]);
+    if (uniform > 0) {
+      rows.back()["over_uniform"] = ratio / uniform;
+      std::printf(" %12.3f", ratio / uniform);
+    } else {
+      std::printf(" %12s", "-");
+    }
+    std::printf(" %11.1f\n", bytes[kind]);
   }
   std::fflush(stdout);
   return true;
@@ -150,8 +167,8 @@ bool compare_all(const Arguments& arguments) {
   // Not points on a line: CGAL takes minutes to insert a million of them.
   constexpr std::array<std::string_view, 8> kinds = {"uniform", "gauss",  "cluster", "grid",
                                                      "arc",     "sphere", "jitter",  "duplicates"};
-  std::printf("%-20s %9s %7s %9s %9s %8s %10s %11s\n", "points", "n", "threads", "CGAL s",
-              "delray s", "ratio", "over first", "bytes/point");
+  std::printf("%-20s %9s %7s %9s %9s %8s %10s %12s %11s\n", "points", "n", "threads", "CGAL s",
+              "delray s", "ratio", "over first", "over uniform", "bytes/point");
   bool same = true;
   nlohmann::json rows = nlohmann::json::array();
   for (const auto& generator : delaunay::point_generators()) {
