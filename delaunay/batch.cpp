@@ -1,5 +1,7 @@
 #include "delaunay/internal/batch.h"
 
+#include <algorithm>
+#include <atomic>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -16,6 +18,25 @@
 #include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
+namespace {
+
+struct Claim {
+  VertexNumber first, last;
+};
+
+// The points of a part that nobody has begun with.
+struct alignas(64) Supply {
+  std::atomic<std::size_t> next{0};
+  std::size_t end = 0;
+
+  Claim claim(std::size_t count) {
+    const std::size_t first = std::min(next.fetch_add(count, std::memory_order_relaxed), end);
+    return {static_cast<VertexNumber>(first),
+            static_cast<VertexNumber>(std::min(first + count, end))};
+  }
+};
+
+}  // namespace
 
 std::size_t default_queue(std::size_t points) {
   if (points <= 1000) return 64;
@@ -58,23 +79,44 @@ Triangulation insert_in_batches(PointView<double> points, const Options& options
   const std::size_t length = options.queue > 0 ? options.queue : default_queue(points.size());
   std::deque<RequestQueue> queues;
   for (std::size_t i = 0; i < searching; ++i) queues.emplace_back((length + i) / searching);
+  std::vector<Supply> supplies(searching);
+  for (std::size_t part = 0; part < searching; ++part) {
+    supplies[part].next.store(run.begin(part), std::memory_order_relaxed);
+    supplies[part].end = run.end(part);
+  }
   Team team;
   std::mutex finishing;
   const auto search = [&](std::size_t part, InsertionPhases& phases) {
-    for (auto vertex = static_cast<VertexNumber>(run.begin(part)); vertex < run.end(part);
-         ++vertex) {
-      phases.next_point();
-      if (run.is_first(vertex)) continue;
-      const Request request = {vertex, locate(vertex)};
-      phases.located();
-      while (!queues[part].put(request)) {
-        team.check();
-        std::this_thread::yield();
+    constexpr std::size_t kClaim = 32;
+    for (Claim claim = supplies[part].claim(kClaim); claim.first < claim.last;
+         claim = supplies[part].claim(kClaim)) {
+      for (VertexNumber vertex = claim.first; vertex < claim.last; ++vertex) {
+        phases.next_point();
+        if (run.is_first(vertex)) continue;
+        const Request request = {vertex, locate(vertex)};
+        phases.located();
+        while (!queues[part].put(request)) {
+          team.check();
+          std::this_thread::yield();
+        }
       }
     }
   };
+  // Searches too rather than wait. Returns the number of points inserted.
+  const auto insert_own = [&](Supply& supply, InsertionPhases& phases) {
+    constexpr std::size_t kClaim = 4;
+    std::size_t inserted = 0;
+    const Claim claim = supply.claim(kClaim);
+    for (VertexNumber vertex = claim.first; vertex < claim.last; ++vertex) {
+      phases.next_point();
+      if (run.is_first(vertex)) continue;
+      insert({vertex, locate(vertex)}, phases);
+      ++inserted;
+    }
+    return inserted;
+  };
   const auto insert_requests = [&](InsertionPhases& phases) {
-    std::size_t left = run.end(run.parts() - 1) - 3;
+    std::size_t left = run.end(run.parts() - 1) - 3, turn = 0;
     while (left > 0) {
       bool idle = true;
       for (RequestQueue& queue : queues) {
@@ -88,7 +130,10 @@ Triangulation insert_in_batches(PointView<double> points, const Options& options
         }
       }
       team.check();
-      if (idle) std::this_thread::yield();
+      if (!idle) continue;
+      const std::size_t inserted = insert_own(supplies[turn++ % searching], phases);
+      left -= inserted;
+      if (inserted == 0) std::this_thread::yield();
     }
   };
   team.run(searching + 1, [&](std::size_t thread) {

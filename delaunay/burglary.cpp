@@ -9,6 +9,7 @@
 #include "delaunay/internal/burglar_locks.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/delaunay_repair.h"
+#include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insert_shaken.h"
 #include "delaunay/internal/insertion.h"
 #include "delaunay/internal/insertion_phases.h"
@@ -33,6 +34,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
+  insert_alone(run, triangulation);
   Team team;
   ThreadWaits waits(run.parts());
   std::mutex finishing;
@@ -42,8 +44,8 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
                                      static_cast<std::uint32_t>(thread), run.parts());
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
-    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
-         ++vertex) {
+    const std::size_t first = run.begin(thread) + points_alone(run, thread);
+    for (auto vertex = static_cast<VertexNumber>(first); vertex < run.end(thread); ++vertex) {
       team.check();
       phases.next_point();
       if (run.is_first(vertex)) continue;

@@ -9,6 +9,7 @@
 #include "delaunay/internal/current_points.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/delaunay_repair.h"
+#include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insert_shaken.h"
 #include "delaunay/internal/insertion_phases.h"
 #include "delaunay/internal/team.h"
@@ -21,6 +22,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<2> triangulation = run.triangulation();
+  insert_alone(run, triangulation);
   Team team;
   CurrentPoints current(run.parts());
   std::mutex finishing;
@@ -29,15 +31,17 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
     CircleAccess<kCounted> access(triangulation, team, current, static_cast<std::uint32_t>(thread));
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
-    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
-         ++vertex) {
+    const std::size_t first = run.begin(thread) + points_alone(run, thread);
+    for (auto vertex = static_cast<VertexNumber>(first); vertex < run.end(thread); ++vertex) {
       team.check();
       phases.next_point();
       if (run.is_first(vertex)) continue;
+      const glm::dvec2& q = run.point(vertex);
+      const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                      root_of(triangulation.dag, triangulation.orientation, q), q);
+      // Not before, because the others wait for this point from now on.
       access.begin(vertex);
-      const NodeNumber root =
-          root_of(triangulation.dag, triangulation.orientation, run.point(vertex));
-      insert_shaken(run, triangulation, root, vertex, access, suspects, phases);
+      insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
       access.commit();
     }
     const std::lock_guard alone(finishing);

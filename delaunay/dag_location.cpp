@@ -20,7 +20,7 @@ NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNum
   for (;;) {
     const NodeNumber first = dag.child(node, 0);
     if (first == kNoNode) return node;
-    const NodeNumber second = dag.child(node, 1), third = dag.child(node, 2);
+    const NodeNumber second = first + 1, third = dag.child(node, 2);
     const VertexNumber a = dag.vertex(corner_of(first, 0)), b = dag.vertex(corner_of(first, 1)),
                        apex = dag.vertex(corner_of(first, 2));
     // Of what is inside the node, only the edges at the apex decide.

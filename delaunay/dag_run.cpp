@@ -10,6 +10,7 @@
 #include "delaunay/dag_location.h"
 #include "delaunay/internal/insertion_start.h"
 #include "delaunay/internal/stopwatch.h"
+#include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -39,17 +40,30 @@ std::uint64_t count_fragments(const Dag<D>& dag) {
   return fragments;
 }
 
+// Calls f(i, first, last) for the threads' shares [first, last) of [0, n).
+template <class F>
+void in_parts(std::size_t n, std::size_t threads, F&& f) {
+  // A thread takes about as long to start as to look at so many nodes.
+  constexpr std::size_t kPerThread = 16384;
+  if (n < threads * kPerThread) return f(std::size_t{0}, std::size_t{0}, n);
+  Team team;
+  team.run(threads, [&](std::size_t i) { f(i, n * i / threads, n * (i + 1) / threads); });
+}
+
 }  // namespace
 
 template <int D>
 DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t parts)
-    : options(wanted) {
+    : options(wanted), dag_(D == 2 ? kNodesPerPoint * input.size() : 0) {
   Stopwatch watch;
+  const auto threads = static_cast<std::size_t>(options.threads);
   const std::vector<Point> points = positions<D>(input);
-  Plan plan =
-      make_plan(std::span<const Point>(points), parts, options.split, options.order, options.seed);
-  points_.reserve(points.size());
-  for (const std::uint32_t row : plan.points) points_.push_back(points[row]);
+  Plan plan = make_plan(std::span<const Point>(points), parts, options.split, options.order,
+                        options.seed, threads);
+  points_.resize(points.size());
+  in_parts(points.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) points_[i] = points[plan.points[i]];
+  });
   rows_ = std::move(plan.points);
   begins_ = std::move(plan.begins);
   first_ = first_simplex<D>(points_);
@@ -102,16 +116,39 @@ Triangulation DagRun<D>::leaves() const {
   Triangulation result;
   result.dim = D;
   if (is_flat()) return result;
+  struct Share {
+    std::vector<std::uint32_t> vertices;
+    std::uint64_t ghosts = 0;
+  };
+  const auto threads = static_cast<std::size_t>(options.threads);
+  std::vector<Share> shares(threads);
+  in_parts(dag_.size(), threads, [&](std::size_t i, std::size_t first, std::size_t last) {
+    Share own;
+    own.vertices.reserve((last - first) * (D + 1) / 4);
+    for (auto node = static_cast<NodeNumber>(first); node < last; ++node) {
+      if (!dag_.is_live(node)) continue;
+      if (dag_.is_ghost(node)) {
+        ++own.ghosts;
+        continue;
+      }
+      for (unsigned k = 0; k <= D; ++k) {
+        own.vertices.push_back(rows_[dag_.vertex(corner_of(node, k))]);
+      }
+    }
+    shares[i] = std::move(own);
+  });
+  std::vector<std::size_t> begins = {0};
   std::uint64_t ghosts = 0;
-  for (NodeNumber node = 0; node < dag_.size(); ++node) {
-    if (!dag_.is_live(node)) continue;
-    if (dag_.is_ghost(node)) {
-      ++ghosts;
-      continue;
-    }
-    for (unsigned k = 0; k <= D; ++k) {
-      result.vertices.push_back(rows_[dag_.vertex(corner_of(node, k))]);
-    }
+  for (const Share& share : shares) {
+    begins.push_back(begins.back() + share.vertices.size());
+    ghosts += share.ghosts;
+  }
+  // The first share's memory becomes the result's, and most of it already is where it belongs.
+  result.vertices = std::move(shares[0].vertices);
+  result.vertices.reserve(begins.back());
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    result.vertices.insert(result.vertices.end(), shares[i].vertices.begin(),
+                           shares[i].vertices.end());
   }
   result.hull_facets = ghosts;
   return result;

@@ -2,32 +2,53 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <numeric>
 #include <random>
 #include <utility>
 
+#include "delaunay/array.h"
+#include "delaunay/internal/blocks.h"
 #include "delaunay/internal/cells.h"
 #include "delaunay/internal/hilbert3.h"
+#include "delaunay/internal/radix_sort.h"
+#include "delaunay/internal/team.h"
 
 namespace delray::delaunay {
 namespace {
 
-// The place on the Hilbert curve of a cell of the Morton order: at each level the quadrant's two
-// bits (x below y) are turned as the curve is turned there.
-std::uint32_t hilbert_of_morton(std::uint32_t morton) {
-  std::uint32_t place = 0;
-  bool exchange = false, mirror = false;
-  for (int shift = 30; shift >= 0; shift -= 2) {
-    bool x = (morton >> shift & 1) != 0, y = (morton >> shift & 2) != 0;
-    if (exchange) std::swap(x, y);
-    if (mirror) x = !x, y = !y;
-    place = place << 2 | ((x ? 3U : 0U) ^ (y ? 1U : 0U));
-    // The first and the last quadrant hold the curve reflected in one of the diagonals.
-    if (!y) {
-      exchange = !exchange;
-      if (x) mirror = !mirror;
+// How the curve goes through the quadrants of a square: whether x and y are exchanged, and then
+// both mirrored (bits 0 and 1 of the state), on the way in.
+struct Quadrant {
+  std::uint8_t place, state;
+};
+
+constexpr std::array<std::array<Quadrant, 4>, 4> quadrants() {
+  std::array<std::array<Quadrant, 4>, 4> result{};
+  for (unsigned state = 0; state < 4; ++state) {
+    for (unsigned quadrant = 0; quadrant < 4; ++quadrant) {
+      bool x = (quadrant & 1) != 0, y = (quadrant & 2) != 0;
+      if ((state & 1) != 0) std::swap(x, y);
+      if ((state & 2) != 0) x = !x, y = !y;
+      // The first and the last quadrant hold the curve reflected in one of the diagonals.
+      const unsigned turn = y ? 0U : x ? 3U : 1U;
+      result[state][quadrant] = {static_cast<std::uint8_t>((x ? 3U : 0U) ^ (y ? 1U : 0U)),
+                                 static_cast<std::uint8_t>(state ^ turn)};
     }
+  }
+  return result;
+}
+
+// The place on the Hilbert curve of a cell of the Morton order, from the largest quadrants down.
+std::uint32_t hilbert_of_morton(std::uint32_t morton) {
+  static constexpr auto kQuadrants = quadrants();
+  std::uint32_t place = 0;
+  unsigned state = 0;
+  for (int shift = 30; shift >= 0; shift -= 2) {
+    const Quadrant quadrant = kQuadrants[state][morton >> shift & 3];
+    place = place << 2 | quadrant.place;
+    state = quadrant.state;
   }
   return place;
 }
@@ -84,20 +105,39 @@ class SpaceCurve {
   glm::dvec3 low_{0};
 };
 
-template <class Curve, class Point>
-void sort_along_curve(std::span<std::uint32_t> numbers, std::span<const Point> points,
-                      const Curve& curve) {
-  std::vector<std::pair<typename Curve::Place, std::uint32_t>> places(numbers.size());
+// Sorts numbers by places[number].
+void sort_by_place(std::span<std::uint32_t> numbers, std::span<const std::uint32_t> places) {
+  Array<std::uint64_t> entries(numbers.size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    places[i] = {curve(points[numbers[i]]), numbers[i]};
+    entries[i] = std::uint64_t{places[numbers[i]]} << 32 | numbers[i];
   }
-  std::sort(places.begin(), places.end());
-  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = places[i].second;
+  internal::radix_sort(entries, internal::Blocks(numbers.size(), 1));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = static_cast<std::uint32_t>(entries[i]);
+  }
+}
+
+void sort_by_place(std::span<std::uint32_t> numbers, std::span<const std::uint64_t> places) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> entries(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) entries[i] = {places[numbers[i]], numbers[i]};
+  std::sort(entries.begin(), entries.end());
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = entries[i].second;
+}
+
+// A thread takes about as long to start as to sort so many points.
+constexpr std::size_t kPerThread = 4096;
+
+// Calls f(first, last) for the threads' shares of [0, n).
+template <class F>
+void in_parts(std::size_t n, std::size_t threads, F&& f) {
+  const std::size_t parts = n < threads * kPerThread ? 1 : threads;
+  internal::Team().run(parts,
+                       [&](std::size_t part) { f(n * part / parts, n * (part + 1) / parts); });
 }
 
 template <class Curve, class Point>
 std::vector<std::uint32_t> order_of(std::span<const Point> points, std::string_view name,
-                                    std::uint64_t seed, double start) {
+                                    std::uint64_t seed, double start, std::size_t threads) {
   assert(name == "random" || name == "hilbert" || name == "brio");
   std::vector<std::uint32_t> numbers(points.size());
   std::iota(numbers.begin(), numbers.end(), 0U);
@@ -105,31 +145,46 @@ std::vector<std::uint32_t> order_of(std::span<const Point> points, std::string_v
   if (name != "hilbert") shuffle(numbers, seed);
   if (name == "random") return numbers;
   const Curve curve(points);
+  // All at once, in the order in which points lie in memory.
+  std::vector<typename Curve::Place> places(points.size());
+  in_parts(points.size(), threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) places[i] = curve(points[i]);
+  });
   // Smaller rounds are not worth a curve of their own.
   constexpr std::size_t kFirstRound = 64;
   const std::size_t smallest = name == "brio" ? kFirstRound : points.size();
+  std::vector<std::span<std::uint32_t>> rounds;
   for (std::size_t last = points.size(), first; last > 0; last = first) {
     first = last > smallest ? last / 2 : 0;
-    const std::span<std::uint32_t> round = std::span(numbers).subspan(first, last - first);
-    sort_along_curve(round, points, curve);
-    const double begin = start * static_cast<double>(round.size());
-    std::rotate(round.begin(), round.begin() + static_cast<std::ptrdiff_t>(begin), round.end());
+    rounds.push_back(std::span(numbers).subspan(first, last - first));
   }
+  std::atomic<std::size_t> next = 0;  // the largest first
+  const auto sort_rounds = [&](std::size_t) {
+    for (std::size_t i = next++; i < rounds.size(); i = next++) {
+      sort_by_place(rounds[i], places);
+      const double begin = start * static_cast<double>(rounds[i].size());
+      std::rotate(rounds[i].begin(), rounds[i].begin() + static_cast<std::ptrdiff_t>(begin),
+                  rounds[i].end());
+    }
+  };
+  const std::size_t sorting =
+      points.size() < threads * kPerThread ? 1 : std::min(threads, rounds.size());
+  internal::Team().run(sorting, sort_rounds);
   return numbers;
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> insertion_order(std::span<const glm::dvec2> points,
-                                           std::string_view name, std::uint64_t seed,
-                                           double start) {
-  return order_of<PlaneCurve>(points, name, seed, start);
+                                           std::string_view name, std::uint64_t seed, double start,
+                                           std::size_t threads) {
+  return order_of<PlaneCurve>(points, name, seed, start, threads);
 }
 
 std::vector<std::uint32_t> insertion_order(std::span<const glm::dvec3> points,
-                                           std::string_view name, std::uint64_t seed,
-                                           double start) {
-  return order_of<SpaceCurve>(points, name, seed, start);
+                                           std::string_view name, std::uint64_t seed, double start,
+                                           std::size_t threads) {
+  return order_of<SpaceCurve>(points, name, seed, start, threads);
 }
 
 }  // namespace delray::delaunay

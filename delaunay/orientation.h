@@ -43,6 +43,8 @@ class Orientation<2> {
   // The side of q as seen from a towards o.
   int about(VertexNumber a, const glm::dvec2& q) const {
     for (const glm::dvec2& inner : inner_) {
+      // Mostly that of a hull that still is the first triangle: no need to ask for what is known.
+      if (points_[a] == inner) continue;
       if (const int side = orient2d(points_[a], inner, q); side != 0) return side;
     }
     return 0;

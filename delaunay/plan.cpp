@@ -33,15 +33,29 @@ void split_by(std::span<std::uint32_t> numbers, std::span<const double> keys,
 double distance_from_origin(const glm::dvec2& p) { return std::hypot(p.x, p.y); }
 double distance_from_origin(const glm::dvec3& p) { return std::hypot(p.x, p.y, p.z); }
 
+// Puts every part into ascending order, so that what is done within it depends on its points alone.
+void sort_within_parts(Plan& plan) {
+  std::vector<std::uint32_t> part_of(plan.points.size());
+  for (std::uint32_t part = 0; part < plan.parts(); ++part) {
+    for (std::size_t i = plan.begins[part]; i < plan.begins[part + 1]; ++i) {
+      part_of[plan.points[i]] = part;
+    }
+  }
+  std::vector<std::size_t> next(plan.begins.begin(), plan.begins.end() - 1);
+  for (std::uint32_t point = 0; point < part_of.size(); ++point) {
+    plan.points[next[part_of[point]]++] = point;
+  }
+}
+
 template <class Point>
 Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view split,
-             std::string_view order, std::uint64_t seed) {
+             std::string_view order, std::uint64_t seed, std::size_t threads) {
   assert(parts >= 1);
   Plan plan;
   const std::size_t n = points.size();
   for (std::size_t i = 0; i <= parts; ++i) plan.begins.push_back(n * i / parts);
   if (parts == 1) {
-    plan.points = insertion_order(points, order, seed);
+    plan.points = insertion_order(points, order, seed, 0, threads);
     return plan;
   }
   if (split == "slabs" || split == "distance") {
@@ -56,11 +70,9 @@ Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view 
     assert(split == "random" || split == "curve");
     plan.points = insertion_order(points, split == "curve" ? "hilbert" : "random", seed);
   }
+  sort_within_parts(plan);
   const auto order_part = [&](std::size_t part) {
     const std::size_t begin = plan.begins[part], end = plan.begins[part + 1];
-    // Ascending first, so that what is done within the part depends on its points alone.
-    std::sort(plan.points.begin() + static_cast<std::ptrdiff_t>(begin),
-              plan.points.begin() + static_cast<std::ptrdiff_t>(end));
     std::vector<Point> own(end - begin);
     std::vector<std::uint32_t> numbers(end - begin);
     for (std::size_t i = begin; i < end; ++i) own[i - begin] = points[plan.points[i]];
@@ -86,13 +98,13 @@ Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view 
 }  // namespace
 
 Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
-               std::string_view order, std::uint64_t seed) {
-  return plan_of(points, parts, split, order, seed);
+               std::string_view order, std::uint64_t seed, std::size_t threads) {
+  return plan_of(points, parts, split, order, seed, threads);
 }
 
 Plan make_plan(std::span<const glm::dvec3> points, std::size_t parts, std::string_view split,
-               std::string_view order, std::uint64_t seed) {
-  return plan_of(points, parts, split, order, seed);
+               std::string_view order, std::uint64_t seed, std::size_t threads) {
+  return plan_of(points, parts, split, order, seed, threads);
 }
 
 }  // namespace delray::delaunay

@@ -28,8 +28,8 @@ struct Plan {
 //
 // REQUIRES: legal names; parts >= 1; finite coordinates.
 Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
-               std::string_view order, std::uint64_t seed);
+               std::string_view order, std::uint64_t seed, std::size_t threads = 1);
 Plan make_plan(std::span<const glm::dvec3> points, std::size_t parts, std::string_view split,
-               std::string_view order, std::uint64_t seed);
+               std::string_view order, std::uint64_t seed, std::size_t threads = 1);
 
 }  // namespace delray::delaunay

@@ -56,6 +56,7 @@ class BurglarLocks {
     return Grant::kGranted;
   }
 
+  void reserve(NodeNumber count) { cache_.reserve(dag_, count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
     const NodeNumber node = cache_.take(dag_);
     dag_.set_leaf(node, vertices, thread_ + 1);

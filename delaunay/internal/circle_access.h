@@ -64,6 +64,7 @@ class CircleAccess {
     return Grant::kGranted;
   }
 
+  void reserve(NodeNumber count) { cache_.reserve(triangulation_.dag, count); }
   NodeNumber create(const std::array<VertexNumber, 3>& vertices) {
     const NodeNumber node = cache_.take(triangulation_.dag);
     triangulation_.dag.set_leaf(node, vertices, 0);

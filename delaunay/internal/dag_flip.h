@@ -2,10 +2,12 @@
 //
 // What may be touched when is the matter of an access policy:
 //   Grant acquire({nodes})   before an operation, for all nodes that it writes or decides by
+//   reserve(count)           so many slots will be created with consecutive numbers
 //   NodeNumber create()      a slot that is acquired already
 //   link(outside, inside)    makes two facets one; `outside` is of an older node, `inside` of a new
 //   retire(node, children)   gives a leaf its children
 //   kShakes                  whether it may answer kShaken
+// All of it is small and called some ten times a point, so it is inlined into the two loops below.
 // An operation is a subdivision or a flip; between operations the leaves are a triangulation.
 #pragma once
 
@@ -56,8 +58,9 @@ inline bool conflict(const DagTriangulation<2>& triangulation, NodeNumber node,
 // Cuts a leaf into three around `vertex`, which is corner 2 of all three; they are appended to
 // `suspects`. Writes nothing unless all is granted. REQUIRES: the leaf is acquired.
 template <class Access>
-Grant subdivide(const DagTriangulation<2>& triangulation, NodeNumber leaf, VertexNumber vertex,
-                Access& access, std::vector<NodeNumber>& suspects) {
+[[gnu::flatten]] Grant subdivide(const DagTriangulation<2>& triangulation, NodeNumber leaf,
+                                 VertexNumber vertex, Access& access,
+                                 std::vector<NodeNumber>& suspects) {
   Dag<2>& dag = triangulation.dag;
   std::array<VertexNumber, 3> old;
   std::array<CornerNumber, 3> around;
@@ -74,6 +77,7 @@ Grant subdivide(const DagTriangulation<2>& triangulation, NodeNumber leaf, Verte
     }
   }
   std::array<NodeNumber, 3> children;
+  access.reserve(3);
   for (unsigned k = 0; k < 3; ++k) {
     children[k] = access.create({old[(k + 1) % 3], old[(k + 2) % 3], vertex});
     suspects.push_back(children[k]);
@@ -112,10 +116,11 @@ Grant split_edge(const DagTriangulation<2>& triangulation, CornerNumber corner, 
   const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
   const VertexNumber first = dag.vertex(right), last = dag.vertex(left);
   // Counterclockwise around the vertex.
+  access.reserve(4);
   const std::array<NodeNumber, 4> made = {
-      access.create({near, first, vertex}), access.create({first, far, vertex}),
-      access.create({far, last, vertex}), access.create({last, near, vertex})};
-  const std::array<CornerNumber, 4> outside = {over_left, beyond_right, beyond_left, over_right};
+      access.create({last, near, vertex}), access.create({near, first, vertex}),
+      access.create({first, far, vertex}), access.create({far, last, vertex})};
+  const std::array<CornerNumber, 4> outside = {over_right, over_left, beyond_right, beyond_left};
   for (unsigned k = 0; k < 4; ++k) {
     const CornerNumber ahead = corner_of(made[k], 0), behind = corner_of(made[(k + 1) % 4], 1);
     dag.set_neighbour(ahead, behind);
@@ -123,8 +128,8 @@ Grant split_edge(const DagTriangulation<2>& triangulation, CornerNumber corner, 
     access.link(outside[k], corner_of(made[k], 2));
     suspects.push_back(made[k]);
   }
-  access.retire(simplex_of(corner), {made[3], made[0], kNoNode});
-  access.retire(simplex_of(beyond), {made[1], made[2], kNoNode});
+  access.retire(simplex_of(corner), {made[0], made[1], kNoNode});
+  access.retire(simplex_of(beyond), {made[2], made[3], kNoNode});
   return Grant::kGranted;
 }
 
@@ -152,6 +157,7 @@ Grant flip(const DagTriangulation<2>& triangulation, CornerNumber corner, Access
   }
   const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
   const VertexNumber first = dag.vertex(right), last = dag.vertex(left);
+  access.reserve(2);
   made = {access.create({first, far, near}), access.create({far, last, near})};
   dag.set_neighbour(corner_of(made[0], 0), corner_of(made[1], 1));
   dag.set_neighbour(corner_of(made[1], 1), corner_of(made[0], 0));
@@ -167,8 +173,8 @@ Grant flip(const DagTriangulation<2>& triangulation, CornerNumber corner, Access
 // Flips until no leaf of the new vertex has a neighbour in conflict with it; `suspects` are such
 // leaves, the vertex in corner 2. Never kShaken. After kRefused some are left.
 template <class Access>
-Grant legalize(const DagTriangulation<2>& triangulation, Access& access,
-               std::vector<NodeNumber>& suspects) {
+[[gnu::flatten]] Grant legalize(const DagTriangulation<2>& triangulation, Access& access,
+                                std::vector<NodeNumber>& suspects) {
   const Dag<2>& dag = triangulation.dag;
   while (!suspects.empty()) {
     const NodeNumber suspect = suspects.back();

@@ -1,8 +1,11 @@
 // Insertion of one point by a thread that is alone with the leaves.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
+#include "delaunay/dag_location.h"
 #include "delaunay/internal/dag_flip.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insertion_phases.h"
@@ -24,6 +27,36 @@ void insert_in_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, No
   phases.subdivided();
   legalize(triangulation, access, suspects);
   phases.legalized();
+}
+
+// How many points of a part insert_alone() inserts.
+template <int D>
+std::size_t points_alone(const DagRun<D>& run, std::size_t part) {
+  // With some thousand triangles threads seldom meet; of few points most are left to the threads.
+  constexpr std::size_t kPoints = 1024, kShare = 16;
+  return std::min((run.end(part) - run.begin(part)) / kShare, kPoints / run.parts());
+}
+
+// The first points of every part, by one thread: in a small triangulation threads would only be in
+// each other's way.
+template <int D>
+void insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulation) {
+  SoleDagAccess<D> access(triangulation.dag, 0);
+  InsertionPhases phases(run.options);
+  std::vector<NodeNumber> suspects;
+  for (std::size_t part = 0; part < run.parts(); ++part) {
+    const std::size_t end = run.begin(part) + points_alone(run, part);
+    for (auto vertex = static_cast<VertexNumber>(run.begin(part)); vertex < end; ++vertex) {
+      phases.next_point();
+      if (run.is_first(vertex)) continue;
+      const auto& q = run.point(vertex);
+      const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                      root_of(triangulation.dag, triangulation.orientation, q), q);
+      phases.located();
+      insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+    }
+  }
+  phases.finish();
 }
 
 }  // namespace delray::delaunay::internal

@@ -17,7 +17,14 @@ class NodeCache {
     }
     return next_++;
   }
-  // Marks what was not used. To be called once, at the end.
+  // Makes the next `count` slots consecutive.
+  void reserve(Dag<D>& dag, NodeNumber count) {
+    if (end_ - next_ >= count) return;
+    abandon_rest(dag);
+    next_ = dag.allocate(maker_);
+    end_ = next_ + Dag<D>::kCacheSize;
+  }
+  // Marks what was not used. To be called at the end.
   void abandon_rest(Dag<D>& dag) {
     while (next_ != end_) dag.abandon(next_++);
   }

@@ -23,6 +23,7 @@ class SoleDagAccess {
   SoleDagAccess& operator=(const SoleDagAccess&) = delete;
 
   Grant acquire(std::initializer_list<NodeNumber>) const { return Grant::kGranted; }
+  void reserve(NodeNumber count) { cache_.reserve(dag_, count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
     const NodeNumber node = cache_.take(dag_);
     dag_.set_leaf(node, vertices, 0);
