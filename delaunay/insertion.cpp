@@ -13,6 +13,7 @@
 #include "delaunay/internal/extract.h"
 #include "delaunay/internal/flip.h"
 #include "delaunay/internal/flip3.h"
+#include "delaunay/internal/hierarchy.h"
 #include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insertion_phases.h"
 #include "delaunay/internal/insertion_start.h"
@@ -97,7 +98,7 @@ class WalkedMesh<3> {
   std::uint32_t random_;
 };
 
-template <int D>
+template <int D, class Located>
 Triangulation insert_walking(PointView<double> input, const Options& options) {
   Statistics unused;
   Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
@@ -122,7 +123,7 @@ Triangulation insert_walking(PointView<double> input, const Options& options) {
     result.distinct = count_distinct(std::move(points));
     return result;
   }
-  WalkedMesh<D> mesh(points, *start, options.seed);
+  Located mesh(points, *start, options.seed);
   std::uint64_t distinct = D + 1;
   for (VertexNumber vertex = 0; vertex < n; ++vertex) {
     if (options.progress != nullptr) options.progress->advance();
@@ -175,8 +176,11 @@ Triangulation insert_descending(PointView<double> input, const Options& options)
 
 Triangulation insert_all(PointView<double> points, const Options& options) {
   const auto insert = [&]<int D>() {
-    return options.location == "dag" ? insert_descending<D>(points, options)
-                                     : insert_walking<D>(points, options);
+    if (options.location == "dag") return insert_descending<D>(points, options);
+    if constexpr (D == 2) {
+      if (options.location == "hierarchy") return insert_walking<2, Hierarchy>(points, options);
+    }
+    return insert_walking<D, WalkedMesh<D>>(points, options);
   };
   return options.dim == 2 ? insert.template operator()<2>() : insert.template operator()<3>();
 }

@@ -81,7 +81,7 @@ std::span<const Method> methods() {
       {.name = "insertion",
        .description = "one point after the other, made Delaunay again by flips",
        .dims = {2, 3},
-       .locations = {"walk", "dag"},
+       .locations = {"walk", "hierarchy", "dag"},
        .splits = {},
        .orders = {"brio", "hilbert", "random"},
        .triangulate = internal::insert_all},
@@ -127,8 +127,9 @@ std::span<const Method> methods() {
 }
 
 std::span<const Choice> locations() {
-  static constexpr std::array<Choice, 2> table = {{
+  static constexpr std::array<Choice, 3> table = {{
       {"dag", "down the history of the triangulation; not along a curve, which makes it deep"},
+      {"hierarchy", "walks through coarser triangulations first; in 2D"},
       {"walk", "from the last simplex towards the point, by edges in random order"},
   }};
   return table;
@@ -152,6 +153,12 @@ std::span<const Choice> deadlock_strategies() {
   return table;
 }
 
+std::vector<std::string_view> locations_for(const Method& method, int dim) {
+  std::vector<std::string_view> result = method.locations;
+  if (dim != 2) std::erase(result, "hierarchy");
+  return result;
+}
+
 std::vector<std::string_view> orders_for(const Method& method, std::string_view location) {
   std::vector<std::string_view> result = method.orders;
   if (location == "dag") std::erase(result, "hilbert");
@@ -171,7 +178,8 @@ Options resolve(const Options& options) {
   const Method& method = choose_method(options);
   Options result = options;
   result.method = method.name;
-  result.location = choose("location", options.location, method.locations, method.name);
+  result.location =
+      choose("location", options.location, locations_for(method, options.dim), method.name);
   result.split = choose("split", options.split, method.splits, method.name);
   result.order = choose("order", options.order, orders_for(method, result.location), method.name);
   result.deadlocks = choose("deadlock strategy", options.deadlocks, method.deadlocks, method.name);

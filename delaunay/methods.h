@@ -33,6 +33,9 @@ std::span<const Choice> splits();
 std::span<const Choice> orders();
 std::span<const Choice> deadlock_strategies();
 
+// The locations of a method in one of its dimensions, the default first.
+std::vector<std::string_view> locations_for(const Method& method, int dim);
+
 // The orders of a method that go with one of its locations, the default first.
 std::vector<std::string_view> orders_for(const Method& method, std::string_view location);
 

@@ -56,7 +56,7 @@ void measure(benchmark::State& state, const delaunay::Options& options,
 std::map<std::string, delaunay::Options> combinations(int dim, const delaunay::Method& method) {
   const auto or_none = [](const Names& names) { return names.empty() ? Names{"none"} : names; };
   std::map<std::string, delaunay::Options> result;
-  for (const auto location : or_none(method.locations)) {
+  for (const auto location : or_none(locations_for(method, dim))) {
     for (const auto split : or_none(method.splits)) {
       for (const auto order : or_none(orders_for(method, location))) {
         for (const auto deadlocks : or_none(method.deadlocks)) {

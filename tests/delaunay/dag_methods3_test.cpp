@@ -26,7 +26,7 @@ std::vector<Options> combinations() {
     Options options;
     options.dim = 3;
     options.method = method.name;
-    for (const auto location : method.locations) {
+    for (const auto location : locations_for(method, 3)) {
       options.location = location;
       for (const auto split : or_none(method.splits)) {
         options.split = split;

@@ -20,7 +20,7 @@ std::vector<Options> combinations(int dim) {
   std::vector<Options> result;
   for (const Method& method : methods()) {
     if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
-    for (const auto location : or_none(method.locations)) {
+    for (const auto location : or_none(locations_for(method, dim))) {
       for (const auto order : or_none(orders_for(method, location))) {
         Options options;
         options.dim = dim;

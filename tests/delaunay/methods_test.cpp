@@ -66,6 +66,13 @@ TEST(Methods, RefusalsNameWhatIsLegal) {
   options.method = "insertion";
   options.order = "alphabetic";
   EXPECT_NE(refusal(options).find("brio, hilbert, random"), std::string::npos) << refusal(options);
+  options.dim = 3;
+  options.order = "auto";
+  options.location = "hierarchy";
+  EXPECT_NE(refusal(options).find("it has: walk, dag"), std::string::npos) << refusal(options);
+  options.dim = 2;
+  EXPECT_EQ(refusal(options), "accepted");
+  options.location = "auto";
   options.method = "divide-and-conquer";
   options.order = "brio";
   EXPECT_NE(refusal(options).find("no choice of order"), std::string::npos) << refusal(options);
