@@ -1,6 +1,7 @@
 #include "delaunay/internal/cavity_rounds.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <new>
 #include <numeric>
@@ -14,9 +15,9 @@
 namespace delray::delaunay::internal {
 namespace {
 
-// A pass costs a region so many points to be worth while: one that starts a thread takes some tens
+// A pass costs a region so many points to be worth while: starting a thread takes some tens
 // of microseconds, and most of the points of a small region are at its boundary.
-constexpr std::size_t kPointsPerRegion = 2000;
+constexpr std::size_t kPointsPerRegion = 500;
 // Of the points of a pass that must have been inserted for another pass to be tried.
 constexpr double kWorthwhile = 0.25;
 constexpr int kPasses = 3;
@@ -112,14 +113,19 @@ class Together {
     return regions;
   }
 
-  // Gives the kernel a simplex of its region to start from, if one is found.
-  bool find_start(Kernel& inserter, const Box3Region& region,
-                  std::span<const VertexNumber> waiting) {
-    constexpr std::size_t kTries = 64;
+  // Simplices of the region from which searches may start: place i, if there is one, is near
+  // vertices at a share of i / size of the way through `waiting`.
+  using Starts = std::array<SimplexNumber, 128>;
+  static constexpr SimplexNumber kNone = 0xffffffffU;
+
+  Starts find_starts(Kernel& inserter, const Box3Region& region,
+                     std::span<const VertexNumber> waiting) const {
+    Starts starts;
     Cavity<Box3Region>& kernel = inserter.kernel();
     SimplexNumber from = some_simplex_;
-    for (std::size_t i = 0; i < kTries; ++i) {
-      const VertexNumber vertex = waiting[(2 * i + 1) * waiting.size() / (2 * kTries)];
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      starts[i] = kNone;
+      const VertexNumber vertex = waiting[(2 * i + 1) * waiting.size() / (2 * starts.size())];
       if (!region.contains(at(vertex))) continue;
       kernel.set_region({});
       kernel.start_at(from);
@@ -130,45 +136,63 @@ class Together {
       }
       from = place;
       kernel.set_region(region);
-      if (!kernel.owns(place)) continue;
-      kernel.start_at(place);
-      return true;
+      if (kernel.owns(place)) starts[i] = place;
     }
-    return false;
+    return starts;
+  }
+
+  // Inserts the vertices of the region as far as it can, and notes which. False if slots are
+  // missing.
+  bool insert_region(Kernel& inserter, const Box3Region& region, const Starts& starts,
+                     std::span<const VertexNumber> waiting, std::vector<std::uint8_t>& done) const {
+    // A search that gets nowhere may be shut in by simplices of others; so many in a row are not
+    // all hindered by where they go.
+    constexpr std::size_t kFailures = 4;
+    const auto first = std::ranges::find_if(starts, [](auto start) { return start != kNone; });
+    if (first == starts.end()) return true;
+    inserter.kernel().start_at(*first);
+    std::size_t failures = 0;
+    for (std::size_t i = 0; i < waiting.size(); ++i) {
+      if (!region.contains(at(waiting[i]))) continue;
+      Insertion result = inserter.insert(waiting[i]);
+      if (result == Insertion::kElsewhere && failures++ % kFailures == 0) {
+        const SimplexNumber start = starts[i * starts.size() / waiting.size()];
+        if (start == kNone || input_.mesh.is_dead(start) || input_.mesh.is_ghost(start)) continue;
+        inserter.kernel().start_at(start);
+        result = inserter.insert(waiting[i]);
+      }
+      if (result == Insertion::kFull) return false;
+      if (result == Insertion::kElsewhere) continue;
+      failures = 0;
+      done[i] = 1;
+    }
+    return true;
   }
 
   // Leaves in `waiting`, in the same order, what could not be inserted.
   void insert_pass(std::vector<VertexNumber>& waiting, std::size_t parts, int pass) {
     const std::vector<Box3Region> regions = cut_regions(waiting, parts, pass);
     std::vector<std::uint8_t> done(waiting.size(), 0);
-    std::vector<std::uint8_t> starts(parts), full(parts, 0), some(parts, 0);
+    std::vector<Starts> starts;
     for (std::size_t t = 0; t < parts; ++t) {
-      starts[t] = find_start(kernels_[t], regions[t], waiting) ? 1 : 0;
+      starts.push_back(find_starts(kernels_[t], regions[t], waiting));
     }
+    std::vector<std::uint8_t> has_room(parts), has_inserted(parts);
     parallel::parallel_for(0, parts, 1, [&](std::size_t t) {
-      if (starts[t] == 0) return;
-      for (std::size_t i = 0; i < waiting.size(); ++i) {
-        if (!regions[t].contains(at(waiting[i]))) continue;
-        const Insertion result = kernels_[t].insert(waiting[i]);
-        if (result == Insertion::kFull) {
-          full[t] = 1;
-          return;
-        }
-        if (result == Insertion::kElsewhere) continue;
-        done[i] = 1;
-        if (result == Insertion::kDone) some[t] = 1;
-      }
+      const std::uint64_t before = kernels_[t].inserted();
+      has_room[t] = insert_region(kernels_[t], regions[t], starts[t], waiting, done) ? 1 : 0;
+      has_inserted[t] = kernels_[t].inserted() > before ? 1 : 0;
     });
     for (std::size_t t = 0; t < parts; ++t) {
       // What a kernel made last only it could have removed since.
-      if (some[t] != 0) some_simplex_ = kernels_[t].kernel().last_simplex();
+      if (has_inserted[t] != 0) some_simplex_ = kernels_[t].kernel().last_simplex();
     }
     std::size_t left = 0;
     for (std::size_t i = 0; i < waiting.size(); ++i) {
       if (done[i] == 0) waiting[left++] = waiting[i];
     }
     waiting.resize(left);
-    if (std::ranges::find(full, 1) != full.end()) grow_mesh();
+    if (std::ranges::find(has_room, 0) != has_room.end()) grow_mesh();
   }
 
   void insert_rest(std::span<const VertexNumber> waiting) {

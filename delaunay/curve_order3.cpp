@@ -73,20 +73,16 @@ std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-struct Keyed {
-  std::uint64_t key;
-  std::uint32_t row;
-};
-
-// Stable, by all digits from the lowest.
-void radix_sort(Array<Keyed>& items, int key_bits, const Blocks& blocks) {
+// Sorts by the bits [first_bit, last_bit) from the lowest digit up; items that are equal in them
+// stay in order.
+void radix_sort(Array<std::uint64_t>& items, int first_bit, int last_bit, const Blocks& blocks) {
   constexpr int kDigit = 11;
   using Counts = std::array<std::uint32_t, std::size_t{1} << kDigit>;
-  Array<Keyed> other(items.size());
+  Array<std::uint64_t> other(items.size());
   std::vector<Counts> counts(blocks.count());
-  for (int shift = 0; shift < key_bits; shift += kDigit) {
-    const auto digit = [shift](const Keyed& item) {
-      return (item.key >> shift) & ((std::size_t{1} << kDigit) - 1);
+  for (int shift = first_bit; shift < last_bit; shift += kDigit) {
+    const auto digit = [shift](std::uint64_t item) {
+      return (item >> shift) & ((std::size_t{1} << kDigit) - 1);
     };
     blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
       counts[block].fill(0);
@@ -175,8 +171,10 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
   constexpr std::size_t kFirstRound = 500;
   int rounds = 1;
   for (std::size_t size = n; size > kFirstRound && rounds < 15; size /= kGrowth) ++rounds;
-  // Cells of about 2^-12 of a point each if points are everywhere alike.
-  const int bits = std::clamp(static_cast<int>(std::bit_width(n)) / 3 + 4, 4, 19);
+  // Cells of about 2^-12 of a point each if points are everywhere alike, as far as round, place on
+  // the curve and row fit one word.
+  const int row_bits = static_cast<int>(std::bit_width(n)), round_bits = 4;
+  const int bits = std::min(row_bits / 3 + 4, (64 - round_bits - row_bits) / 3);
 
   // Neither the width nor its reciprocal may overflow.
   double before = 1;
@@ -188,7 +186,7 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
   const double scale = width > 0 ? (std::ldexp(1.0, bits) - 0.5) / (width * before) : 0;
 
   const Blocks blocks(n, threads);
-  Array<Keyed> keys(n);
+  Array<std::uint64_t> keys(n);  // from the highest bits: round, place, row
   const auto make_key = [&](std::size_t row) {
     const glm::dvec3 p = (point_at3(points, row) * (0.25 * before) - low) * scale;
     std::array<std::uint32_t, 3> cell;
@@ -203,27 +201,28 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
       --round;
       random /= kGrowth;
     }
-    keys[row] = {static_cast<std::uint64_t>(round) << (3 * bits) | place_on_curve(cell, bits),
-                 static_cast<std::uint32_t>(row)};
+    const std::uint64_t place = place_on_curve(cell, bits);
+    keys[row] = (static_cast<std::uint64_t>(round) << (3 * bits) | place) << row_bits | row;
   };
   blocks.for_each([&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) make_key(row);
   });
-  radix_sort(keys, 3 * bits + std::bit_width(static_cast<unsigned>(rounds - 1)), blocks);
+  const int place_end = row_bits + 3 * bits;
+  radix_sort(keys, row_bits, place_end + std::bit_width(static_cast<unsigned>(rounds - 1)), blocks);
 
   CurveOrder3 result;
   result.vertices = Array<SpaceVertex>(n + 1);
   result.vertices[0] = {glm::dvec3(0), 0, 0};
   blocks.for_each([&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const std::uint32_t row = keys[i].row;
+      const auto row = static_cast<std::uint32_t>(keys[i] & ((std::uint64_t{1} << row_bits) - 1));
       result.vertices[i + 1] = {point_at3(points, row), row, 0};
     }
   });
-  std::size_t i = 0;
   for (int round = 0; round < rounds; ++round) {
-    result.rounds.push_back(static_cast<std::uint32_t>(i));
-    while (i < n && static_cast<int>(keys[i].key >> (3 * bits)) == round) ++i;
+    const std::uint64_t* const begin = std::lower_bound(
+        keys.data(), keys.data() + n, static_cast<std::uint64_t>(round) << place_end);
+    result.rounds.push_back(static_cast<std::uint32_t>(begin - keys.data()));
   }
   result.rounds.push_back(static_cast<std::uint32_t>(n));
   return result;

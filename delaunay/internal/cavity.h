@@ -47,6 +47,7 @@ class Cavity {
         pool_(pool),
         test_four_(test_four_spheres()),
         cavity_(64),
+        slots_(64),
         boundary_(64),
         sides_(64),
         names_(256, kDeadVertex),
@@ -84,7 +85,6 @@ class Cavity {
   struct Simplex {
     std::array<VertexNumber, 4> vertices;
     std::array<CornerNumber, 4> neighbours;
-    SimplexNumber number;
   };
   // A facet of a removed simplex.
   struct Facet {
@@ -117,9 +117,15 @@ class Cavity {
 
   // A ghost in whose plane q lies conflicts as the finite simplex below it does.
   enum class Answer { kNo, kYes, kForeign };
-  Answer ghost_answer(SimplexNumber simplex, const glm::dvec3& q) const;
+  Answer ghost_answer(CornerNumber corner, const glm::dvec3& q) const;
 
-  bool remove(SimplexNumber simplex);
+  // The same, if that is known of the vertices but the one in this corner.
+  bool owns_across(CornerNumber corner) const {
+    if constexpr (std::is_same_v<Region, Everywhere>) return true;
+    const VertexNumber vertex = mesh_.vertex(corner);
+    return vertex == kInfiniteVertex || region_.contains(at(vertex));
+  }
+  void remove(SimplexNumber simplex);
   void restore();
   // False if a simplex outside the region would have to go.
   bool find_cavity(VertexNumber vertex, SimplexNumber place);
@@ -150,7 +156,8 @@ class Cavity {
   Region region_;
   SimplexNumber next_ = 0, last_ = 0, last_simplex_ = 0;
   std::vector<SimplexNumber> free_;
-  std::vector<Simplex> cavity_;  // the first cavity_size_
+  std::vector<Simplex> cavity_;       // the first cavity_size_
+  std::vector<SimplexNumber> slots_;  // of these
   std::size_t cavity_size_ = 0;
   std::vector<Facet> boundary_;  // the first side_count_
   std::vector<Side> sides_;      // the new simplices at them
@@ -203,7 +210,7 @@ Insertion Cavity<Region>::locate(VertexNumber vertex, SimplexNumber& place) {
     bool stuck = false;
     for (; out < 4; ++out) {
       if (out == entered || !beyond(out)) continue;
-      if (owns(simplex_of(mesh_.neighbour(corner_of(simplex, out))))) break;
+      if (owns_across(mesh_.neighbour(corner_of(simplex, out)))) break;
       stuck = true;
     }
     if (out == 4 && stuck) return Insertion::kElsewhere;
@@ -224,54 +231,46 @@ Insertion Cavity<Region>::locate(VertexNumber vertex, SimplexNumber& place) {
   return Insertion::kDone;
 }
 
+// REQUIRES: the corner looks at a simplex of the region.
 template <class Region>
-typename Cavity<Region>::Answer Cavity<Region>::ghost_answer(SimplexNumber simplex,
+typename Cavity<Region>::Answer Cavity<Region>::ghost_answer(CornerNumber corner,
                                                              const glm::dvec3& q) const {
+  const SimplexNumber simplex = simplex_of(corner);
   const int side = tests_.orient3d(at(mesh_.vertex(corner_of(simplex, 0))),
                                    at(mesh_.vertex(corner_of(simplex, 1))),
                                    at(mesh_.vertex(corner_of(simplex, 2))), q);
   if (side != 0) return side > 0 ? Answer::kYes : Answer::kNo;
   // Only the owner may look at what is below.
-  if (!owns(simplex)) return Answer::kForeign;
+  if (!owns_across(corner)) return Answer::kForeign;
   const SimplexNumber below = simplex_of(mesh_.neighbour(corner_of(simplex, 3)));
   if (mesh_.is_dead(below)) return Answer::kYes;
   return conflicts(below, q) ? Answer::kYes : Answer::kNo;
 }
 
-// Takes a simplex out of the mesh, if it may. REQUIRES: room for one more in the cavity.
+// Takes a simplex out of the mesh. REQUIRES: room for one more in the cavity.
 template <class Region>
-bool Cavity<Region>::remove(SimplexNumber simplex) {
-  if (!owns(simplex)) return false;
+void Cavity<Region>::remove(SimplexNumber simplex) {
+  slots_[cavity_size_] = simplex;
   Simplex& removed = cavity_[cavity_size_++];
   for (unsigned k = 0; k < 4; ++k) {
     removed.vertices[k] = mesh_.vertex(corner_of(simplex, k));
     removed.neighbours[k] = mesh_.neighbour(corner_of(simplex, k));
     mesh_.prefetch(simplex_of(removed.neighbours[k]));
   }
-  removed.number = simplex;
   mesh_.set_vertex(corner_of(simplex, 0), kDeadVertex);
-  return true;
 }
 
 template <class Region>
 void Cavity<Region>::restore() {
   for (std::size_t i = 0; i < cavity_size_; ++i) {
-    mesh_.set_vertex(corner_of(cavity_[i].number, 0), cavity_[i].vertices[0]);
+    mesh_.set_vertex(corner_of(slots_[i], 0), cavity_[i].vertices[0]);
   }
 }
 
-// Decides up to four of the waiting facets.
+// Decides up to four of the waiting facets. REQUIRES: at least one, beyond each a live simplex.
 template <class Region>
 bool Cavity<Region>::test_facets(const glm::dvec3& q) {
-  std::size_t alive = 0;
-  for (std::size_t i = 0; i < facet_count_; ++i) {
-    facets_[alive] = facets_[i];
-    beyond_[alive] = beyond_[i];
-    alive += mesh_.is_dead(beyond_[i]) ? 0 : 1;  // since the facet began to wait
-  }
-  facet_count_ = alive;
-  if (alive == 0) return true;
-  const std::size_t count = std::min<std::size_t>(alive, 4);
+  const std::size_t count = std::min<std::size_t>(facet_count_, 4);
   for (std::size_t i = count; i < 4; ++i) beyond_[i] = beyond_[0];
   FourAnswers answers = test_four_(tests_, vertices_, mesh_, beyond_.data(), q);
   for (; answers.undecided != 0; answers.undecided &= answers.undecided - 1) {
@@ -280,23 +279,27 @@ bool Cavity<Region>::test_facets(const glm::dvec3& q) {
     answers.inside = (answers.inside & ~(1U << i)) | (inside ? 1U : 0U) << i;
   }
   // The sides are finished when all are known, so that half of the branches here are none.
-  std::array<SimplexNumber, 4> inside;
+  std::array<CornerNumber, 4> inside;
   std::size_t inside_count = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_inside = (answers.inside >> i & 1U) != 0;
     boundary_[side_count_] = facets_[i];
     side_count_ += is_inside ? 0 : 1;
-    inside[inside_count] = beyond_[i];
+    inside[inside_count] = cavity_[facets_[i].removed].neighbours[facets_[i].corner];
     inside_count += is_inside ? 1 : 0;
   }
   for (std::size_t i = 0; i < inside_count; ++i) {
-    if (!mesh_.is_dead(inside[i]) && !remove(inside[i])) return false;
+    if (mesh_.is_dead(simplex_of(inside[i]))) continue;  // two facets of the four lead there
+    if (!owns_across(inside[i])) return false;
+    remove(simplex_of(inside[i]));
   }
-  facet_count_ -= count;
-  for (std::size_t i = 0; i < facet_count_; ++i) {
-    facets_[i] = facets_[i + count];
-    beyond_[i] = beyond_[i + count];
+  std::size_t left = 0;
+  for (std::size_t i = count; i < facet_count_; ++i) {
+    facets_[left] = facets_[i];
+    beyond_[left] = beyond_[i];
+    left += mesh_.is_dead(beyond_[i]) ? 0 : 1;  // since just now
   }
+  facet_count_ = left;
   return true;
 }
 
@@ -311,7 +314,10 @@ bool Cavity<Region>::find_cavity(VertexNumber vertex, SimplexNumber place) {
   remove(place);
   std::size_t next = 0;
   while (true) {
-    if (cavity_size_ + kRoom > cavity_.size()) cavity_.resize(2 * cavity_.size());
+    if (cavity_size_ + kRoom > cavity_.size()) {
+      cavity_.resize(2 * cavity_.size());
+      slots_.resize(cavity_.size());
+    }
     if (side_count_ + kRoom > boundary_.size()) boundary_.resize(2 * boundary_.size());
     if (facet_count_ >= 4 || next == cavity_size_) {
       if (facet_count_ == 0) return true;
@@ -320,7 +326,8 @@ bool Cavity<Region>::find_cavity(VertexNumber vertex, SimplexNumber place) {
     }
     for (unsigned k = 0; k < 4; ++k) {
       const Facet facet{static_cast<std::uint32_t>(next), k};
-      const SimplexNumber other = simplex_of(cavity_[next].neighbours[k]);
+      const CornerNumber corner = cavity_[next].neighbours[k];
+      const SimplexNumber other = simplex_of(corner);
       const bool dead = mesh_.is_dead(other);
       if (mesh_.vertex(corner_of(other, 3)) != kInfiniteVertex) {
         facets_[facet_count_] = facet;
@@ -329,12 +336,13 @@ bool Cavity<Region>::find_cavity(VertexNumber vertex, SimplexNumber place) {
         continue;
       }
       if (dead) continue;
-      const Answer answer = ghost_answer(other, q);
+      const Answer answer = ghost_answer(corner, q);
       if (answer == Answer::kNo) {
         boundary_[side_count_++] = facet;
-      } else if (answer == Answer::kForeign || !remove(other)) {
-        return false;
+        continue;
       }
+      if (answer == Answer::kForeign || !owns_across(corner)) return false;
+      remove(other);
     }
     ++next;
   }
@@ -356,7 +364,7 @@ bool Cavity<Region>::find_slots() {
   if (names_.size() < 3 * needed + 2) names_.resize(6 * needed);
   for (std::size_t i = 0; i < needed; ++i) {
     if (i < own) {
-      sides_[i].number = cavity_[i].number;
+      sides_[i].number = slots_[i];
     } else if (!free_.empty()) {
       sides_[i].number = free_.back();
       free_.pop_back();
@@ -364,7 +372,7 @@ bool Cavity<Region>::find_slots() {
       sides_[i].number = next_++;
     }
   }
-  for (std::size_t i = needed; i < own; ++i) free_.push_back(cavity_[i].number);
+  for (std::size_t i = needed; i < own; ++i) free_.push_back(slots_[i]);
   return true;
 }
 

@@ -7,8 +7,9 @@
 namespace delray::delaunay::internal {
 
 // Points in random rounds along a Hilbert curve, each found by a walk from the one before and
-// connected to the boundary of its cavity. Expected O(n log n) and about 250 bytes a point for
-// points that are spread evenly; as many simplices as there are otherwise.
+// connected to the boundary of its cavity; several threads work in regions of their own
+// (cavity_rounds.h). Expected O(n log n) and about 250 bytes a point for points that are spread
+// evenly; as many simplices as there are otherwise.
 //
 // REQUIRES: resolved options, dim 3. Errors: see triangulate().
 Triangulation insert_by_cavities(PointView<double> points, const Options& options);

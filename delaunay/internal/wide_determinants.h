@@ -23,8 +23,8 @@ struct Int192 {
   Int128 high;
 
   friend Int192 operator+(const Int192& a, const Int192& b) {
-    const std::uint64_t low = a.low + b.low;
-    return {low, a.high + b.high + (low < a.low ? 1 : 0)};
+    const std::uint64_t sum = a.low + b.low;
+    return {sum, a.high + b.high + (sum < a.low ? 1 : 0)};
   }
   Int192 operator-() const { return {~low + 1, ~high + (low == 0 ? 1 : 0)}; }
   int sign() const { return high < 0 ? -1 : (high != 0 || low != 0) ? 1 : 0; }
