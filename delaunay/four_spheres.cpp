@@ -80,8 +80,9 @@ HWY_INLINE unsigned bits_of(const Mask& mask) {
   return bytes[0] & ((1U << kLanes) - 1);
 }
 
-FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* vertices, const Mesh<3>& mesh,
-                       const SimplexNumber* simplices, const glm::dvec3& point) {
+HWY_INLINE FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* vertices,
+                                  const Mesh<3>& mesh, const SimplexNumber* simplices,
+                                  const glm::dvec3& point) {
   const Doubles tag;
   const Points q = {hn::Set(tag, point.x), hn::Set(tag, point.y), hn::Set(tag, point.z)};
   const Points a = relative(load_corners(vertices, mesh, simplices, 0), q);
@@ -99,8 +100,7 @@ FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* vertices, co
   const V error = hn::Set(tag, bounds.insphere_error);
   auto inside = hn::Gt(sum, error);
   const auto small = hn::Not(hn::Gt(hn::Abs(sum), error));  // so that NaN is undecided
-  unsigned undecided = bits_of(small);
-  if (undecided == 0) return {bits_of(inside), 0};
+  if (hn::AllFalse(tag, small)) return {bits_of(inside), 0};
   if (bounds.ties_are_exact) {
     // cospherical_inside() for all lanes: replacing a corner by q gives one of the determinants
     // above, and coordinates relative to q make one number that is ordered as they are.
@@ -119,7 +119,7 @@ FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* vertices, co
     inside = hn::Or(inside, hn::And(small, hn::Gt(turn, zero)));
     return {bits_of(inside), 0};
   }
-  if (!bounds.has_second_stage) return {bits_of(inside), undecided};
+  if (!bounds.has_second_stage) return {bits_of(inside), bits_of(small)};
   const V x = largest_of(a.x, b.x, c.x, d.x), y = largest_of(a.y, b.y, c.y, d.y);
   const V z = largest_of(a.z, b.z, c.z, d.z);
   const V largest = hn::Max(hn::Max(x, y), hn::Max(z, hn::Set(tag, 1.0)));
@@ -128,7 +128,10 @@ FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* vertices, co
   const V underflow = hn::Mul(hn::Mul(largest, largest), largest);
   const V tight = hn::Add(hn::Mul(hn::Set(tag, SphereBounds::kInsphereError), size),
                           hn::Mul(hn::Set(tag, kUnderflow), underflow));
-  return {bits_of(hn::Gt(sum, tight)), bits_of(hn::Not(hn::Gt(hn::Abs(sum), tight)))};
+  inside = hn::Gt(sum, tight);
+  const auto too_small = hn::Not(hn::Gt(hn::Abs(sum), tight));
+  if (hn::AllFalse(tag, too_small)) return {bits_of(inside), 0};
+  return {bits_of(inside), bits_of(too_small)};
 }
 
 FourAnswers test_four(const SphereTests& tests, const SpaceVertex* vertices, const Mesh<3>& mesh,
