@@ -41,10 +41,10 @@ void require_plain(const TriangulateOptions& options) {
   if (how.method != defaults.method || how.location != defaults.location ||
       how.split != defaults.split || how.order != defaults.order ||
       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed) {
+      how.seed != defaults.seed || options.threads != 0) {
     throw UsageError(
-        "--max-error leaves no choice of method, location, split, order, deadlocks, queue and "
-        "seed");
+        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed "
+        "and threads");
   }
 }
 
@@ -125,7 +125,10 @@ int run(Session& session, TriangulateOptions options) {
   }
   delaunay::Options& how = options.how;
   how.threads = options.threads > 0 ? options.threads : parallel::arena_threads();
-  if (options.max_error) require_plain(options);
+  if (options.max_error) {
+    require_plain(options);
+    how.threads = 1;
+  }
   try {
     how = resolve(how);
   } catch (const std::invalid_argument& error) {
