@@ -60,6 +60,8 @@ class NodeLocks {
         if (kCounted) ++counts_.waits;
         if (!(priorities_ ? wait_by_priority(node) : wait_unless_deadlock(node))) {
           if (kCounted) ++counts_.deadlocks;
+          refused_ = node;
+          refuser_ = owner;
           return Grant::kRefused;
         }
       } else if (kCounted) {
@@ -99,8 +101,13 @@ class NodeLocks {
     for (const NodeNumber node : created_) dag_.abandon(node);
     unlock();
     if (priorities_) raise_priority();
-    // Whoever waits for what was just unlocked should get it first.
-    std::this_thread::yield();
+    // Trying again at once would only be in the way of the thread that waits for what was just
+    // unlocked. Waiting here closes no circle, since there is nothing locked.
+    while (refused_ != kNoNode && dag_.owner(refused_) == refuser_) {
+      std::this_thread::yield();
+      team_.check();
+    }
+    refused_ = kNoNode;
   }
 
   const Synchronization& counts() const { return counts_; }
@@ -158,6 +165,8 @@ class NodeLocks {
   std::uint32_t thread_;
   bool priorities_;
   NodeCache<D> cache_;
+  NodeNumber refused_ = kNoNode;  // what refuser_ (1 + its number) would not give
+  std::uint32_t refuser_ = 0;
   std::vector<NodeNumber> locked_, created_;
   std::vector<Link> journal_;
   std::vector<Retired> retired_;
