@@ -166,6 +166,7 @@ std::array<Tangent, 2> knit(HullMesh hulls, const SeamFilter& filter, HullVertex
     const SeamViewPair seen_behind(
         a, b, PointPair(points[front_left.behind], points[front_right.behind]));
     const Pair inside = seen.dot * seen_behind.cross - seen.cross * seen_behind.dot;
+    // Where it overflows it is not a number, and nothing is sure.
     const unsigned surely_outside = bits_of(inside < -bounds.circle);
     const unsigned go = use & (front_left.is_backed | front_right.is_backed) & ~surely_outside;
     if (go != 0) {
