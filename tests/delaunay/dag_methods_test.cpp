@@ -1,7 +1,9 @@
-// The methods whose threads share a history, in every legal combination.
+// Every method in the plane, in every legal combination.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -12,23 +14,25 @@
 namespace delray::delaunay {
 namespace {
 
+// Everything that goes together in the plane.
 std::vector<Options> combinations() {
-  const auto or_none = [](const std::vector<std::string_view>& names) {
-    return names.empty() ? std::vector<std::string_view>{"none"} : names;
-  };
+  using Names = std::vector<std::string_view>;
+  const auto or_none = [](const Names& names) { return names.empty() ? Names{"none"} : names; };
   std::vector<Options> result;
   for (const Method& method : methods()) {
-    if (std::ranges::find(method.locations, "dag") == method.locations.end()) continue;
+    if (std::ranges::find(method.dims, 2) == method.dims.end()) continue;
     Options options;
     options.method = method.name;
-    options.location = "dag";
-    for (const auto split : or_none(method.splits)) {
-      options.split = split;
-      for (const auto order : or_none(orders_for(method, "dag"))) {
-        options.order = order;
-        for (const auto strategy : or_none(method.deadlocks)) {
-          options.deadlocks = strategy;
-          result.push_back(options);
+    for (const auto location : or_none(locations_for(method, 2))) {
+      options.location = location;
+      for (const auto split : or_none(method.splits)) {
+        options.split = split;
+        for (const auto order : or_none(orders_for(method, location))) {
+          options.order = order;
+          for (const auto strategy : or_none(method.deadlocks)) {
+            options.deadlocks = strategy;
+            result.push_back(options);
+          }
         }
       }
     }
@@ -37,35 +41,67 @@ std::vector<Options> combinations() {
 }
 
 std::string name_of(const Options& options) {
-  return options.method + ", " + options.split + ", " + options.order + ", " + options.deadlocks +
-         ", " + std::to_string(options.threads) + " threads";
+  return options.method + ", " + options.location + ", " + options.split + ", " + options.order +
+         ", " + options.deadlocks + ", " + std::to_string(options.threads) + " threads";
 }
 
-TEST(DagMethods, EveryCombinationGivesTheSameSimplices) {
-  std::uint64_t seed = 0;
+void expect_same(const Points& points, const Triangulation& expected, const Options& options,
+                 const std::string& points_name) {
+  const Triangulation actual = triangulate(view(points), options);
+  const std::string name = name_of(options) + ", " + points_name + ", n " +
+                           std::to_string(points.size()) + ", seed " + std::to_string(options.seed);
+  ASSERT_EQ(hash(actual), hash(expected)) << name;
+  ASSERT_EQ(actual.distinct, expected.distinct) << name;
+  ASSERT_EQ(actual.hull_facets, expected.hull_facets) << name;
+}
+
+constexpr std::array<int, 4> kThreads = {1, 2, 3, 8};
+
+void expect_same_of_all(std::size_t n, std::uint64_t seed) {
   for (const HardPoints& kind : hard_points()) {
-    for (const std::size_t n : {60}) {
-      const Points points = kind.make(n, ++seed);
-      const Triangulation expected = triangulate(view(points));
-      for (Options options : combinations()) {
-        for (const int threads : {1, 2, 3, 8}) {
-          options.threads = threads;
-          options.seed = seed;
-          const Triangulation actual = triangulate(view(points), options);
-          ASSERT_EQ(hash(actual), hash(expected))
-              << name_of(options) << ", " << kind.name << ", n " << n << ", seed " << seed;
-          ASSERT_EQ(actual.distinct, expected.distinct) << name_of(options) << ", " << kind.name;
-          ASSERT_EQ(actual.hull_facets, expected.hull_facets)
-              << name_of(options) << ", " << kind.name;
-        }
+    const Points points = kind.make(n, ++seed);
+    const Triangulation expected = triangulate(view(points));
+    for (Options options : combinations()) {
+      options.seed = seed;
+      for (const int threads : kThreads) {
+        options.threads = threads;
+        ASSERT_NO_FATAL_FAILURE(expect_same(points, expected, options, kind.name));
       }
     }
+  }
+}
+
+TEST(DagMethods, EveryCombinationGivesTheSameSimplices) { expect_same_of_all(50, 0); }
+
+// Every combination meets every kind and every number of threads, if not all at once.
+TEST(DagMethods, EveryCombinationGivesTheSameSimplicesOfManyPoints) {
+  std::uint64_t seed = 1000;
+  std::size_t turn = 0;
+  for (const HardPoints& kind : hard_points()) {
+    const Points points = kind.make(500, ++seed);
+    const Triangulation expected = triangulate(view(points));
+    ++turn;
+    for (Options options : combinations()) {
+      options.seed = seed;
+      options.threads = kThreads[turn++ % kThreads.size()];
+      ASSERT_NO_FATAL_FAILURE(expect_same(points, expected, options, kind.name));
+    }
+  }
+}
+
+TEST(DagMethods, EveryCombinationGivesTheSameSimplicesInFull) {
+  if (std::getenv("DELRAY_FULL_TESTS") == nullptr) {
+    GTEST_SKIP() << "set DELRAY_FULL_TESTS for all combinations on up to 2000 points";
+  }
+  for (const std::size_t n : {4, 20, 150, 500, 2000}) {
+    ASSERT_NO_FATAL_FAILURE(expect_same_of_all(n, 2000 + n));
   }
 }
 
 TEST(DagMethods, CountNodesAndFragmentsWhenAsked) {
   const Points points = hard_points().front().make(2000, 3);
   for (Options options : combinations()) {
+    if (options.location != "dag") continue;
     options.threads = 2;
     Statistics statistics;
     options.statistics = &statistics;
