@@ -104,7 +104,8 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
         {"repaired", sync.repaired},
         {"rebuilds", sync.rebuilds},
         {"fragments", sync.fragments},
-        {"dag_nodes", phases.dag_nodes}}},
+        {"dag_nodes", phases.dag_nodes},
+        {"dag_node_bytes", phases.dag_node_bytes}}},
   };
 }
 

@@ -21,6 +21,7 @@ constexpr std::size_t kPointsPerRegion = 500;
 // Of the points of a pass that must have been inserted for another pass to be tried.
 constexpr double kWorthwhile = 0.25;
 constexpr int kPasses = 3;
+constexpr std::size_t kMaximumParts = std::size_t{1} << Box3Region::kMaximumCuts;
 
 using Kernel = CavityInserter<Box3Region>;
 
@@ -52,7 +53,8 @@ class Together {
       if (std::ranges::find(input_.start, vertex) == input_.start.end()) waiting.push_back(vertex);
     }
     for (int pass = 0; pass < kPasses; ++pass) {
-      const std::size_t parts = std::min(threads_, waiting.size() / kPointsPerRegion);
+      const std::size_t parts =
+          std::min({threads_, waiting.size() / kPointsPerRegion, kMaximumParts});
       if (parts < 2) break;
       const std::size_t before = waiting.size();
       insert_pass(waiting, parts, pass);

@@ -54,7 +54,7 @@ void in_parts(std::size_t n, std::size_t threads, F&& f) {
 
 template <int D>
 DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t parts)
-    : options(wanted), dag_(D == 2 ? kNodesPerPoint * input.size() : 0) {
+    : options(wanted), dag_(kNodesPerPoint * input.size()) {
   Stopwatch watch;
   const auto threads = static_cast<std::size_t>(options.threads);
   const std::vector<Point> points = positions<D>(input);
@@ -165,6 +165,7 @@ Triangulation DagRun<D>::finish() {
       for (NodeNumber node = 0; node < dag_.size(); ++node) {
         options.statistics->dag_nodes += dag_.child(node, 0) != kAbandoned ? 1 : 0;
       }
+      options.statistics->dag_node_bytes = Dag<D>::kBytesPerNode;
       options.statistics->synchronization.fragments = count_fragments(dag_);
     }
   }

@@ -28,12 +28,13 @@ struct Synchronization {
 
 // Seconds of the phases, summed over threads; a phase that a method does not have stays 0.
 struct Statistics {
-  double order = 0;             // sorting the points
-  double locate = 0;            // finding the simplex that a point falls into
-  double subdivide = 0;         // making simplices
-  double legalize = 0;          // flips
-  double extract = 0;           // from the mesh to the result
-  std::uint64_t dag_nodes = 0;  // simplices that ever were, if the method keeps them
+  double order = 0;                  // sorting the points
+  double locate = 0;                 // finding the simplex that a point falls into
+  double subdivide = 0;              // making simplices
+  double legalize = 0;               // flips
+  double extract = 0;                // from the mesh to the result
+  std::uint64_t dag_nodes = 0;       // simplices that ever were, if the method keeps them
+  std::uint64_t dag_node_bytes = 0;  // of each of them
   Synchronization synchronization;
 };
 

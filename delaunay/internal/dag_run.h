@@ -64,8 +64,9 @@ class DagRun {
   void start_dag();
   Triangulation leaves() const;
 
-  // Three by the subdivision and two by each of three flips on average (Kohout 2004, 6.2: 6 to 10).
-  static constexpr std::size_t kNodesPerPoint = 10;
+  // Three by the subdivision and two by each of three flips on average (Kohout 2004, 6.2: 6 to 10);
+  // in space 54 were counted.
+  static constexpr std::size_t kNodesPerPoint = D == 2 ? 10 : 56;
 
   std::vector<Point> points_;
   std::vector<std::uint32_t> rows_;  // point i was row rows_[i], the lowest of equal ones

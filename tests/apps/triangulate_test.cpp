@@ -29,7 +29,7 @@ TEST(TriangulateCommand, WritesStatisticsWithEveryKey) {
     EXPECT_TRUE(stats["seconds"][key].is_number()) << key;
   }
   for (const char* key : {"lock_calls", "already_locked", "free", "waits", "deadlocks", "rollbacks",
-                          "repaired", "fragments"}) {
+                          "repaired", "fragments", "dag_nodes", "dag_node_bytes"}) {
     EXPECT_EQ(stats["sync"][key], 0) << key;
   }
   EXPECT_GT(stats["memory"]["peak_rss"], 0);
