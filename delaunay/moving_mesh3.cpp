@@ -176,8 +176,7 @@ void MovingMesh<3>::find_star(VertexNumber vertex, SimplexNumber simplex) {
     }
   }
   std::ranges::sort(link_);
-  const auto repeated = std::ranges::unique(link_);
-  link_.erase(repeated.begin(), repeated.end());
+  link_.erase(std::unique(link_.begin(), link_.end()), link_.end());
 }
 
 // Triangulates the neighbours. If they are in one plane, something beside it is needed that tells
