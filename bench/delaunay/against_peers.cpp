@@ -1,28 +1,28 @@
-// Delray's 2D triangulation beside CGAL's, on the same points in the same run:
+// Delray's triangulation beside CGAL's, sequential and in space also parallel, on the same points
+// in the same run:
 //
-//   delaunay_against_peers [--points N] [--turns N] [--threads N,N...] [--method M] [--only KIND]
-//   [--json FILE] [FILE...]
+//   delaunay_against_peers [--dim 2|3] [--points N] [--turns N] [--threads N,N...] [--method M]
+//   [--only KIND | --only none] [--json FILE] [FILE...]
 //
-// Before anything is timed all must give the same simplices. Then CGAL and Delray with each number
-// of threads take turns, and the table has the medians: seconds of CGAL and of Delray, their ratio,
-// the time over that with the first number of threads, the ratio over that of uniform points if
-// those are in the table, and what Delray's memory peaks at beyond the points, in bytes per point.
-// Every FILE of points is a group of rows of its own.
+// Before anything is timed all must give the same simplices. Then they take turns, each with warm
+// memory, and the table has the medians: seconds of CGAL, of parallel CGAL and of Delray, Delray's
+// over those of CGAL with one thread, over those of Delray with the first number of threads, the
+// ratio over that of uniform points if those are in the table, and what Delray's memory peaks at
+// beyond the points, in bytes per point. Every FILE of points is a group of rows of its own.
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "bench/measure.h"
 #include "bench/peers/cgal2.h"
+#include "bench/peers/cgal3.h"
 #include "delaunay/generate.h"
 #include "delaunay/read_points.h"
 #include "delaunay/triangulate.h"
@@ -40,67 +40,41 @@ struct Arguments {
   std::vector<std::string> files;
 };
 
-std::vector<int> numbers(const std::string& list) {
-  std::vector<int> result;
-  std::istringstream words(list);
-  for (std::string word; std::getline(words, word, ',');) result.push_back(std::stoi(word));
-  if (result.empty()) throw std::invalid_argument("--threads needs a number");
-  return result;
-}
+struct Set {
+  std::string kind;
+  std::size_t points;
+};
 
-Arguments parse(int count, char** words) {
-  Arguments arguments;
-  for (int i = 1; i < count; ++i) {
-    const std::string word = words[i];
-    const auto value = [&] {
-      if (++i == count) throw std::invalid_argument(word + " needs a value");
-      return std::string(words[i]);
-    };
-    if (word == "--points") {
-      arguments.points = static_cast<std::size_t>(std::stod(value()));
-    } else if (word == "--turns") {
-      arguments.turns = std::max(1, std::stoi(value()));
-    } else if (word == "--threads") {
-      arguments.threads = numbers(value());
-    } else if (word == "--method") {
-      arguments.options.method = value();
-    } else if (word == "--only") {
-      arguments.only = value();
-    } else if (word == "--json") {
-      arguments.json = value();
-    } else if (word.starts_with("--")) {
-      throw std::invalid_argument("unknown option " + word);
-    } else {
-      arguments.files.push_back(word);
-    }
+// Of all that is compared in one dimension.
+struct Peer {
+  delaunay::Triangulation (*triangulate)(std::span<const glm::dvec3>);
+  double (*seconds)(std::span<const glm::dvec3>);
+  double (*parallel_seconds)(std::span<const glm::dvec3>, int);  // or nullptr
+  std::size_t bytes_per_point;                                   // more than either side takes
+};
+
+constexpr Peer kPeers[] = {{bench::triangulate_with_cgal2, bench::seconds_of_cgal2, nullptr, 256},
+                           {bench::triangulate_with_cgal3, bench::seconds_of_cgal3,
+                            bench::seconds_of_parallel_cgal3, 768}};
+
+// What is compared where nothing else is asked for; uniform points come first. Not points on a
+// line: CGAL takes minutes to insert a million of them. In space a sphere takes every exact
+// triangulator long.
+std::vector<Set> default_sets(int dim, std::size_t n) {
+  if (dim == 2) {
+    return {{"uniform", n}, {"gauss", n},  {"cluster", n},    {"grid", n},      {"arc", n},
+            {"sphere", n},  {"jitter", n}, {"duplicates", n}, {"uniform", 1000}};
   }
-  return arguments;
+  return {{"uniform", n},
+          {"gauss", n},
+          {"cluster", n},
+          {"grid", n},
+          {"grid", std::min<std::size_t>(n, 103'823)},
+          {"sphere", std::min<std::size_t>(n, 100'000)},
+          {"uniform", 1000}};
 }
 
-// Peak of the resident set in bytes since the last call with reset; 0 where Linux's /proc is
-// missing.
-std::size_t peak_memory(bool reset) {
-  if (reset) std::ofstream("/proc/self/clear_refs") << "5";
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
-  }
-  return 0;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double seconds_of(auto&& work) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto result = work();  // kept until the clock has stopped
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// The ratio in the row of uniform points and so many threads; 0 if there is none.
+// The ratio in the first row of uniform points and so many threads; 0 if there is none.
 double uniform_ratio(const nlohmann::json& rows, int threads) {
   for (const nlohmann::json& row : rows) {
     if (row["points"] == "uniform" && row["threads"] == threads) return row["ratio"];
@@ -108,55 +82,76 @@ double uniform_ratio(const nlohmann::json& rows, int threads) {
   return 0;
 }
 
+// A dash for what was not measured.
+void print(const char* format, int width, double value) {
+  if (value > 0) {
+    std::printf(format, value);
+  } else {
+    std::printf("%*s", width, "-");
+  }
+}
+
 // Prints the rows of one set of points and appends them to `rows`; returns whether the simplices
 // were the same.
 bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
              const Arguments& arguments, nlohmann::json& rows) {
+  const Peer& peer = kPeers[arguments.options.dim - 2];
   const std::size_t kinds = arguments.threads.size();
   const auto run = [&](std::size_t kind) {
     delaunay::Options options = arguments.options;
     options.threads = arguments.threads[kind];
     return delaunay::triangulate(delaunay::view(points), options);
   };
-  const delaunay::Hash128 expected = delaunay::hash(bench::triangulate_with_cgal2(points));
+  const delaunay::Hash128 expected = delaunay::hash(peer.triangulate(points));
   std::vector<double> bytes(kinds);
   for (std::size_t kind = 0; kind < kinds; ++kind) {
-    const std::size_t before = peak_memory(true);
+    const std::size_t before = bench::peak_memory(true);
     const delaunay::Triangulation ours = run(kind);
-    bytes[kind] =
-        static_cast<double>(peak_memory(false) - before) / static_cast<double>(points.size());
+    bytes[kind] = static_cast<double>(bench::peak_memory(false) - before) /
+                  static_cast<double>(points.size());
     if (delaunay::hash(ours) == expected) continue;
     std::printf("%-20s the simplices are not CGAL's\n", name.c_str());
     return false;
   }
   std::vector<double> cgal;
-  std::vector<std::vector<double>> ours(kinds);
+  std::vector<std::vector<double>> ours(kinds), parallel(kinds);
+  const bench::KeepMemory kept;
+  const auto warm = [&] { bench::warm_memory(peer.bytes_per_point * points.size()); };
   for (int turn = 0; turn < arguments.turns; ++turn) {
-    cgal.push_back(bench::seconds_of_cgal2(points));
+    warm();
+    cgal.push_back(peer.seconds(points));
     for (std::size_t kind = 0; kind < kinds; ++kind) {
-      ours[kind].push_back(seconds_of([&] { return run(kind); }));
+      const int threads = arguments.threads[kind];
+      if (peer.parallel_seconds != nullptr && threads > 1) {
+        warm();
+        parallel[kind].push_back(peer.parallel_seconds(points, threads));
+      }
+      warm();
+      ours[kind].push_back(bench::seconds_of([&] { return run(kind); }));
     }
   }
   for (std::size_t kind = 0; kind < kinds; ++kind) {
-    const double seconds = median(ours[kind]), ratio = seconds / median(cgal);
-    const double over_first = seconds / median(ours.front());
+    const int threads = arguments.threads[kind];
+    const double seconds = bench::median(ours[kind]), ratio = seconds / bench::median(cgal);
+    const double over_first = seconds / bench::median(ours.front());
+    const double beside = parallel[kind].empty() ? 0 : bench::median(parallel[kind]);
     rows.push_back({{"points", name},
+                    {"dim", arguments.options.dim},
                     {"n", points.size()},
-                    {"threads", arguments.threads[kind]},
-                    {"cgal_seconds", median(cgal)},
+                    {"threads", threads},
+                    {"cgal_seconds", bench::median(cgal)},
                     {"seconds", seconds},
                     {"ratio", ratio},
                     {"over_first_threads", over_first},
                     {"bytes_per_point", bytes[kind]}});
-    std::printf("%-20s %9zu %7d %9.4f %9.4f %8.3f %10.3f", name.c_str(), points.size(),
-                arguments.threads[kind], median(cgal), seconds, ratio, over_first);
-    const double uniform = uniform_ratio(rows, arguments.threads[kind]);
-    if (uniform > 0) {
-      rows.back()["over_uniform"] = ratio / uniform;
-      std::printf(" %12.3f", ratio / uniform);
-    } else {
-      std::printf(" %12s", "-");
-    }
+    nlohmann::json& row = rows.back();
+    if (beside > 0) row["parallel_cgal_seconds"] = beside;
+    const double uniform = uniform_ratio(rows, threads);
+    if (uniform > 0) row["over_uniform"] = ratio / uniform;
+    std::printf("%-20s %9zu %7d %9.4f ", name.c_str(), points.size(), threads, bench::median(cgal));
+    print("%9.4f", 9, beside);
+    std::printf(" %9.4f %8.3f %10.3f ", seconds, ratio, over_first);
+    print("%12.3f", 12, uniform > 0 ? ratio / uniform : 0);
     std::printf(" %11.1f\n", bytes[kind]);
   }
   std::fflush(stdout);
@@ -164,20 +159,17 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
 }
 
 bool compare_all(const Arguments& arguments) {
-  // Not points on a line: CGAL takes minutes to insert a million of them.
-  constexpr std::array<std::string_view, 8> kinds = {"uniform", "gauss",  "cluster", "grid",
-                                                     "arc",     "sphere", "jitter",  "duplicates"};
-  std::printf("%-20s %9s %7s %9s %9s %8s %10s %12s %11s\n", "points", "n", "threads", "CGAL s",
-              "delray s", "ratio", "over first", "over uniform", "bytes/point");
+  std::printf("%-20s %9s %7s %9s %9s %9s %8s %10s %12s %11s\n", "points", "n", "threads", "CGAL s",
+              "CGAL par.", "delray s", "ratio", "over first", "over uniform", "bytes/point");
+  std::vector<Set> sets = default_sets(arguments.options.dim, arguments.points);
+  if (!arguments.only.empty()) sets = {{arguments.only, arguments.points}};
+  if (arguments.only == "none") sets.clear();
   bool same = true;
   nlohmann::json rows = nlohmann::json::array();
-  for (const auto& generator : delaunay::point_generators()) {
-    if (arguments.only.empty() ? std::ranges::find(kinds, generator.name) == kinds.end()
-                               : generator.name != arguments.only) {
-      continue;
-    }
-    const auto cloud = generator.generate(arguments.points, 2, 1);
-    same &= compare(std::string(generator.name), cloud.positions, arguments, rows);
+  for (const Set& set : sets) {
+    const auto cloud =
+        delaunay::generate_points(set.kind, set.points, arguments.options.dim, /*seed=*/1);
+    same &= compare(set.kind, cloud.positions, arguments, rows);
   }
   for (const std::string& file : arguments.files) {
     const std::string name = file.substr(file.rfind('/') + 1);
@@ -194,8 +186,19 @@ bool compare_all(const Arguments& arguments) {
 }  // namespace
 
 int main(int count, char** words) {
+  Arguments arguments;
+  CLI::App app("Delray's triangulation beside CGAL's");
+  app.add_option("--dim", arguments.options.dim)->check(CLI::IsMember({2, 3}));
+  app.add_option("--points", arguments.points);
+  app.add_option("--turns", arguments.turns)->check(CLI::PositiveNumber);
+  app.add_option("--threads", arguments.threads)->delimiter(',')->check(CLI::PositiveNumber);
+  app.add_option("--method", arguments.options.method);
+  app.add_option("--only", arguments.only);
+  app.add_option("--json", arguments.json);
+  app.add_option("files", arguments.files);
+  CLI11_PARSE(app, count, words);
   try {
-    return compare_all(parse(count, words)) ? EXIT_SUCCESS : EXIT_FAILURE;
+    return compare_all(arguments) ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return EXIT_FAILURE;
