@@ -1,0 +1,190 @@
+// Delray's rasterizer beside Mesa's llvmpipe, same triangles, camera and picture size, lit at the
+// vertices (Gouraud), everything warm:
+//
+//   raster_against_llvmpipe [--width W] [--height H] [--turns N] [--threads N,N...] [SCENE...]
+//
+// SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], or layers:back or layers:front, 32 full-screen
+// layers drawn from back to front or from front to back; without any, those of the README. Both
+// must cover the same pixels, but for a few on edges, before anything is timed. Then llvmpipe with
+// one and with two threads of its own (the faster median counts) and Delray with each number of
+// threads take turns; the table has medians in milliseconds, Delray's over llvmpipe's, and over
+// Delray's with the first number of threads, without and with culling of faces that look away.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/measure.h"
+#include "bench/peers/llvmpipe.h"
+#include "comm/threads.h"
+#include "parallel/arena.h"
+#include "raster/render.h"
+#include "scenes/generate.h"
+#include "scenes/load.h"
+
+namespace {
+
+using namespace delray;
+
+struct Arguments {
+  int width = 1920, height = 1080, turns = 9;
+  std::vector<int> threads = {1, 2};
+  std::vector<std::string> scenes = {"gen:terrain:1000000", "gen:terrain:10000000",
+                                     "gen:field:13000000", "layers:back", "layers:front"};
+};
+
+// Squares across the view, wider than any frame, at distances 1, 2 ... 32 from the eye.
+scenes::Scene layers(bool back_to_front) {
+  constexpr int kLayers = 32;
+  scenes::Scene scene;
+  scene.materials.resize(1);
+  for (int i = 0; i < kLayers; ++i) {
+    const auto z = static_cast<float>(back_to_front ? kLayers - i : 1 + i);
+    const float half = 4 * z;
+    scenes::Mesh mesh;
+    mesh.positions = {{-half, -half, -z}, {half, -half, -z}, {half, half, -z}, {-half, half, -z}};
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.colours.assign(4, glm::vec4(glm::vec3(z / kLayers), 1));
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back({static_cast<std::uint32_t>(i)});
+  }
+  return scene;
+}
+
+scenes::Scene make_scene(const std::string& name, scenes::Camera& camera, float aspect) {
+  if (name.starts_with("layers:")) {
+    camera.eye = {0, 0, 0};
+    camera.at = {0, 0, -1};
+    camera.near = 0.1F;
+    return layers(name == "layers:back");
+  }
+  std::vector<std::string> warnings;
+  scenes::Scene scene =
+      scenes::is_generated(name) ? scenes::generate(name) : scenes::load(name, warnings);
+  camera = !scene.cameras.empty()
+               ? scene.cameras.front()
+               : scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, aspect);
+  return scene;
+}
+
+// One side of the comparison.
+struct Delray {
+  int threads;
+  bool cull;
+  std::vector<double> seconds = {};
+};
+
+class Frames {
+ public:
+  Frames(const scenes::Scene& scene, const scenes::Camera& camera, const Arguments& arguments)
+      : renderer_(scene), camera_(camera) {
+    options_.width = arguments.width;
+    options_.height = arguments.height;
+    options_.lighting = raster::Lighting::gouraud;
+  }
+
+  raster::Result render(int threads, bool cull) {
+    options_.cull_single_sided = cull;
+    raster::Result result;
+    comm::run_threads(1, threads, [&](comm::Communicator& communicator) {
+      result = renderer_.render(communicator, camera_, options_);
+    });
+    return result;
+  }
+
+ private:
+  raster::Renderer renderer_;
+  scenes::Camera camera_;
+  raster::RenderOptions options_;
+};
+
+// How many pixels only one of both covers.
+std::size_t differences(const raster::Picture& picture, const std::vector<std::uint8_t>& covered) {
+  const auto& image = std::get<image::Image8>(picture);
+  std::size_t result = 0;
+  for (std::size_t i = 0; i < covered.size(); ++i) {
+    result += (image.colour.data()[i].a != 0) != (covered[i] != 0);
+  }
+  return result;
+}
+
+bool compare(const std::string& path, const Arguments& arguments) {
+  const std::string name = path.substr(path.rfind('/') + 1);
+  scenes::Camera camera;
+  scenes::Scene scene = make_scene(
+      path, camera, static_cast<float>(arguments.width) / static_cast<float>(arguments.height));
+  complete(scene, camera);
+  // Culling is to be compared too, so no face may need both of its sides.
+  for (scenes::Material& material : scene.materials) material.double_sided = false;
+  const scenes::View view = scenes::make_view(camera, arguments.width, arguments.height);
+
+  std::array<std::unique_ptr<bench::Llvmpipe>, 2> peers;
+  for (int i = 0; i < 2; ++i) peers[i] = std::make_unique<bench::Llvmpipe>(scene, view, i + 1);
+  Frames frames(scene, camera, arguments);
+  peers[0]->render();
+  peers[1]->render();
+  const raster::Result first = frames.render(arguments.threads.back(), false);
+  const std::size_t different = differences(first.picture, peers[0]->coverage());
+  constexpr std::size_t kEdges = 2000;  // one pixel of so many may differ
+  if (different > static_cast<std::size_t>(arguments.width) * arguments.height / kEdges) {
+    std::printf("%-24s %zu pixels are covered by one and not by the other\n", name.c_str(),
+                different);
+    return false;
+  }
+
+  std::vector<Delray> sides;
+  for (const int threads : arguments.threads) sides.push_back({threads, false});
+  for (const int threads : arguments.threads) sides.push_back({threads, true});
+  std::array<std::vector<double>, 2> peer_seconds;
+  for (Delray& side : sides) frames.render(side.threads, side.cull);
+  for (int turn = 0; turn < arguments.turns; ++turn) {
+    for (int i = 0; i < 2; ++i) peer_seconds[i].push_back(peers[i]->render());
+    for (Delray& side : sides) {
+      side.seconds.push_back(
+          bench::seconds_of([&] { return frames.render(side.threads, side.cull); }));
+    }
+  }
+  const double peer = std::min(bench::median(peer_seconds[0]), bench::median(peer_seconds[1]));
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Delray& side = sides[i];
+    const double seconds = bench::median(side.seconds);
+    const Delray& first_threads = sides[i / arguments.threads.size() * arguments.threads.size()];
+    const double over_first = seconds / bench::median(first_threads.seconds);
+    constexpr double kMilli = 1e3;
+    std::printf("%-24s %10zu %7d %5s %10.2f %10.2f %8.3f %10.3f\n", name.c_str(),
+                static_cast<std::size_t>(scenes::triangle_count(scene)), side.threads,
+                side.cull ? "yes" : "no", peer * kMilli, seconds * kMilli, seconds / peer,
+                over_first);
+  }
+  std::fflush(stdout);
+  return true;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  Arguments arguments;
+  CLI::App app("Delray's rasterizer beside llvmpipe");
+  app.add_option("--width", arguments.width)->check(CLI::PositiveNumber);
+  app.add_option("--height", arguments.height)->check(CLI::PositiveNumber);
+  app.add_option("--turns", arguments.turns)->check(CLI::PositiveNumber);
+  app.add_option("--threads", arguments.threads)->delimiter(',')->check(CLI::PositiveNumber);
+  app.add_option("scenes", arguments.scenes);
+  CLI11_PARSE(app, count, words);
+  try {
+    std::printf("%-24s %10s %7s %5s %10s %10s %8s %10s\n", "scene", "triangles", "threads", "cull",
+                "llvmpipe", "delray ms", "ratio", "over first");
+    bool good = true;
+    for (const std::string& scene : arguments.scenes) good &= compare(scene, arguments);
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return EXIT_FAILURE;
+  }
+}
