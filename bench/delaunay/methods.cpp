@@ -17,15 +17,14 @@
 #include <utility>
 #include <vector>
 
+#include "delaunay/combinations.h"
 #include "delaunay/generate.h"
-#include "delaunay/methods.h"
 #include "delaunay/triangulate.h"
 #include "parallel/arena.h"
 
 namespace {
 
 using namespace delray;
-using Names = std::vector<std::string_view>;
 
 constexpr std::size_t kDistributions = 6;  // of the report, which come first in the table
 constexpr std::uint64_t kSeed = 1;
@@ -52,50 +51,21 @@ void measure(benchmark::State& state, const delaunay::Options& options,
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
 }
 
-// All choices that go together, each with a name.
-std::map<std::string, delaunay::Options> combinations(int dim, const delaunay::Method& method) {
-  const auto or_none = [](const Names& names) { return names.empty() ? Names{"none"} : names; };
-  std::map<std::string, delaunay::Options> result;
-  for (const auto location : or_none(locations_for(method, dim))) {
-    for (const auto split : or_none(method.splits)) {
-      for (const auto order : or_none(orders_for(method, location))) {
-        for (const auto deadlocks : or_none(method.deadlocks)) {
-          std::string name = std::to_string(dim) + "D";
-          for (const auto part : {method.name, location, split, order, deadlocks}) {
-            name += "/" + std::string(part);
-          }
-          delaunay::Options options;
-          options.dim = dim;
-          options.method = method.name;
-          options.location = location;
-          options.split = split;
-          options.order = order;
-          options.deadlocks = deadlocks;
-          result.emplace(name, options);
-        }
-      }
-    }
-  }
-  return result;
-}
-
 void register_all(std::size_t n) {
-  for (const delaunay::Method& method : delaunay::methods()) {
-    for (const int dim : method.dims) {
-      for (auto& [name, options] : combinations(dim, method)) {
-        for (const auto& distribution : delaunay::point_generators().first(kDistributions)) {
-          for (const int threads : {1, 2}) {
-            delaunay::Options own = options;
-            own.threads = threads;
-            const std::string full =
-                name + "/" + std::string(distribution.name) + "/" + std::to_string(threads);
-            benchmark::RegisterBenchmark(full.c_str(),
-                                         [own, &distribution, n](benchmark::State& state) {
-                                           measure(state, own, distribution, n);
-                                         })
-                ->Unit(benchmark::kMillisecond)
-                ->UseRealTime();
-          }
+  for (const int dim : {2, 3}) {
+    for (const delaunay::Options& options : delaunay::combinations(dim)) {
+      for (const auto& distribution : delaunay::point_generators().first(kDistributions)) {
+        for (const int threads : {1, 2}) {
+          delaunay::Options own = options;
+          own.threads = threads;
+          const std::string name = std::to_string(dim) + "D/" + delaunay::name_of(options) + "/" +
+                                   std::string(distribution.name) + "/" + std::to_string(threads);
+          benchmark::RegisterBenchmark(name.c_str(),
+                                       [own, &distribution, n](benchmark::State& state) {
+                                         measure(state, own, distribution, n);
+                                       })
+              ->Unit(benchmark::kMillisecond)
+              ->UseRealTime();
         }
       }
     }

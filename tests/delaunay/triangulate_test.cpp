@@ -1,4 +1,5 @@
 #include "delaunay/triangulate.h"
+#include "delaunay/combinations.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "delaunay/methods.h"
 #include "delaunay/verify.h"
 #include "tests/delaunay/brute_force.h"
 #include "tests/delaunay/hard_points.h"
@@ -38,31 +38,6 @@ std::size_t count_distinct(const Points& points) {
   return distinct.size();
 }
 
-// Every method in 2D with every location and order that goes with it; dag_methods_test.cpp has all
-// splits and strategies.
-std::vector<Options> combinations() {
-  std::vector<Options> result;
-  for (const Method& method : methods()) {
-    if (std::ranges::find(method.dims, 2) == method.dims.end()) continue;
-    Options options;
-    options.method = method.name;
-    for (const auto location :
-         method.locations.empty() ? std::vector<std::string_view>{"none"} : method.locations) {
-      options.location = location;
-      const auto orders = orders_for(method, location);
-      for (const auto order : orders.empty() ? std::vector<std::string_view>{"none"} : orders) {
-        options.order = order;
-        result.push_back(options);
-      }
-    }
-  }
-  return result;
-}
-
-std::string name_of(const Options& options) {
-  return options.method + ", " + options.location + ", " + options.order;
-}
-
 TEST(Triangulate, IsTheBruteForceTriangulationOfHardPoints) {
   constexpr std::array<std::size_t, 10> kSizes = {1, 2, 3, 4, 5, 6, 7, 9, 14, 26};
   for (const HardPoints& kind : hard_points()) {
@@ -70,7 +45,7 @@ TEST(Triangulate, IsTheBruteForceTriangulationOfHardPoints) {
       for (std::uint64_t seed = 0; seed < (n < 9 ? 25U : 4U); ++seed) {
         const Points points = kind.make(n, seed);
         const Triangles expected = brute_force<2>(points);
-        for (const Options& options : combinations()) {
+        for (const Options& options : locations_and_orders(2)) {
           const Triangulation actual = triangulate(view(points), options);
           ASSERT_EQ(sorted(actual), expected)
               << name_of(options) << ", " << kind.name << ", n " << n << ", seed " << seed;
@@ -84,7 +59,7 @@ TEST(Triangulate, IsTheBruteForceTriangulationOfHardPoints) {
 TEST(Triangulate, TrianglesTurnLeftAndTheHullHasTheEdgesOfEulersFormula) {
   for (const HardPoints& kind : hard_points()) {
     const Points points = kind.make(200, 7);
-    for (const Options& options : combinations()) {
+    for (const Options& options : locations_and_orders(2)) {
       const Triangulation result = triangulate(view(points), options);
       for (std::size_t i = 0; i < result.size(); ++i) {
         const std::uint32_t* v = &result.vertices[3 * i];
@@ -105,7 +80,7 @@ TEST(Triangulate, TheVerifierFindsLargerSetsCanonical) {
     const Triangulation expected = triangulate(view(points));
     const Verdict verdict = verify_triangles(view(points), expected.vertices);
     EXPECT_TRUE(verdict.canonical) << kind.name << ": " << verdict.reason;
-    for (const Options& options : combinations()) {
+    for (const Options& options : locations_and_orders(2)) {
       EXPECT_EQ(hash(triangulate(view(points), options)), hash(expected))
           << name_of(options) << ", " << kind.name;
     }
@@ -150,7 +125,7 @@ TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
   for (const HardPoints& kind : {hard_points().front(), hard_points().back()}) {
     const Points points = kind.make(8000, 6);
     const Hash128 expected = hash(triangulate(view(points)));
-    for (Options options : combinations()) {
+    for (Options options : locations_and_orders(2)) {
       for (const int threads : {2, 3, 8}) {
         options.threads = threads;
         EXPECT_EQ(hash(triangulate(view(points), options)), expected) << name_of(options);
@@ -161,7 +136,7 @@ TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(Triangulate, NothingGivesNothing) {
   const Points none;
-  for (const Options& options : combinations()) {
+  for (const Options& options : locations_and_orders(2)) {
     const Triangulation result = triangulate(view(none), options);
     EXPECT_EQ(result.size(), 0U);
     EXPECT_EQ(result.distinct, 0U);
@@ -175,7 +150,7 @@ TEST(Triangulate, NamesTheRowThatIsNotFinite) {
     Points points = hard_points().front().make(50, 1);
     points[17].y = bad;
     points[31].x = bad;
-    for (const Options& options : combinations()) {
+    for (const Options& options : locations_and_orders(2)) {
       try {
         triangulate(view(points), options);
         ADD_FAILURE() << name_of(options);
@@ -195,7 +170,7 @@ TEST(Triangulate, ReadsTheFirstTwoCoordinatesOfStridedPoints) {
 
 TEST(Triangulate, CountsPhasesOnlyWhenAsked) {
   const Points points = hard_points().front().make(5000, 2);
-  for (Options options : combinations()) {
+  for (Options options : locations_and_orders(2)) {
     Statistics statistics;
     statistics.locate = -1;
     options.statistics = &statistics;
