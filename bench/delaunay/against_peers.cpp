@@ -1,14 +1,15 @@
-// Delray's triangulation beside CGAL's, sequential and in space also parallel, on the same points
-// in the same run:
+// Delray's triangulation beside CGAL's, sequential and in space also parallel, and beside HXT's
+// where Gmsh is installed, on the same points in the same run:
 //
 //   delaunay_against_peers [--dim 2|3] [--points N] [--turns N] [--threads N,N...] [--method M]
 //   [--only KIND | --only none] [--json FILE] [FILE...]
 //
 // Before anything is timed all must give the same simplices. Then they take turns, each with warm
-// memory, and the table has the medians: seconds of CGAL, of parallel CGAL and of Delray, Delray's
-// over those of CGAL with one thread, over those of Delray with the first number of threads, the
-// ratio over that of uniform points if those are in the table, and what Delray's memory peaks at
-// beyond the points, in bytes per point. Every FILE of points is a group of rows of its own.
+// memory, and the table has the medians: seconds of CGAL, of parallel CGAL, of HXT with as many
+// threads and of Delray, Delray's over those of CGAL with one thread, over those of Delray with the
+// first number of threads, the ratio over that of uniform points if those are in the table, and
+// what Delray's memory peaks at beyond the points, in bytes per point. Every FILE of points is a
+// group of rows of its own.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -23,6 +24,9 @@
 #include "bench/measure.h"
 #include "bench/peers/cgal2.h"
 #include "bench/peers/cgal3.h"
+#ifdef DELRAY_HXT
+#include "bench/peers/hxt.h"
+#endif
 #include "delaunay/generate.h"
 #include "delaunay/read_points.h"
 #include "delaunay/triangulate.h"
@@ -74,6 +78,24 @@ std::vector<Set> default_sets(int dim, std::size_t n) {
           {"uniform", 1000}};
 }
 
+// Whether HXT is there, has the dimension, and makes as many simplices: it breaks ties otherwise.
+bool goes_with_hxt([[maybe_unused]] const std::vector<glm::dvec3>& points, [[maybe_unused]] int dim,
+                   [[maybe_unused]] std::size_t simplices) {
+#ifdef DELRAY_HXT
+  if (dim == 3) return bench::triangulate_with_hxt(points, 1).tetrahedra == simplices;
+#endif
+  return false;
+}
+
+double seconds_of_hxt([[maybe_unused]] const std::vector<glm::dvec3>& points,
+                      [[maybe_unused]] int threads) {
+#ifdef DELRAY_HXT
+  return bench::triangulate_with_hxt(points, threads).seconds;
+#else
+  return 0;
+#endif
+}
+
 // The ratio in the first row of uniform points and so many threads; 0 if there is none.
 double uniform_ratio(const nlohmann::json& rows, int threads) {
   for (const nlohmann::json& row : rows) {
@@ -102,7 +124,9 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
     options.threads = arguments.threads[kind];
     return delaunay::triangulate(delaunay::view(points), options);
   };
-  const delaunay::Hash128 expected = delaunay::hash(peer.triangulate(points));
+  const delaunay::Triangulation reference = peer.triangulate(points);
+  const delaunay::Hash128 expected = delaunay::hash(reference);
+  const bool with_hxt = goes_with_hxt(points, arguments.options.dim, reference.size());
   std::vector<double> bytes(kinds);
   for (std::size_t kind = 0; kind < kinds; ++kind) {
     const std::size_t before = bench::peak_memory(true);
@@ -114,7 +138,7 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
     return false;
   }
   std::vector<double> cgal;
-  std::vector<std::vector<double>> ours(kinds), parallel(kinds);
+  std::vector<std::vector<double>> ours(kinds), parallel(kinds), hxt(kinds);
   const bench::KeepMemory kept;
   const auto warm = [&] { bench::warm_memory(peer.bytes_per_point * points.size()); };
   for (int turn = 0; turn < arguments.turns; ++turn) {
@@ -125,6 +149,10 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
       if (peer.parallel_seconds != nullptr && threads > 1) {
         warm();
         parallel[kind].push_back(peer.parallel_seconds(points, threads));
+      }
+      if (with_hxt) {
+        warm();
+        hxt[kind].push_back(seconds_of_hxt(points, threads));
       }
       warm();
       ours[kind].push_back(bench::seconds_of([&] { return run(kind); }));
@@ -145,11 +173,14 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
                     {"over_first_threads", over_first},
                     {"bytes_per_point", bytes[kind]}});
     nlohmann::json& row = rows.back();
+    const double hxt_seconds = with_hxt ? bench::median(hxt[kind]) : 0;
     if (beside > 0) row["parallel_cgal_seconds"] = beside;
+    if (hxt_seconds > 0) row["hxt_seconds"] = hxt_seconds;
     const double uniform = uniform_ratio(rows, threads);
     if (uniform > 0) row["over_uniform"] = ratio / uniform;
     std::printf("%-20s %9zu %7d %9.4f ", name.c_str(), points.size(), threads, bench::median(cgal));
-    print("%9.4f", 9, beside);
+    print("%9.4f ", 9, beside);
+    print("%9.4f", 9, hxt_seconds);
     std::printf(" %9.4f %8.3f %10.3f ", seconds, ratio, over_first);
     print("%12.3f", 12, uniform > 0 ? ratio / uniform : 0);
     std::printf(" %11.1f\n", bytes[kind]);
@@ -159,8 +190,9 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
 }
 
 bool compare_all(const Arguments& arguments) {
-  std::printf("%-20s %9s %7s %9s %9s %9s %8s %10s %12s %11s\n", "points", "n", "threads", "CGAL s",
-              "CGAL par.", "delray s", "ratio", "over first", "over uniform", "bytes/point");
+  std::printf("%-20s %9s %7s %9s %9s %9s %9s %8s %10s %12s %11s\n", "points", "n", "threads",
+              "CGAL s", "CGAL par.", "HXT s", "delray s", "ratio", "over first", "over uniform",
+              "bytes/point");
   std::vector<Set> sets = default_sets(arguments.options.dim, arguments.points);
   if (!arguments.only.empty()) sets = {{arguments.only, arguments.points}};
   if (arguments.only == "none") sets.clear();
