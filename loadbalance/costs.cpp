@@ -23,19 +23,10 @@ int cell_of(int x, int cells, int pixels) {
   return static_cast<int>(((std::int64_t{x} + 1) * cells - 1) / pixels);
 }
 
-// The cells that a box within the frame overlaps.
-Rect cells_of(const Rect& box, const Costs& costs) {
-  const Rect& frame = costs.frame;
-  return {cell_of(box.x0 - frame.x0, costs.columns, frame.width()),
-          cell_of(box.y0 - frame.y0, costs.rows, frame.height()),
-          cell_of(box.x1 - 1 - frame.x0, costs.columns, frame.width()) + 1,
-          cell_of(box.y1 - 1 - frame.y0, costs.rows, frame.height()) + 1};
-}
-
 void add(Costs& costs, const WeightedBox& box) {
   const Rect visible = geometry::intersection(box.box, costs.frame);
   if (visible.empty()) return;
-  const Rect cells = cells_of(visible, costs);
+  const Rect cells = costs.cells_of(visible);
   const double share = box.cost / static_cast<double>(cells.area());
   const double right = box.cost / cells.height(), down = box.cost / cells.width();
   for (int j = cells.y0; j < cells.y1; ++j) {
@@ -57,6 +48,14 @@ Rect Costs::cell(int i, int j) const {
           frame.y0 + border(j + 1, rows, frame.height())};
 }
 
+Rect Costs::cells_of(const Rect& pixels) const {
+  if (pixels.empty()) return {};
+  return {cell_of(pixels.x0 - frame.x0, columns, frame.width()),
+          cell_of(pixels.y0 - frame.y0, rows, frame.height()),
+          cell_of(pixels.x1 - 1 - frame.x0, columns, frame.width()) + 1,
+          cell_of(pixels.y1 - 1 - frame.y0, rows, frame.height()) + 1};
+}
+
 Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox> boxes) {
   assert(columns >= 1 && rows >= 1);
   Costs costs;
@@ -70,10 +69,18 @@ Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox>
   costs.cross_down.resize(size);
   costs.boxes.assign(boxes.begin(), boxes.end());
   for (const WeightedBox& box : boxes) {
-    assert(std::isfinite(box.cost) && box.cost >= 0);
+    assert(std::isfinite(box.cost) && 0 <= box.setup && box.setup <= box.cost);
     add(costs, box);
   }
   return costs;
+}
+
+int cost_cell_side(Rect frame, int parts) {
+  assert(parts >= 1);
+  constexpr std::int64_t kCellsPerPart = 1000;
+  int side = 16;
+  while (side > 2 && std::int64_t{side} * side * kCellsPerPart * parts > frame.area()) side /= 2;
+  return side;
 }
 
 void sum_over_ranks(Costs& costs, comm::Communicator& communicator) {

@@ -1,6 +1,7 @@
 // What a partition knows of the work: a grid of costs and boxes with weights, never primitives.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,12 @@
 namespace delray::loadbalance {
 
 // A group of primitives (rays, points) and what it costs; the box is in pixels and may reach
-// outside the frame.
+// outside the frame. A tile of the last frame and the seconds that it took is one, too.
 struct WeightedBox {
   geometry::Rect box;
-  double cost = 0;
+  double cost = 0;   // for one rank that does all of it
+  double setup = 0;  // the part of `cost` that each owner pays again who gets some of the group
+  std::uint64_t primitives = 1;
 };
 
 // Costs over a frame, gathered from boxes or measured. Cell (i, j) of the grid covers the pixels
@@ -30,13 +33,19 @@ struct Costs {
   std::vector<WeightedBox> boxes;
 
   geometry::Rect cell(int i, int j) const;  // its pixels
+  // The cells that some pixels overlap; empty without pixels. REQUIRES: `pixels` lies in the frame.
+  geometry::Rect cells_of(const geometry::Rect& pixels) const;
 };
 
 // Each box adds its cost, split evenly, to the cells that it overlaps (Mueller 1995), so that it
 // counts once; boxes outside the frame add nothing. The boxes are kept. A frame with fewer pixels
 // than `columns` or `rows` gets a grid of so many cells, at least one. O(boxes + cells touched).
-// REQUIRES: columns, rows >= 1; costs finite and >= 0.
+// REQUIRES: columns, rows >= 1; costs finite, 0 <= setup <= cost.
 Costs make_costs(geometry::Rect frame, int columns, int rows, std::span<const WeightedBox> boxes);
+
+// A side of square cells, in pixels, that leaves partitions into so many parts fine cuts: about a
+// thousand cells for each part. A power of two from 2 to 16. REQUIRES: parts >= 1.
+int cost_cell_side(geometry::Rect frame, int parts);
 
 // Adds up the costs that the ranks know of and strings their boxes together by rank; every rank
 // gets the same, bit by bit. Collective: two rounds of messages, cells once and boxes once.

@@ -10,6 +10,8 @@
 
 namespace delray::loadbalance {
 
+// What an owner has of the frame need not be a rectangle, nor in one piece: it is all regions with
+// its number.
 struct Region {
   geometry::Rect rect;
   int owner = 0;
@@ -24,7 +26,8 @@ struct Partition {
 struct Partitioner {
   const char* name;
   const char* description;
-  // Owners are 0 .. parts-1. REQUIRES: parts >= 1; frame == costs.frame.
+  // Owners are 0 .. parts-1. Those that look at boxes take the cells for boxes where there are
+  // none. REQUIRES: parts >= 1; frame == costs.frame; every cost is finite and >= 0.
   Partition (*partition)(const Costs& costs, geometry::Rect frame, int parts);
 };
 
@@ -35,5 +38,19 @@ const Partitioner* find_partitioner(std::string_view name);  // nullptr when the
 // The cost of each owner's regions, from the cells: a cell cut by a border counts by area, one
 // without pixels not at all. Size: owners. REQUIRES: partition.frame == costs.frame.
 std::vector<double> loads(const Costs& costs, const Partition& partition, int owners);
+
+// The largest of the loads over their mean, predicted or measured; 1 where all are 0.
+double imbalance(std::span<const double> loads);
+
+// More regions than ranks, which comes out more even than one for each (Pixel-Planes 5: Fuchs et
+// al. 1989): takes the owners of `regions` for the regions to be shared out and gives them, the
+// one with the highest load first, to the rank with the lowest; ties go to the lowest number. The
+// result's owners are 0 .. ranks-1. O(owners (log owners + log ranks) + loads).
+// REQUIRES: ranks >= 1; regions.frame == costs.frame.
+Partition assign_largest_first(const Costs& costs, const Partition& regions, int ranks);
+
+// Cuts into regions_per_rank * ranks regions and assigns those.
+Partition partition_for_ranks(const Partitioner& partitioner, const Costs& costs, int ranks,
+                              int regions_per_rank);
 
 }  // namespace delray::loadbalance

@@ -6,6 +6,7 @@
 #include "comm/collectives.h"
 #include "loadbalance/costs.h"
 #include "loadbalance/partition.h"
+#include "loadbalance/region_index.h"
 #include "parallel/parallel_for.h"
 #include "raster/internal/gather_regions.h"
 #include "raster/internal/processor_seconds.h"
@@ -76,14 +77,11 @@ std::vector<Piece> redistribute(Rank& rank, std::span<const Piece> groups,
                                 std::span<const loadbalance::WeightedBox> boxes,
                                 const loadbalance::Partition& partition, Arrivals& arrivals) {
   std::vector<std::vector<Piece>> leaving(static_cast<std::size_t>(rank.ranks()));
-  std::vector<std::uint8_t> touched(leaving.size());
+  const loadbalance::RegionIndex index(partition);
+  std::vector<int> owners;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (boxes[i].box.empty()) continue;
-    std::fill(touched.begin(), touched.end(), 0);
-    for (const loadbalance::Region& region : partition.regions)
-      if (!geometry::intersection(region.rect, boxes[i].box).empty()) touched[region.owner] = 1;
-    for (std::size_t k = 0; k < touched.size(); ++k)
-      if (touched[k]) leaving[k].push_back(groups[i]);
+    index.owners_of(boxes[i].box, owners);
+    for (const int owner : owners) leaving[owner].push_back(groups[i]);
   }
 
   const bool geometry_travels = rank.options.travel == Travel::geometry;

@@ -23,4 +23,37 @@ Partition mahd(const Costs& costs, geometry::Rect frame, int parts);
 // row and every column of blocks meets all owners in turn. Costs do not matter. O(blocks).
 Partition interlaced(const Costs& costs, geometry::Rect frame, int parts);
 
+// A standard decomposition into `parts` rectangles that is corrected again and again: the region
+// that most primitives overlap is split in half, and the two neighbours with the fewest that form a
+// rectangle become one (Roble 1988). Ends when they would have as many as the region that is split,
+// or after 4 * parts times. The sizes of primitives do not count.
+// O(boxes rows + parts (parts log parts + boxes of the largest region)).
+Partition roble(const Costs& costs, geometry::Rect frame, int parts);
+
+// Median cut (Whelan 1985): the longer side is cut where the numbers of primitives whose centroids
+// lie on either side are as the numbers of parts; cuts lie on pixels. The sizes of primitives do
+// not count. O((boxes + pixels along a side) log parts).
+Partition whelan(const Costs& costs, geometry::Rect frame, int parts);
+
+// A quadtree over the cost grid, each cell with the number of primitives that overlap it, so that
+// large ones count more than once (Whitman 1992). The node with the highest sum is divided until
+// there are ten for each part; they are dealt out, the highest first, to the part that has least.
+// O(boxes + cells + parts log parts).
+Partition whitman(const Costs& costs, geometry::Rect frame, int parts);
+
+// The grid as a graph, its cells weighted with their cost and the edges between neighbours with the
+// cost that crosses them, cut into parts of equal cost such that little crosses (Kurc, Aykanat and
+// Ozguc 1997): halved again and again, see GridBisection. Regions are unions of cells, not
+// rectangles, and may be in several pieces. O(cells log cells log parts).
+Partition graph(const Costs& costs, geometry::Rect frame, int parts);
+
+// Sweep lines (Samanta et al. 1999): as the line goes over a region, the cost on its left grows by
+// that of each box whose left edge it reaches, and the cost on its right falls by that of each box
+// whose right edge it leaves; the cut is where the two cross, each over its number of parts. Of a
+// box, `setup` counts on both sides while the line is in it, the rest by area; with setup == cost
+// these are the curves of the paper. The longer side is cut, the other where that leaves the
+// costlier side clearly less. Cuts lie on pixels.
+// O((boxes, counted in each region that they overlap, + pixels along a side) log parts).
+Partition kd_split(const Costs& costs, geometry::Rect frame, int parts);
+
 }  // namespace delray::loadbalance::internal

@@ -6,6 +6,8 @@
 #include <random>
 #include <set>
 
+#include "tests/loadbalance/boxes.h"
+
 namespace delray::loadbalance {
 namespace {
 
@@ -16,11 +18,15 @@ class Random {
   explicit Random(unsigned seed) : engine_(seed) {}
   int number(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
 
-  // Uniform, concentrated in a few cells, absent, or of sizes that do not fit each other.
+  // Uniform, concentrated in a few cells, absent, of sizes that do not fit each other, or of the
+  // boxes; sometimes with boxes.
   Costs costs() {
     const Rect frame{number(-20, 20), number(-20, 20), number(20, 160), number(20, 120)};
-    Costs costs = make_costs(frame, number(1, 70), number(1, 70), {});
-    const int kind = number(0, 3);
+    const auto boxes = testing::boxes(testing::kSceneries[number(0, 3)], frame,
+                                      number(0, 1) * number(1, 200), engine_());
+    Costs costs = make_costs(frame, number(1, 70), number(1, 70), boxes);
+    const int kind = number(0, 4);
+    if (kind == 4) return costs;
     for (double& cost : costs.cells) {
       const int value = number(0, 99);
       cost = kind == 0   ? 0
@@ -92,8 +98,10 @@ TEST(Partitioners, AreFoundByName) {
   for (const Partitioner& partitioner : partitioners()) {
     EXPECT_EQ(find_partitioner(partitioner.name), &partitioner);
   }
-  EXPECT_NE(find_partitioner("mahd"), nullptr);
-  EXPECT_NE(find_partitioner("interlaced"), nullptr);
+  for (const char* name :
+       {"mahd", "kd-split", "graph", "whitman", "whelan", "roble", "interlaced"}) {
+    EXPECT_NE(find_partitioner(name), nullptr) << name;
+  }
   EXPECT_EQ(find_partitioner("nonsense"), nullptr);
 }
 

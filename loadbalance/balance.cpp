@@ -1,0 +1,43 @@
+#include "loadbalance/balance.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "loadbalance/region_index.h"
+
+namespace delray::loadbalance {
+
+Balance balance(const Partition& partition, std::span<const WeightedBox> boxes, int owners) {
+  assert(owners >= 1);
+  Balance result;
+  result.loads.assign(static_cast<std::size_t>(owners), 0);
+  const RegionIndex index(partition);
+  std::vector<int> seen;
+  double pairs = 0;
+  for (const WeightedBox& box : boxes) {
+    const auto area = geometry::intersection(box.box, partition.frame).area();
+    if (area == 0) continue;
+    const double density = (box.cost - box.setup) / static_cast<double>(area);
+    seen.clear();
+    index.for_each_region(box.box, [&](const Region& region, const geometry::Rect& common) {
+      result.loads[region.owner] += density * static_cast<double>(common.area());
+      seen.push_back(region.owner);
+    });
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    for (const int owner : seen) result.loads[owner] += box.setup;
+    result.alone += box.cost;
+    result.primitives += box.primitives;
+    if (seen.size() > 1) result.shared += box.primitives;
+    pairs += static_cast<double>(seen.size()) * static_cast<double>(box.primitives);
+  }
+  result.imbalance = imbalance(result.loads);
+  if (result.primitives > 0) result.overlap = pairs / static_cast<double>(result.primitives);
+  if (result.alone > 0) {
+    result.over_share =
+        *std::max_element(result.loads.begin(), result.loads.end()) * owners / result.alone;
+  }
+  return result;
+}
+
+}  // namespace delray::loadbalance

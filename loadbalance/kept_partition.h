@@ -1,0 +1,35 @@
+// Regions that stay as they are from frame to frame, so that primitives need not change rank.
+#pragma once
+
+#include <cstdint>
+
+#include "loadbalance/partition.h"
+
+namespace delray::loadbalance {
+
+// Keeps its partition for as long as nobody would have to do more than `factor` times an equal
+// share of the frame's work (as sort-first systems over animations do; Mueller 1995). One per rank:
+// ranks that pass the same costs, as sum_over_ranks leaves them, decide alike.
+class KeptPartition {
+ public:
+  // With a factor of 1 it is cut anew for every frame that is not perfectly balanced.
+  // REQUIRES: ranks, regions_per_rank >= 1; factor >= 1.
+  KeptPartition(const Partitioner& partitioner, int ranks, double factor, int regions_per_rank = 1);
+
+  // The partition for a frame with these costs: the last one, or a new one where the last would not
+  // do or was for another frame. The reference stays valid until the next call. O(loads) when kept.
+  const Partition& next(const Costs& costs);
+
+  std::uint64_t frames() const { return frames_; }
+  std::uint64_t recomputed() const { return recomputed_; }
+
+ private:
+  const Partitioner* partitioner_;
+  int ranks_;
+  double factor_;
+  int regions_per_rank_;
+  Partition partition_;
+  std::uint64_t frames_ = 0, recomputed_ = 0;
+};
+
+}  // namespace delray::loadbalance
