@@ -1,11 +1,10 @@
 #include "delaunay/internal/cavity_insertion.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "delaunay/internal/blocks.h"
 #include "delaunay/internal/cavity_rounds.h"
 #include "delaunay/internal/curve_order3.h"
+#include "delaunay/internal/extract.h"
 #include "delaunay/internal/slot_pool.h"
 #include "delaunay/internal/sphere_tests.h"
 #include "delaunay/internal/stopwatch.h"
@@ -91,55 +91,14 @@ std::size_t first_slots(std::size_t n, int threads) {
   return 7 * n + n / 8 + 64 + several * SlotPool::kChunk;
 }
 
-// Has the system map memory that was not touched yet, by all threads: what fills it with zeros then
-// takes a fraction of the time. REQUIRES: what is in there is undefined.
-void populate([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes,
-              [[maybe_unused]] const Blocks& blocks) {
-#ifdef MADV_POPULATE_WRITE
-  constexpr std::size_t kHugePage = std::size_t{2} << 20;
-  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(memory);
-  const std::uintptr_t first = (begin + kHugePage - 1) / kHugePage * kHugePage;
-  if (begin + bytes < first + kHugePage) return;
-  const std::size_t pages = (begin + bytes - first) / kHugePage;
-  blocks.for_each([&](std::size_t block, std::size_t, std::size_t) {
-    const std::size_t from = pages * block / blocks.count();
-    const std::size_t to = pages * (block + 1) / blocks.count();
-    if (from < to) {
-      madvise(reinterpret_cast<void*>(first + from * kHugePage), (to - from) * kHugePage,
-              MADV_POPULATE_WRITE);
-    }
+// The rows of the vertices, close together for those who look up many.
+Array<std::uint32_t> take_rows(Array<SpaceVertex>&& vertices, int threads) {
+  const Array<SpaceVertex> own = std::move(vertices);
+  Array<std::uint32_t> rows(own.size() - 1);
+  Blocks(rows.size(), threads).for_each([&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) rows[i] = own[i + 1].row;
   });
-#endif
-}
-
-Triangulation extract_tetrahedra(Mesh<3>&& mesh, Array<SpaceVertex>&& vertices, int threads) {
-  Mesh<3> own = std::move(mesh);
-  const Blocks blocks(own.size(), threads);
-  std::vector<Mesh<3>::Packed> packed(blocks.count());
-  blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
-    packed[block] = own.pack_finite(first, last);
-    for (VertexNumber& vertex : packed[block].vertices) vertex = vertices[vertex + 1U].row;
-  });
-  vertices = {};
-  std::vector<std::size_t> begin = {0};
-  Triangulation result;
-  result.dim = 3;
-  for (const auto& part : packed) {
-    begin.push_back(begin.back() + part.vertices.size());
-    result.hull_facets += part.ghosts;
-  }
-  result.vertices.reserve(begin.back());
-  prefer_huge_pages(result.vertices.data(), begin.back() * sizeof(VertexNumber));
-  if (blocks.count() == 1) {
-    result.vertices.assign(packed[0].vertices.begin(), packed[0].vertices.end());
-  } else {
-    populate(result.vertices.data(), begin.back() * sizeof(VertexNumber), blocks);
-    result.vertices.resize(begin.back());
-    blocks.for_each([&](std::size_t block, std::size_t, std::size_t) {
-      std::ranges::copy(packed[block].vertices, result.vertices.data() + begin[block]);
-    });
-  }
-  return result;
+  return rows;
 }
 
 Triangulation run(PointView<double> points, const Options& options) {
@@ -167,8 +126,9 @@ Triangulation run(PointView<double> points, const Options& options) {
   const auto insert = options.threads > 1 ? insert_together : insert_alone;
   const std::uint64_t distinct = insert(input, options, options.statistics);
   watch.lap();
+  const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
   Triangulation result =
-      extract_tetrahedra(std::move(mesh), std::move(order.vertices), options.threads);
+      extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads);
   result.distinct = distinct;
   seconds.extract = watch.lap();
   return result;

@@ -1,42 +1,64 @@
 #include "delaunay/internal/extract.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
-#include <vector>
 
 #include "delaunay/array.h"
-#include "delaunay/internal/blocks.h"
+#include "parallel/parallel_for.h"
 
 namespace delray::delaunay::internal {
 
+namespace {
+
+// Simplices whose memory goes back at once: whole huge pages, which take long to split.
+template <int D>
+constexpr std::size_t kPiece = std::size_t{1} << (D == 2 ? 18 : 16);
+
+}  // namespace
+
+// Piece by piece, so that the mesh goes as the result comes, and in order, so that the result does
+// not depend on the number of threads.
 template <int D>
 Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads) {
+  constexpr std::size_t kCorners = Mesh<D>::kCorners;
   Mesh<D> own = std::move(mesh);
-  const Blocks blocks(own.size(), threads);
-  std::vector<typename Mesh<D>::Packed> packed(blocks.count());
-  blocks.for_each([&](std::size_t block, std::size_t first, std::size_t last) {
-    packed[block] = own.pack_finite(first, last);
-    for (VertexNumber& vertex : packed[block].vertices) vertex = rows[vertex];
-  });
-  std::vector<std::size_t> begin = {0};
-  std::size_t ghosts = 0;
-  for (const auto& part : packed) {
-    begin.push_back(begin.back() + part.vertices.size());
-    ghosts += part.ghosts;
-  }
-
   Triangulation result;
   result.dim = D;
   result.distinct = rows.size();
-  result.vertices.reserve(begin.back());
-  prefer_huge_pages(result.vertices.data(), begin.back() * sizeof(VertexNumber));
-  if (blocks.count() == 1) {
-    result.vertices.assign(packed[0].vertices.begin(), packed[0].vertices.end());
+  result.vertices.reserve(kCorners * own.size());
+  prefer_huge_pages(result.vertices.data(), kCorners * own.size() * sizeof(VertexNumber));
+
+  std::size_t ghosts = 0;
+  std::atomic<std::size_t> next_taken = 0, next_appended = 0;
+  const std::size_t pieces = (own.size() + kPiece<D> - 1) / kPiece<D>;
+  const auto work = [&] {
+    Array<VertexNumber> packed(kCorners * std::min(kPiece<D>, own.size()));
+    for (std::size_t piece; (piece = next_taken++) < pieces;) {
+      const std::size_t first = piece * kPiece<D>, last = std::min(own.size(), first + kPiece<D>);
+      std::size_t count = 0, own_ghosts = 0;
+      for (auto simplex = static_cast<SimplexNumber>(first); simplex < last; ++simplex) {
+        if (own.is_dead(simplex)) continue;
+        if (own.is_ghost(simplex)) {
+          ++own_ghosts;
+          continue;
+        }
+        for (unsigned k = 0; k < kCorners; ++k) packed[count++] = rows[own.vertex(simplex, k)];
+      }
+      own.discard(first, last);
+      // Pieces are taken in order, so whoever has the one before is at work on it.
+      for (std::size_t i; (i = next_appended) != piece;) next_appended.wait(i);
+      result.vertices.insert(result.vertices.end(), packed.data(), packed.data() + count);
+      ghosts += own_ghosts;
+      ++next_appended;
+      next_appended.notify_all();
+    }
+  };
+  const auto workers = std::min(static_cast<std::size_t>(std::max(threads, 1)), pieces);
+  if (workers <= 1) {
+    work();
   } else {
-    result.vertices.resize(begin.back());
-    blocks.for_each([&](std::size_t block, std::size_t, std::size_t) {
-      std::ranges::copy(packed[block].vertices, result.vertices.data() + begin[block]);
-    });
+    parallel::parallel_for(0, workers, 1, [&](std::size_t) { work(); });
   }
   // Of collinear points only ghosts are left, and those bound nothing.
   if (!result.vertices.empty()) result.hull_facets = ghosts;

@@ -93,39 +93,10 @@ class Mesh {
   }
   bool is_dead(SimplexNumber simplex) const { return vertex(corner_of(simplex, 0)) == kDeadVertex; }
 
-  // The vertices of the finite live simplices, D + 1 each, as one flat array in the same memory;
-  // the rest of it is given back. O(simplices).
-  Array<VertexNumber> take_finite() && {
-    const auto simplices = static_cast<SimplexNumber>(size());
-    std::size_t next = 0;
-    for (SimplexNumber t = 0; t < simplices; ++t) {
-      if (is_dead(t) || is_ghost(t)) continue;
-      for (unsigned k = 0; k < kCorners; ++k) numbers_[next++] = vertex(corner_of(t, k));
-    }
-    numbers_.shrink(next);
-    return std::move(numbers_);
-  }
-
-  struct Packed {
-    std::span<VertexNumber> vertices;
-    std::size_t ghosts = 0;
-  };
-  // Packs what take_finite() would give for the simplices [first, last) into the memory of these,
-  // which are lost, gives the rest back, and counts the live ghosts among them. Disjoint ranges may
-  // be packed at the same time.
-  Packed pack_finite(std::size_t first, std::size_t last) {
-    const std::size_t begin = 2 * kCorners * first;
-    std::size_t next = begin, ghosts = 0;
-    for (auto t = static_cast<SimplexNumber>(first); t < last; ++t) {
-      if (is_dead(t)) continue;
-      if (is_ghost(t)) {
-        ++ghosts;
-        continue;
-      }
-      for (unsigned k = 0; k < kCorners; ++k) numbers_[next++] = vertex(corner_of(t, k));
-    }
-    numbers_.discard(next, 2 * kCorners * last);
-    return {{numbers_.data() + begin, next - begin}, ghosts};
+  // Forgets the simplices [first, last), whose memory goes back to the system as far as it came
+  // from there.
+  void discard(std::size_t first, std::size_t last) {
+    numbers_.discard(2 * kCorners * first, 2 * kCorners * last);
   }
 
  private:

@@ -11,7 +11,7 @@ namespace delray::delaunay::internal {
 
 // The finite live simplices, vertex i replaced by rows[i]. Frees the mesh on the way, so that mesh
 // and result are never in memory together as a whole. O(simplices). Several threads are those of
-// the arena that the caller is in.
+// the arena that the caller is in; the result does not depend on them.
 template <int D>
 Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads = 1);
 
