@@ -80,6 +80,8 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
     statistics.triangles_culled += report.triangles.culled;
     statistics.triangles_clipped += report.triangles.clipped;
     statistics.triangles_rasterized += report.triangles.rasterized;
+    statistics.triangles_hidden += report.triangles.hidden;
+    statistics.clusters_hidden += report.triangles.hidden_clusters;
     statistics.triangles_travelled += report.triangles_travelled;
     statistics.fragments += report.fragments;
   }
@@ -111,14 +113,16 @@ struct Renderer::Memory {
   std::shared_ptr<const shading::Shader> shader;
   std::vector<std::uint64_t> first_primitives;
   bool blended;
+  SceneClusters clusters;
   Scratch scratch = {};
 };
 
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
   if (shader == nullptr)
     shader = std::make_shared<const shading::Shader>(shading::make_shader(scene));
-  memory_ = std::make_unique<Memory>(
-      Memory{scene, std::move(shader), scenes::first_primitives(scene), any_blended(scene)});
+  memory_ =
+      std::unique_ptr<Memory>(new Memory{scene, std::move(shader), scenes::first_primitives(scene),
+                                         any_blended(scene), SceneClusters(scene.meshes)});
 }
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -131,7 +135,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
   Rank rank{recording, memory_->scene, memory_->first_primitives, *memory_->shader, screen,
-            options,   progress,       memory_->scratch};
+            options,   progress,       memory_->clusters,         memory_->scratch};
   Result result;
   result.picture = find_strategy(options.strategy)->render(rank);
 

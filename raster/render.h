@@ -34,14 +34,17 @@ struct RenderOptions {
   Lighting lighting = Lighting::phong;
   // Faces away from the viewer of materials that are not double-sided are not drawn.
   bool cull_single_sided = false;
+  // Clusters of triangles behind what was drawn before are skipped whole: the same picture sooner.
+  bool skip_hidden_clusters = true;
   std::string strategy = "sort-last";
   std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
   std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first
   Travel travel = Travel::geometry;    // sort-first
 };
 
-// The first four are seconds of processor time, summed over threads; the others pass on the rank's
-// clock (Communicator::seconds), waiting for other ranks included.
+// The first four are seconds of processor time, summed over threads: clusters culled, transformed
+// and set up; sorted by tile; rasterized; pixels shaded. The others pass on the rank's clock
+// (Communicator::seconds), waiting for other ranks included.
 struct Phases {
   double transform = 0, bin = 0, rasterize = 0, shade = 0;
   double redistribute = 0, compose = 0, gather = 0;
@@ -63,6 +66,9 @@ struct Statistics {
   // Summed over ranks: with sort-first a primitive counts on each rank that gets it.
   std::uint64_t triangles_in = 0, triangles_culled = 0, triangles_clipped = 0,
                 triangles_rasterized = 0;
+  // Of clusters skipped because they were hidden, and how many these were: with several threads
+  // that depends on which of them was faster.
+  std::uint64_t triangles_hidden = 0, clusters_hidden = 0;
   std::uint64_t triangles_travelled = 0;  // sent from one rank to another, once per receiver
   std::uint64_t fragments = 0;            // visible pixels, before ranks are composited
   std::vector<std::string> warnings;

@@ -127,10 +127,10 @@ std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const V
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   const auto shade_pixel = [&](int x, int y) -> bool {
     const int i = (y - tile_y) * kTileSize + (x - tile_x);
-    const std::uint32_t number = tile.number[i];
+    const std::uint32_t number = number_of(tile.key[i]);
     const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                               static_cast<std::size_t>(x);
-    image.depth[pixel] = tile.depth[i];
+    image.depth[pixel] = depth_of(tile.key[i]);
     if (number == kNothing) {
       image.colour[pixel] = {};
       return false;

@@ -8,6 +8,7 @@
 #include "loadbalance/partition.h"
 #include "loadbalance/region_index.h"
 #include "parallel/parallel_for.h"
+#include "raster/internal/extent.h"
 #include "raster/internal/gather_regions.h"
 #include "raster/internal/processor_seconds.h"
 #include "raster/internal/rank.h"
@@ -34,9 +35,9 @@ std::vector<Piece> groups_of(std::span<const Piece> pieces) {
 
 // The box of every group on the screen and what it may cost. Empty boxes cost nothing.
 std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups) {
-  const DrawList list = make_draw_list({groups.begin(), groups.end()});
-  rank.counts.phases.transform +=
-      prepare_draws(rank.screen, list, rank.shader, rank.options.cull_single_sided, rank.scratch);
+  const DrawList list = make_draw_list({groups.begin(), groups.end()}, &rank.clusters);
+  const std::vector<PreparedDraw> draws =
+      prepare_draws(rank.screen, list, rank.shader, rank.options.cull_single_sided);
   // Draws are numbered in the order in which groups first name them.
   std::vector<std::uint32_t> draw_of(groups.size());
   std::uint32_t draw = 0;
@@ -49,8 +50,7 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
   parallel::parallel_blocks(0, groups.size(), 4, [&](std::size_t begin, std::size_t end) {
     seconds.measure([&] {
       for (std::size_t i = begin; i < end; ++i) {
-        const Extent e =
-            extent(rank.screen, rank.scratch.draws[draw_of[i]], groups[i].first, groups[i].count);
+        const Extent e = extent(rank.screen, draws[draw_of[i]], groups[i].first, groups[i].count);
         boxes[i].box = e.box;
         boxes[i].cost =
             e.triangles == 0 ? 0 : kTriangleCost * groups[i].count + static_cast<double>(e.pixels);
@@ -116,7 +116,7 @@ Picture render(Rank& rank) {
   loadbalance::Partition partition;
   const DrawList list = timed(communicator, rank.counts.phases.redistribute, [&] {
     partition = cut_screen(rank, boxes);
-    return make_draw_list(redistribute(rank, groups, boxes, partition, arrivals));
+    return make_draw_list(redistribute(rank, groups, boxes, partition, arrivals), &rank.clusters);
   });
 
   std::vector<geometry::Rect> regions;

@@ -11,7 +11,8 @@ namespace {
 template <class Colour>
 Picture render(Rank& rank) {
   const auto [begin, end] = rank.own_primitives();
-  const DrawList list = make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end));
+  const DrawList list =
+      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
   image::BasicImage<Colour> image(rank.screen.width, rank.screen.height);
   const geometry::Rect frame = rank.screen.frame();
   rank.render(list, {&frame, 1}, image);

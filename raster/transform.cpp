@@ -1,7 +1,6 @@
 #include "raster/internal/transform.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -24,50 +23,59 @@ V transformed(Floats d, const glm::vec4& row, V x, V y, V z) {
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, row.z), z)), hn::Set(d, row.w));
 }
 
-// One vector of vertices; reads and writes 3 * Lanes(Floats) values.
-void transform_vector(const ToView& to_view, const Screen& screen, const float* HWY_RESTRICT in,
-                      float* HWY_RESTRICT out) {
+void transform(const ToView& to_view, const Screen& screen, const glm::vec3* positions,
+               const std::uint32_t* which, std::size_t count, ScreenVertices& vertices) {
   const Floats d;
   const Ints di;
-  V x, y, z;
-  hn::LoadInterleaved3(d, in, x, y, z);
-  const V view_x = transformed(d, to_view.row[0], x, y, z);
-  const V view_y = transformed(d, to_view.row[1], x, y, z);
-  const V view_z = transformed(d, to_view.row[2], x, y, z);
-
+  const std::size_t lanes = hn::Lanes(d);
   const V scale = hn::Set(d, screen.view.scale);
   const V subpixels = hn::Set(d, static_cast<float>(kSubpixels));
-  const V right = hn::Mul(hn::Mul(hn::Div(view_x, view_z), scale), subpixels);
-  const V up = hn::Mul(hn::Mul(hn::Div(view_y, view_z), scale), subpixels);
-  const V screen_x = hn::Add(hn::Set(d, screen.offset_x), right);
-  const V screen_y = hn::Sub(hn::Set(d, screen.offset_y), up);
-  const V depth = hn::Min(hn::Div(hn::Set(d, -screen.view.near), view_z), hn::Set(d, kDeepest));
-
-  // Comparisons with NaN are false: what is not a number is outside.
   const V guard = hn::Set(d, static_cast<float>(kGuardSubpixels));
-  const auto inside =
-      hn::And(hn::And(hn::Ge(view_z, hn::Set(d, screen.view.near)),
-                      hn::Lt(view_z, hn::Set(d, std::numeric_limits<float>::max()))),
-              hn::And(hn::Le(hn::Abs(screen_x), guard), hn::Le(hn::Abs(screen_y), guard)));
-  const auto fixed_x =
-      hn::IfThenElse(hn::RebindMask(di, inside), hn::NearestInt(screen_x), hn::Set(di, kOutside));
-  hn::StoreInterleaved3(hn::BitCast(d, fixed_x), hn::BitCast(d, hn::NearestInt(screen_y)), depth, d,
-                        out);
-}
+  auto low_x = hn::Set(di, INT32_MAX), high_x = hn::Set(di, INT32_MIN);
+  auto low_y = low_x, high_y = high_x;
+  bool all_inside = true;
+  HWY_ALIGN float p[3][16];
+  for (std::size_t i = 0; i < count; i += lanes) {
+    // The last vector repeats its last vertex, which leaves the bounds as they are.
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const glm::vec3& position = positions[which[std::min(i + k, count - 1)]];
+      p[0][k] = position.x;
+      p[1][k] = position.y;
+      p[2][k] = position.z;
+    }
+    const V x = hn::Load(d, p[0]), y = hn::Load(d, p[1]), z = hn::Load(d, p[2]);
+    const V view_x = transformed(d, to_view.row[0], x, y, z);
+    const V view_y = transformed(d, to_view.row[1], x, y, z);
+    const V view_z = transformed(d, to_view.row[2], x, y, z);
 
-void transform(const ToView& to_view, const Screen& screen, const float* in, float* out,
-               std::size_t vertices) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  std::size_t i = 0;
-  for (; i + lanes <= vertices; i += lanes)
-    transform_vector(to_view, screen, in + 3 * i, out + 3 * i);
-  if (i == vertices) return;
-  HWY_ALIGN float rest_in[3 * 16] = {};
-  HWY_ALIGN float rest_out[3 * 16];
-  std::copy(in + 3 * i, in + 3 * vertices, rest_in);
-  transform_vector(to_view, screen, rest_in, rest_out);
-  // As bytes: the integers among them need not be valid floats.
-  std::memcpy(out + 3 * i, rest_out, 3 * (vertices - i) * sizeof(float));
+    const V right = hn::Mul(hn::Mul(hn::Div(view_x, view_z), scale), subpixels);
+    const V up = hn::Mul(hn::Mul(hn::Div(view_y, view_z), scale), subpixels);
+    const V screen_x = hn::Add(hn::Set(d, screen.offset_x), right);
+    const V screen_y = hn::Sub(hn::Set(d, screen.offset_y), up);
+    const V depth = hn::Min(hn::Div(hn::Set(d, -screen.view.near), view_z), hn::Set(d, kDeepest));
+
+    // Comparisons with NaN are false: what is not a number is outside.
+    const auto inside =
+        hn::And(hn::And(hn::Ge(view_z, hn::Set(d, screen.view.near)),
+                        hn::Lt(view_z, hn::Set(d, std::numeric_limits<float>::max()))),
+                hn::And(hn::Le(hn::Abs(screen_x), guard), hn::Le(hn::Abs(screen_y), guard)));
+    all_inside &= hn::AllTrue(d, inside);
+    const auto fixed_x =
+        hn::IfThenElse(hn::RebindMask(di, inside), hn::NearestInt(screen_x), hn::Set(di, kOutside));
+    const auto fixed_y = hn::NearestInt(screen_y);
+    low_x = hn::Min(low_x, fixed_x);
+    high_x = hn::Max(high_x, fixed_x);
+    low_y = hn::Min(low_y, fixed_y);
+    high_y = hn::Max(high_y, fixed_y);
+    hn::Store(fixed_x, di, vertices.x + i);
+    hn::Store(fixed_y, di, vertices.y + i);
+    hn::Store(depth, d, vertices.depth + i);
+  }
+  vertices.any_outside = !all_inside;
+  vertices.low_x = hn::GetLane(hn::MinOfLanes(di, low_x));
+  vertices.high_x = hn::GetLane(hn::MaxOfLanes(di, high_x));
+  vertices.low_y = hn::GetLane(hn::MinOfLanes(di, low_y));
+  vertices.high_y = hn::GetLane(hn::MaxOfLanes(di, high_y));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -91,12 +99,9 @@ ToView to_view(const scenes::View& view, const glm::mat4x3& transform) {
 }
 
 void transform(const ToView& to_view, const Screen& screen, std::span<const glm::vec3> positions,
-               std::span<ScreenVertex> vertices) {
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float) &&
-                sizeof(ScreenVertex) == 3 * sizeof(float));
+               std::span<const std::uint32_t> which, ScreenVertices& vertices) {
   HWY_DYNAMIC_DISPATCH(transform)
-  (to_view, screen, reinterpret_cast<const float*>(positions.data()),
-   reinterpret_cast<float*>(vertices.data()), positions.size());
+  (to_view, screen, positions.data(), which.data(), which.size(), vertices);
 }
 
 }  // namespace delray::raster

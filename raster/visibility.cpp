@@ -1,9 +1,6 @@
 #include "raster/internal/visibility.h"
 
-#include <limits>
-
-#include "image/image.h"
-#include "raster/internal/bins.h"
+#include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/visibility.cpp"
@@ -18,10 +15,36 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = HWY_CAPPED(float, VisibilityTile::kBlockWidth);
 using Ints = hn::RebindToSigned<Floats>;
-using Numbers = hn::RebindToUnsigned<Floats>;
+using Codes = hn::RebindToUnsigned<Floats>;
+#if HWY_TARGET == HWY_SCALAR
+using KeyCodes = Codes;
+#else
+using KeyCodes = hn::Half<Codes>;  // a vector of codes fills two of keys
+#endif
+using Keys = hn::Rebind<std::int64_t, KeyCodes>;
+
+// Refreshing costs as much as drawing a few small triangles.
+constexpr int kRefreshAfter = 64;
 
 // How the three edge functions of a triangle are known inside a rectangle.
 enum class Inside : bool { tested, certain };
+
+// The lesser of the keys in memory and those of `codes` and `number` stays.
+void keep_least_of_half(hn::Vec<KeyCodes> codes, hn::Vec<Keys> number, std::int64_t* keys) {
+  const Keys d;
+  const hn::RebindToUnsigned<Keys> du;
+  const auto depth = hn::BitCast(d, hn::ShiftLeft<32>(hn::PromoteTo(du, codes)));
+  hn::Store(hn::Min(hn::Load(d, keys), hn::Or(depth, number)), d, keys);
+}
+void keep_least(hn::Vec<Codes> codes, hn::Vec<Keys> number, std::int64_t* keys) {
+#if HWY_TARGET == HWY_SCALAR
+  keep_least_of_half(codes, number, keys);
+#else
+  const KeyCodes d;
+  keep_least_of_half(hn::LowerHalf(d, codes), number, keys);
+  keep_least_of_half(hn::UpperHalf(d, codes), number, keys + hn::Lanes(d));
+#endif
+}
 
 // Pixels [i0, i1) x [j0, j1) of the tile; i0 and i1 are multiples of the vector's length.
 template <Inside inside>
@@ -29,13 +52,15 @@ void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, i
           VisibilityTile& tile) {
   const Floats d;
   const Ints di;
-  const Numbers du;
+  const Codes du;
+  const Keys dk;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto slope_x = hn::Set(d, t.slope_x);
   const auto depth = hn::Set(d, t.depth);
   const auto nearest = hn::Set(d, t.nearest);
   const auto farthest = hn::Set(d, t.farthest);
-  const auto numbers = hn::Set(du, number);
+  const auto numbers = hn::Set(dk, std::int64_t{number});
+  const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
   for (int i = i0; i < i1; i += lanes) {
     const auto column = hn::Iota(di, i);
     const auto x = hn::Mul(slope_x, hn::Add(hn::Set(d, t.x), hn::ConvertTo(d, column)));
@@ -43,7 +68,10 @@ void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, i
     const auto edge1 = hn::Mul(hn::Set(di, t.a[1]), column);
     const auto edge2 = hn::Mul(hn::Set(di, t.a[2]), column);
     for (int j = j0; j < j1; ++j) {
-      auto take = hn::Eq(x, x);
+      const auto y = hn::Set(d, t.slope_y * (t.y + static_cast<float>(j)));
+      const auto plane = hn::Add(hn::Add(x, y), depth);
+      const auto z = hn::Min(hn::Max(plane, nearest), farthest);
+      auto code = hn::Not(hn::BitCast(du, z));
       if constexpr (inside == Inside::tested) {
         const auto value0 = hn::Add(edge0, hn::Set(di, t.b[0] * j + t.c[0]));
         const auto value1 = hn::Add(edge1, hn::Set(di, t.b[1] * j + t.c[1]));
@@ -51,36 +79,34 @@ void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, i
         const auto all = hn::Or(hn::Or(value0, value1), value2);
         const auto covered = hn::Gt(all, hn::Set(di, -1));
         if (hn::AllFalse(di, covered)) continue;
-        take = hn::RebindMask(d, covered);
+        code = hn::IfThenElse(hn::RebindMask(du, covered), code, behind_all);
       }
-      const auto y = hn::Set(d, t.slope_y * (t.y + static_cast<float>(j)));
-      const auto plane = hn::Add(hn::Add(x, y), depth);
-      const auto z = hn::Min(hn::Max(plane, nearest), farthest);
-      float* depths = tile.depth + j * kTileSize + i;
-      std::uint32_t* owners = tile.number + j * kTileSize + i;
-      const auto old = hn::Load(d, depths);
-      auto nearer = hn::Lt(z, old);
-      const auto equal = hn::And(take, hn::Eq(z, old));
-      if (HWY_UNLIKELY(!hn::AllFalse(d, equal))) {
-        const auto earlier = hn::Lt(numbers, hn::Load(du, owners));
-        nearer = hn::Or(nearer, hn::And(equal, hn::RebindMask(d, earlier)));
-      }
-      take = hn::And(take, nearer);
-      hn::BlendedStore(z, take, d, depths);
-      hn::BlendedStore(numbers, hn::RebindMask(du, take), du, owners);
+      keep_least(code, numbers, tile.key + j * kTileSize + i);
     }
   }
 }
 
 void refresh(int block, VisibilityTile& tile) {
-  const Floats d;
+  const Keys d;
   const int i0 = block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
   const int j0 = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight;
-  auto farthest = hn::Set(d, -std::numeric_limits<float>::infinity());
+  auto farthest = hn::Zero(d);
   for (int j = j0; j < j0 + VisibilityTile::kBlockHeight; ++j)
     for (int i = i0; i < i0 + VisibilityTile::kBlockWidth; i += static_cast<int>(hn::Lanes(d)))
-      farthest = hn::Max(farthest, hn::Load(d, tile.depth + j * kTileSize + i));
-  tile.farthest[block] = hn::GetLane(hn::MaxOfLanes(d, farthest));
+      farthest = hn::Max(farthest, hn::Load(d, tile.key + j * kTileSize + i));
+  HWY_ALIGN std::int64_t lanes[16];
+  hn::Store(farthest, d, lanes);
+  std::int64_t key = 0;
+  for (std::size_t k = 0; k < hn::Lanes(d); ++k) key = std::max(key, lanes[k]);
+  tile.set_farthest(block, static_cast<std::int32_t>(key >> 32));
+}
+
+void refresh_if_due(VisibilityTile& tile) {
+  if (tile.since_refresh < kRefreshAfter) return;
+  tile.since_refresh = 0;
+  for (int block = 0; block < VisibilityTile::kBlocks; ++block)
+    if (tile.stale >> block & 1) refresh(block, tile);
+  tile.stale = 0;
 }
 
 // A triangle that spans many blocks, one block after the other.
@@ -105,7 +131,7 @@ void draw_blocks(const TileTriangle& t, std::uint32_t number, int bx0, int bx1, 
       // slopes are least is a lower bound of the block's depths, exactly.
       const float nearest =
           depth_at(t, t.slope_x < 0 ? i + kRight : i, t.slope_y < 0 ? j + kDown : j);
-      if (nearest > tile.farthest[block]) continue;
+      if (code_of_depth(nearest) > tile.farthest[block]) continue;
       const int i1 = i + VisibilityTile::kBlockWidth;
       const int j1 = j + VisibilityTile::kBlockHeight;
       if (certain)
@@ -122,13 +148,11 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
                VisibilityTile& tile) {
   constexpr int kBlockWidth = VisibilityTile::kBlockWidth;
   constexpr int kBlockHeight = VisibilityTile::kBlockHeight;
-  // Refreshing costs as much as drawing a few small triangles.
-  constexpr int kRefreshAfter = 64;
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   const int lanes = static_cast<int>(hn::Lanes(Floats()));
   for (const std::uint32_t entry : entries) {
-    if (entry & Bin::kMasked) continue;
+    if (entry & kMasked) continue;
     const ScreenTriangle& triangle = triangles[entry];
     const ScreenVertex* v = triangle.vertex;
     const geometry::Rect pixels =
@@ -139,7 +163,7 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
     const int bx0 = i0 / kBlockWidth, bx1 = (i1 - 1) / kBlockWidth;
     const int by0 = j0 / kBlockHeight, by1 = (j1 - 1) / kBlockHeight;
 
-    const float nearest = std::min({v[0].depth, v[1].depth, v[2].depth});
+    const std::int32_t nearest = code_of_depth(std::min({v[0].depth, v[1].depth, v[2].depth}));
     std::uint32_t touched = 0;
     bool hidden = true;
     for (int by = by0; by <= by1; ++by)
@@ -158,12 +182,23 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
     draw<Inside::tested>(t, triangle.number, i0 / lanes * lanes, (i1 + lanes - 1) / lanes * lanes,
                          j0, j1, tile);
     tile.stale |= touched;
-    if (++tile.since_refresh < kRefreshAfter) continue;
-    tile.since_refresh = 0;
-    for (int block = 0; block < VisibilityTile::kBlocks; ++block)
-      if (tile.stale >> block & 1) refresh(block, tile);
-    tile.stale = 0;
+    ++tile.since_refresh;
+    refresh_if_due(tile);
   }
+}
+
+void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile) {
+  std::uint32_t touched = 0;
+  for (const Fragment& fragment : fragments) {
+    std::int64_t& key = tile.key[fragment.pixel];
+    key = std::min(key, fragment.key);
+    const std::uint32_t block_x = fragment.pixel % kTileSize / VisibilityTile::kBlockWidth;
+    const std::uint32_t block_y = fragment.pixel / kTileSize / VisibilityTile::kBlockHeight;
+    touched |= 1U << (block_y * VisibilityTile::kBlocksX + block_x);
+  }
+  tile.stale |= touched;
+  tile.since_refresh += static_cast<int>(fragments.size());
+  refresh_if_due(tile);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -174,15 +209,15 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raster {
 
 HWY_EXPORT(rasterize);
+HWY_EXPORT(rasterize_fragments);
 
 void VisibilityTile::clear(const geometry::Rect& rect) {
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
   const int i1 = i0 + rect.width(), j1 = j0 + rect.height();
-  std::fill_n(number, kTilePixels, kNothing);
-  std::fill_n(depth, kTilePixels, -std::numeric_limits<float>::infinity());
+  std::fill_n(key, kTilePixels, std::int64_t{0});
   for (int j = j0; j < j1; ++j)
-    std::fill(depth + j * kTileSize + i0, depth + j * kTileSize + i1, image::kEmptyDepth);
-  std::fill_n(farthest, kBlocks, image::kEmptyDepth);
+    std::fill(key + j * kTileSize + i0, key + j * kTileSize + i1, kEmptyKey);
+  for (int block = 0; block < kBlocks; ++block) set_farthest(block, kEmptyCode);
   stale = 0;
   since_refresh = 0;
 }
@@ -193,6 +228,10 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
   HWY_DYNAMIC_DISPATCH(rasterize)(screen, rect, triangles, entries, tile);
 }
 
+void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile) {
+  HWY_DYNAMIC_DISPATCH(rasterize_fragments)(fragments, tile);
+}
+
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
                       std::span<const ScreenTriangle> triangles,
                       std::span<const std::uint32_t> entries,
@@ -201,8 +240,8 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   for (const std::uint32_t entry : entries) {
-    if (!(entry & Bin::kMasked)) continue;
-    const ScreenTriangle& triangle = triangles[entry & Bin::kIndex];
+    if (!(entry & kMasked)) continue;
+    const ScreenTriangle& triangle = triangles[entry & kIndex];
     const ScreenVertex* v = triangle.vertex;
     const geometry::Rect pixels =
         geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
@@ -211,13 +250,9 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
     for (int j = pixels.y0 - tile_y; j < pixels.y1 - tile_y; ++j)
       for (int i = pixels.x0 - tile_x; i < pixels.x1 - tile_x; ++i) {
         if (!covers(t, i, j)) continue;
-        const float depth = depth_at(t, i, j);
-        float& old = tile.depth[j * kTileSize + i];
-        std::uint32_t& owner = tile.number[j * kTileSize + i];
-        if (!(depth < old || (depth == old && triangle.number < owner))) continue;
-        if (!solid(triangle.number, tile_x + i, tile_y + j)) continue;
-        old = depth;
-        owner = triangle.number;
+        const std::int64_t key = key_of(depth_at(t, i, j), triangle.number);
+        std::int64_t& old = tile.key[j * kTileSize + i];
+        if (key < old && solid(triangle.number, tile_x + i, tile_y + j)) old = key;
       }
   }
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "raster/internal/mesh_clusters.h"
 #include "scenes/scene.h"
 
 namespace delray::raster {
@@ -26,18 +28,19 @@ std::vector<Piece> pieces_of(const scenes::Scene& scene,
                              std::span<const std::uint64_t> first_primitives, std::uint64_t begin,
                              std::uint64_t end);
 
-// A mesh at a place, and the vertices that its pieces use.
+// A mesh at a place.
 struct Draw {
   const scenes::Mesh* mesh = nullptr;
   const glm::mat4x3* transform = nullptr;
-  std::uint32_t first_vertex = 0, vertices = 0;
+  MeshClusters* clusters = nullptr;
 };
 
-// At most kClusterTriangles consecutive triangles of a draw.
-inline constexpr std::uint32_t kClusterBits = 10;
-inline constexpr std::uint32_t kClusterTriangles = 1U << kClusterBits;
+// Places [begin, end) of a cluster of a draw's mesh.
 struct Cluster {
-  std::uint32_t draw = 0, first = 0, count = 0;
+  std::uint32_t draw = 0;
+  std::uint32_t first = 0;  // triangle of the mesh at place 0
+  std::uint32_t part = 0;   // number of the cluster in its block
+  std::uint16_t begin = 0, end = 0;
 };
 
 // Draws and clusters in ascending order of primitives. A triangle's number within the list is
@@ -47,17 +50,22 @@ struct DrawList {
   std::vector<Draw> draws;
   std::vector<Cluster> clusters;
   std::uint64_t triangles = 0;
+  std::deque<MeshClusters> own;  // of meshes that came in messages
 
   const Cluster& cluster_of(std::uint32_t number) const { return clusters[number >> kClusterBits]; }
   std::uint32_t triangle_of(std::uint32_t number) const {
     return cluster_of(number).first + (number & (kClusterTriangles - 1));
   }
+  const ClusterBlock& block_of(const Cluster& cluster) const {
+    return *draws[cluster.draw].clusters->blocks[cluster.first >> kBlockBits];
+  }
 };
 
-// Sorts `pieces` by primitive and cuts them into draws and clusters. O(pieces log pieces +
-// triangles of meshes that are drawn in part). Throws std::length_error above 2^32 numbers.
+// Sorts `pieces` by primitive and cuts them into draws and clusters; those of meshes that `known`
+// does not have are made anew. O(pieces log pieces + clusters) once the meshes' clusters are made.
+// Throws std::length_error above 2^32 numbers.
 //
 // REQUIRES: no primitive is in two pieces.
-DrawList make_draw_list(std::vector<Piece> pieces);
+DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known = nullptr);
 
 }  // namespace delray::raster

@@ -19,6 +19,7 @@ struct Rank {
   const Screen& screen;
   const RenderOptions& options;
   parallel::Progress* progress;
+  SceneClusters& clusters;
   Scratch& scratch;
   RegionCounts counts = {};
   std::uint64_t triangles_travelled = 0;

@@ -1,10 +1,11 @@
 // One rank's rendering: pieces of a scene into regions of an image.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "raster/internal/bins.h"
+#include "raster/internal/draw_into_tiles.h"
 #include "raster/internal/shade_tile.h"
 #include "raster/render.h"
 
@@ -12,9 +13,9 @@ namespace delray::raster {
 
 // Memory that one frame leaves to the next.
 struct Scratch {
-  std::vector<ScreenVertex> vertices;
-  std::vector<PreparedDraw> draws;
-  std::vector<Bin> bins;
+  FrameTiles tiles;
+  std::vector<std::unique_ptr<Worker>> workers;
+  LargeTriangles large;
 };
 
 // What rendering took, summed over threads, and what it did.
@@ -24,13 +25,9 @@ struct RegionCounts {
   std::uint64_t fragments = 0, tiles = 0;
 };
 
-// Transforms the vertices of all draws of the list into scratch.vertices and fills scratch.draws.
-// Returns the seconds that its threads took. Parallel.
-double prepare_draws(const Screen& screen, const DrawList& list, const shading::Shader& shader,
-                     bool cull_single_sided, Scratch& scratch);
-
 // Renders the list into those pixels of the image (which has the frame's size) that `regions`
-// cover; depths are -near / distance. The regions are disjoint. Parallel: clusters, then tiles.
+// cover; depths are -near / distance. The regions are disjoint. Parallel: batches of clusters, then
+// tiles.
 template <class Colour>
 RegionCounts render_regions(const Screen& screen, const DrawList& list,
                             const shading::Shader& shader, const RenderOptions& options,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "raster/internal/mesh_clusters.h"
 #include "raster/internal/screen_triangle.h"
 
 namespace delray::raster {
@@ -28,8 +29,25 @@ ToView to_view(const scenes::View& view, const glm::mat4x3& transform);
 // The deepest depth: keeps depth away from 0, whose sign vector units treat differently.
 inline constexpr float kDeepest = -std::numeric_limits<float>::min();
 
-// Transforms, projects and snaps to 1/256 pixel. Same size. Runs in the calling thread.
+// The vertices of a cluster, on the screen.
+struct ScreenVertices {
+  static constexpr std::size_t kPadding = 16;  // vectors may be stored past the end
+
+  alignas(64) std::int32_t x[kClusterVertices + kPadding];
+  alignas(64) std::int32_t y[kClusterVertices + kPadding];
+  alignas(64) float depth[kClusterVertices + kPadding];
+  bool any_outside = false;
+  // The least and largest coordinates, if none is outside.
+  std::int32_t low_x = 0, high_x = 0, low_y = 0, high_y = 0;
+
+  ScreenVertex operator[](std::size_t i) const { return {x[i], y[i], depth[i]}; }
+};
+
+// Transforms, projects and snaps to 1/256 pixel: element i of the result is positions[which[i]].
+// Runs in the calling thread.
+//
+// REQUIRES: 1 <= which.size() <= kClusterVertices.
 void transform(const ToView& to_view, const Screen& screen, std::span<const glm::vec3> positions,
-               std::span<ScreenVertex> vertices);
+               std::span<const std::uint32_t> which, ScreenVertices& vertices);
 
 }  // namespace delray::raster

@@ -1,10 +1,13 @@
 // Which primitive is seen at each pixel of a tile.
 #pragma once
 
+#include <atomic>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <span>
 
+#include "image/image.h"
 #include "raster/internal/tile_triangle.h"
 
 namespace delray::raster {
@@ -12,31 +15,73 @@ namespace delray::raster {
 // No primitive has this number.
 inline constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
 
-// Depth and primitive number of a tile's pixels; pixel (i, j) of the tile is element
-// j * kTileSize + i. The tile is cut into blocks of which the farthest depth is known, at least an
-// upper bound of it, so that what lies behind is rejected early (Greene et al. 1993).
+// A depth as a whole number, in the same order: depths are negative, so that the complement of
+// their bits ascends with them and is positive.
+inline std::int32_t code_of_depth(float depth) {
+  return static_cast<std::int32_t>(~std::bit_cast<std::uint32_t>(depth));
+}
+
+// What is seen at a pixel: depth and number in one word, of which the least wins. kEmptyKey is
+// farther than all triangles, and has the upper half kEmptyCode.
+inline constexpr std::int32_t kEmptyCode = 0x7F800000;
+inline constexpr std::int64_t kEmptyKey = (std::int64_t{kEmptyCode} << 32) | kNothing;
+inline std::int64_t key_of(float depth, std::uint32_t number) {
+  return (std::int64_t{code_of_depth(depth)} << 32) | number;
+}
+inline std::uint32_t number_of(std::int64_t key) { return static_cast<std::uint32_t>(key); }
+inline float depth_of(std::int64_t key) {
+  const auto code = static_cast<std::uint32_t>(key >> 32);
+  return code == static_cast<std::uint32_t>(kEmptyCode) ? image::kEmptyDepth
+                                                        : std::bit_cast<float>(~code);
+}
+
+// A pixel's worth of a small triangle.
+struct Fragment {
+  std::int64_t key;
+  std::uint32_t pixel;  // of the tile
+};
+
+// The keys of a tile's pixels; pixel (i, j) of the tile is element j * kTileSize + i. The tile is
+// cut into blocks of which the code of the farthest depth is known, at least an upper bound of it,
+// so that what lies behind is rejected early (Greene et al. 1993).
+//
+// One thread at a time may change a tile; others may read `farthest` meanwhile, by farthest_of.
 struct VisibilityTile {
   static constexpr int kBlockWidth = 16, kBlockHeight = 8;
   static constexpr int kBlocksX = kTileSize / kBlockWidth;
   static constexpr int kBlocks = kTilePixels / (kBlockWidth * kBlockHeight);
 
-  alignas(64) float depth[kTilePixels];
-  alignas(64) std::uint32_t number[kTilePixels];
-  alignas(64) float farthest[kBlocks];
+  alignas(64) std::int64_t key[kTilePixels];
+  alignas(64) std::int32_t farthest[kBlocks];
   std::uint32_t stale = 0;  // bit k: pixels of block k came nearer since farthest[k] was computed
-  int since_refresh = 0;    // small triangles drawn since
+  int since_refresh = 0;    // small triangles and fragments drawn since
 
   // Nothing is seen in `rect` (pixels of the frame, within the tile). Outside it nothing ever will
   // be: the depths there are before all others, so that they do not spoil the farthest ones.
   void clear(const geometry::Rect& rect);
+
+  std::int32_t farthest_of(int block) const {
+    return std::atomic_ref(const_cast<std::int32_t&>(farthest[block]))
+        .load(std::memory_order_relaxed);
+  }
+  void set_farthest(int block, std::int32_t code) {
+    std::atomic_ref(farthest[block]).store(code, std::memory_order_relaxed);
+  }
 };
 
+// An entry of a tile is the index of a triangle, with kMasked where it has holes in it.
+inline constexpr std::uint32_t kMasked = 0x80000000U;
+inline constexpr std::uint32_t kIndex = 0x7FFFFFFFU;
+
 // Leaves at every pixel of `rect` the least (depth, number) of what was there and of the triangles
-// that `entries` name (Bin::of_tile) and that cover its centre. Masked entries are passed over.
-// The order of triangles makes no difference. `rect` is in pixels of the frame, within the tile.
+// that `entries` name and that cover its centre. Masked entries are passed over. The order of
+// triangles makes no difference. `rect` is in pixels of the frame, within the tile.
 void rasterize(const Screen& screen, const geometry::Rect& rect,
                std::span<const ScreenTriangle> triangles, std::span<const std::uint32_t> entries,
                VisibilityTile& tile);
+
+// The same for fragments.
+void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile);
 
 // The same for masked entries alone: a pixel counts as covered if solid(number, x, y) says so.
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,

@@ -19,9 +19,10 @@ ScreenPolygon clipped(const Screen& screen, const Corners& view) {
     identity.row[k] = glm::vec4(0.0F);
     identity.row[k][k] = 1;
   }
-  std::array<ScreenVertex, 3> vertices;
-  transform(identity, screen, view, vertices);
-  return clip(screen, view, vertices);
+  const std::uint32_t which[] = {0, 1, 2};
+  ScreenVertices vertices;
+  transform(identity, screen, view, which, vertices);
+  return clip(screen, view, {vertices[0], vertices[1], vertices[2]});
 }
 
 float random_coordinate(std::mt19937& random) {

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "raster/internal/bins.h"
+#include "raster/internal/prepared_draw.h"
+#include "raster/internal/set_up.h"
 #include "raster/internal/visibility.h"
 
 namespace delray::raster {
@@ -34,7 +35,7 @@ inline void count(const Screen& screen, const ScreenTriangle& triangle, std::vec
     for (int y = rect.y0; y < rect.y1; ++y)
       for (int x = rect.x0; x < rect.x1; ++x)
         pixels[y * screen.width + x] +=
-            tile.number[(y - rect.y0) * kTileSize + x - rect.x0] != kNothing;
+            number_of(tile.key[(y - rect.y0) * kTileSize + x - rect.x0]) != kNothing;
   }
 }
 
@@ -54,28 +55,50 @@ inline bool covered_by_definition(const ScreenTriangle& t, const Screen& screen,
   return true;
 }
 
-// All parts of all triangles of a mesh, through transform, clipping and setup.
+// A list of all of a mesh at its place, prepared; addresses stay valid as long as it lives.
+struct PreparedMesh {
+  PreparedMesh(const Screen& screen, const scenes::Mesh& mesh)
+      : list(make_draw_list(
+            {{&mesh, &identity, 0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}})) {
+    draw.draw = list.draws.data();
+    draw.to_view = to_view(screen.view, identity);
+  }
+  PreparedMesh(const PreparedMesh&) = delete;
+
+  const glm::mat4x3 identity{1.0F};
+  const DrawList list;
+  PreparedDraw draw;
+};
+
+// All parts of all triangles of a mesh, one after the other, through transform, clipping and setup.
 struct SetUpMesh {
   std::vector<ScreenTriangle> triangles;
   TriangleCounts counts;
 };
-inline SetUpMesh set_up_mesh(const Screen& screen, const scenes::Mesh& mesh) {
-  const glm::mat4x3 identity(1.0F);
-  const DrawList list =
-      make_draw_list({{&mesh, &identity, 0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}});
-  PreparedDraw draw;
-  draw.draw = &list.draws[0];
-  draw.to_view = to_view(screen.view, identity);
-  std::vector<ScreenVertex> vertices(mesh.positions.size());
-  transform(draw.to_view, screen, mesh.positions, vertices);
-  draw.vertices = vertices.data();
-  const std::vector<std::uint8_t> wanted(screen.tiles(), 1);
+inline SetUpMesh set_up_mesh(const Screen& screen, const scenes::Mesh& mesh, int hidden_side = 0) {
+  PreparedMesh prepared(screen, mesh);
+  prepared.draw.hidden_side = hidden_side;
   SetUpMesh result;
-  Bin bin;
-  fill_bin(screen, list, {&draw, 1}, 0, static_cast<std::uint32_t>(list.clusters.size()), wanted,
-           bin);
-  result.triangles = bin.triangles;
-  result.counts = bin.counts;
+  ScreenVertices vertices;
+  for (std::uint32_t k = 0; k < prepared.list.clusters.size(); ++k) {
+    const Cluster& cluster = prepared.list.clusters[k];
+    const ClusterBlock& block = prepared.list.block_of(cluster);
+    const MeshCluster& mesh_cluster = block.clusters[cluster.part];
+    transform(prepared.draw.to_view, screen, mesh.positions, block.vertices_of(mesh_cluster),
+              vertices);
+    for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
+      const Fate fate =
+          set_up(screen, prepared.draw, vertices, corners_at(block, mesh_cluster, place),
+                 cluster.first + place, k << kClusterBits | place,
+                 [&](const ScreenTriangle& triangle, const geometry::Rect&) {
+                   result.triangles.push_back(triangle);
+                 });
+      ++result.counts.in;
+      result.counts.culled += fate == Fate::culled;
+      result.counts.clipped += fate == Fate::clipped;
+      result.counts.rasterized += fate != Fate::culled;
+    }
+  }
   return result;
 }
 

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "tests/raster/coverage.h"
@@ -10,6 +11,21 @@
 
 namespace delray::raster {
 namespace {
+
+// Of all positions, a cluster's worth at a time.
+std::vector<ScreenVertex> transformed(const ToView& map, const Screen& screen,
+                                      std::span<const glm::vec3> positions) {
+  std::vector<ScreenVertex> result;
+  ScreenVertices vertices;
+  for (std::uint32_t first = 0; first < positions.size(); first += kClusterVertices) {
+    std::vector<std::uint32_t> which(
+        std::min<std::size_t>(kClusterVertices, positions.size() - first));
+    std::iota(which.begin(), which.end(), first);
+    transform(map, screen, positions, which, vertices);
+    for (std::size_t i = 0; i < which.size(); ++i) result.push_back(vertices[i]);
+  }
+  return result;
+}
 
 TEST(Transform, SnapsWhereTheCameraSays) {
   scenes::Camera camera;
@@ -22,8 +38,7 @@ TEST(Transform, SnapsWhereTheCameraSays) {
   std::uniform_real_distribution<float> coordinate(-1, 1);
   std::vector<glm::vec3> positions(777);
   for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), coordinate(random)};
-  std::vector<ScreenVertex> vertices(positions.size());
-  transform(to_view(view, place), screen, positions, vertices);
+  const std::vector<ScreenVertex> vertices = transformed(to_view(view, place), screen, positions);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const glm::dvec3 world = glm::dmat4x3(place) * glm::dvec4(positions[i], 1);
     const glm::dvec3 way = world - glm::dvec3(view.eye);
@@ -48,10 +63,7 @@ TEST(Transform, IsTheSameOnEveryTargetForEveryCount) {
     for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), coordinate(random)};
     std::vector<ScreenVertex> first;
     for_each_target([&] {
-      std::vector<ScreenVertex> vertices(n + 1);
-      vertices[n] = {7, 7, 7};
-      transform(map, screen, positions, std::span(vertices).first(n));
-      EXPECT_EQ(vertices[n].x, 7);
+      const std::vector<ScreenVertex> vertices = transformed(map, screen, positions);
       if (first.empty()) first = vertices;
       for (std::size_t i = 0; i < n; ++i) {
         ASSERT_EQ(vertices[i].x, first[i].x);
@@ -59,6 +71,28 @@ TEST(Transform, IsTheSameOnEveryTargetForEveryCount) {
         ASSERT_EQ(vertices[i].y, first[i].y);
         ASSERT_EQ(vertices[i].depth, first[i].depth);
       }
+    });
+  }
+}
+
+TEST(Transform, BoundsWhatIsInside) {
+  const Screen screen = make_screen(plain_view(640, 480));
+  const ToView map = to_view(screen.view, glm::mat4x3(1.0F));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> coordinate(-1, 1);
+  for (const std::size_t n : {1, 5, 16, 250, 256}) {
+    std::vector<glm::vec3> positions(n);
+    for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), -2};
+    std::vector<std::uint32_t> which(n);
+    std::iota(which.rbegin(), which.rend(), 0U);
+    for_each_target([&] {
+      ScreenVertices vertices;
+      transform(map, screen, positions, which, vertices);
+      EXPECT_FALSE(vertices.any_outside);
+      EXPECT_EQ(vertices.low_x, *std::min_element(vertices.x, vertices.x + n));
+      EXPECT_EQ(vertices.high_x, *std::max_element(vertices.x, vertices.x + n));
+      EXPECT_EQ(vertices.low_y, *std::min_element(vertices.y, vertices.y + n));
+      EXPECT_EQ(vertices.high_y, *std::max_element(vertices.y, vertices.y + n));
     });
   }
 }
@@ -78,8 +112,8 @@ TEST(Transform, MarksWhatCannotBeProjected) {
                                  {0, 0, -1},
                                  {0, 0, -0.01F}};
   for_each_target([&] {
-    std::vector<ScreenVertex> vertices(std::size(positions));
-    transform(to_view(screen.view, glm::mat4x3(1.0F)), screen, positions, vertices);
+    const std::vector<ScreenVertex> vertices =
+        transformed(to_view(screen.view, glm::mat4x3(1.0F)), screen, positions);
     for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(vertices[i].x, kOutside) << i;
     EXPECT_EQ(vertices[9].x, 0);
     EXPECT_EQ(vertices[9].y, 0);

@@ -93,8 +93,8 @@ Pixels drawn(const Screen& screen, std::span<const ScreenTriangle> triangles,
     for (int y = rect.y0; y < rect.y1; ++y)
       for (int x = rect.x0; x < rect.x1; ++x) {
         const int i = (y - rect.y0) * kTileSize + x - rect.x0;
-        pixels.depth[y * screen.width + x] = tile.depth[i];
-        pixels.number[y * screen.width + x] = tile.number[i];
+        pixels.depth[y * screen.width + x] = depth_of(tile.key[i]);
+        pixels.number[y * screen.width + x] = number_of(tile.key[i]);
       }
   }
   return pixels;
@@ -152,7 +152,7 @@ TEST(Visibility, LeavesTheLeastDepthAndNumberInAnyOrderOnEveryTarget) {
   });
   // Some masked, some not: the two ways of drawing agree.
   for (std::uint32_t& entry : entries)
-    if (random() % 2 == 0) entry |= Bin::kMasked;
+    if (random() % 2 == 0) entry |= kMasked;
   EXPECT_EQ(drawn(screen, triangles, entries), expected);
 }
 
@@ -164,13 +164,13 @@ TEST(Visibility, MaskedPixelsAreLeftOut) {
                    3};
   VisibilityTile tile;
   tile.clear(screen.frame());
-  const std::uint32_t entry = Bin::kMasked;
+  const std::uint32_t entry = kMasked;
   rasterize_masked(
       screen, screen.frame(), {&t, 1}, {&entry, 1},
       [](std::uint32_t number, int x, int y) { return number == 3 && x > y; }, tile);
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x)
-      ASSERT_EQ(tile.number[y * kTileSize + x], x > y ? 3U : kNothing) << x << ", " << y;
+      ASSERT_EQ(number_of(tile.key[y * kTileSize + x]), x > y ? 3U : kNothing) << x << ", " << y;
 }
 
 TEST(Visibility, DepthIsLinearOnTheScreenAndWithinTheTriangle) {

@@ -1,0 +1,236 @@
+#include "raster/internal/draw_into_tiles.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <thread>
+
+#include "parallel/arena.h"
+#include "parallel/parallel_for.h"
+#include "raster/internal/cull.h"
+#include "raster/internal/processor_seconds.h"
+
+namespace delray::raster {
+namespace {
+
+// Clusters set up before their pixels are drawn: enough that a tile is opened for many pixels at a
+// time, few enough that they stay in the cache.
+constexpr std::size_t kBatchClusters = 32;
+// Batches per thread at least, for balance.
+constexpr std::size_t kLeastBatches = 16;
+
+// Numbers of the list's clusters, those of near draws first.
+std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task) {
+  const DrawList& list = task.list;
+  std::vector<std::uint32_t> order(list.clusters.size());
+  std::iota(order.begin(), order.end(), 0U);
+  if (list.draws.size() < 2) return order;
+
+  std::vector<float> distance(list.draws.size());
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    geometry::Box3 box;
+    for (const auto& block : list.draws[i].clusters->blocks)
+      if (block != nullptr) box.include(block->box);
+    const ClusterBounds bounds = bound(task.screen, task.draws[i], box);
+    distance[i] = bounds.nearest;  // ascends with distance
+  }
+  // By counting: the order of clusters within a draw stays.
+  std::vector<std::uint32_t> draws(list.draws.size()), rank(list.draws.size());
+  std::iota(draws.begin(), draws.end(), 0U);
+  std::stable_sort(draws.begin(), draws.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return distance[a] < distance[b]; });
+  for (std::uint32_t i = 0; i < draws.size(); ++i) rank[draws[i]] = i;
+  std::vector<std::uint32_t> next(list.draws.size() + 1);
+  for (const Cluster& cluster : list.clusters) ++next[rank[cluster.draw] + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::uint32_t k = 0; k < list.clusters.size(); ++k)
+    order[next[rank[list.clusters[k].draw]]++] = k;
+  return order;
+}
+
+void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& tiles,
+                Worker& worker) {
+  const Cluster& cluster = task.list.clusters[k];
+  const PreparedDraw& draw = task.draws[cluster.draw];
+  const ClusterBlock& block = task.list.block_of(cluster);
+  const MeshCluster& mesh_cluster = block.clusters[cluster.part];
+  const std::uint64_t triangles = cluster.end - cluster.begin;
+  TriangleCounts& counts = worker.result.counts;
+
+  const ClusterBounds bounds = bound(task.screen, draw, mesh_cluster.box);
+  const geometry::Rect pixels = geometry::intersection(bounds.pixels, task.wanted);
+  if (bounds.outside || pixels.empty() ||
+      shows_hidden_side_only(task.screen, draw, mesh_cluster, bounds)) {
+    counts.in += triangles;
+    counts.culled += triangles;
+    return;
+  }
+  if (task.skip_hidden_clusters && tiles.is_hidden(pixels, bounds.nearest)) {
+    counts.in += triangles;
+    counts.hidden += triangles;
+    ++counts.hidden_clusters;
+    return;
+  }
+  transform(draw.to_view, task.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
+            worker.vertices);
+  set_up_cluster(task.screen, draw, block, cluster, worker.vertices, k << kClusterBits, task.wanted,
+                 worker.result);
+}
+
+Worker::TouchedTile& touch(std::uint32_t tile, Worker& worker) {
+  std::uint32_t& number = worker.touched_number[tile];
+  if (number == 0) {
+    worker.touched.push_back({tile, 0, 0, 0, 0});
+    number = static_cast<std::uint32_t>(worker.touched.size());
+  }
+  return worker.touched[number - 1];
+}
+
+// By counting, into worker.fragments and worker.entries.
+void sort_by_tile(Worker& worker) {
+  const SetUpResult& result = worker.result;
+  worker.touched.clear();
+  for (std::size_t i = 0; i < result.fragments; ++i)
+    ++touch(result.address[i] / kTilePixels, worker).last_fragment;
+  for (const SetUpResult::Entry& entry : result.entries) ++touch(entry.tile, worker).last_entry;
+  std::uint32_t fragments = 0, entries = 0;
+  for (Worker::TouchedTile& tile : worker.touched) {
+    const std::uint32_t here = tile.last_fragment, entries_here = tile.last_entry;
+    tile.first_fragment = tile.last_fragment = fragments;
+    tile.first_entry = tile.last_entry = entries;
+    fragments += here;
+    entries += entries_here;
+  }
+  if (worker.fragments.size() < fragments) worker.fragments.resize(fragments);
+  if (worker.entries.size() < entries) worker.entries.resize(entries);
+  for (std::size_t i = 0; i < result.fragments; ++i) {
+    const std::uint32_t address = result.address[i];
+    worker.fragments[touch(address / kTilePixels, worker).last_fragment++] = {
+        static_cast<std::int64_t>(std::uint64_t{result.code[i]} << 32 | result.number[i]),
+        address % kTilePixels};
+  }
+  for (const SetUpResult::Entry& entry : result.entries)
+    worker.entries[touch(entry.tile, worker).last_entry++] = entry.entry;
+  for (const Worker::TouchedTile& tile : worker.touched) worker.touched_number[tile.tile] = 0;
+}
+
+void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, const Worker& worker,
+               FrameTiles& tiles) {
+  const auto index = static_cast<int>(touched.tile);
+  VisibilityTile& tile = tiles.open(index);
+  const geometry::Rect& rect = tiles.rect(index);
+  rasterize_fragments(
+      std::span(worker.fragments)
+          .subspan(touched.first_fragment, touched.last_fragment - touched.first_fragment),
+      tile);
+  const auto entries = std::span(worker.entries)
+                           .subspan(touched.first_entry, touched.last_entry - touched.first_entry);
+  if (entries.empty()) return;
+  rasterize(task.screen, rect, worker.result.triangles, entries, tile);
+  rasterize_masked(task.screen, rect, worker.result.triangles, entries, task.solid, tile);
+}
+
+// Tiles that another thread has at the moment come later.
+void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) {
+  std::erase_if(worker.touched, [&](const Worker::TouchedTile& touched) {
+    return !tiles.is_wanted(static_cast<int>(touched.tile));
+  });
+  while (!worker.touched.empty()) {
+    const std::size_t before = worker.touched.size();
+    std::erase_if(worker.touched, [&](const Worker::TouchedTile& touched) {
+      const auto tile = static_cast<int>(touched.tile);
+      if (!tiles.try_lock(tile)) return false;
+      draw_into(task, touched, worker, tiles);
+      tiles.unlock(tile);
+      return true;
+    });
+    if (worker.touched.size() == before) std::this_thread::yield();
+  }
+}
+
+void collect_large(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
+                   LargeTriangles& large) {
+  large.triangles.clear();
+  large.first.clear();
+  large.entries.clear();
+  std::size_t entries = 0;
+  for (const auto& worker : workers) entries += worker->result.large_entries.size();
+  if (entries == 0) return;
+  large.first.assign(static_cast<std::size_t>(screen.tiles()) + 1, 0);
+  for (const auto& worker : workers)
+    for (const SetUpResult::Entry& entry : worker->result.large_entries)
+      ++large.first[entry.tile + 1];
+  std::partial_sum(large.first.begin(), large.first.end(), large.first.begin());
+  std::vector<std::uint32_t> next(large.first.begin(), large.first.end() - 1);
+  large.entries.resize(entries);
+  for (const auto& worker : workers) {
+    const auto offset = static_cast<std::uint32_t>(large.triangles.size());
+    const SetUpResult& result = worker->result;
+    large.triangles.insert(large.triangles.end(), result.large_triangles.begin(),
+                           result.large_triangles.end());
+    for (const SetUpResult::Entry& entry : result.large_entries)
+      large.entries[next[entry.tile]++] = entry.entry + offset;
+  }
+}
+
+}  // namespace
+
+TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
+                               std::vector<std::unique_ptr<Worker>>& workers, LargeTriangles& large,
+                               DrawSeconds& seconds) {
+  const auto threads = static_cast<std::size_t>(parallel::arena_threads());
+  while (workers.size() < threads) workers.push_back(std::make_unique<Worker>());
+  for (const auto& worker : workers) {
+    worker->result.clear();
+    worker->result.large_triangles.clear();
+    worker->result.large_entries.clear();
+    worker->result.counts = {};
+    worker->touched_number.assign(static_cast<std::size_t>(task.screen.tiles()), 0);
+  }
+
+  const std::vector<std::uint32_t> order = nearest_first(task);
+  const std::size_t batch =
+      std::clamp<std::size_t>(order.size() / (threads * kLeastBatches), 1, kBatchClusters);
+  // Batches are taken in order, so that what is near is drawn early.
+  std::atomic<std::size_t> next{0};
+  ProcessorSeconds set_up_seconds, sort_seconds, rasterize_seconds;
+  parallel::parallel_for(0, threads, 1, [&](std::size_t thread) {
+    Worker& worker = *workers[thread];
+    for (;;) {
+      const std::size_t begin = next.fetch_add(batch, std::memory_order_relaxed);
+      if (begin >= order.size()) return;
+      worker.result.clear();
+      set_up_seconds.measure([&] {
+        for (std::size_t i = begin; i < std::min(begin + batch, order.size()); ++i)
+          set_up_one(task, order[i], tiles, worker);
+      });
+      sort_seconds.measure([&] { sort_by_tile(worker); });
+      rasterize_seconds.measure([&] { draw_touched(task, worker, tiles); });
+      if (task.progress != nullptr) task.progress->advance(0);
+    }
+  });
+  seconds.set_up += set_up_seconds.seconds();
+  seconds.sort += sort_seconds.seconds();
+  seconds.rasterize += rasterize_seconds.seconds();
+
+  collect_large(task.screen, workers, large);
+  TriangleCounts counts;
+  for (const auto& worker : workers) counts += worker->result.counts;
+  return counts;
+}
+
+void draw_large(const DrawIntoTiles& task, int tile, LargeTriangles& large, FrameTiles& tiles) {
+  const std::span<std::uint32_t> entries = large.of_tile(tile);
+  if (entries.empty()) return;
+  const auto nearest = [&](std::uint32_t entry) {
+    const ScreenVertex* v = large.triangles[entry & kIndex].vertex;
+    return std::min({v[0].depth, v[1].depth, v[2].depth});
+  };
+  std::sort(entries.begin(), entries.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return nearest(a) < nearest(b); });
+  VisibilityTile& opened = tiles.open(tile);
+  rasterize(task.screen, tiles.rect(tile), large.triangles, entries, opened);
+  rasterize_masked(task.screen, tiles.rect(tile), large.triangles, entries, task.solid, opened);
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,36 @@
+#include "raster/internal/extent.h"
+
+#include <algorithm>
+
+#include "raster/internal/set_up.h"
+
+namespace delray::raster {
+
+Extent extent(const Screen& screen, const PreparedDraw& draw, std::uint32_t first,
+              std::uint32_t count) {
+  Extent result;
+  result.box = {screen.width, screen.height, 0, 0};
+  const auto include = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
+    result.box = {std::min(result.box.x0, pixels.x0), std::min(result.box.y0, pixels.y0),
+                  std::max(result.box.x1, pixels.x1), std::max(result.box.y1, pixels.y1)};
+    ++result.triangles;
+    const std::int64_t area =
+        doubled_area(triangle.vertex[0], triangle.vertex[1], triangle.vertex[2]) >>
+        (2 * kSubpixelBits + 1);
+    result.pixels += std::min<std::int64_t>(area + 1, pixels.area());
+  };
+  ScreenVertices vertices;
+  const std::uint32_t end = first + count;
+  for (std::uint32_t t = first; t < end;) {
+    const ClusterBlock& block = *draw.draw->clusters->blocks[t >> kBlockBits];
+    const MeshCluster& cluster = block.clusters[part_with(block, t)];
+    transform(draw.to_view, screen, draw.draw->mesh->positions, block.vertices_of(cluster),
+              vertices);
+    for (; t < std::min(end, cluster.first + cluster.count); ++t)
+      set_up(screen, draw, vertices, corners_at(block, cluster, t - cluster.first), t, 0, include);
+  }
+  if (result.triangles == 0) result.box = {};
+  return result;
+}
+
+}  // namespace delray::raster

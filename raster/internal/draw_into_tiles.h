@@ -1,0 +1,68 @@
+// A draw list into the tiles of a frame: clusters are culled, transformed, set up and drawn a few
+// at a time, so that nothing of them has to be kept.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "parallel/progress.h"
+#include "raster/internal/cluster_set_up.h"
+#include "raster/internal/frame_tiles.h"
+
+namespace delray::raster {
+
+// What a thread needs, kept from batch to batch and frame to frame.
+struct Worker {
+  struct TouchedTile {
+    std::uint32_t tile;
+    std::uint32_t first_fragment, last_fragment, first_entry, last_entry;
+  };
+
+  ScreenVertices vertices;
+  SetUpResult result;
+  std::vector<std::uint32_t> touched_number;  // by tile: 1 + index into touched, or 0
+  std::vector<TouchedTile> touched;
+  std::vector<Fragment> fragments;     // by tile
+  std::vector<std::uint32_t> entries;  // by tile
+};
+
+// Triangles that touch many tiles.
+struct LargeTriangles {
+  std::vector<ScreenTriangle> triangles;
+  std::vector<std::uint32_t> first;  // one more than tiles; empty when there are no triangles
+  std::vector<std::uint32_t> entries;
+
+  std::span<std::uint32_t> of_tile(int tile) {
+    if (first.empty()) return {};
+    return std::span(entries).subspan(first[tile], first[tile + 1] - first[tile]);
+  }
+};
+
+struct DrawIntoTiles {
+  const Screen& screen;
+  const DrawList& list;
+  std::span<const PreparedDraw> draws;
+  geometry::Rect wanted;
+  bool skip_hidden_clusters;
+  // Whether alpha leaves anything of a triangle of a masked draw at a pixel; called by any thread.
+  std::function<bool(std::uint32_t number, int x, int y)> solid;
+  parallel::Progress* progress = nullptr;
+};
+
+// Seconds of processor time, summed over threads.
+struct DrawSeconds {
+  double set_up = 0, sort = 0, rasterize = 0;
+};
+
+// Draws everything but large triangles, which are left in `large`. Parallel, nearest draws first;
+// the workers' memory is reused.
+TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
+                               std::vector<std::unique_ptr<Worker>>& workers, LargeTriangles& large,
+                               DrawSeconds& seconds);
+
+// Draws the large triangles of a tile, nearest first. The tile is the caller's alone.
+void draw_large(const DrawIntoTiles& task, int tile, LargeTriangles& large, FrameTiles& tiles);
+
+}  // namespace delray::raster

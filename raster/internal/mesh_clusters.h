@@ -1,0 +1,89 @@
+// Meshes cut into small clusters of triangles that are skipped, transformed and set up together.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/box.h"
+#include "scenes/scene.h"
+
+namespace delray::raster {
+
+// A place in a cluster takes so many bits. Vertices are numbered within the cluster by 8 bits.
+inline constexpr std::uint32_t kClusterBits = 7;
+inline constexpr std::uint32_t kClusterTriangles = 1U << kClusterBits;
+inline constexpr std::uint32_t kClusterVertices = 256;
+// Corners are stored for a multiple of so many triangles, so that vectors of them may be loaded.
+inline constexpr std::uint32_t kCornerPadding = 16;
+
+// At most kClusterTriangles consecutive triangles with at most kClusterVertices vertices.
+struct MeshCluster {
+  std::uint32_t first = 0, count = 0;            // triangles of the mesh
+  std::uint32_t first_vertex = 0, vertices = 0;  // into ClusterBlock::vertices
+  std::uint32_t first_corner = 0;                // into ClusterBlock::corners
+  geometry::Box3 box;                            // infinite where a position is not finite
+  // Every triangle's normal, of the counter-clockwise side, is within the angle of this sine and
+  // cosine around `axis`. No cone: cosine = -1.
+  glm::vec3 axis{0, 0, 1};
+  float cosine = -1;
+  float least_height = 0;  // of all triangles: no two opposite parts of one are closer
+
+  // From one corner's array to the next.
+  std::uint32_t corner_stride() const {
+    return (count + kCornerPadding - 1) / kCornerPadding * kCornerPadding;
+  }
+};
+
+// The clusters of up to kBlockTriangles consecutive triangles of a mesh, ascending.
+struct ClusterBlock {
+  std::vector<MeshCluster> clusters;
+  std::vector<std::uint32_t> vertices;  // of the mesh; in clusters' order
+  std::vector<std::uint8_t> corners;    // first corners of a cluster's triangles, second, third
+  geometry::Box3 box;
+
+  std::span<const std::uint32_t> vertices_of(const MeshCluster& cluster) const {
+    return std::span(vertices).subspan(cluster.first_vertex, cluster.vertices);
+  }
+};
+// Which of the block's clusters has the triangle. REQUIRES: the block has it.
+inline std::uint32_t part_with(const ClusterBlock& block, std::uint32_t triangle) {
+  const auto after = std::upper_bound(
+      block.clusters.begin(), block.clusters.end(), triangle,
+      [](std::uint32_t t, const MeshCluster& cluster) { return t < cluster.first; });
+  return static_cast<std::uint32_t>(after - block.clusters.begin()) - 1;
+}
+
+inline constexpr std::uint32_t kBlockBits = 16;
+inline constexpr std::uint32_t kBlockTriangles = 1U << kBlockBits;
+
+// Block k has triangles from k << kBlockBits on; null where it was not asked for yet. Where
+// clusters begin depends on the mesh alone.
+struct MeshClusters {
+  std::vector<std::unique_ptr<ClusterBlock>> blocks;
+
+  // Makes the blocks of triangles [first, first + count) that are missing. O(triangles), parallel.
+  void make(const scenes::Mesh& mesh, std::uint32_t first, std::uint32_t count);
+};
+
+// Clusters of a scene's meshes, made when they are first needed.
+class SceneClusters {
+ public:
+  explicit SceneClusters(std::span<const scenes::Mesh> meshes)
+      : meshes_(meshes), clusters_(meshes.size()) {}
+
+  // Null for meshes that are not the scene's.
+  MeshClusters* of(const scenes::Mesh& mesh) {
+    const bool known = &mesh >= meshes_.data() && &mesh < meshes_.data() + meshes_.size();
+    return known ? &clusters_[static_cast<std::size_t>(&mesh - meshes_.data())] : nullptr;
+  }
+
+ private:
+  std::span<const scenes::Mesh> meshes_;
+  std::vector<MeshClusters> clusters_;
+};
+
+}  // namespace delray::raster

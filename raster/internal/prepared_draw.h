@@ -1,0 +1,28 @@
+// A draw with what setup needs of it.
+#pragma once
+
+#include <vector>
+
+#include "raster/internal/draws.h"
+#include "raster/internal/transform.h"
+#include "shading/shader.h"
+
+namespace delray::raster {
+
+struct PreparedDraw {
+  const Draw* draw = nullptr;
+  ToView to_view;
+  bool masked = false;  // holes are cut by alpha
+  int hidden_side = 0;  // sign of the area that is not drawn; 0: both are
+  // Clusters that show nothing but hidden sides can be told by their cones: in the mesh's
+  // coordinates, where the eye is, and how much longer things are in the world.
+  bool cones = false;
+  glm::vec3 eye{0};
+  float scale = 1;
+};
+
+// Element i is draw i of the list, which it refers to. O(draws).
+std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& list,
+                                        const shading::Shader& shader, bool cull_single_sided);
+
+}  // namespace delray::raster

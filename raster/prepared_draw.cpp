@@ -1,0 +1,55 @@
+#include "raster/internal/prepared_draw.h"
+
+#include <algorithm>
+
+#include "shading/surface.h"
+
+namespace delray::raster {
+namespace {
+
+// Whether alpha may leave nothing of some pixels. Blended materials are drawn opaque, but not where
+// there is nothing of them at all.
+bool may_have_holes(const shading::Shader& shader, const scenes::Material& material,
+                    const scenes::Mesh& mesh) {
+  if (material.alpha == scenes::Material::Alpha::opaque) return false;
+  return material.base_colour_texture != scenes::kNone || !mesh.colours.empty() ||
+         !(shading::coverage(shader, material, {}, {}, 1.0F) > 0);
+}
+
+// Angles must be the same in the mesh and in the world, or nearly: then cones are used.
+void prepare_cones(const scenes::View& view, const glm::mat4x3& transform, PreparedDraw& prepared) {
+  const glm::dmat3 axes{glm::mat3(transform)};
+  const double lengths[3] = {glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])};
+  const double least = std::min({lengths[0], lengths[1], lengths[2]});
+  const double largest = std::max({lengths[0], lengths[1], lengths[2]});
+  const double skew =
+      std::max({std::abs(glm::dot(axes[0], axes[1])), std::abs(glm::dot(axes[1], axes[2])),
+                std::abs(glm::dot(axes[2], axes[0]))});
+  if (!(least > 0) || largest > 1.01 * least || skew > 0.01 * least * least) return;
+  prepared.cones = true;
+  prepared.eye = glm::inverse(axes) * (glm::dvec3(view.eye) - glm::dvec3(transform[3]));
+  prepared.scale = static_cast<float>(least);
+}
+
+}  // namespace
+
+std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& list,
+                                        const shading::Shader& shader, bool cull_single_sided) {
+  std::vector<PreparedDraw> draws(list.draws.size());
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const Draw& draw = list.draws[i];
+    const scenes::Material& material = shading::material(shader, draw.mesh->material);
+    PreparedDraw& prepared = draws[i];
+    prepared.draw = &draw;
+    prepared.to_view = to_view(screen.view, *draw.transform);
+    prepared.masked = may_have_holes(shader, material, *draw.mesh);
+    if (!cull_single_sided || material.double_sided) continue;
+    // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,
+    // unless the transform mirrors.
+    prepared.hidden_side = glm::determinant(glm::mat3(*draw.transform)) < 0 ? -1 : 1;
+    prepare_cones(screen.view, *draw.transform, prepared);
+  }
+  return draws;
+}
+
+}  // namespace delray::raster
