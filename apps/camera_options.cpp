@@ -3,47 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <charconv>
-#include <cmath>
 
 #include "apps/session.h"
+#include "scenes/camera_path.h"
 
 namespace delray::apps {
-namespace {
-
-// Ten numbers between commas. Throws UsageError.
-std::array<double, 10> parse_numbers(const std::string& text) {
-  std::array<double, 10> numbers{};
-  const char* next = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [stop, error] = std::from_chars(next, end, numbers[i]);
-    const bool last = i + 1 == numbers.size();
-    if (error != std::errc() || !std::isfinite(numbers[i]) ||
-        (last ? stop != end : stop == end || *stop != ',')) {
-      throw UsageError(fmt::format(
-          "--camera: '{}' is not eye,at,up,fov: ten numbers separated by commas", text));
-    }
-    next = stop + 1;
-  }
-  return numbers;
-}
-
-scenes::Camera parse_camera(const std::string& text, const glm::dvec3& origin) {
-  const std::array<double, 10> n = parse_numbers(text);
-  if (!(n[9] > 0 && n[9] < 180)) {
-    throw UsageError("--camera: the field of view is not between 0 and 180 degrees");
-  }
-  scenes::Camera camera;
-  camera.eye = glm::vec3(glm::dvec3(n[0], n[1], n[2]) - origin);
-  camera.at = glm::vec3(glm::dvec3(n[3], n[4], n[5]) - origin);
-  camera.up = glm::vec3(n[6], n[7], n[8]);
-  camera.vertical_fov = static_cast<float>(n[9]);
-  return camera;
-}
-
-}  // namespace
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
   CLI::Option* camera = command.add_option(
@@ -56,7 +20,14 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
 
 scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
                              float aspect) {
-  if (!options.camera.empty()) return parse_camera(options.camera, scene.origin);
+  if (!options.camera.empty()) {
+    const auto camera = scenes::parse_camera(options.camera, scene.origin);
+    if (camera) return *camera;
+    throw UsageError(fmt::format(
+        "--camera: '{}' is not eye,at,up,fov: ten numbers separated by commas, the field of view "
+        "above 0 and below 180 degrees",
+        options.camera));
+  }
   if (options.view.empty() && !scene.cameras.empty()) return scene.cameras.front();
   const std::string view = options.view.empty() ? "default" : options.view;
   try {

@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <exception>
 
+#include "apps/animation.h"
 #include "apps/commands.h"
 #include "apps/list.h"
 #include "apps/progress_bar.h"
 #include "apps/render_frames.h"
 #include "apps/render_options.h"
 #include "apps/render_statistics.h"
+#include "apps/write_picture.h"
 #include "comm/agree_on_failure.h"
 #include "composite/scheme.h"
-#include "image/hash.h"
-#include "image/io.h"
-#include "image/srgb.h"
 #include "loadbalance/partition.h"
 #include "parallel/arena.h"
 #include "raster/strategies.h"
@@ -35,41 +34,29 @@ int print_lists() {
   return kDone;
 }
 
-const image::Image8& as_8bit(const image::Image8& picture, image::Image8&) { return picture; }
-const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& converted) {
-  converted = image::to_8bit(picture);
-  return converted;
-}
-
-// Rank 0: background, file, statistics.
+// Rank 0: background, file, statistics of a single picture.
 void finish(const RenderRequest& request, const Session& session, const Prepared& prepared,
             Frames& frames) {
   Stopwatch watch;
-  const scenes::View view = scenes::make_view(prepared.camera, request.width, request.height);
-  image::Image8 converted;
-  const image::Image8* codes = nullptr;
-  const std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION},
-                                                    {"CommandLine", session.command_line}};
-  std::visit(
-      [&](auto& picture) {
-        put_behind(picture, prepared.background, prepared.shading(), view);
-        codes = &as_8bit(picture, converted);
-        image::WriteOptions options;
-        options.attributes = attributes;
-        if (request.output.ends_with(".exr") || request.output.ends_with(".EXR")) {
-          write_image(request.output, picture, options);
-        } else {
-          write_image(request.output, *codes, options);
-        }
-      },
-      frames.picture);
-  const double write_seconds = watch.lap();
-  const Json statistics =
-      render_statistics(request, prepared, frames, image::hash(*codes), write_seconds);
+  const std::string hash =
+      write_picture(request, session, prepared, prepared.camera, request.output, frames.picture);
+  const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
   spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", request.output, request.width,
                request.height, scenes::triangle_count(prepared.scene),
                statistics["seconds"]["frame"].get<double>());
+}
+
+// Rank 0: statistics of an animation, whose files are there.
+void finish(const RenderRequest& request, const Prepared& prepared, const Animation& animation) {
+  const std::size_t frames = prepared.cameras.size();
+  Json statistics = render_statistics(request, prepared, animation.frames, animation.hash,
+                                      animation.times.stages[1]);
+  statistics["animation"] = animation_statistics(animation, frames);
+  write_statistics(request.statistics, statistics);
+  spdlog::info("{} .. {}: {} frames, {:.3f} s a frame", frame_path(request.output, 0),
+               frame_path(request.output, frames - 1), frames,
+               animation.times.seconds / static_cast<double>(frames));
 }
 
 int run(Session& session, const CLI::App& command, RenderRequest request) {
@@ -100,6 +87,14 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       });
     }
     if (!prepared) return;
+    if (!prepared->cameras.empty()) {
+      const Animation animation =
+          render_animation(communicator, *prepared, request, session, progress);
+      comm::all_or_none(communicator, comm::Phase::other, [&] {
+        if (communicator.rank() == 0) finish(request, *prepared, animation);
+      });
+      return;
+    }
     Frames frames = render_frames(communicator, *prepared, request, progress);
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() == 0) finish(request, session, *prepared, frames);

@@ -1,5 +1,6 @@
 #include "apps/render_frames.h"
 
+#include "apps/animation.h"
 #include "apps/statistics.h"
 #include "comm/collectives.h"
 
@@ -43,19 +44,6 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   return options;
 }
 
-// Calls frame() once to warm up, if there is more than one to come, then request.frames times.
-template <class Frame>
-void repeat(comm::Communicator& communicator, int frames, std::vector<double>& seconds,
-            Frame&& frame) {
-  if (frames > 1) frame();
-  for (int i = 0; i < frames; ++i) {
-    barrier(communicator);
-    Stopwatch watch;
-    frame();
-    seconds.push_back(watch.lap());
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
@@ -66,6 +54,8 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   prepared->camera =
       choose_camera(request.camera, prepared->scene,
                     static_cast<float>(request.width) / static_cast<float>(request.height));
+  prepared->cameras = animation_cameras(request, prepared->scene, prepared->camera);
+  if (!prepared->cameras.empty()) prepared->camera = prepared->cameras.front();
   prepared->background = request.behind;
   if (prepared->background.kind == Background::Kind::automatic) {
     prepared->background.kind = has_sky(prepared->scene.environment) ? Background::Kind::environment
@@ -84,25 +74,40 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   return prepared;
 }
 
+FrameRenderer::FrameRenderer(const Prepared& prepared, const RenderRequest& request,
+                             parallel::Progress* progress)
+    : prepared_(prepared), request_(request), progress_(progress) {
+  if (request.kind == Engine::raster) raster_.emplace(prepared.scene, prepared.shader);
+}
+
+Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera) {
+  Frame frame;
+  if (raster_) {
+    raster::Result result =
+        raster_->render(communicator, camera, raster_options(request_), progress_);
+    frame.picture = std::move(result.picture);
+    frame.statistics = std::move(result.statistics);
+  } else {
+    raytrace::Result result = raytrace::render(communicator, *prepared_.tracer, camera,
+                                               raytrace_options(request_, progress_));
+    frame.picture = std::move(result.image);
+    frame.statistics = std::move(result.statistics);
+  }
+  return frame;
+}
+
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
                      const RenderRequest& request, parallel::Progress* progress) {
+  FrameRenderer renderer(prepared, request, progress);
+  if (request.frames > 1) renderer.render(communicator, prepared.camera);
   Frames frames;
-  if (request.kind == Engine::raster) {
-    raster::Renderer renderer(prepared.scene, prepared.shader);
-    const raster::RenderOptions options = raster_options(request);
-    raster::Result result;
-    repeat(communicator, request.frames, frames.seconds,
-           [&] { result = renderer.render(communicator, prepared.camera, options, progress); });
-    frames.picture = std::move(result.picture);
-    frames.statistics = std::move(result.statistics);
-  } else {
-    const raytrace::RenderOptions options = raytrace_options(request, progress);
-    raytrace::Result result;
-    repeat(communicator, request.frames, frames.seconds, [&] {
-      result = raytrace::render(communicator, *prepared.tracer, prepared.camera, options);
-    });
-    frames.picture = std::move(result.image);
-    frames.statistics = std::move(result.statistics);
+  for (int i = 0; i < request.frames; ++i) {
+    barrier(communicator);
+    Stopwatch watch;
+    Frame frame = renderer.render(communicator, prepared.camera);
+    frames.seconds.push_back(watch.lap());
+    frames.picture = std::move(frame.picture);
+    frames.statistics = std::move(frame.statistics);
   }
   return frames;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace delray::apps {
 struct Prepared {
   scenes::Scene scene;
   scenes::Camera camera;
+  std::vector<scenes::Camera> cameras;             // of an animation; empty for a single picture
   Background background;                           // not automatic any more
   std::shared_ptr<const shading::Shader> shader;   // rasterizer
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer
@@ -28,10 +30,34 @@ struct Prepared {
 // arena.
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request, parallel::Progress* progress);
 
+using Picture = std::variant<image::Image8, image::ImageF>;
+using EngineStatistics = std::variant<raster::Statistics, raytrace::Statistics>;
+
 // On rank 0; elsewhere the pictures are of size 0.
+struct Frame {
+  Picture picture;
+  EngineStatistics statistics;
+};
+
+// Either engine, ready for any number of frames. One per rank; refers to what it is given.
+class FrameRenderer {
+ public:
+  FrameRenderer(const Prepared& prepared, const RenderRequest& request,
+                parallel::Progress* progress);
+  // Collective.
+  Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
+
+ private:
+  const Prepared& prepared_;
+  const RenderRequest& request_;
+  parallel::Progress* progress_;
+  std::optional<raster::Renderer> raster_;
+};
+
+// The last of some frames from the same camera.
 struct Frames {
-  std::variant<image::Image8, image::ImageF> picture;  // of the last frame
-  std::variant<raster::Statistics, raytrace::Statistics> statistics;
+  Picture picture;
+  EngineStatistics statistics;
   std::vector<double> seconds;  // per frame, from the scene in memory to the picture on rank 0
 };
 

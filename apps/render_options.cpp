@@ -71,6 +71,18 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--background", request.background,
                      "auto (default), environment, studio, transparent or #rrggbb");
   add_camera_options(command, request.camera);
+  command
+      .add_option("--turntable", request.turntable,
+                  "an animation once around the scene: so many frames, IMAGE-0000 and on")
+      ->check(CLI::Range(1, 1000000))
+      ->excludes("--frames");
+  command
+      .add_option("--camera-path", request.camera_path,
+                  "an animation along cameras in a file, a line each: [FRAME:] eye,at,up,fov")
+      ->excludes("--frames")
+      ->excludes("--turntable")
+      ->excludes("--camera")
+      ->excludes("--view");
   add_launch_options(command, request.launch);
   const std::string raster = "Rasterizer";
   command.add_option("--strategy", request.strategy, "how ranks share the work")->group(raster);

@@ -20,7 +20,8 @@ struct RenderRequest {
   Launch launch;
   std::string output, statistics;
   std::string size = "1280x720", engine = "raster", background = "auto";
-  int frames = 1;
+  std::string camera_path;
+  int frames = 1, turntable = 0;
   bool list = false;
   // raster
   std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",

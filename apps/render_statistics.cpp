@@ -15,6 +15,8 @@ Json options_of(const RenderRequest& request, int ranks) {
   Json options = {{"size", request.size},
                   {"engine", request.engine},
                   {"frames", request.frames},
+                  {"turntable", request.turntable},
+                  {"camera_path", request.camera_path},
                   {"background", request.background},
                   {"camera", request.camera.camera},
                   {"view", request.camera.view},
@@ -115,6 +117,23 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
         };
       },
       frames.statistics);
+}
+
+Json animation_statistics(const Animation& animation, std::size_t frames) {
+  Json stages = Json::array();
+  const std::vector<std::string> names = animation_stages();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    stages.push_back({{"name", names[i]}, {"seconds", animation.times.stages[i]}});
+  }
+  const double sequential = parallel::sequential_seconds(animation.times);
+  const double predicted = parallel::predicted_seconds(animation.times, frames);
+  return {{"frames", frames},
+          {"stages", stages},
+          {"seconds", animation.times.seconds},
+          {"sequential_seconds", sequential},
+          {"predicted_seconds", predicted},
+          {"speed_up", sequential / animation.times.seconds},
+          {"predicted_speed_up", sequential / predicted}};
 }
 
 }  // namespace delray::apps

@@ -124,6 +124,12 @@ TEST(BadInput, SceneFiles) {
   }
 }
 
+TEST(BadInput, CameraPaths) {
+  const Folder folder;
+  expect_refused(folder, {"path.txt", "1,2,3\n"},
+                 "delray render gen:cornell -o a.out.png --size 16x16 --camera-path path.txt");
+}
+
 TEST(BadInput, MeshFilesOfVerify) {
   const Folder folder;
   folder.write("p.xyz", "0 0\n1 0\n0 1\n");

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "tests/support/run_program.h"
 
@@ -48,6 +50,28 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
   const std::string hash = statistics(base + "--threads 1", folder)["image"]["hash"];
   EXPECT_EQ(statistics(base + "--ranks 3 --threads 2", folder)["image"]["hash"], hash);
   EXPECT_EQ(statistics(kMpirun + base, folder)["image"]["hash"], hash);
+}
+
+TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
+  const Folder folder;
+  folder.write("path.txt", "0,1,4, 0,1,0, 0,1,0, 40 # frame 0\n3: 1,1,3.5, 0,1,0, 0,1,0, 45\n");
+  const std::string base = "delray render gen:cornell -o a.png --size 48x32 ";
+  for (const std::string options : {"--camera-path path.txt", "--turntable 4"}) {
+    const json stats = statistics(base + options, folder);
+    EXPECT_EQ(stats["animation"]["frames"], 4) << options;
+    EXPECT_EQ(stats["animation"]["stages"].size(), 3U);
+    EXPECT_GT(stats["animation"]["predicted_speed_up"], 0);
+    std::set<std::string> pictures;
+    for (const char* name : {"a-0000.png", "a-0001.png", "a-0002.png", "a-0003.png"}) {
+      EXPECT_TRUE(pictures.insert(folder.read(name)).second) << name;
+    }
+    const std::string hash = stats["image"]["hash"];
+    EXPECT_EQ(statistics(base + options + " --ranks 3", folder)["image"]["hash"], hash);
+    EXPECT_EQ(statistics(kMpirun + base + options, folder)["image"]["hash"], hash);
+  }
+  // The last key is a single picture.
+  EXPECT_EQ(statistics(base + "--camera-path path.txt", folder)["image"]["hash"],
+            statistics(base + "--camera 1,1,3.5,0,1,0,0,1,0,45", folder)["image"]["hash"]);
 }
 
 TEST(RenderCommand, StatisticsHaveEveryKey) {
