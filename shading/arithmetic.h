@@ -19,7 +19,8 @@ inline std::int32_t floor_to_int(float x) {
   return i - (x < static_cast<float>(i) ? 1 : 0);
 }
 
-inline float clamp01(float x) { return std::min(std::max(x, 0.0F), 1.0F); }
+// NaN gives 0.
+inline float clamp01(float x) { return std::min(std::max(0.0F, x), 1.0F); }
 
 inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 

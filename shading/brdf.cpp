@@ -1,11 +1,9 @@
 #include "shading/brdf.h"
 
-#include <array>
+#include "shading/internal/specular_table.h"
 
 namespace delray::shading {
 namespace {
-
-constexpr int kSide = 24;
 
 // Of a lobe whose reflectance at normal and grazing incidence are 1 and 0, and 0 and 1.
 struct Shares {
@@ -13,7 +11,8 @@ struct Shares {
 };
 
 float roughness_at(int i) {
-  return std::max(static_cast<float>(i) / static_cast<float>(kSide - 1), kMinRoughness);
+  return std::max(static_cast<float>(i) / static_cast<float>(SpecularTable::kRoughnesses - 1),
+                  kMinRoughness);
 }
 
 // Half vectors are drawn with the density of the GGX distribution, stratified.
@@ -44,14 +43,15 @@ Shares integrate(float roughness, float cosine) {
   return {sum.normal * kScale, sum.grazing * kScale};
 }
 
-using Table = std::array<std::array<Shares, kSide>, kSide>;
-
-Table make_table() {
-  Table table;
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) {
-      const float cosine = static_cast<float>(j) / static_cast<float>(kSide - 1);
-      table[i][j] = integrate(roughness_at(i), std::max(cosine, 0.01F));
+SpecularTable make_table() {
+  SpecularTable table;
+  for (int i = 0; i < SpecularTable::kRoughnesses; ++i) {
+    for (int j = 0; j < SpecularTable::kCosines; ++j) {
+      const float x = static_cast<float>(j) / static_cast<float>(SpecularTable::kCosines - 1);
+      const float cosine = 1.0F - std::sqrt(1.0F - x);
+      const Shares shares = integrate(roughness_at(i), std::max(cosine, 0.01F));
+      table.normal[i][j] = shares.normal;
+      table.grazing[i][j] = shares.grazing;
     }
   }
   return table;
@@ -59,19 +59,27 @@ Table make_table() {
 
 }  // namespace
 
+const SpecularTable& specular_table() {
+  static const SpecularTable table = make_table();
+  return table;
+}
+
+glm::vec3 specular_albedo_at(const Lobes& lobes, int j) {
+  const SpecularTable& table = specular_table();
+  const float y = lobes.roughness * static_cast<float>(SpecularTable::kRoughnesses - 1);
+  const int i = std::min(static_cast<int>(y), SpecularTable::kRoughnesses - 2);
+  const float v = y - static_cast<float>(i);
+  return lobes.specular * mix(table.normal[i][j], table.normal[i + 1][j], v) +
+         glm::vec3(lobes.grazing * mix(table.grazing[i][j], table.grazing[i + 1][j], v));
+}
+
 glm::vec3 specular_albedo(const Lobes& lobes, float cosine) {
-  static const Table table = make_table();
-  const float y = lobes.roughness * static_cast<float>(kSide - 1);
-  const float x = clamp01(cosine) * static_cast<float>(kSide - 1);
-  const int i = std::min(static_cast<int>(y), kSide - 2);
-  const int j = std::min(static_cast<int>(x), kSide - 2);
-  const float v = y - static_cast<float>(i), u = x - static_cast<float>(j);
-  const auto between = [&](float Shares::*share) {
-    return mix(mix(table[i][j].*share, table[i][j + 1].*share, u),
-               mix(table[i + 1][j].*share, table[i + 1][j + 1].*share, u), v);
-  };
-  return lobes.specular * between(&Shares::normal) +
-         glm::vec3(lobes.grazing * between(&Shares::grazing));
+  const float c = clamp01(cosine);
+  const float x = c * (2.0F - c) * static_cast<float>(SpecularTable::kCosines - 1);
+  const int j = std::min(static_cast<int>(x), SpecularTable::kCosines - 2);
+  const float u = x - static_cast<float>(j);
+  const glm::vec3 low = specular_albedo_at(lobes, j);
+  return low + (specular_albedo_at(lobes, j + 1) - low) * u;
 }
 
 }  // namespace delray::shading

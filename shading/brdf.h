@@ -19,6 +19,11 @@ namespace delray::shading {
 // Below this roughness a highlight of a light without size would fall between the pixels.
 inline constexpr float kMinRoughness = 0.08F;
 
+// A viewer lower than this cosine over the horizon counts as being there; the squared length of the
+// sum of two directions counts as at least the other.
+inline constexpr float kLeastCosine = 1e-4F;
+inline constexpr float kLeastSum = 1e-6F;
+
 struct Lobes {
   glm::vec3 diffuse{0.0F};   // albedo
   glm::vec3 entering{1.0F};  // makes the albedo what it says: 1 over the mean of 1 - Fresnel's term
@@ -42,7 +47,8 @@ inline Lobes lobes(const Surface& surface) {
   const float brightest =
       std::max(std::max(result.specular.x, result.specular.y), result.specular.z);
   result.grazing = std::min(50.0F * brightest, 1.0F);
-  const glm::vec3 mean = result.specular + (glm::vec3(result.grazing) - result.specular) / 21.0F;
+  const glm::vec3 mean =
+      result.specular + (glm::vec3(result.grazing) - result.specular) * (1.0F / 21.0F);
   result.entering = glm::vec3(1.0F) / glm::max(glm::vec3(1.0F) - mean, glm::vec3(1e-3F));
   const float wide = std::max(roughness, kMinRoughness);
   result.alpha = wide * wide;
@@ -62,23 +68,25 @@ inline glm::vec3 reflect(const Lobes& lobes, const glm::vec3& normal, const glm:
                          const glm::vec3& light) {
   const float n_l = glm::dot(normal, light);
   if (!(n_l > 0.0F)) return glm::vec3(0.0F);
-  const float n_v = std::max(glm::dot(normal, view), 1e-4F);
+  const float n_v = std::max(glm::dot(normal, view), kLeastCosine);
   const glm::vec3 sum = view + light;
-  const float length2 = std::max(glm::dot(sum, sum), 1e-12F);
-  const float inverse = 1.0F / std::sqrt(length2);
-  const float n_h = std::min(std::max(glm::dot(normal, sum) * inverse, 0.0F), 1.0F);
   // Both directions make the same angle with their half vector; its cosine is half the length of
-  // sum.
-  const float v_h = std::min(0.5F * length2 * inverse, 1.0F);
+  // their sum.
+  const float length2 = std::max(glm::dot(sum, sum), kLeastSum);
+  const float v_h = std::min(0.5F * std::sqrt(length2), 1.0F);
+  const float along = std::max(glm::dot(normal, sum), 0.0F);
+  const float along2 = std::min(along * along, length2);
+  // The distribution is a2 / (pi (n_h^2 (a2 - 1) + 1)^2) with n_h^2 = along2 / length2; so written
+  // it keeps its digits at the peak, and needs no division of its own.
   const float a2 = lobes.alpha * lobes.alpha;
-  const float d = (n_h * a2 - n_h) * n_h + 1.0F;
-  const float distribution = a2 / (kPi * d * d);
+  const float spread = (length2 - along2) + along2 * a2;
   const float shadowing =
       n_l * std::sqrt(n_v * n_v * (1.0F - a2) + a2) + n_v * std::sqrt(n_l * n_l * (1.0F - a2) + a2);
-  const glm::vec3 specular = fresnel(lobes, v_h) * (distribution * 0.5F / shadowing);
+  const float peak = a2 * (0.5F * kInversePi) * (length2 * length2) / (spread * spread * shadowing);
+  const glm::vec3 specular = fresnel(lobes, v_h) * peak;
   const glm::vec3 in = glm::vec3(1.0F) - fresnel(lobes, std::min(n_l, 1.0F));
   const glm::vec3 out = glm::vec3(1.0F) - fresnel(lobes, std::min(n_v, 1.0F));
-  const glm::vec3 diffuse = lobes.diffuse * in * out * lobes.entering * kInversePi;
+  const glm::vec3 diffuse = lobes.diffuse * (lobes.entering * kInversePi) * (in * out);
   return (diffuse + specular) * n_l;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "shading/arithmetic.h"
+#include "shading/internal/gradient.h"
 
 namespace delray::shading {
 namespace {
@@ -58,11 +59,9 @@ std::array<glm::vec3, 9> project(const Environment& environment, const Texture& 
   return sums;
 }
 
-glm::vec3 gradient(const Environment& environment, const glm::vec3& direction) {
-  const float height = glm::dot(direction, environment.up);
-  const float t = std::min(std::abs(height), 1.0F);
-  const glm::vec3& pole = height >= 0.0F ? environment.zenith : environment.ground;
-  return environment.horizon * (1.0F - t) + pole * t;
+glm::vec3 gradient(const Environment& environment, const GradientWeights& weights) {
+  return environment.horizon * weights.horizon + environment.zenith * weights.zenith +
+         environment.ground * weights.ground;
 }
 
 bool zero(const glm::vec3& v) { return v.x == 0.0F && v.y == 0.0F && v.z == 0.0F; }
@@ -94,9 +93,9 @@ glm::vec3 radiance(const Environment& environment, std::span<const Texture> text
                    const glm::vec3& direction, float roughness) {
   if (environment.black) return glm::vec3(0.0F);
   if (environment.texture == scenes::kNone) {
-    const glm::vec3 sharp = gradient(environment, direction);
-    if (roughness <= 0.0F) return sharp;
-    return sharp + (diffuse_radiance(environment, direction) - sharp) * roughness;
+    const float height = glm::dot(direction, environment.up);
+    return gradient(environment,
+                    between(sharp_weights(height), diffuse_weights(height), roughness));
   }
   const Texture& texture = textures[environment.texture];
   const float u =
@@ -119,16 +118,7 @@ glm::vec3 diffuse_radiance(const Environment& environment, const glm::vec3& norm
     for (int i = 0; i < 9; ++i) sum += environment.harmonics[i] * weights[i];
     return glm::max(sum, glm::vec3(0.0F));
   }
-  // The integral of two clamped cosines whose axes are `angle` apart, over pi, is
-  // 2 (sin angle + (pi - angle) cos angle) / (3 pi); the lower half is the same with pi - angle.
-  const float cosine = std::min(std::max(glm::dot(normal, environment.up), -1.0F), 1.0F);
-  const float sine = std::sqrt((1.0F - cosine) * (1.0F + cosine));
-  const float angle = acos(cosine);
-  constexpr float kScale = 2.0F * kInversePi / 3.0F;
-  const float above = kScale * (sine + (kPi - angle) * cosine);
-  const float below = kScale * (sine - angle * cosine);
-  return environment.horizon + (environment.zenith - environment.horizon) * above +
-         (environment.ground - environment.horizon) * below;
+  return gradient(environment, diffuse_weights(glm::dot(normal, environment.up)));
 }
 
 }  // namespace delray::shading

@@ -7,6 +7,7 @@
 
 #include "image/srgb.h"
 #include "shading/arithmetic.h"
+#include "shading/internal/decode_table.h"
 
 namespace delray::shading {
 namespace {
@@ -127,6 +128,8 @@ glm::vec4 bilinear(const Texture& texture, const Coding& colours, float u, float
 }
 
 }  // namespace
+
+const float* decode_table(bool srgb) { return coding(srgb).decode.data(); }
 
 Texture make_texture(const scenes::Texture& texture) {
   Texture result;

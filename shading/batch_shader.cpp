@@ -1,0 +1,82 @@
+#include "shading/batch_shader.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "shading/internal/specular_table.h"
+#include "shading/lighting.h"
+
+namespace delray::shading {
+namespace {
+
+using Specular = BatchMaterial::Specular;
+
+Specular specular_of(const scenes::Material& material, bool colour_varies) {
+  if (material.metallic_roughness_texture != scenes::kNone) return Specular::varying;
+  if (clamp01(material.metallic) == 0.0F) return Specular::grey;
+  return colour_varies ? Specular::varying : Specular::coloured;
+}
+
+BatchMaterial make_material(const scenes::Material& material) {
+  BatchMaterial result;
+  result.material = material;
+  result.material.name.clear();
+  result.plain = specular_of(material, material.base_colour_texture != scenes::kNone);
+  result.coloured = specular_of(material, true);
+  Surface surface;
+  surface.base_colour = glm::vec3(material.base_colour);
+  surface.metallic = material.metallic;
+  surface.roughness = material.roughness;
+  surface.transmission = material.transmission;
+  surface.ior = material.ior;
+  result.lobes = lobes(surface);
+  static_assert(SpecularTable::kCosines == kBlockPoints + 1);
+  for (int j = 0; j < kBlockPoints; ++j) {
+    const glm::vec3 low = specular_albedo_at(result.lobes, j);
+    const glm::vec3 step = specular_albedo_at(result.lobes, j + 1) - low;
+    for (int k = 0; k < 3; ++k) {
+      result.albedo[k][j] = low[k];
+      result.albedo_step[k][j] = step[k];
+    }
+  }
+  return result;
+}
+
+BatchLight make_light(const scenes::Light& light) {
+  BatchLight result;
+  result.kind = light.kind;
+  result.colour = light.colour;
+  switch (light.kind) {
+    case scenes::Light::Kind::directional: {
+      const Incident everywhere = incident(light, glm::vec3(0.0F));
+      result.direction = everywhere.direction;
+      result.dark = everywhere.irradiance == glm::vec3(0.0F);
+      break;
+    }
+    case scenes::Light::Kind::point:
+      result.source = light.position;
+      break;
+    case scenes::Light::Kind::area:
+      result.source = light.position + (light.edge_u + light.edge_v) * 0.5F;
+      result.normal = glm::cross(light.edge_u, light.edge_v);
+      result.area_over_pi = std::sqrt(glm::dot(result.normal, result.normal)) * kInversePi;
+      break;
+  }
+  return result;
+}
+
+}  // namespace
+
+BatchShader make_batch_shader(const Shader& shader, std::span<const scenes::Material> materials) {
+  assert(!materials.empty());
+  BatchShader result;
+  result.shader = &shader;
+  result.materials.resize(materials.size());
+  std::transform(materials.begin(), materials.end(), result.materials.begin(), make_material);
+  result.lights.resize(shader.lights.size());
+  std::transform(shader.lights.begin(), shader.lights.end(), result.lights.begin(), make_light);
+  return result;
+}
+
+}  // namespace delray::shading

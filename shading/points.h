@@ -1,0 +1,62 @@
+// Blocks of sixteen points in structure-of-arrays form: what is shaded at a time.
+//
+// Element i of every array belongs to lane i. A renderer may leave lanes unused and say which it
+// means with a mask; what the others hold makes no difference.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "shading/surface.h"
+
+namespace delray::shading {
+
+inline constexpr int kBlockPoints = 16;
+
+// Bit i: lane i is meant.
+using LaneMask = std::uint32_t;
+inline constexpr LaneMask kAllLanes = (1U << kBlockPoints) - 1;
+inline LaneMask first_lanes(int count) { return (1U << count) - 1; }
+
+struct alignas(64) Floats16 {
+  float lane[kBlockPoints] = {};
+  float& operator[](int i) { return lane[i]; }
+  float operator[](int i) const { return lane[i]; }
+};
+
+// Three numbers a lane: positions, directions (x, y, z) or linear RGB.
+struct Vectors16 {
+  Floats16 x, y, z;
+  void set(int i, const glm::vec3& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+  glm::vec3 get(int i) const { return {x[i], y[i], z[i]}; }
+};
+
+// What Point says of one point.
+struct Points {
+  Vectors16 position;
+  Vectors16 geometric_normal, normal;
+  Vectors16 tangent;
+  Floats16 handedness;  // the tangent's w; read where normals are mapped
+  Floats16 u, v;        // read where there is a texture, as is the footprint
+  Floats16 footprint_dx_u, footprint_dx_v, footprint_dy_u, footprint_dy_v;
+  bool coloured = false;  // false: colours of vertices are not read
+  Vectors16 colour;
+  Floats16 colour_alpha;
+};
+
+// Lane i becomes `point`; its colour is kept only if points.coloured.
+inline void set_point(Points& points, int i, const Point& point) {
+  points.position.set(i, point.position);
+  points.geometric_normal.set(i, point.geometric_normal);
+  points.normal.set(i, point.normal);
+  points.tangent.set(i, glm::vec3(point.tangent));
+  points.handedness[i] = point.tangent.w;
+  points.u[i] = point.uv.x, points.v[i] = point.uv.y;
+  points.footprint_dx_u[i] = point.footprint.dx.x, points.footprint_dx_v[i] = point.footprint.dx.y;
+  points.footprint_dy_u[i] = point.footprint.dy.x, points.footprint_dy_v[i] = point.footprint.dy.y;
+  if (!points.coloured) return;
+  points.colour.set(i, glm::vec3(point.colour));
+  points.colour_alpha[i] = point.colour.w;
+}
+
+}  // namespace delray::shading
