@@ -117,9 +117,10 @@ PointRange finite_range(const PointView<double>& points, int threads) {
 CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& range,
                          std::uint64_t seed, int threads) {
   const std::size_t n = points.size();
-  // Each round is so many times larger than all before it. In small ones the walks are long, but in
-  // large ones the curve alone would visit degenerate sets in a bad order.
-  constexpr unsigned kGrowth = 8;
+  // Each round is some times larger than all before it. In small ones the walks are long, but in
+  // large ones the curve alone would visit degenerate sets in a bad order, and the simplices at its
+  // beginning are so large that threads stand in each other's way.
+  constexpr unsigned kGrowth = 4;
   constexpr std::size_t kFirstRound = 500;
   int rounds = 1;
   for (std::size_t size = n; size > kFirstRound && rounds < 15; size /= kGrowth) ++rounds;
@@ -135,7 +136,8 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
   if (width > 0x1p+900) before = 0x1p-200;
   if (width < 0x1p-900) before = 0x1p+600;
   const glm::dvec3 low = range.low * (0.25 * before);
-  const double scale = width > 0 ? (std::ldexp(1.0, bits) - 0.5) / (width * before) : 0;
+  const double cells = std::ldexp(1.0, bits);
+  const double scale = width > 0 ? (cells - 0.5) / (width * before) : 0;
 
   const Blocks blocks(n, threads);
   Array<std::uint64_t> keys(n);  // from the highest bits: round, place, row
@@ -143,8 +145,7 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
     const glm::dvec3 p = (point_at3(points, row) * (0.25 * before) - low) * scale;
     std::array<std::uint32_t, 3> cell;
     for (int k = 0; k < 3; ++k) {
-      cell[static_cast<std::size_t>(k)] =
-          static_cast<std::uint32_t>(std::min(p[k], std::ldexp(1.0, bits) - 1));
+      cell[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(std::min(p[k], cells - 1));
     }
     // Growing rounds: the last one with probability 1 - 1 / kGrowth, and so on.
     std::uint64_t random = scramble(row + scramble(seed));
