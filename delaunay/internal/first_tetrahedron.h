@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -22,21 +23,25 @@ inline bool are_collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::d
   return flat(0, 1) && flat(1, 2) && flat(2, 0);
 }
 
-// The first four points in order that are not coplanar, positively oriented. None if all are
-// coplanar.
-inline std::optional<std::array<VertexNumber, 4>> first_tetrahedron(
-    std::span<const glm::dvec3> points) {
-  const auto n = static_cast<VertexNumber>(points.size());
+// The first four of n points in order that are not coplanar, positively oriented; point v is at(v).
+// None if all are coplanar.
+template <class At>
+std::optional<std::array<VertexNumber, 4>> first_tetrahedron(std::size_t n, const At& at) {
   VertexNumber second = 1;
-  while (second < n && points[second] == points[0]) ++second;
+  while (second < n && at(second) == at(0)) ++second;
   VertexNumber third = second + 1;
-  while (third < n && are_collinear(points[0], points[second], points[third])) ++third;
+  while (third < n && are_collinear(at(0), at(second), at(third))) ++third;
   for (VertexNumber fourth = third + 1; fourth < n; ++fourth) {
-    const int sign = orient3d(points[0], points[second], points[third], points[fourth]);
+    const int sign = orient3d(at(0), at(second), at(third), at(fourth));
     if (sign > 0) return std::array{VertexNumber{0}, second, third, fourth};
     if (sign < 0) return std::array{VertexNumber{0}, third, second, fourth};
   }
   return std::nullopt;
+}
+inline std::optional<std::array<VertexNumber, 4>> first_tetrahedron(
+    std::span<const glm::dvec3> points) {
+  return first_tetrahedron(points.size(),
+                           [&](VertexNumber v) -> const glm::dvec3& { return points[v]; });
 }
 
 inline std::uint64_t count_distinct(std::vector<glm::dvec3> points) {

@@ -20,24 +20,28 @@ inline void start_mesh(Mesh<2>& mesh, const std::array<VertexNumber, 3>& triangl
   }
 }
 
-// In slots 0 to 4. REQUIRES: the tetrahedron is positively oriented.
+// In slots 0 to 4, infinity in corner 3 of the ghosts. REQUIRES: the tetrahedron is positively
+// oriented.
 inline void start_mesh(Mesh<3>& mesh, const std::array<VertexNumber, 4>& tetrahedron) {
-  // Ghost 1 + k is the tetrahedron with infinity for corner k, and two others exchanged so that it
-  // is positively oriented where infinity lies.
-  const auto place = [](unsigned ghost, unsigned k) {
-    const unsigned low = ghost < 2 ? 2 : 0, high = low + 1;
-    return k == low ? high : k == high ? low : k;
+  // The other corners of facet k, seen from outside.
+  constexpr std::array<std::array<unsigned, 3>, 4> kFacets = {
+      {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  // Where corner k is in the ghost of facet f; the infinite vertex replaces f itself.
+  const auto place = [&](unsigned f, unsigned k) {
+    for (unsigned i = 0; i < 3; ++i) {
+      if (kFacets[f][i] == k) return i;
+    }
+    return 3U;
   };
   for (unsigned k = 0; k < 4; ++k) mesh.set_vertex(corner_of(0, k), tetrahedron[k]);
-  for (unsigned ghost = 0; ghost < 4; ++ghost) {
-    for (unsigned k = 0; k < 4; ++k) {
-      mesh.set_vertex(corner_of(1 + ghost, place(ghost, k)),
-                      k == ghost ? kInfiniteVertex : tetrahedron[k]);
+  for (unsigned f = 0; f < 4; ++f) {
+    for (unsigned i = 0; i < 3; ++i) {
+      mesh.set_vertex(corner_of(1 + f, i), tetrahedron[kFacets[f][i]]);
     }
-    mesh.link(corner_of(1 + ghost, ghost), corner_of(0, ghost));
-    for (unsigned other = 0; other < ghost; ++other) {
-      mesh.link(corner_of(1 + ghost, place(ghost, other)),
-                corner_of(1 + other, place(other, ghost)));
+    mesh.set_vertex(corner_of(1 + f, 3), kInfiniteVertex);
+    mesh.link(corner_of(1 + f, 3), corner_of(0, f));
+    for (unsigned g = 0; g < f; ++g) {
+      mesh.link(corner_of(1 + f, place(f, g)), corner_of(1 + g, place(g, f)));
     }
   }
 }
