@@ -1,0 +1,74 @@
+// Tasks that wait, in ranges.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "loadbalance/task_grid.h"
+
+namespace delray::loadbalance::internal {
+
+class TaskQueue {
+ public:
+  std::uint64_t size() const { return size_; }
+
+  void put(std::span<const TaskRange> ranges) {
+    for (const TaskRange& range : ranges) {
+      if (range.first >= range.last) continue;
+      ranges_.push_back(range);
+      size_ += range.count();
+    }
+  }
+  void clear() {
+    ranges_.clear();
+    size_ = 0;
+  }
+
+  std::optional<std::uint32_t> pop() {
+    if (size_ == 0) return std::nullopt;
+    TaskRange& front = ranges_.front();
+    const std::uint32_t task = front.first++;
+    if (front.first == front.last) ranges_.pop_front();
+    --size_;
+    return task;
+  }
+
+  // Up to `amount` tasks from the front, or from the back.
+  std::vector<TaskRange> take_front(std::uint64_t amount) {
+    std::vector<TaskRange> taken;
+    while (amount > 0 && size_ > 0) {
+      TaskRange& front = ranges_.front();
+      const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(amount, front.count()));
+      taken.push_back({front.first, front.first + count});
+      front.first += count;
+      if (front.first == front.last) ranges_.pop_front();
+      size_ -= count;
+      amount -= count;
+    }
+    return taken;
+  }
+  std::vector<TaskRange> take_back(std::uint64_t amount) {
+    std::vector<TaskRange> taken;
+    while (amount > 0 && size_ > 0) {
+      TaskRange& back = ranges_.back();
+      const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(amount, back.count()));
+      taken.push_back({back.last - count, back.last});
+      back.last -= count;
+      if (back.first == back.last) ranges_.pop_back();
+      size_ -= count;
+      amount -= count;
+    }
+    std::reverse(taken.begin(), taken.end());
+    return taken;
+  }
+
+ private:
+  std::deque<TaskRange> ranges_;  // none empty
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace delray::loadbalance::internal

@@ -1,0 +1,25 @@
+#include "loadbalance/internal/crew.h"
+#include "loadbalance/internal/initial_tasks.h"
+#include "loadbalance/internal/schedules.h"
+
+namespace delray::loadbalance::internal {
+
+std::vector<TaskRange> initial_tasks(const comm::Communicator& communicator, const TaskGrid& tasks,
+                                     const ScheduleOptions& options) {
+  if (options.initial) return *options.initial;
+  const auto begin = [&](int rank) {
+    return static_cast<std::uint32_t>(std::uint64_t{tasks.count()} *
+                                      static_cast<std::uint64_t>(rank) /
+                                      static_cast<std::uint64_t>(communicator.size()));
+  };
+  return {{begin(communicator.rank()), begin(communicator.rank() + 1)}};
+}
+
+RankReport static_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
+                           const ScheduleOptions& options, TaskFunction work) {
+  Crew crew(communicator, options, work);
+  crew.put(initial_tasks(communicator, tasks, options));
+  return crew.finish();
+}
+
+}  // namespace delray::loadbalance::internal
