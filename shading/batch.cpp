@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "shading/internal/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/batch.cpp"
 #include <hwy/foreach_target.h>

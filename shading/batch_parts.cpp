@@ -2,6 +2,8 @@
 
 #include "shading/batch.h"
 
+#include "shading/internal/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/batch_parts.cpp"
 #include <hwy/foreach_target.h>

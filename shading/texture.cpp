@@ -7,7 +7,7 @@
 
 #include "image/srgb.h"
 #include "shading/arithmetic.h"
-#include "shading/internal/decode_table.h"
+#include "shading/internal/texel_values.h"
 
 namespace delray::shading {
 namespace {
@@ -28,6 +28,12 @@ Coding make_coding(float (*decode)(std::uint8_t), std::uint8_t (*encode)(float))
 
 const Coding kSrgb = make_coding(image::decode_srgb, image::encode_srgb);
 const Coding kLinear = make_coding(image::decode_alpha, image::encode_alpha);
+
+const std::array<float, 256> kCodes = [] {
+  std::array<float, 256> codes;
+  for (int i = 0; i < 256; ++i) codes[i] = static_cast<float>(i);
+  return codes;
+}();
 
 const Coding& coding(bool srgb) { return srgb ? kSrgb : kLinear; }
 
@@ -110,15 +116,17 @@ Pair pair(float folded, int size, Wrap wrap) {
   return {first, second, weight};
 }
 
-glm::vec4 bilinear(const Texture& texture, const Coding& colours, float u, float v, int level) {
+// Filtered are the linear light of sRGB colours, and codes of 0 to 255 of all else.
+glm::vec4 bilinear(const Texture& texture, float u, float v, int level) {
   const Texture::Level& at = texture.levels[level];
   const image::Rgba8* texels = texture.texels.data() + at.first;
+  const float* colours = texel_values(texture.srgb);
+  const float* codes = texel_values(false);
   const Pair x = pair(u, at.width, texture.wrap_u);
   const Pair y = pair(v, at.height, texture.wrap_v);
   const auto texel = [&](int i, int j) {
     const image::Rgba8 t = texels[static_cast<std::size_t>(j) * at.width + i];
-    return glm::vec4(colours.decode[t.r], colours.decode[t.g], colours.decode[t.b],
-                     kLinear.decode[t.a]);
+    return glm::vec4(colours[t.r], colours[t.g], colours[t.b], codes[t.a]);
   };
   const glm::vec4 a = texel(x.first, y.first), b = texel(x.second, y.first);
   const glm::vec4 c = texel(x.first, y.second), d = texel(x.second, y.second);
@@ -127,9 +135,18 @@ glm::vec4 bilinear(const Texture& texture, const Coding& colours, float u, float
   return top + (bottom - top) * y.weight;
 }
 
+glm::vec4 filtered(const Texture& texture, const glm::vec2& uv, float level) {
+  const float u = fold(uv.x, texture.wrap_u), v = fold(uv.y, texture.wrap_v);
+  const auto base = static_cast<int>(level);
+  const float weight = level - static_cast<float>(base);
+  const glm::vec4 sharp = bilinear(texture, u, v, base);
+  if (weight == 0.0F) return sharp;
+  return sharp + (bilinear(texture, u, v, base + 1) - sharp) * weight;
+}
+
 }  // namespace
 
-const float* decode_table(bool srgb) { return coding(srgb).decode.data(); }
+const float* texel_values(bool srgb) { return srgb ? kSrgb.decode.data() : kCodes.data(); }
 
 Texture make_texture(const scenes::Texture& texture) {
   Texture result;
@@ -172,13 +189,8 @@ float mip_level(const Texture& texture, const Footprint& footprint) {
 }
 
 glm::vec4 sample(const Texture& texture, const glm::vec2& uv, float level) {
-  const Coding& colours = coding(texture.srgb);
-  const float u = fold(uv.x, texture.wrap_u), v = fold(uv.y, texture.wrap_v);
-  const auto base = static_cast<int>(level);
-  const float weight = level - static_cast<float>(base);
-  const glm::vec4 sharp = bilinear(texture, colours, u, v, base);
-  if (weight == 0.0F) return sharp;
-  return sharp + (bilinear(texture, colours, u, v, base + 1) - sharp) * weight;
+  const glm::vec4 value = filtered(texture, uv, level);
+  return texture.srgb ? glm::vec4(glm::vec3(value), value.w / 255.0F) : value / 255.0F;
 }
 
 }  // namespace delray::shading

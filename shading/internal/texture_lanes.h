@@ -8,8 +8,8 @@
 
 #include <limits>
 
-#include "shading/internal/decode_table.h"
 #include "shading/internal/lanes.h"
+#include "shading/internal/texel_values.h"
 #include "shading/texture.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,34 +54,45 @@ HWY_INLINE F mip_level(const Texture& texture, const FootprintLanes& f) {
   return hn::IfThenZeroElse(hn::Le(squared, set(1.0F)), level);
 }
 
-// The four texels around each lane's point in a level of its own, and the weights of the second
-// column and row.
+// Where the four texels around each lane's point are in a level of its own, and the weights of the
+// right column and the lower row.
 struct Corners {
-  alignas(64) std::int32_t left[kBlockPoints], right[kBlockPoints];
-  alignas(64) std::int32_t top[kBlockPoints], bottom[kBlockPoints];
-  alignas(64) std::int32_t width[kBlockPoints];
+  alignas(64) std::uint32_t top_left[kBlockPoints], top_right[kBlockPoints];
+  alignas(64) std::uint32_t bottom_left[kBlockPoints], bottom_right[kBlockPoints];
   alignas(64) float x[kBlockPoints], y[kBlockPoints];
 };
 
-HWY_INLINE void find_pair(F folded, I size, Wrap wrap, std::int32_t* first, std::int32_t* second,
-                          float* weight) {
-  const FloatTag d;
-  const IntTag di;
+struct PairLanes {
+  I first, second;
+  F weight;
+};
+
+HWY_INLINE PairLanes find_pair(F folded, I size, Wrap wrap) {
   const F x = folded * to_float(size) - set(0.5F);
   const I i = floor_to_int(x);
-  const I zero = hn::Zero(di), last = size - set(1), next = i + set(1);
+  const I zero = set(0), last = size - set(1), next = i + set(1);
   const bool repeats = wrap == Wrap::repeat;
-  hn::Store(hn::IfThenElse(hn::Lt(i, zero), repeats ? last : zero, i), di, first);
-  hn::Store(hn::IfThenElse(hn::Gt(next, last), repeats ? zero : last, next), di, second);
-  hn::Store(x - to_float(i), d, weight);
+  return {hn::IfThenElse(hn::Lt(i, zero), repeats ? last : zero, i),
+          hn::IfThenElse(hn::Gt(next, last), repeats ? zero : last, next), x - to_float(i)};
+}
+
+HWY_INLINE void store_offset(I row, I column, std::uint32_t* offset) {
+  hn::Store(hn::BitCast(hn::RebindToUnsigned<FloatTag>(), row + column),
+            hn::RebindToUnsigned<FloatTag>(), offset);
 }
 
 HWY_INLINE void find_corners(const Texture& texture, F u, F v, I level, Corners& corners) {
   const I width = hn::Max(hn::Shr(set(texture.levels[0].width), level), set(1));
   const I height = hn::Max(hn::Shr(set(texture.levels[0].height), level), set(1));
-  find_pair(u, width, texture.wrap_u, corners.left, corners.right, corners.x);
-  find_pair(v, height, texture.wrap_v, corners.top, corners.bottom, corners.y);
-  hn::Store(width, IntTag(), corners.width);
+  const PairLanes x = find_pair(u, width, texture.wrap_u);
+  const PairLanes y = find_pair(v, height, texture.wrap_v);
+  const I top = y.first * width, bottom = y.second * width;
+  store_offset(top, x.first, corners.top_left);
+  store_offset(top, x.second, corners.top_right);
+  store_offset(bottom, x.first, corners.bottom_left);
+  store_offset(bottom, x.second, corners.bottom_right);
+  hn::Store(x.weight, FloatTag(), corners.x);
+  hn::Store(y.weight, FloatTag(), corners.y);
 }
 
 // The four channels of one texel.
@@ -90,6 +101,7 @@ using Texel = glm::vec4;
 
 HWY_INLINE Texel set_texel(float x) { return Texel(x); }
 HWY_INLINE Texel make_texel(float r, float g, float b, float a) { return {r, g, b, a}; }
+HWY_INLINE Texel codes_of(const image::Rgba8& t) { return {t.r, t.g, t.b, t.a}; }
 HWY_INLINE void store(const Texel& texel, float* to) {
   for (int k = 0; k < 4; ++k) to[k] = texel[k];
 }
@@ -104,35 +116,45 @@ HWY_INLINE Texel make_texel(float r, float g, float b, float a) {
   const Texel ba = hn::OddEven(hn::Set(d, a), hn::Set(d, b));
   return hn::ConcatLowerLower(d, ba, rg);
 }
+HWY_INLINE Texel codes_of(const image::Rgba8& t) {
+  const hn::FixedTag<std::uint8_t, 4> bytes;
+  const hn::FixedTag<std::int32_t, 4> integers;
+  return hn::ConvertTo(TexelTag(), hn::PromoteTo(integers, hn::LoadU(bytes, &t.r)));
+}
 HWY_INLINE void store(Texel texel, float* to) { hn::Store(texel, TexelTag(), to); }
 #endif
 
-struct Decoding {
-  const float* colours;
-  const float* alphas;
+struct TexelValues {
+  const float *colours, *codes;  // texel_values
 };
 
-HWY_INLINE Texel decoded(const image::Rgba8& t, const Decoding& tables) {
-  return make_texel(tables.colours[t.r], tables.colours[t.g], tables.colours[t.b],
-                    tables.alphas[t.a]);
+template <bool srgb>
+HWY_INLINE Texel value(const image::Rgba8& t, const TexelValues& values) {
+  if constexpr (srgb) {
+    return make_texel(values.colours[t.r], values.colours[t.g], values.colours[t.b],
+                      values.codes[t.a]);
+  } else {
+    return codes_of(t);
+  }
 }
 
+template <bool srgb>
 HWY_INLINE Texel bilinear(const image::Rgba8* texels, const Corners& at, int k,
-                          const Decoding& tables) {
-  const auto width = static_cast<std::size_t>(at.width[k]);
-  const image::Rgba8* top = texels + static_cast<std::size_t>(at.top[k]) * width;
-  const image::Rgba8* bottom = texels + static_cast<std::size_t>(at.bottom[k]) * width;
-  const Texel a = decoded(top[at.left[k]], tables), b = decoded(top[at.right[k]], tables);
-  const Texel c = decoded(bottom[at.left[k]], tables), d = decoded(bottom[at.right[k]], tables);
+                          const TexelValues& values) {
+  const Texel a = value<srgb>(texels[at.top_left[k]], values);
+  const Texel b = value<srgb>(texels[at.top_right[k]], values);
+  const Texel c = value<srgb>(texels[at.bottom_left[k]], values);
+  const Texel d = value<srgb>(texels[at.bottom_right[k]], values);
   const Texel x = set_texel(at.x[k]), y = set_texel(at.y[k]);
   const Texel upper = a + (b - a) * x;
   const Texel lower = c + (d - c) * x;
   return upper + (lower - upper) * y;
 }
 
-// Lanes that are not active cost nothing and get zeros. One point after the other: four channels
-// fill a vector of their own, and a gather would take as long.
-inline HWY_NOINLINE TexelLanes sample(const Texture& texture, F u, F v, F level, M active) {
+// One point after the other: four channels fill a vector of their own, and a gather would take as
+// long. Lanes that are not active cost nothing and get zeros.
+template <bool srgb>
+inline HWY_NOINLINE TexelLanes sample_coded(const Texture& texture, F u, F v, F level, M active) {
   const FloatTag d;
   u = fold(u, texture.wrap_u);
   v = fold(v, texture.wrap_v);
@@ -145,22 +167,33 @@ inline HWY_NOINLINE TexelLanes sample(const Texture& texture, F u, F v, F level,
   find_corners(texture, u, v, base, sharp);
   find_corners(texture, u, v, base + set(1), blurred);
 
-  const Decoding tables{decode_table(texture.srgb), decode_table(false)};
+  const TexelValues values{texel_values(true), texel_values(false)};
   const image::Rgba8* texels = texture.texels.data();
   alignas(64) float out[4 * kBlockPoints] = {};
   for (LaneMask rest = bits_of(active, 0); rest != 0; rest &= rest - 1) {
     const int k = std::countr_zero(rest);
     const Texture::Level* at = texture.levels.data() + bases[k];
-    Texel colour = bilinear(texels + at->first, sharp, k, tables);
+    Texel colour = bilinear<srgb>(texels + at->first, sharp, k, values);
     if (weights[k] != 0.0F) {
-      const Texel other = bilinear(texels + at[1].first, blurred, k, tables);
+      const Texel other = bilinear<srgb>(texels + at[1].first, blurred, k, values);
       colour = colour + (other - colour) * set_texel(weights[k]);
     }
     store(colour, out + 4 * k);
   }
   TexelLanes result;
   hn::LoadInterleaved4(d, out, result.colour.x, result.colour.y, result.colour.z, result.alpha);
+  const F most = set(255.0F);
+  result.alpha = result.alpha / most;
+  if constexpr (!srgb) {
+    result.colour = {result.colour.x / most, result.colour.y / most, result.colour.z / most};
+  }
   return result;
+}
+
+// REQUIRES: level 0 has fewer than 2^32 texels.
+HWY_INLINE TexelLanes sample(const Texture& texture, F u, F v, F level, M active) {
+  return texture.srgb ? sample_coded<true>(texture, u, v, level, active)
+                      : sample_coded<false>(texture, u, v, level, active);
 }
 
 }  // namespace HWY_NAMESPACE
