@@ -78,11 +78,11 @@ using I = hn::Vec<Ints>;
 using F = hn::Vec<Floats>;
 using Mask = hn::Mask<Ints>;
 
-I low_half(I v) { return hn::And(v, hn::Set(Ints(), 0xFFFF)); }
-I high_half(I v) { return hn::ShiftRight<16>(v); }
+HWY_INLINE I low_half(I v) { return hn::And(v, hn::Set(Ints(), 0xFFFF)); }
+HWY_INLINE I high_half(I v) { return hn::ShiftRight<16>(v); }
 
 template <class V>
-void append(V v, hn::Mask<hn::DFromV<V>> mask, hn::TFromD<hn::DFromV<V>>* to) {
+HWY_INLINE void append(V v, hn::Mask<hn::DFromV<V>> mask, hn::TFromD<hn::DFromV<V>>* to) {
   // Whole vectors: storing some lanes of a compressed one is slow where it is one instruction.
   hn::StoreU(hn::Compress(v, mask), hn::DFromV<V>(), to);
 }
@@ -91,7 +91,7 @@ void append(V v, hn::Mask<hn::DFromV<V>> mask, hn::TFromD<hn::DFromV<V>>* to) {
 struct Boxes {
   I x0, y0, x1, y1;  // all inclusive
 };
-Boxes boxes_of(const CompactCluster& cluster, I ax, I ay, I bx, I by, I cx, I cy) {
+HWY_INLINE Boxes boxes_of(const CompactCluster& cluster, I ax, I ay, I bx, I by, I cx, I cy) {
   const Ints d;
   const auto first = [&](I a, I b, I c) {
     return hn::ShiftRight<kSubpixelBits>(
@@ -112,7 +112,7 @@ Boxes boxes_of(const CompactCluster& cluster, I ax, I ay, I bx, I by, I cx, I cy
 struct Edges {
   I value, step_x, step_y;
 };
-Edges edges_of(I px, I py, I qx, I qy, I x, I y) {
+HWY_INLINE Edges edges_of(I px, I py, I qx, I qy, I x, I y) {
   const Ints d;
   const I dx = hn::Sub(qx, px), dy = hn::Sub(qy, py);
   const I zero = hn::Zero(d);
@@ -127,7 +127,7 @@ Edges edges_of(I px, I py, I qx, I qy, I x, I y) {
 struct Slopes {
   F x, y;
 };
-Slopes slopes_of(I x1_, I y1_, I x2_, I y2_, F d0_, F d1_, F d2_) {
+HWY_INLINE Slopes slopes_of(I x1_, I y1_, I x2_, I y2_, F d0_, F d1_, F d2_) {
   const Ints d;
   const Floats df;
   const Doubles dd;

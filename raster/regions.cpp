@@ -4,6 +4,7 @@
 
 #include "parallel/parallel_for.h"
 #include "raster/internal/processor_seconds.h"
+#include "raster/internal/shade_gouraud.h"
 
 namespace delray::raster {
 
@@ -56,8 +57,12 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
         return;
       }
       std::uint64_t shaded = 0;
+      const VisibilityTile& tile = scratch.tiles.open(job.tile);
+      static thread_local GouraudTile gouraud;
       for (const geometry::Rect& r : rects)
-        shaded += shade_tile(frame, seen_triangles(), scratch.tiles.open(job.tile), r, image);
+        shaded += options.lighting == Lighting::gouraud
+                      ? gouraud.shade(frame, seen_triangles(), tile, r, image)
+                      : shade_tile(frame, seen_triangles(), tile, r, image);
       fragments.fetch_add(shaded, std::memory_order_relaxed);
     });
     if (progress != nullptr) progress->advance();

@@ -53,7 +53,7 @@ void store(const glm::vec3& colour, image::Rgba8& pixel) {
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting) {
-  FrameShading frame{screen, shader, list, {}, {}, lighting};
+  FrameShading frame{screen, shader, list, {}, {}, {}, lighting};
   frame.draws.reserve(list.draws.size());
   for (const Draw& draw : list.draws) frame.draws.push_back(make_shaded_draw(screen.view, draw));
   if (lighting == Lighting::gouraud) {
@@ -64,6 +64,7 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
       material.normal_texture = scenes::kNone;
       material.emission_texture = scenes::kNone;
     }
+    frame.untextured_batch = shading::make_batch_shader(shader, frame.untextured);
   }
   return frame;
 }
@@ -102,8 +103,9 @@ void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw
     // The same vertex is lit on the other side where a neighbour faces away.
     const glm::vec3 view = to_viewer(frame, point.position);
     const bool front = glm::dot(point.geometric_normal, view) >= 0;
+    const bool agree = glm::dot(point.normal, point.geometric_normal) >= 0;
     const std::uint64_t key = (std::uint64_t{draw} << 33) | (std::uint64_t{corners[k]} << 1) |
-                              static_cast<std::uint64_t>(front);
+                              static_cast<std::uint64_t>(front == agree);
     const std::uint64_t slot = (key * kGoldenRatio64) >> (64 - kVertexSlotBits);
     if (vertices_[slot] != key) {
       vertices_[slot] = key;
@@ -121,11 +123,21 @@ bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number,
 }
 
 template <class Colour>
+void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y,
+                 Colour& pixel) {
+  const SeenTriangle& triangle = seen.get(frame, number);
+  store(frame.lighting == Lighting::gouraud
+            ? gouraud(frame, triangle, x, y)
+            : radiance(frame, *triangle.material, point_at(triangle, x, y)),
+        pixel);
+}
+
+template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                          const geometry::Rect& rect, image::BasicImage<Colour>& image) {
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
-  const auto shade_pixel = [&](int x, int y) -> bool {
+  const auto shade_one = [&](int x, int y) -> bool {
     const int i = (y - tile_y) * kTileSize + (x - tile_x);
     const std::uint32_t number = number_of(tile.key[i]);
     const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
@@ -135,18 +147,14 @@ std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const V
       image.colour[pixel] = {};
       return false;
     }
-    const SeenTriangle& triangle = seen.get(frame, number);
-    store(frame.lighting == Lighting::gouraud
-              ? gouraud(frame, triangle, x, y)
-              : radiance(frame, *triangle.material, point_at(triangle, x, y)),
-          image.colour[pixel]);
+    shade_pixel(frame, seen, number, x, y, image.colour[pixel]);
     return true;
   };
   std::uint64_t shaded = 0;
   for (int y0 = rect.y0; y0 < rect.y1; y0 += kSquare)
     for (int x0 = rect.x0; x0 < rect.x1; x0 += kSquare)
       for (int y = y0; y < std::min(y0 + kSquare, rect.y1); ++y)
-        for (int x = x0; x < std::min(x0 + kSquare, rect.x1); ++x) shaded += shade_pixel(x, y);
+        for (int x = x0; x < std::min(x0 + kSquare, rect.x1); ++x) shaded += shade_one(x, y);
   return shaded;
 }
 
@@ -159,6 +167,10 @@ void clear_pixels(const geometry::Rect& rect, image::BasicImage<Colour>& image) 
   }
 }
 
+template void shade_pixel(const FrameShading&, SeenTriangles&, std::uint32_t, int, int,
+                          image::Rgba8&);
+template void shade_pixel(const FrameShading&, SeenTriangles&, std::uint32_t, int, int,
+                          image::RgbaF&);
 template void clear_pixels(const geometry::Rect&, image::Image8&);
 template void clear_pixels(const geometry::Rect&, image::ImageF&);
 template std::uint64_t shade_tile(const FrameShading&, SeenTriangles&, const VisibilityTile&,

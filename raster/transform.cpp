@@ -18,7 +18,7 @@ using Floats = HWY_CAPPED(float, 16);
 using Ints = hn::RebindToSigned<Floats>;
 using V = hn::Vec<Floats>;
 
-V transformed(Floats d, const glm::vec4& row, V x, V y, V z) {
+HWY_INLINE V transformed(Floats d, const glm::vec4& row, V x, V y, V z) {
   const V xy = hn::Add(hn::Mul(hn::Set(d, row.x), x), hn::Mul(hn::Set(d, row.y), y));
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, row.z), z)), hn::Set(d, row.w));
 }

@@ -30,13 +30,14 @@ constexpr int kRefreshAfter = 64;
 enum class Inside : bool { tested, certain };
 
 // The lesser of the keys in memory and those of `codes` and `number` stays.
-void keep_least_of_half(hn::Vec<KeyCodes> codes, hn::Vec<Keys> number, std::int64_t* keys) {
+HWY_INLINE void keep_least_of_half(hn::Vec<KeyCodes> codes, hn::Vec<Keys> number,
+                                   std::int64_t* keys) {
   const Keys d;
   const hn::RebindToUnsigned<Keys> du;
   const auto depth = hn::BitCast(d, hn::ShiftLeft<32>(hn::PromoteTo(du, codes)));
   hn::Store(hn::Min(hn::Load(d, keys), hn::Or(depth, number)), d, keys);
 }
-void keep_least(hn::Vec<Codes> codes, hn::Vec<Keys> number, std::int64_t* keys) {
+HWY_INLINE void keep_least(hn::Vec<Codes> codes, hn::Vec<Keys> number, std::int64_t* keys) {
 #if HWY_TARGET == HWY_SCALAR
   keep_least_of_half(codes, number, keys);
 #else

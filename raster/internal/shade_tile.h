@@ -8,6 +8,7 @@
 #include "raster/internal/seen_triangle.h"
 #include "raster/internal/visibility.h"
 #include "raster/render.h"
+#include "shading/batch.h"
 
 namespace delray::raster {
 
@@ -18,6 +19,7 @@ struct FrameShading {
   const DrawList& list;
   std::vector<ShadedDraw> draws;             // of the list's draws
   std::vector<scenes::Material> untextured;  // the shader's materials without textures; for gouraud
+  shading::BatchShader untextured_batch;     // the same, for many vertices at a time
   Lighting lighting;
 };
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
@@ -48,8 +50,14 @@ class SeenTriangles {
 // Whether alpha leaves anything of the triangle at a pixel.
 bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y);
 
+// The colour of one pixel that shows the triangle.
+template <class Colour>
+void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y,
+                 Colour& pixel);
+
 // Writes colour and depth of the pixels of `rect` (of the frame, within the tile) to the image,
-// whose pixel (0, 0) is the frame's. Returns how many of them show something.
+// whose pixel (0, 0) is the frame's. Returns how many of them show something. One by one: for
+// gouraud, internal/shade_gouraud.h has a faster way to the same colours.
 template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                          const geometry::Rect& rect, image::BasicImage<Colour>& image);

@@ -1,0 +1,229 @@
+#include "raster/internal/shade_gouraud.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace delray::raster {
+namespace {
+
+// Multipliers of Fibonacci hashing (Knuth 1973, 6.4).
+constexpr std::uint32_t kGoldenRatio32 = 0x9E3779B9U;
+constexpr std::uint64_t kGoldenRatio64 = 0x9E3779B97F4A7C15U;
+
+}  // namespace
+
+GouraudTile::GouraudTile() : triangle_slots_(kTriangleSlots) {}
+
+std::uint64_t GouraudTile::find_triangles(const VisibilityTile& tile, const geometry::Rect& rect) {
+  numbers_.clear();
+  const auto index_of = [&](std::uint32_t number) -> std::uint32_t {
+    constexpr int kShift = 32 - std::bit_width(kTriangleSlots - 1);
+    std::uint32_t slot = (number * kGoldenRatio32) >> kShift;
+    while (triangle_slots_[slot].number != number) {
+      if (triangle_slots_[slot].number == kNothing) {
+        triangle_slots_[slot] = {number, static_cast<std::uint32_t>(numbers_.size())};
+        used_triangle_slots_.push_back(slot);
+        numbers_.push_back(number);
+        break;
+      }
+      slot = (slot + 1) % kTriangleSlots;
+    }
+    return triangle_slots_[slot].index;
+  };
+  std::uint64_t shown = 0;
+  const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
+  std::uint32_t last = kNothing;
+  std::uint16_t index = kNoTriangle;
+  for (int j = j0; j < j0 + rect.height(); ++j)
+    for (int i = i0; i < i0 + rect.width(); ++i) {
+      const std::uint32_t number = number_of(tile.key[j * kTileSize + i]);
+      if (number != last) {
+        last = number;
+        index = number == kNothing ? kNoTriangle : static_cast<std::uint16_t>(index_of(number));
+      }
+      index_[j * kTileSize + i] = index;
+      shown += index != kNoTriangle;
+    }
+  for (const std::uint32_t slot : used_triangle_slots_) triangle_slots_[slot].number = kNothing;
+  used_triangle_slots_.clear();
+  return shown;
+}
+
+std::uint32_t GouraudTile::vertex_of(std::uint64_t key, bool& is_new) {
+  std::uint64_t slot = (key * kGoldenRatio64) >> vertex_slot_shift_;
+  while (vertex_slots_[slot].key != key) {
+    if (vertex_slots_[slot].key == kNoVertex) {
+      is_new = true;
+      vertex_slots_[slot] = {key, static_cast<std::uint32_t>(radiances_.size())};
+      used_vertex_slots_.push_back(static_cast<std::uint32_t>(slot));
+      radiances_.emplace_back();
+      break;
+    }
+    slot = (slot + 1) & (vertex_slots_.size() - 1);
+  }
+  return vertex_slots_[slot].vertex;
+}
+
+void GouraudTile::light(const FrameShading& frame, std::size_t number) {
+  VertexBlock& block = *blocks_[number];
+  const scenes::View& view = frame.screen.view;
+  shading::Vectors16 views;
+  shading::Shaded shaded;
+  shading::directions_to(view.eye, -view.forward, block.points.position, views);
+  shading::shade(frame.untextured_batch, static_cast<std::uint32_t>(number / 2), block.points,
+                 views, shading::first_lanes(block.count), {}, shaded);
+  for (int i = 0; i < block.count; ++i) radiances_[block.vertices[i]] = shaded.colour.get(i);
+  block.count = 0;
+}
+
+// Corner k of triangle i of the block becomes `vertex`.
+void GouraudTile::add_vertex(const FrameShading& frame, std::uint32_t material, int i, int k,
+                             const scenes::Mesh& mesh, std::uint32_t vertex) {
+  const bool coloured = !mesh.colours.empty();
+  const std::size_t number = std::size_t{2} * material + static_cast<std::size_t>(coloured);
+  if (blocks_.size() <= number) blocks_.resize(number + 1);
+  if (blocks_[number] == nullptr) {
+    blocks_[number] = std::make_unique<VertexBlock>();
+    blocks_[number]->points.coloured = coloured;
+  }
+  VertexBlock& block = *blocks_[number];
+  if (block.count == 0) open_blocks_.push_back(number);
+  const int n = block.count;
+  shading::Points& points = block.points;
+  const auto copy = [&](const float(&from)[3][kBlockSize], shading::Vectors16& to) {
+    to.x[n] = from[0][i];
+    to.y[n] = from[1][i];
+    to.z[n] = from[2][i];
+  };
+  copy(geometry_.position[k], points.position);
+  copy(geometry_.geometric_normal, points.geometric_normal);
+  copy(mesh.normals.empty() ? geometry_.geometric_normal : geometry_.normal[k], points.normal);
+  if (coloured) {
+    const glm::vec4& colour = mesh.colours[mesh_corners_[i][k]];
+    points.colour.set(n, glm::vec3(colour));
+    points.colour_alpha[n] = colour.w;
+  }
+  block.vertices[n] = vertex;
+  if (++block.count < kBlockSize) return;
+  light(frame, number);
+  open_blocks_.erase(std::find(open_blocks_.begin(), open_blocks_.end(), number));
+}
+
+void GouraudTile::add_corners(const FrameShading& frame, int i, std::size_t t) {
+  const std::uint32_t draw = draw_of_lane_[i];
+  const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
+  const auto material = static_cast<std::uint32_t>(&shading::material(frame.shader, mesh.material) -
+                                                   frame.shader.materials.data());
+  if (frame.shader.materials[material].base_colour_texture != scenes::kNone) {
+    textured_[t] = 1;
+    any_textured_ = true;
+    return;
+  }
+  PixelTriangle& triangle = triangles_[t];
+  triangle.x = static_cast<float>(geometry_.x[i]);
+  triangle.y = static_cast<float>(geometry_.y[i]);
+  for (int k = 0; k < 3; ++k) {
+    triangle.a[k] = geometry_.a[k][i];
+    triangle.b[k] = geometry_.b[k][i];
+    triangle.c[k] = geometry_.c[k][i];
+    // A vertex without a normal of its own is lit as its triangle is; any other is the same for all
+    // triangles that have it on the same side of the viewer.
+    const bool own_normal = !mesh.normals.empty() && (geometry_.own_normal[k] >> i & 1) != 0;
+    bool is_new = !own_normal;
+    if (own_normal) {
+      const std::uint32_t side = ~(geometry_.front[k] ^ geometry_.agree[k]) >> i & 1;
+      corners_[t][k] = vertex_of(
+          std::uint64_t{draw} << 33 | std::uint64_t{mesh_corners_[i][k]} << 1 | side, is_new);
+    } else {
+      corners_[t][k] = static_cast<std::uint32_t>(radiances_.size());
+      radiances_.emplace_back();
+    }
+    if (is_new) add_vertex(frame, material, i, k, mesh, corners_[t][k]);
+  }
+}
+
+void GouraudTile::set_up_block(const FrameShading& frame, std::size_t first, int count) {
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t number = numbers_[first + static_cast<std::size_t>(i)];
+    const std::uint32_t draw = frame.list.cluster_of(number).draw;
+    const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
+    if (draw_of_lane_[i] != draw) block_.set_draw(i, frame.list.draws[draw], frame.draws[draw]);
+    draw_of_lane_[i] = draw;
+    mesh_corners_[i] = mesh.triangles[frame.list.triangle_of(number)];
+    block_.set_triangle(i, mesh, mesh_corners_[i]);
+  }
+  compute_geometry(frame.screen, block_, geometry_);
+  for (int i = 0; i < count; ++i) add_corners(frame, i, first + static_cast<std::size_t>(i));
+}
+
+void GouraudTile::set_up_triangles(const FrameShading& frame) {
+  triangles_.resize(numbers_.size());
+  corners_.resize(numbers_.size());
+  textured_.assign(numbers_.size(), 0);
+  any_textured_ = false;
+  radiances_.clear();
+  // At most half full.
+  const std::size_t slots = std::bit_ceil(6 * numbers_.size() + 1);
+  if (vertex_slots_.size() != slots) vertex_slots_.resize(slots);
+  vertex_slot_shift_ = 64 - std::bit_width(slots - 1);
+  std::fill(std::begin(draw_of_lane_), std::end(draw_of_lane_), kNothing);
+  for (std::size_t first = 0; first < numbers_.size(); first += kBlockSize)
+    set_up_block(frame, first,
+                 static_cast<int>(std::min<std::size_t>(kBlockSize, numbers_.size() - first)));
+  for (const std::size_t block : open_blocks_) light(frame, block);
+  open_blocks_.clear();
+  for (const std::uint32_t slot : used_vertex_slots_) vertex_slots_[slot].key = kNoVertex;
+  used_vertex_slots_.clear();
+
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    if (textured_[t] != 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const glm::vec3& radiance = radiances_[corners_[t][k]];
+      triangles_[t].red[k] = radiance.x;
+      triangles_[t].green[k] = radiance.y;
+      triangles_[t].blue[k] = radiance.z;
+    }
+  }
+}
+
+template <class Colour>
+std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
+                                 const VisibilityTile& tile, const geometry::Rect& rect,
+                                 image::BasicImage<Colour>& image) {
+  const std::uint64_t shown = find_triangles(tile, rect);
+  set_up_triangles(frame);
+  const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
+  const int width = rect.width();
+  alignas(64) std::uint16_t index[kTileSize + kBlockSize];
+  alignas(64) Colour colours[kTileSize + kBlockSize];
+  for (int j = 0; j < rect.height(); ++j) {
+    const std::uint16_t* const row = index_ + (j0 + j) * kTileSize + i0;
+    std::copy(row, row + width, index);
+    std::fill(index + width, index + width + kBlockSize, kNoTriangle);
+    if (any_textured_)
+      for (int i = 0; i < width; ++i)
+        if (index[i] != kNoTriangle && textured_[index[i]] != 0) index[i] = kNoTriangle;
+    shade_row(triangles_, index, rect.x0, rect.y0 + j, width, colours);
+    if (any_textured_)
+      for (int i = 0; i < width; ++i)
+        if (row[i] != kNoTriangle && textured_[row[i]] != 0)
+          shade_pixel(frame, seen, numbers_[row[i]], rect.x0 + i, rect.y0 + j, colours[i]);
+
+    const std::size_t first =
+        static_cast<std::size_t>(rect.y0 + j) * static_cast<std::size_t>(image.width) +
+        static_cast<std::size_t>(rect.x0);
+    std::copy(colours, colours + width, image.colour.data() + first);
+    const std::int64_t* const keys = tile.key + (j0 + j) * kTileSize + i0;
+    for (int i = 0; i < width; ++i) image.depth[first + i] = depth_of(keys[i]);
+  }
+  return shown;
+}
+
+template std::uint64_t GouraudTile::shade(const FrameShading&, SeenTriangles&,
+                                          const VisibilityTile&, const geometry::Rect&,
+                                          image::Image8&);
+template std::uint64_t GouraudTile::shade(const FrameShading&, SeenTriangles&,
+                                          const VisibilityTile&, const geometry::Rect&,
+                                          image::ImageF&);
+
+}  // namespace delray::raster

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "image/srgb.h"
+#include "raster/internal/shade_gouraud.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/shade_row.cpp"
+#include <hwy/foreach_target.h>
+// Highway's own header comes after it.
+#include <hwy/highway.h>
+
+#ifndef DELRAY_RASTER_SHADE_ROW
+#define DELRAY_RASTER_SHADE_ROW
+namespace delray::raster {
+
+// image::encode_srgb in one look-up: element i has, of bucket i, the code of its least float and,
+// shifted by 8, the lower half of the bits of the float at which the next code begins; 2^16 where
+// none does.
+inline constexpr std::size_t kSrgbBuckets = image::internal::kBuckets;
+constexpr std::array<std::int32_t, kSrgbBuckets> make_srgb_steps() {
+  std::array<std::int32_t, kSrgbBuckets> table{};
+  for (std::size_t i = 0; i < kSrgbBuckets; ++i) {
+    const std::int32_t code = image::internal::kCodeOfBucket[i];
+    const std::uint32_t bucket = image::internal::kFirstBits +
+                                 static_cast<std::uint32_t>(i << image::internal::kBucketShift);
+    const auto next = std::bit_cast<std::uint32_t>(
+        image::internal::kLeastOfCode[static_cast<std::size_t>(code) + 1]);
+    const bool within = next >> 16 == bucket >> 16;
+    table[i] = code | (within ? static_cast<std::int32_t>(next & 0xFFFF) : 0x10000) << 8;
+  }
+  return table;
+}
+static_assert(image::internal::kBucketShift == 16);
+inline constexpr std::array<std::int32_t, kSrgbBuckets> kSrgbSteps = make_srgb_steps();
+
+}  // namespace delray::raster
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raster {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = HWY_CAPPED(float, kBlockSize);
+using Ints = hn::RebindToSigned<Floats>;
+using F = hn::Vec<Floats>;
+using I = hn::Vec<Ints>;
+
+struct Colours {
+  F red, green, blue;
+};
+
+// At pixels (x, y) with the fields of PixelTriangle that field(k) gives: the arithmetic of
+// weights_at and interpolate.
+template <class Field>
+HWY_INLINE Colours interpolated(F x, F y, Field&& field) {
+  const Floats d;
+  const F zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  const F dx = hn::Sub(x, field(9)), dy = hn::Sub(y, field(10));
+  F u[3];
+  for (int k = 0; k < 3; ++k) {
+    const F plane =
+        hn::Add(hn::Add(hn::Mul(field(k), dx), hn::Mul(field(3 + k), dy)), field(6 + k));
+    u[k] = hn::IfThenElse(hn::Gt(plane, zero), plane, zero);
+  }
+  const F sum = hn::Add(hn::Add(u[0], u[1]), u[2]);
+  const auto some = hn::Gt(sum, zero);
+  const F w0 = hn::IfThenElse(some, hn::Div(u[0], sum), one);
+  const F w1 = hn::IfThenElse(some, hn::Div(u[1], sum), zero);
+  const F w2 = hn::IfThenElse(some, hn::Div(u[2], sum), zero);
+  const auto channel = [&](int first) {
+    return hn::Add(hn::Add(hn::Mul(field(first), w0), hn::Mul(field(first + 1), w1)),
+                   hn::Mul(field(first + 2), w2));
+  };
+  return {channel(11), channel(14), channel(17)};
+}
+
+// image::encode_srgb.
+HWY_INLINE I encoded(F linear) {
+  const Floats d;
+  const Ints di;
+  const F least = hn::Set(d, 0x1p-13F);
+  const auto dark = hn::Not(hn::Ge(linear, least));
+  const auto bright = hn::Ge(linear, hn::Set(d, 1.0F));
+  const F within = hn::IfThenElse(hn::Or(dark, bright), least, linear);
+  const I bits = hn::BitCast(di, within);
+  const I offset =
+      hn::Sub(bits, hn::Set(di, static_cast<std::int32_t>(image::internal::kFirstBits)));
+  const I step = hn::GatherIndex(di, kSrgbSteps.data(), hn::ShiftRight<16>(offset));
+  const I lower = hn::And(bits, hn::Set(di, 0xFFFF));
+  // A mask is -1 where it is true.
+  const auto reached = hn::Gt(hn::ShiftRight<8>(step), lower);
+  const I code = hn::Add(hn::And(step, hn::Set(di, 0xFF)),
+                         hn::IfThenElse(reached, hn::Zero(di), hn::Set(di, 1)));
+  const I bounded = hn::IfThenElse(hn::RebindMask(di, bright), hn::Set(di, 255), code);
+  return hn::IfThenElse(hn::RebindMask(di, dark), hn::Zero(di), bounded);
+}
+
+HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::Rgba8* pixels) {
+  const Ints d;
+  const I code = hn::Or(hn::Or(encoded(colours.red), hn::ShiftLeft<8>(encoded(colours.green))),
+                        hn::Or(hn::ShiftLeft<16>(encoded(colours.blue)),
+                               hn::Set(d, static_cast<std::int32_t>(0xFF000000U))));
+  hn::StoreU(hn::IfThenElseZero(shown, code), d, reinterpret_cast<std::int32_t*>(pixels));
+}
+HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::RgbaF* pixels) {
+  const Floats d;
+  const auto mask = hn::RebindMask(d, shown);
+  hn::StoreInterleaved4(
+      hn::IfThenElseZero(mask, colours.red), hn::IfThenElseZero(mask, colours.green),
+      hn::IfThenElseZero(mask, colours.blue), hn::IfThenElseZero(mask, hn::Set(d, 1.0F)), d,
+      reinterpret_cast<float*>(pixels));
+}
+
+template <class Colour>
+HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t* index, int x,
+                             int y, int count, Colour* pixels) {
+  const Floats d;
+  const Ints di;
+  const hn::Rebind<std::uint16_t, Ints> d16;
+  const auto* fields = reinterpret_cast<const float*>(triangles);
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const F row = hn::Set(d, static_cast<float>(y));
+  for (int i = 0; i < count; i += lanes) {
+    const F column = hn::ConvertTo(d, hn::Iota(di, x + i));
+    const I triangle = hn::PromoteTo(di, hn::LoadU(d16, index + i));
+    const I first = hn::Set(di, index[i]);
+    if (hn::AllTrue(di, hn::Eq(triangle, first))) {
+      if (index[i] == kNoTriangle) {
+        std::fill_n(pixels + i, lanes, Colour());
+        continue;
+      }
+      const float* const one = fields + kPixelTriangleFloats * index[i];
+      store(interpolated(column, row, [&](int k) { return hn::Set(d, one[k]); }),
+            hn::Eq(triangle, triangle), pixels + i);
+      continue;
+    }
+    const auto shown = hn::Not(hn::Eq(triangle, hn::Set(di, kNoTriangle)));
+    const I at = hn::Mul(hn::IfThenElseZero(shown, triangle), hn::Set(di, kPixelTriangleFloats));
+    store(interpolated(column, row, [&](int k) { return hn::GatherIndex(d, fields + k, at); }),
+          shown, pixels + i);
+  }
+}
+
+void shade_row8(const PixelTriangle* triangles, const std::uint16_t* index, int x, int y, int count,
+                image::Rgba8* pixels) {
+  shade_pixels(triangles, index, x, y, count, pixels);
+}
+void shade_row_float(const PixelTriangle* triangles, const std::uint16_t* index, int x, int y,
+                     int count, image::RgbaF* pixels) {
+  shade_pixels(triangles, index, x, y, count, pixels);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raster {
+
+HWY_EXPORT(shade_row8);
+HWY_EXPORT(shade_row_float);
+
+void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
+               int count, image::Rgba8* pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_row8)(triangles.data(), index, x, y, count, pixels);
+}
+void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
+               int count, image::RgbaF* pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_row_float)(triangles.data(), index, x, y, count, pixels);
+}
+
+}  // namespace delray::raster
+#endif
