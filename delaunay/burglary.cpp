@@ -13,6 +13,7 @@
 #include "delaunay/internal/insert_shaken.h"
 #include "delaunay/internal/insertion.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
@@ -34,7 +35,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
-  insert_alone(run, triangulation);
+  PointSupply supply = insert_alone(run, triangulation);
   Team team;
   ThreadWaits waits(run.parts());
   std::mutex finishing;
@@ -44,16 +45,15 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
                                      static_cast<std::uint32_t>(thread), run.parts());
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
-    const std::size_t first = run.begin(thread) + points_alone(run, thread);
-    for (auto vertex = static_cast<VertexNumber>(first); vertex < run.end(thread); ++vertex) {
+    supply.for_each(thread, [&](VertexNumber vertex) {
       team.check();
       phases.next_point();
-      if (run.is_first(vertex)) continue;
+      if (run.is_first(vertex)) return;
       const NodeNumber root =
           root_of(triangulation.dag, triangulation.orientation, run.point(vertex));
       insert_shaken(run, triangulation, root, vertex, access, suspects, phases);
       access.commit();
-    }
+    });
     const std::lock_guard alone(finishing);
     phases.finish();
     robbed |= access.has_robbed();

@@ -12,6 +12,7 @@
 #include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insert_shaken.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
@@ -22,7 +23,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<2> triangulation = run.triangulation();
-  insert_alone(run, triangulation);
+  PointSupply supply = insert_alone(run, triangulation);
   Team team;
   CurrentPoints current(run.parts());
   std::mutex finishing;
@@ -31,11 +32,10 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
     CircleAccess<kCounted> access(triangulation, team, current, static_cast<std::uint32_t>(thread));
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
-    const std::size_t first = run.begin(thread) + points_alone(run, thread);
-    for (auto vertex = static_cast<VertexNumber>(first); vertex < run.end(thread); ++vertex) {
+    supply.for_each(thread, [&](VertexNumber vertex) {
       team.check();
       phases.next_point();
-      if (run.is_first(vertex)) continue;
+      if (run.is_first(vertex)) return;
       const glm::dvec2& q = run.point(vertex);
       const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
                                       root_of(triangulation.dag, triangulation.orientation, q), q);
@@ -43,7 +43,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       access.begin(vertex);
       insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
       access.commit();
-    }
+    });
     const std::lock_guard alone(finishing);
     phases.finish();
     robbed |= access.has_robbed();

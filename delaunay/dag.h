@@ -5,198 +5,200 @@
 // reachable, and later given children, once. So any number of threads may go down the graph while
 // others insert points, and a thread that comes to a simplex too late finds its children there.
 // (The report's leaves are modified in place, and it keeps bits that say which children are leaves;
-// here the list of children says it.) Only leaves have neighbours that mean something.
+// here the list of children says it.)
+//
+// What only leaves have, neighbours and an owner, is kept apart in records that are used again:
+// they are few, and stay in the caches. A record says which node it serves, so that whoever comes
+// to it by way of a node that has been replaced meanwhile sees that.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
-#include <new>
 #include <vector>
 
-#include "delaunay/array.h"
+#include "delaunay/internal/growing_array.h"
 #include "delaunay/mesh.h"
 
 namespace delray::delaunay {
 
-using NodeNumber = std::uint32_t;  // below 2^30; corners are numbered as in a mesh
+using NodeNumber = std::uint32_t;    // below 2^30; corners are numbered as in a mesh
+using RecordNumber = std::uint32_t;  // of what a leaf has, below 2^30
 
 constexpr NodeNumber kNoNode = 0xffffffffU;
-// In place of the first child: the slot was never used, or its insertion was undone.
-constexpr NodeNumber kAbandoned = 0xfffffffeU;
+constexpr RecordNumber kNoRecord = 0xffffffffU;
+// In place of an owner: the record does not serve the node any more.
+constexpr std::uint32_t kReplaced = 0xffffffffU;
+
+// The children of a node, which have consecutive numbers; none if it is a leaf or abandoned.
+struct Children {
+  NodeNumber first = kNoNode;
+  unsigned count = 0;  // 0 or 2 to 4
+};
 
 template <int D>
 class Dag {
  public:
   static constexpr unsigned kCorners = D + 1;
-  // Slots are given to threads by so many at a time (Kohout 2004, 7.1).
-  static constexpr NodeNumber kCacheSize = 512;
+  // Nodes, and records, are given to threads by so many at a time (Kohout 2004, 7.1).
+  static constexpr std::uint32_t kCacheSize = 512;
 
-  // All that going down needs. In the plane children are consecutive and take one number, 4 times
-  // the first and how many they are: four nodes in a cache line.
+  // All that going down needs: in the plane four nodes in a cache line.
   struct Node {
     std::array<VertexNumber, kCorners> vertices;
-    std::array<NodeNumber, D == 2 ? 1 : kCorners> children;
+    // 4 times the first child and one less than they are, or 4 times the record of a leaf.
+    std::uint32_t family;
   };
   // What only leaves need.
-  struct Leaf {
+  struct Record {
     std::array<CornerNumber, kCorners> neighbours;
-    std::uint32_t owner;  // 1 + the number of the thread that has locked it, or 0
+    // Low half: the node; high half: 1 + the number of the thread that has locked it, or 0.
+    alignas(8) std::uint64_t lock;
   };
-  static constexpr std::size_t kBytesPerNode = sizeof(Node) + sizeof(Leaf);
 
-  // So many nodes will be found fastest.
-  explicit Dag(std::size_t expected = 0)
-      : first_block_(static_cast<NodeNumber>(
-            std::bit_ceil(std::clamp<std::size_t>(expected, kSmallestBlock, kMaximumSimplices)))) {}
+  // So many nodes and leaves will be found fastest.
+  explicit Dag(std::size_t nodes = 0, std::size_t leaves = 0)
+      : nodes_(nodes, kMaximumSimplices), records_(leaves, kMaximumSimplices) {}
 
-  // The first of kCacheSize slots for the calling thread alone, which calls itself `maker`. Errors:
+  // The first of kCacheSize nodes for the calling thread alone, which calls itself `maker`. Errors:
   // std::bad_alloc, also for more than kMaximumSimplices nodes.
   NodeNumber allocate(std::uint32_t maker) {
-    const std::lock_guard guard(growing_);
-    if (size_ + kCacheSize > kMaximumSimplices) throw std::bad_alloc();
-    const unsigned block = block_of(size_);
-    if (bases_[block].nodes == nullptr) {
-      const std::size_t slots = std::size_t{first_block_} << block;
-      blocks_[block] = {Array<Node>(slots), Array<Leaf>(slots)};
-      bases_[block] = {blocks_[block].nodes.data(), blocks_[block].leaves.data()};
+    NodeNumber first = 0;
+    Node* ahead = nullptr;
+    {
+      const std::lock_guard guard(growing_);
+      first = nodes_.extend(kCacheSize);
+      makers_.push_back(maker);
+      ahead = nodes_.ahead_of(first, kCacheSize);
     }
-    makers_.push_back(maker);
-    const NodeNumber first = size_;
-    size_ += kCacheSize;
+    if (ahead != nullptr) atomic(ahead->family).fetch_or(0, std::memory_order_relaxed);
+    return first;
+  }
+  // The same of records.
+  RecordNumber allocate_records() {
+    RecordNumber first = 0;
+    Record* ahead = nullptr;
+    {
+      const std::lock_guard guard(growing_);
+      first = records_.extend(kCacheSize);
+      ahead = records_.ahead_of(first, kCacheSize);
+    }
+    if (ahead != nullptr) atomic(ahead->lock).fetch_or(0, std::memory_order_relaxed);
     return first;
   }
 
   // Slots that were handed out. REQUIRES for this and the next three: no thread inserts.
-  NodeNumber size() const { return size_; }
+  NodeNumber size() const { return nodes_.size(); }
   // Whether a slot holds a simplex of the triangulation.
-  bool is_live(NodeNumber node) const { return this->node(node).children[0] == kNoNode; }
+  bool is_live(NodeNumber node) const { return (nodes_[node].family & 3) == 0; }
   bool is_ghost(NodeNumber node) const {
     bool ghost = false;
-    for (const VertexNumber vertex : this->node(node).vertices) ghost |= vertex == kInfiniteVertex;
+    for (const VertexNumber vertex : nodes_[node].vertices) ghost |= vertex == kInfiniteVertex;
     return ghost;
+  }
+  // Bytes of all nodes and records.
+  std::size_t bytes() const {
+    return nodes_.size() * sizeof(Node) + records_.size() * sizeof(Record);
   }
 
   std::uint32_t maker(NodeNumber node) const { return makers_[node / kCacheSize]; }
 
   VertexNumber vertex(CornerNumber corner) const {
-    return node(simplex_of(corner)).vertices[corner & 3];
+    return nodes_[simplex_of(corner)].vertices[corner & 3];
   }
-  // Makes a slot a leaf. REQUIRES: it is the caller's alone.
+  // Makes a slot a leaf. REQUIRES: it and the record are the caller's alone.
   void set_leaf(NodeNumber node, const std::array<VertexNumber, kCorners>& vertices,
-                std::uint32_t owner) {
-    Node& slot = this->node(node);
-    slot.vertices = vertices;
-    slot.children.fill(kNoNode);
-    set_owner(node, owner);
+                RecordNumber record, std::uint32_t owner) {
+    atomic(records_[record].lock).store(lock_of(node, owner), std::memory_order_release);
+    nodes_[node].vertices = vertices;
+    atomic(nodes_[node].family).store(record << 2, std::memory_order_release);
   }
 
+  // That of a leaf, else kNoRecord.
+  RecordNumber record_if_leaf(NodeNumber node) const {
+    const std::uint32_t family = family_of(node);
+    return (family & 3) == 0 ? family >> 2 : kNoRecord;
+  }
+  // REQUIRES for these three: the node is a leaf, and will be for now.
+  RecordNumber record_of(NodeNumber leaf) const {
+    const std::uint32_t family = family_of(leaf);
+    assert((family & 3) == 0);
+    return family >> 2;
+  }
   CornerNumber neighbour(CornerNumber corner) const {
-    return atomic(leaf(simplex_of(corner)).neighbours[corner & 3]).load(std::memory_order_acquire);
+    return atomic(records_[record_of(simplex_of(corner))].neighbours[corner & 3])
+        .load(std::memory_order_acquire);
   }
   void set_neighbour(CornerNumber corner, CornerNumber beyond) {
-    atomic(leaf(simplex_of(corner)).neighbours[corner & 3])
+    atomic(records_[record_of(simplex_of(corner))].neighbours[corner & 3])
         .store(beyond, std::memory_order_release);
   }
 
-  // Child k, or kNoNode. The first is written last, so whoever sees it sees the others.
-  NodeNumber child(NodeNumber node, unsigned k) const {
-    if constexpr (D == 2) {
-      const NodeNumber family =
-          atomic(this->node(node).children[0]).load(std::memory_order_acquire);
-      if (family >= kAbandoned) return k == 0 ? family : kNoNode;
-      return k < (family & 3) ? (family >> 2) + k : kNoNode;
-    } else {
-      return atomic(this->node(node).children[k]).load(std::memory_order_acquire);
-    }
+  Children children(NodeNumber node) const {
+    const std::uint32_t family = family_of(node);
+    if ((family & 3) == 0 || family == kAbandoned) return {};
+    return {family >> 2, (family & 3) + 1};
   }
-  bool is_leaf(NodeNumber node) const { return child(node, 0) == kNoNode; }
-  // REQUIRES: in the plane, children with consecutive numbers.
-  void set_children(NodeNumber node, const std::array<NodeNumber, kCorners>& children) {
-    Node& slot = this->node(node);
-    if constexpr (D == 2) {
-      const NodeNumber count = children[2] == kNoNode ? 2 : 3;
-      assert(children[1] == children[0] + 1 && (count == 2 || children[2] == children[0] + 2));
-      atomic(slot.children[0]).store(children[0] << 2 | count, std::memory_order_release);
-    } else {
-      for (unsigned k = kCorners; k-- > 0;) {
-        atomic(slot.children[k]).store(children[k], std::memory_order_release);
-      }
-    }
+  bool is_leaf(NodeNumber node) const { return (family_of(node) & 3) == 0; }
+  bool is_abandoned(NodeNumber node) const { return family_of(node) == kAbandoned; }
+  // The leaf's record has no node any more. REQUIRES: consecutive numbers, then kNoNode.
+  void set_children(NodeNumber leaf, const std::array<NodeNumber, kCorners>& children) {
+    std::uint32_t last = kCorners - 1;
+    while (children[last] == kNoNode) --last;
+    assert(last > 0 && children[last] == children[0] + last);
+    atomic(nodes_[leaf].family).store(children[0] << 2 | last, std::memory_order_release);
   }
+  // The slot was never used, or its insertion was undone.
   void abandon(NodeNumber node) {
-    atomic(this->node(node).children[0]).store(kAbandoned, std::memory_order_release);
+    atomic(nodes_[node].family).store(kAbandoned, std::memory_order_release);
   }
 
-  std::uint32_t owner(NodeNumber node) const {
-    return atomic(leaf(node).owner).load(std::memory_order_acquire);
+  // 1 + the number of the thread that has locked what is or was the record of a node, 0, or
+  // kReplaced.
+  std::uint32_t owner(NodeNumber node, RecordNumber record) const {
+    return owner_in(atomic(records_[record].lock).load(std::memory_order_acquire), node);
   }
-  void set_owner(NodeNumber node, std::uint32_t owner) {
-    atomic(leaf(node).owner).store(owner, std::memory_order_release);
-  }
-  // Makes a free node the thread's. Returns the owner before: 0 on success.
-  std::uint32_t try_lock(NodeNumber node, std::uint32_t thread) {
-    const std::atomic_ref<std::uint32_t> owner = atomic(leaf(node).owner);
+  // Makes it the thread's if it is free. Returns the owner before: 0 on success.
+  std::uint32_t try_lock(NodeNumber node, RecordNumber record, std::uint32_t thread) {
+    const std::atomic_ref<std::uint64_t> lock = atomic(records_[record].lock);
     // Mostly the thread itself is the owner, and looking is cheaper than trying.
-    std::uint32_t before = owner.load(std::memory_order_acquire);
-    if (before == 0) {
-      owner.compare_exchange_strong(before, thread, std::memory_order_acq_rel,
-                                    std::memory_order_acquire);
+    std::uint64_t before = lock.load(std::memory_order_acquire);
+    if (before == node) {
+      lock.compare_exchange_strong(before, lock_of(node, thread), std::memory_order_acq_rel,
+                                   std::memory_order_acquire);
     }
-    return before;
+    return owner_in(before, node);
+  }
+  // `node` is kNoNode if the record does not serve it any more. REQUIRES: locked by the caller.
+  void unlock(NodeNumber node, RecordNumber record) {
+    atomic(records_[record].lock).store(node, std::memory_order_release);
   }
 
  private:
-  // Blocks double in size, so that a handful of pointers leads to all nodes and none ever moves.
-  static constexpr NodeNumber kSmallestBlock = 1024;
-  static constexpr unsigned kBlocks = 21;
-  static_assert(kSmallestBlock % kCacheSize == 0);
+  static constexpr std::uint32_t kAbandoned = 0xffffffffU;  // would be children beyond the last
 
-  struct Block {
-    Array<Node> nodes;
-    Array<Leaf> leaves;
-  };
-  struct Base {
-    Node* nodes = nullptr;
-    Leaf* leaves = nullptr;
-  };
-
-  unsigned block_of(NodeNumber node) const {
-    return static_cast<unsigned>(std::bit_width(node / first_block_ + 1) - 1);
+  static std::uint64_t lock_of(NodeNumber node, std::uint32_t owner) {
+    return std::uint64_t{owner} << 32 | node;
   }
-  NodeNumber place_in(unsigned block, NodeNumber node) const {
-    return node + first_block_ - (first_block_ << block);
+  static std::uint32_t owner_in(std::uint64_t lock, NodeNumber node) {
+    return static_cast<NodeNumber>(lock) == node ? static_cast<std::uint32_t>(lock >> 32)
+                                                 : kReplaced;
   }
-  Node& node(NodeNumber node) const {
-    return node < first_block_ ? bases_[0].nodes[node] : far_node(node);
+  std::uint32_t family_of(NodeNumber node) const {
+    return atomic(nodes_[node].family).load(std::memory_order_acquire);
   }
-  Leaf& leaf(NodeNumber node) const {
-    return node < first_block_ ? bases_[0].leaves[node] : far_leaf(node);
-  }
-  // Apart, so that the rest is small enough to be inlined everywhere.
-  [[gnu::noinline]] Node& far_node(NodeNumber node) const {
-    const unsigned block = block_of(node);
-    return bases_[block].nodes[place_in(block, node)];
-  }
-  [[gnu::noinline]] Leaf& far_leaf(NodeNumber node) const {
-    const unsigned block = block_of(node);
-    return bases_[block].leaves[place_in(block, node)];
-  }
-  static std::atomic_ref<std::uint32_t> atomic(std::uint32_t& number) {
-    return std::atomic_ref<std::uint32_t>(number);
+  template <class Number>
+  static std::atomic_ref<Number> atomic(Number& number) {
+    return std::atomic_ref<Number>(number);
   }
 
   std::mutex growing_;
-  NodeNumber size_ = 0;
-  std::vector<std::uint32_t> makers_;  // of each kCacheSize slots
-  NodeNumber first_block_;
-  std::array<Base, kBlocks> bases_{};
-  std::array<Block, kBlocks> blocks_;
+  std::vector<std::uint32_t> makers_;  // of each kCacheSize nodes
+  internal::GrowingArray<Node> nodes_;
+  internal::GrowingArray<Record> records_;
 };
 
 }  // namespace delray::delaunay

@@ -18,14 +18,14 @@ NodeNumber root_of(const Dag<2>& dag, const Orientation<2>& orientation, const g
 NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNumber node,
                    const glm::dvec2& q) {
   for (;;) {
-    const NodeNumber first = dag.child(node, 0);
-    if (first == kNoNode) return node;
-    const NodeNumber second = first + 1, third = dag.child(node, 2);
+    const auto [first, count] = dag.children(node);
+    if (count == 0) return node;
+    const NodeNumber second = first + 1, third = first + 2;
     const VertexNumber a = dag.vertex(corner_of(first, 0)), b = dag.vertex(corner_of(first, 1)),
                        apex = dag.vertex(corner_of(first, 2));
     // Of what is inside the node, only the edges at the apex decide.
     const int at_b = orientation(b, apex, q);
-    if (third == kNoNode) {
+    if (count == 2) {
       node = at_b >= 0 ? first : second;
       continue;
     }

@@ -27,14 +27,13 @@ NodeNumber root_of(const Dag<3>& dag, const Orientation<3>& orientation, const g
 NodeNumber descend(const Dag<3>& dag, const Orientation<3>& orientation, NodeNumber node,
                    const glm::dvec3& q) {
   for (;;) {
-    NodeNumber best = dag.child(node, 0);
-    if (best == kNoNode) return node;
+    const auto [first, count] = dag.children(node);
+    if (count == 0) return node;
+    NodeNumber best = first;
     // Child k lacks corner k of the node, so the facet opposite to corner j of one child separates
     // it from child j. Of what contains q, one child after the other is compared with the best.
-    for (unsigned j = 1; j < 4; ++j) {
-      const NodeNumber next = dag.child(node, j);
-      if (next == kNoNode) break;
-      if (orientation.with(q, j, vertices_of(dag, best)) < 0) best = next;
+    for (unsigned j = 1; j < count; ++j) {
+      if (orientation.with(q, j, vertices_of(dag, best)) < 0) best = first + j;
     }
     node = best;
   }

@@ -54,7 +54,7 @@ void in_parts(std::size_t n, std::size_t threads, F&& f) {
 
 template <int D>
 DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t parts)
-    : options(wanted), dag_(kNodesPerPoint * input.size()) {
+    : options(wanted), dag_(kNodesPerPoint * input.size(), kLeavesPerPoint * input.size()) {
   Stopwatch watch;
   const auto threads = static_cast<std::size_t>(options.threads);
   const std::vector<Point> points = positions<D>(input);
@@ -74,13 +74,14 @@ DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t pa
 template <int D>
 void DagRun<D>::start_dag() {
   dag_.allocate(0);
-  dag_.set_leaf(0, *first_, 0);
+  const RecordNumber record = dag_.allocate_records();
+  dag_.set_leaf(0, *first_, record, 0);
   for (unsigned k = 0; k <= D; ++k) {
     // The infinite vertex lies on the other side of the facet, so two others change places.
     std::array<VertexNumber, D + 1> ghost = *first_;
     ghost[k] = kInfiniteVertex;
     std::swap(ghost[(k + 1) % (D + 1)], ghost[(k + 2) % (D + 1)]);
-    dag_.set_leaf(1 + k, ghost, 0);
+    dag_.set_leaf(1 + k, ghost, record + 1 + k, 0);
   }
   const auto corner_with = [&](NodeNumber node, VertexNumber vertex) {
     CornerNumber corner = corner_of(node, 0);
@@ -163,9 +164,9 @@ Triangulation DagRun<D>::finish() {
     options.statistics->extract += watch.lap();
     if (!is_flat()) {
       for (NodeNumber node = 0; node < dag_.size(); ++node) {
-        options.statistics->dag_nodes += dag_.child(node, 0) != kAbandoned ? 1 : 0;
+        options.statistics->dag_nodes += dag_.is_abandoned(node) ? 0 : 1;
       }
-      options.statistics->dag_node_bytes = Dag<D>::kBytesPerNode;
+      options.statistics->dag_node_bytes = dag_.bytes() / options.statistics->dag_nodes;
       options.statistics->synchronization.fragments = count_fragments(dag_);
     }
   }

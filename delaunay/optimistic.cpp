@@ -8,6 +8,7 @@
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insertion_phases.h"
 #include "delaunay/internal/node_locks.h"
+#include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
@@ -38,6 +39,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
+  PointSupply supply = run.supply();
   Team team;
   Blocking blocking(run.parts());
   std::mutex finishing;
@@ -47,11 +49,10 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
                                   options.deadlocks == "priorities");
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
-    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
-         ++vertex) {
+    supply.for_each(thread, [&](VertexNumber vertex) {
       team.check();
       phases.next_point();
-      if (run.is_first(vertex)) continue;
+      if (run.is_first(vertex)) return;
       const auto& q = run.point(vertex);
       NodeNumber node = root_of(triangulation.dag, triangulation.orientation, q);
       for (;;) {
@@ -61,7 +62,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
         suspects.clear();
       }
       access.commit();
-    }
+    });
     const std::lock_guard alone(finishing);
     phases.finish();
     if (kCounted) add(options.statistics->synchronization, access.counts());

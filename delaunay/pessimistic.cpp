@@ -7,6 +7,7 @@
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/sole_dag_access.h"
 #include "delaunay/internal/team.h"
 
@@ -19,6 +20,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
+  PointSupply supply = run.supply();
   Team team;
   std::mutex leaves;
   std::uint64_t entered = 0;
@@ -26,11 +28,10 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
     SoleDagAccess<D> access(triangulation.dag, static_cast<std::uint32_t>(thread));
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
-    for (auto vertex = static_cast<VertexNumber>(run.begin(thread)); vertex < run.end(thread);
-         ++vertex) {
+    supply.for_each(thread, [&](VertexNumber vertex) {
       team.check();
       phases.next_point();
-      if (run.is_first(vertex)) continue;
+      if (run.is_first(vertex)) return;
       const auto& q = run.point(vertex);
       NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
                                 root_of(triangulation.dag, triangulation.orientation, q), q);
@@ -39,7 +40,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       leaf = descend(triangulation.dag, triangulation.orientation, leaf, q);
       phases.located();
       insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
-    }
+    });
     const std::lock_guard alone(leaves);
     phases.finish();
   };

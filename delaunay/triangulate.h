@@ -34,7 +34,7 @@ struct Statistics {
   double legalize = 0;               // flips
   double extract = 0;                // from the mesh to the result
   std::uint64_t dag_nodes = 0;       // simplices that ever were, if the method keeps them
-  std::uint64_t dag_node_bytes = 0;  // of each of them
+  std::uint64_t dag_node_bytes = 0;  // of each of them, with its share of what few have
   Synchronization synchronization;
 };
 

@@ -4,12 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
-#include <thread>
 #include <vector>
 
 #include "delaunay/dag.h"
 #include "delaunay/internal/dag_flip.h"
-#include "delaunay/internal/node_cache.h"
+#include "delaunay/internal/held_leaves.h"
 #include "delaunay/internal/team.h"
 #include "delaunay/internal/thread_waits.h"
 #include "delaunay/triangulate.h"
@@ -31,37 +30,32 @@ class BurglarLocks {
 
   BurglarLocks(Dag<D>& dag, Team& team, ThreadWaits& waits, std::uint32_t thread,
                std::size_t threads)
-      : dag_(dag), team_(team), waits_(waits), thread_(thread), cache_(thread), robbed_(threads) {}
-  ~BurglarLocks() { cache_.abandon_rest(dag_); }
-  BurglarLocks(const BurglarLocks&) = delete;
-  BurglarLocks& operator=(const BurglarLocks&) = delete;
+      : dag_(dag), team_(team), waits_(waits), held_(dag, thread), robbed_(threads) {}
 
   // Never kRefused.
   Grant acquire(std::initializer_list<NodeNumber> nodes) {
     if (kCounted) ++counts_.lock_calls;
     for (const NodeNumber node : nodes) {
-      const std::uint32_t owner = dag_.try_lock(node, thread_ + 1);
-      if (owner == thread_ + 1 || (owner != 0 && robbed_[owner - 1])) {
+      RecordNumber record = kNoRecord;
+      const std::uint32_t owner = held_.try_lock(node, record);
+      if (owner == kReplaced) return Grant::kShaken;
+      if (owner == held_.owner() || (owner != 0 && robbed_[owner - 1])) {
         if (kCounted) ++counts_.already_locked;
         continue;
       }
       if (owner == 0) {
         if (kCounted) ++counts_.free;
-        locked_.push_back(node);
         continue;
       }
       if (kCounted) ++counts_.waits;
-      if (wait_or_rob(node)) return Grant::kShaken;
+      if (wait_or_rob(node, record)) return Grant::kShaken;
     }
     return Grant::kGranted;
   }
 
-  void reserve(NodeNumber count) { cache_.reserve(dag_, count); }
+  void reserve(NodeNumber count) { held_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
-    const NodeNumber node = cache_.take(dag_);
-    dag_.set_leaf(node, vertices, thread_ + 1);
-    locked_.push_back(node);
-    return node;
+    return held_.create(vertices);
   }
   void link(CornerNumber outside, CornerNumber inside) {
     dag_.set_neighbour(inside, outside);
@@ -72,8 +66,7 @@ class BurglarLocks {
   }
 
   void commit() {
-    for (const NodeNumber node : locked_) dag_.set_owner(node, 0);
-    locked_.clear();
+    held_.release();
     if (robs_) robbed_.assign(robbed_.size(), false);
     robs_ = false;
   }
@@ -83,30 +76,20 @@ class BurglarLocks {
   const Synchronization& counts() const { return counts_; }
 
  private:
-  // Returns whether it has waited.
-  bool wait_or_rob(NodeNumber node) {
-    std::uint32_t owner = 0;
-    if (!waits_.enter(dag_, thread_, node, owner)) {
-      robbed_[owner - 1] = robs_ = has_robbed_ = true;
-      if (kCounted) ++counts_.deadlocks;
-      if (kCounted) ++counts_.burglaries;
-      return false;
-    }
-    while (dag_.try_lock(node, thread_ + 1) != 0) {
-      std::this_thread::yield();
-      team_.check();
-    }
-    waits_.leave(thread_);
-    locked_.push_back(node);
-    return true;
+  // Returns whether it has waited, or the leaf was replaced.
+  bool wait_or_rob(NodeNumber node, RecordNumber record) {
+    const std::uint32_t owner = held_.wait(node, record, waits_, team_);
+    if (owner == 0 || owner == kReplaced) return true;
+    robbed_[owner - 1] = robs_ = has_robbed_ = true;
+    if (kCounted) ++counts_.deadlocks;
+    if (kCounted) ++counts_.burglaries;
+    return !dag_.is_leaf(node);
   }
 
   Dag<D>& dag_;
   Team& team_;
   ThreadWaits& waits_;
-  std::uint32_t thread_;
-  NodeCache<D> cache_;
-  std::vector<NodeNumber> locked_;
+  HeldLeaves<D> held_;
   std::vector<bool> robbed_;  // thread i, by this one, since its last commit
   bool robs_ = false, has_robbed_ = false;
   Synchronization counts_;

@@ -37,11 +37,8 @@ class CircleAccess {
         team_(team),
         current_(current),
         thread_(thread),
-        cache_(thread),
+        cache_(triangulation.dag, thread),
         robbed_(current.threads()) {}
-  ~CircleAccess() { cache_.abandon_rest(triangulation_.dag); }
-  CircleAccess(const CircleAccess&) = delete;
-  CircleAccess& operator=(const CircleAccess&) = delete;
 
   // To be called before the first node is acquired for a vertex.
   void begin(VertexNumber vertex) { current_.set(thread_, vertex); }
@@ -64,16 +61,16 @@ class CircleAccess {
     return Grant::kGranted;
   }
 
-  void reserve(NodeNumber count) { cache_.reserve(triangulation_.dag, count); }
+  void reserve(NodeNumber count) { cache_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, 3>& vertices) {
-    const NodeNumber node = cache_.take(triangulation_.dag);
-    triangulation_.dag.set_leaf(node, vertices, 0);
-    return node;
+    return cache_.create(vertices, 0);
   }
   void link(CornerNumber outside, CornerNumber inside) {
     triangulation_.dag.set_neighbour(inside, outside);
     triangulation_.dag.set_neighbour(outside, inside);
   }
+  // Without locks nobody knows who looks at the neighbours of the leaf, so its record stays its
+  // own.
   void retire(NodeNumber node, const std::array<NodeNumber, 3>& children) {
     triangulation_.dag.set_children(node, children);
   }

@@ -12,6 +12,7 @@
 #include "delaunay/dag.h"
 #include "delaunay/internal/dag_flip.h"
 #include "delaunay/internal/dag_flip3.h"
+#include "delaunay/internal/point_supply.h"
 #include "delaunay/plan.h"
 #include "delaunay/points.h"
 #include "delaunay/triangulate.h"
@@ -33,6 +34,12 @@ class DagRun {
   std::size_t parts() const { return begins_.size() - 1; }
   std::size_t begin(std::size_t part) const { return begins_[part]; }
   std::size_t end(std::size_t part) const { return begins_[part + 1]; }
+  // Every part for the thread of its number.
+  PointSupply supply() const {
+    PointSupply supply(parts());
+    for (std::size_t part = 0; part < parts(); ++part) supply.set(part, begin(part), end(part));
+    return supply;
+  }
   const Point& point(VertexNumber vertex) const { return points_[vertex]; }
   // Whether a point is a vertex of the first simplex.
   bool is_first(VertexNumber vertex) const {
@@ -67,6 +74,8 @@ class DagRun {
   // Three by the subdivision and two by each of three flips on average (Kohout 2004, 6.2: 6 to 10);
   // in space 54 were counted.
   static constexpr std::size_t kNodesPerPoint = D == 2 ? 10 : 56;
+  // In space some 6.8 and a few that threads keep for later.
+  static constexpr std::size_t kLeavesPerPoint = D == 2 ? 3 : 8;
 
   std::vector<Point> points_;
   std::vector<std::uint32_t> rows_;  // point i was row rows_[i], the lowest of equal ones

@@ -120,6 +120,7 @@ class Flips3 {
   // that each has lost.
   Children create(const Turned& turned, VertexNumber vertex, unsigned count) {
     Children children = {kNoSimplex, kNoSimplex, kNoSimplex, kNoSimplex};
+    access_.reserve(count);
     for (unsigned k = 0; k < count; ++k) {
       std::array<VertexNumber, 4> vertices = turned.vertices;
       vertices[k] = vertex;

@@ -9,6 +9,7 @@
 #include "delaunay/internal/dag_flip.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/sole_dag_access.h"
 
 namespace delray::delaunay::internal {
@@ -29,7 +30,7 @@ void insert_in_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, No
   phases.legalized();
 }
 
-// How many points of a part insert_alone() inserts.
+// How many points of a part insert_alone() inserts at most.
 template <int D>
 std::size_t points_alone(const DagRun<D>& run, std::size_t part) {
   // With some thousand triangles threads seldom meet; of few points most are left to the threads.
@@ -37,10 +38,11 @@ std::size_t points_alone(const DagRun<D>& run, std::size_t part) {
   return std::min((run.end(part) - run.begin(part)) / kShare, kPoints / run.parts());
 }
 
-// The first points of every part, by one thread: in a small triangulation threads would only be in
-// each other's way.
+// Inserts the first points of every part: in a small triangulation threads would only be in each
+// other's way. Returns the others.
 template <int D>
-void insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulation) {
+PointSupply insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulation) {
+  PointSupply others(run.parts());
   SoleDagAccess<D> access(triangulation.dag, 0);
   InsertionPhases phases(run.options);
   std::vector<NodeNumber> suspects;
@@ -55,8 +57,10 @@ void insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulation) {
       phases.located();
       insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
     }
+    others.set(part, end, run.end(part));
   }
   phases.finish();
+  return others;
 }
 
 }  // namespace delray::delaunay::internal

@@ -12,7 +12,7 @@
 
 #include "delaunay/dag.h"
 #include "delaunay/internal/dag_flip.h"
-#include "delaunay/internal/node_cache.h"
+#include "delaunay/internal/held_leaves.h"
 #include "delaunay/internal/team.h"
 #include "delaunay/internal/thread_waits.h"
 #include "delaunay/triangulate.h"
@@ -43,45 +43,47 @@ class NodeLocks {
         blocking_(blocking),
         thread_(thread),
         priorities_(priorities),
-        cache_(thread) {}
-  ~NodeLocks() { cache_.abandon_rest(dag_); }
-  NodeLocks(const NodeLocks&) = delete;
-  NodeLocks& operator=(const NodeLocks&) = delete;
+        held_(dag, thread) {}
 
   Grant acquire(std::initializer_list<NodeNumber> nodes) {
     if (kCounted) ++counts_.lock_calls;
     for (const NodeNumber node : nodes) {
-      const std::uint32_t owner = dag_.try_lock(node, thread_ + 1);
-      if (owner == thread_ + 1) {
+      RecordNumber record = kNoRecord;
+      std::uint32_t owner = held_.try_lock(node, record);
+      if (owner == held_.owner()) {
         if (kCounted) ++counts_.already_locked;
         continue;
       }
-      if (owner != 0) {
-        if (kCounted) ++counts_.waits;
-        if (!(priorities_ ? wait_by_priority(node) : wait_unless_deadlock(node))) {
-          if (kCounted) ++counts_.deadlocks;
-          refused_ = node;
-          refuser_ = owner;
-          return Grant::kRefused;
-        }
-      } else if (kCounted) {
-        ++counts_.free;
+      if (owner == 0) {
+        if (kCounted) ++counts_.free;
+        continue;
       }
-      locked_.push_back(node);
+      if (owner != kReplaced) {
+        if (kCounted) ++counts_.waits;
+        owner = priorities_ ? wait_by_priority(node, record)
+                            : held_.wait(node, record, blocking_.waits, team_);
+        if (owner == 0) continue;
+      }
+      if (owner != kReplaced) {
+        if (kCounted) ++counts_.deadlocks;
+        refused_ = {node, record};
+        refuser_ = owner;
+      }
+      return Grant::kRefused;
     }
     return Grant::kGranted;
   }
 
-  void reserve(NodeNumber count) { cache_.reserve(dag_, count); }
+  void reserve(NodeNumber count) { held_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
-    const NodeNumber node = cache_.take(dag_);
-    dag_.set_leaf(node, vertices, thread_ + 1);
-    locked_.push_back(node);
-    created_.push_back(node);
-    return node;
+    created_.push_back(held_.create(vertices));
+    return created_.back();
   }
   void link(CornerNumber outside, CornerNumber inside) {
-    journal_.push_back({outside, dag_.neighbour(outside)});
+    // What is undone altogether needs no journal.
+    if (!held_.is_new(simplex_of(outside))) {
+      journal_.push_back({outside, dag_.neighbour(outside)});
+    }
     dag_.set_neighbour(outside, inside);
     dag_.set_neighbour(inside, outside);
   }
@@ -91,7 +93,7 @@ class NodeLocks {
 
   void commit() {
     for (const Retired& retired : retired_) dag_.set_children(retired.node, retired.children);
-    unlock();
+    forget();
   }
   void rollback() {
     if (kCounted && !created_.empty()) ++counts_.rollbacks;
@@ -99,15 +101,15 @@ class NodeLocks {
       dag_.set_neighbour(journal_[i].corner, journal_[i].neighbour);
     }
     for (const NodeNumber node : created_) dag_.abandon(node);
-    unlock();
+    forget();
     if (priorities_) raise_priority();
     // Trying again at once would only be in the way of the thread that waits for what was just
     // unlocked. Waiting here closes no circle, since there is nothing locked.
-    while (refused_ != kNoNode && dag_.owner(refused_) == refuser_) {
+    while (refused_.node != kNoNode && dag_.owner(refused_.node, refused_.record) == refuser_) {
       std::this_thread::yield();
       team_.check();
     }
-    refused_ = kNoNode;
+    refused_ = {};
   }
 
   const Synchronization& counts() const { return counts_; }
@@ -121,23 +123,13 @@ class NodeLocks {
     std::array<NodeNumber, D + 1> children;
   };
 
-  // Waiting is short and rare: the thread yields rather than sleeps (Kohout 2004, 7.7.1).
-  bool wait_unless_deadlock(NodeNumber node) {
-    std::uint32_t owner = 0;
-    if (!blocking_.waits.enter(dag_, thread_, node, owner)) return false;
-    while (dag_.try_lock(node, thread_ + 1) != 0) {
-      std::this_thread::yield();
-      team_.check();
-    }
-    blocking_.waits.leave(thread_);
-    return true;
-  }
-  bool wait_by_priority(NodeNumber node) {
+  // Returns as HeldLeaves::wait().
+  std::uint32_t wait_by_priority(NodeNumber node, RecordNumber record) {
     const std::uint64_t own = blocking_.priorities[thread_].load(std::memory_order_relaxed);
     for (;;) {
-      const std::uint32_t owner = dag_.try_lock(node, thread_ + 1);
-      if (owner == 0) return true;
-      if (blocking_.priorities[owner - 1].load(std::memory_order_relaxed) >= own) return false;
+      const std::uint32_t owner = held_.try_again(node, record);
+      if (owner == 0 || owner == kReplaced) return owner;
+      if (blocking_.priorities[owner - 1].load(std::memory_order_relaxed) >= own) return owner;
       std::this_thread::yield();
       team_.check();
     }
@@ -151,9 +143,8 @@ class NodeLocks {
     blocking_.priorities[thread_].store(highest + 1, std::memory_order_relaxed);
   }
 
-  void unlock() {
-    for (const NodeNumber node : locked_) dag_.set_owner(node, 0);
-    locked_.clear();
+  void forget() {
+    held_.release();
     created_.clear();
     journal_.clear();
     retired_.clear();
@@ -164,10 +155,10 @@ class NodeLocks {
   Blocking& blocking_;
   std::uint32_t thread_;
   bool priorities_;
-  NodeCache<D> cache_;
-  NodeNumber refused_ = kNoNode;  // what refuser_ (1 + its number) would not give
+  HeldLeaves<D> held_;
+  HeldLeaf refused_;  // what refuser_ (1 + its number) would not give
   std::uint32_t refuser_ = 0;
-  std::vector<NodeNumber> locked_, created_;
+  std::vector<NodeNumber> created_;
   std::vector<Link> journal_;
   std::vector<Retired> retired_;
   Synchronization counts_;

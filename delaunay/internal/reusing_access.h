@@ -21,6 +21,7 @@ class ReusingAccess {
   ReusingAccess(Mesh<3>& mesh, SimplexNumber used) : mesh_(mesh), used_(used), last_(0) {}
 
   Grant acquire(std::initializer_list<SimplexNumber>) const { return Grant::kGranted; }
+  void reserve(SimplexNumber) const {}
   SimplexNumber create(const std::array<VertexNumber, 4>& vertices) {
     if (free_.empty()) {
       if (used_ == mesh_.size()) grow();

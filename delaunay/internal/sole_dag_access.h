@@ -17,25 +17,22 @@ class SoleDagAccess {
  public:
   static constexpr bool kShakes = false;
 
-  SoleDagAccess(Dag<D>& dag, std::uint32_t thread) : dag_(dag), cache_(thread) {}
-  ~SoleDagAccess() { cache_.abandon_rest(dag_); }
-  SoleDagAccess(const SoleDagAccess&) = delete;
-  SoleDagAccess& operator=(const SoleDagAccess&) = delete;
+  SoleDagAccess(Dag<D>& dag, std::uint32_t thread) : dag_(dag), cache_(dag, thread) {}
 
   Grant acquire(std::initializer_list<NodeNumber>) const { return Grant::kGranted; }
-  void reserve(NodeNumber count) { cache_.reserve(dag_, count); }
+  void reserve(NodeNumber count) { cache_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
-    const NodeNumber node = cache_.take(dag_);
-    dag_.set_leaf(node, vertices, 0);
     ++created_;
-    return node;
+    return cache_.create(vertices, 0);
   }
   void link(CornerNumber outside, CornerNumber inside) {
     dag_.set_neighbour(outside, inside);
     dag_.set_neighbour(inside, outside);
   }
   void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
+    const RecordNumber record = dag_.record_of(node);
     dag_.set_children(node, children);
+    cache_.recycle(record);
   }
   std::uint64_t created() const { return created_; }
 

@@ -9,44 +9,50 @@
 
 namespace delray::delaunay::internal {
 
+// The record is that of the node when the thread found it a leaf.
+struct HeldLeaf {
+  NodeNumber node = kNoNode;
+  RecordNumber record = kNoRecord;
+};
+
 // Threads enter before they wait and leave when they have locked the simplex, before they do
 // anything else; so what a thread holds cannot change while it is entered, and the last thread of a
 // circle to enter sees the whole of it.
 class ThreadWaits {
  public:
-  explicit ThreadWaits(std::size_t threads) : node_(threads, kNoNode) {}
+  explicit ThreadWaits(std::size_t threads) : wanted_(threads) {}
 
-  // Enters `thread` (from 0) unless its waiting for `node` would close a circle: then returns
-  // false and the owner of the node (1 + its number), which waits until `thread` unlocks.
+  // Enters `thread` (from 0) unless its waiting for `leaf` would close a circle: then returns
+  // false and the owner of the leaf (1 + its number), which waits until `thread` unlocks.
   template <int D>
-  bool enter(const Dag<D>& dag, std::uint32_t thread, NodeNumber node, std::uint32_t& owner) {
+  bool enter(const Dag<D>& dag, std::uint32_t thread, HeldLeaf leaf, std::uint32_t& owner) {
     const std::lock_guard guard(mutex_);
-    owner = dag.owner(node);
-    NodeNumber wanted = node;
-    for (std::size_t steps = 0; steps <= node_.size(); ++steps) {
-      const std::uint32_t holder = dag.owner(wanted);
-      if (holder == 0) break;
+    HeldLeaf wanted = leaf;
+    for (std::size_t steps = 0; steps <= wanted_.size(); ++steps) {
+      const std::uint32_t holder = dag.owner(wanted.node, wanted.record);
+      if (steps == 0) owner = holder;
+      if (holder == 0 || holder == kReplaced) break;
       if (holder == thread + 1) {
         if (steps == 0) break;
         return false;
       }
-      const NodeNumber next = node_[holder - 1];
+      const HeldLeaf next = wanted_[holder - 1];
       // A thread that has what it wants is about to leave.
-      if (next == kNoNode || dag.owner(next) == holder) break;
+      if (next.node == kNoNode || dag.owner(next.node, next.record) == holder) break;
       wanted = next;
     }
-    node_[thread] = node;
+    wanted_[thread] = leaf;
     return true;
   }
 
   void leave(std::uint32_t thread) {
     const std::lock_guard guard(mutex_);
-    node_[thread] = kNoNode;
+    wanted_[thread] = {};
   }
 
  private:
   std::mutex mutex_;
-  std::vector<NodeNumber> node_;  // what each thread waits for
+  std::vector<HeldLeaf> wanted_;  // what each thread waits for
 };
 
 }  // namespace delray::delaunay::internal

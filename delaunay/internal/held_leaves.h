@@ -1,0 +1,81 @@
+// The leaves that one thread has locked.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "delaunay/dag.h"
+#include "delaunay/internal/node_cache.h"
+#include "delaunay/internal/team.h"
+#include "delaunay/internal/thread_waits.h"
+
+namespace delray::delaunay::internal {
+
+// Leaves stay locked until release(), also if they are replaced meanwhile, by whomsoever: a thread
+// that waits for a leaf waits until its owner is done with everything.
+template <int D>
+class HeldLeaves {
+ public:
+  HeldLeaves(Dag<D>& dag, std::uint32_t thread)
+      : dag_(dag), owner_(thread + 1), cache_(dag, thread) {}
+
+  std::uint32_t owner() const { return owner_; }
+
+  // The same as Dag::try_lock(), and `record` is the node's.
+  std::uint32_t try_lock(NodeNumber node, RecordNumber& record) {
+    record = dag_.record_if_leaf(node);
+    return record == kNoRecord ? kReplaced : try_again(node, record);
+  }
+  std::uint32_t try_again(NodeNumber node, RecordNumber record) {
+    const std::uint32_t before = dag_.try_lock(node, record, owner_);
+    if (before == 0) held_.push_back({node, record});
+    return before;
+  }
+  // Waits unless that closes a circle. Returns as try_lock(), the owner if it must not wait.
+  // Waiting is short and rare: the thread yields rather than sleeps (Kohout 2004, 7.7.1).
+  std::uint32_t wait(NodeNumber node, RecordNumber record, ThreadWaits& waits, const Team& team) {
+    std::uint32_t before = 0;
+    if (!waits.enter(dag_, owner_ - 1, {node, record}, before)) return before;
+    for (;;) {
+      before = try_again(node, record);
+      if (before == 0 || before == kReplaced) break;
+      std::this_thread::yield();
+      team.check();
+    }
+    waits.leave(owner_ - 1);
+    return before;
+  }
+
+  void reserve(NodeNumber count) { cache_.reserve(count); }
+  NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
+    const NodeNumber node = cache_.create(vertices, owner_);
+    held_.push_back({node, dag_.record_of(node)});
+    return node;
+  }
+  // Whether a node was certainly created since the last release.
+  bool is_new(NodeNumber node) const { return cache_.is_new(node); }
+
+  // The records of what is no leaf any more will serve others.
+  void release() {
+    for (const HeldLeaf& held : held_) {
+      if (dag_.is_leaf(held.node)) {
+        dag_.unlock(held.node, held.record);
+      } else {
+        dag_.unlock(kNoNode, held.record);
+        cache_.recycle(held.record);
+      }
+    }
+    held_.clear();
+    cache_.begin_insertion();
+  }
+
+ private:
+  Dag<D>& dag_;
+  std::uint32_t owner_;
+  NodeCache<D> cache_;
+  std::vector<HeldLeaf> held_;
+};
+
+}  // namespace delray::delaunay::internal
