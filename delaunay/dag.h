@@ -112,7 +112,7 @@ class Dag {
   // Makes a slot a leaf. REQUIRES: it and the record are the caller's alone.
   void set_leaf(NodeNumber node, const std::array<VertexNumber, kCorners>& vertices,
                 RecordNumber record, std::uint32_t owner) {
-    atomic(records_[record].lock).store(lock_of(node, owner), std::memory_order_release);
+    set_owner(node, record, owner);
     nodes_[node].vertices = vertices;
     atomic(nodes_[node].family).store(record << 2, std::memory_order_release);
   }
@@ -172,9 +172,10 @@ class Dag {
     }
     return owner_in(before, node);
   }
-  // `node` is kNoNode if the record does not serve it any more. REQUIRES: locked by the caller.
-  void unlock(NodeNumber node, RecordNumber record) {
-    atomic(records_[record].lock).store(node, std::memory_order_release);
+  // `node` is kNoNode if the record does not serve it any more. REQUIRES: locked by the caller, or
+  // nobody else knows of the node.
+  void set_owner(NodeNumber node, RecordNumber record, std::uint32_t owner) {
+    atomic(records_[record].lock).store(lock_of(node, owner), std::memory_order_release);
   }
 
  private:

@@ -15,7 +15,7 @@
 
 namespace delray::delaunay::internal {
 
-// Simplices stay locked until commit(), but children are published at once: nothing is ever undone.
+// Simplices stay locked until commit(), but nothing is ever undone.
 //
 // A thread whose waiting would close a circle breaks into the simplices of the thread that it would
 // wait for, until its own commit(). Nobody else uses them meanwhile: their owner waits for a
@@ -62,11 +62,11 @@ class BurglarLocks {
     dag_.set_neighbour(outside, inside);
   }
   void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
-    dag_.set_children(node, children);
+    held_.retire(node, children);
   }
 
   void commit() {
-    held_.release();
+    held_.commit();
     if (robs_) robbed_.assign(robbed_.size(), false);
     robs_ = false;
   }
@@ -78,6 +78,7 @@ class BurglarLocks {
  private:
   // Returns whether it has waited, or the leaf was replaced.
   bool wait_or_rob(NodeNumber node, RecordNumber record) {
+    held_.show();
     const std::uint32_t owner = held_.wait(node, record, waits_, team_);
     if (owner == 0 || owner == kReplaced) return true;
     robbed_[owner - 1] = robs_ = has_robbed_ = true;

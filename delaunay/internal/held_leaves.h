@@ -13,8 +13,9 @@
 
 namespace delray::delaunay::internal {
 
-// Leaves stay locked until release(), also if they are replaced meanwhile, by whomsoever: a thread
-// that waits for a leaf waits until its owner is done with everything.
+// Leaves stay locked until commit() or undo(), also if they are replaced meanwhile, by whomsoever:
+// a thread that waits for a leaf waits until its owner is done with everything. What the thread
+// creates meanwhile nobody else gets to see before commit() or show(): it needs no locks.
 template <int D>
 class HeldLeaves {
  public:
@@ -25,6 +26,7 @@ class HeldLeaves {
 
   // The same as Dag::try_lock(), and `record` is the node's.
   std::uint32_t try_lock(NodeNumber node, RecordNumber& record) {
+    if (cache_.is_new(node)) return owner_;
     record = dag_.record_if_leaf(node);
     return record == kNoRecord ? kReplaced : try_again(node, record);
   }
@@ -50,32 +52,69 @@ class HeldLeaves {
 
   void reserve(NodeNumber count) { cache_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
-    const NodeNumber node = cache_.create(vertices, owner_);
-    held_.push_back({node, dag_.record_of(node)});
-    return node;
+    return cache_.create(vertices, 0);
   }
-  // Whether a node was certainly created since the last release.
   bool is_new(NodeNumber node) const { return cache_.is_new(node); }
+  // REQUIRES: locked or new.
+  void retire(NodeNumber leaf, const std::array<NodeNumber, D + 1>& children) {
+    retired_.push_back({leaf, children});
+  }
+
+  // Lets others see all that was done, though it stays locked.
+  void show() {
+    cache_.for_each_new([&](NodeNumber node) {
+      const RecordNumber record = dag_.record_of(node);
+      dag_.set_owner(node, record, owner_);
+      held_.push_back({node, record});
+    });
+    for (const Retired& retired : retired_) dag_.set_children(retired.leaf, retired.children);
+    retired_.clear();
+    cache_.forget_new();
+  }
+  void commit() {
+    for (const Retired& retired : retired_) {
+      const RecordNumber record = dag_.record_of(retired.leaf);
+      dag_.set_children(retired.leaf, retired.children);
+      if (cache_.is_new(retired.leaf)) cache_.recycle(record);
+    }
+    release();
+  }
+  // As if nothing had been created or retired. REQUIRES: nothing was shown.
+  void undo() {
+    cache_.for_each_new([&](NodeNumber node) {
+      const RecordNumber record = dag_.record_of(node);
+      dag_.abandon(node);
+      cache_.recycle(record);
+    });
+    release();
+  }
+
+ private:
+  struct Retired {
+    NodeNumber leaf;
+    std::array<NodeNumber, D + 1> children;
+  };
 
   // The records of what is no leaf any more will serve others.
   void release() {
     for (const HeldLeaf& held : held_) {
       if (dag_.is_leaf(held.node)) {
-        dag_.unlock(held.node, held.record);
+        dag_.set_owner(held.node, held.record, 0);
       } else {
-        dag_.unlock(kNoNode, held.record);
+        dag_.set_owner(kNoNode, held.record, 0);
         cache_.recycle(held.record);
       }
     }
     held_.clear();
-    cache_.begin_insertion();
+    retired_.clear();
+    cache_.forget_new();
   }
 
- private:
   Dag<D>& dag_;
   std::uint32_t owner_;
   NodeCache<D> cache_;
-  std::vector<HeldLeaf> held_;
+  std::vector<HeldLeaf> held_;  // what others know of
+  std::vector<Retired> retired_;
 };
 
 }  // namespace delray::delaunay::internal

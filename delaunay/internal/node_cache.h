@@ -19,15 +19,32 @@ class NodeCache {
   // Makes the next `count` nodes consecutive.
   void reserve(NodeNumber count) {
     if (end_ - next_ >= count) return;
+    if (begin_ != next_) earlier_.push_back({begin_, next_});
     abandon_rest();
     next_ = dag_.allocate(maker_);
     end_ = next_ + Dag<D>::kCacheSize;
     begin_ = next_;
   }
-  // From now on nodes that exist are not new any more.
-  void begin_insertion() { begin_ = next_; }
-  // Whether a node was certainly created since then.
-  bool is_new(NodeNumber node) const { return node >= begin_ && node < next_; }
+  // Whether a node was created since the last call of forget_new().
+  bool is_new(NodeNumber node) const {
+    if (node >= begin_ && node < next_) return true;
+    for (const Nodes& nodes : earlier_) {
+      if (node >= nodes.first && node < nodes.last) return true;
+    }
+    return false;
+  }
+  // Calls f(node) for all these.
+  template <class F>
+  void for_each_new(F&& f) const {
+    for (const Nodes& nodes : earlier_) {
+      for (NodeNumber node = nodes.first; node < nodes.last; ++node) f(node);
+    }
+    for (NodeNumber node = begin_; node < next_; ++node) f(node);
+  }
+  void forget_new() {
+    begin_ = next_;
+    earlier_.clear();
+  }
   // A leaf. REQUIRES: reserved.
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices, std::uint32_t owner) {
     const NodeNumber node = next_++;
@@ -39,6 +56,10 @@ class NodeCache {
   void recycle(RecordNumber record) { free_.push_back(record); }
 
  private:
+  struct Nodes {
+    NodeNumber first, last;  // [first, last)
+  };
+
   RecordNumber take_record() {
     if (!free_.empty()) {
       const RecordNumber record = free_.back();
@@ -58,6 +79,7 @@ class NodeCache {
   Dag<D>& dag_;
   std::uint32_t maker_;
   NodeNumber begin_ = 0, next_ = 0, end_ = 0;
+  std::vector<Nodes> earlier_;  // new ones, apart from [begin_, next_)
   RecordNumber next_record_ = 0, end_record_ = 0;
   std::vector<RecordNumber> free_;  // the one used last comes first, and is in the cache
 };

@@ -30,8 +30,8 @@ struct Blocking {
   std::mutex raising;
 };
 
-// Simplices stay locked until commit() or rollback(). Children are published by commit(), so that
-// no other thread ever sees what is undone. kCounted: whether to count.
+// Simplices stay locked until commit() or rollback(), and no other thread ever sees what is undone.
+// kCounted: whether to count.
 template <int D, bool kCounted>
 class NodeLocks {
  public:
@@ -76,8 +76,7 @@ class NodeLocks {
 
   void reserve(NodeNumber count) { held_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
-    created_.push_back(held_.create(vertices));
-    return created_.back();
+    return held_.create(vertices);
   }
   void link(CornerNumber outside, CornerNumber inside) {
     // What is undone altogether needs no journal.
@@ -88,20 +87,20 @@ class NodeLocks {
     dag_.set_neighbour(inside, outside);
   }
   void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
-    retired_.push_back({node, children});
+    held_.retire(node, children);
   }
 
   void commit() {
-    for (const Retired& retired : retired_) dag_.set_children(retired.node, retired.children);
-    forget();
+    held_.commit();
+    journal_.clear();
   }
   void rollback() {
-    if (kCounted && !created_.empty()) ++counts_.rollbacks;
+    if (kCounted && !journal_.empty()) ++counts_.rollbacks;
     for (std::size_t i = journal_.size(); i-- > 0;) {
       dag_.set_neighbour(journal_[i].corner, journal_[i].neighbour);
     }
-    for (const NodeNumber node : created_) dag_.abandon(node);
-    forget();
+    journal_.clear();
+    held_.undo();
     if (priorities_) raise_priority();
     // Trying again at once would only be in the way of the thread that waits for what was just
     // unlocked. Waiting here closes no circle, since there is nothing locked.
@@ -118,11 +117,6 @@ class NodeLocks {
   struct Link {
     CornerNumber corner, neighbour;
   };
-  struct Retired {
-    NodeNumber node;
-    std::array<NodeNumber, D + 1> children;
-  };
-
   // Returns as HeldLeaves::wait().
   std::uint32_t wait_by_priority(NodeNumber node, RecordNumber record) {
     const std::uint64_t own = blocking_.priorities[thread_].load(std::memory_order_relaxed);
@@ -143,13 +137,6 @@ class NodeLocks {
     blocking_.priorities[thread_].store(highest + 1, std::memory_order_relaxed);
   }
 
-  void forget() {
-    held_.release();
-    created_.clear();
-    journal_.clear();
-    retired_.clear();
-  }
-
   Dag<D>& dag_;
   Team& team_;
   Blocking& blocking_;
@@ -158,9 +145,7 @@ class NodeLocks {
   HeldLeaves<D> held_;
   HeldLeaf refused_;  // what refuser_ (1 + its number) would not give
   std::uint32_t refuser_ = 0;
-  std::vector<NodeNumber> created_;
   std::vector<Link> journal_;
-  std::vector<Retired> retired_;
   Synchronization counts_;
 };
 
