@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "delaunay/dag_location.h"
 #include "delaunay/internal/add_counts.h"
 #include "delaunay/internal/burglar_locks.h"
 #include "delaunay/internal/dag_run.h"
@@ -13,6 +12,7 @@
 #include "delaunay/internal/insert_shaken.h"
 #include "delaunay/internal/insertion.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/leaf_search.h"
 #include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/team.h"
 
@@ -43,15 +43,15 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   const auto work = [&](std::size_t thread) {
     BurglarLocks<D, kCounted> access(triangulation.dag, team, waits,
                                      static_cast<std::uint32_t>(thread), run.parts());
+    LeafSearch<D> search(triangulation, options.location);
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
     supply.for_each(thread, [&](VertexNumber vertex) {
       team.check();
       phases.next_point();
       if (run.is_first(vertex)) return;
-      const NodeNumber root =
-          root_of(triangulation.dag, triangulation.orientation, run.point(vertex));
-      insert_shaken(run, triangulation, root, vertex, access, suspects, phases);
+      const NodeNumber leaf = search.find(run.point(vertex));
+      insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
       access.commit();
     });
     const std::lock_guard alone(finishing);

@@ -30,6 +30,7 @@ using RecordNumber = std::uint32_t;  // of what a leaf has, below 2^30
 
 constexpr NodeNumber kNoNode = 0xffffffffU;
 constexpr RecordNumber kNoRecord = 0xffffffffU;
+constexpr CornerNumber kNoCorner = 0xffffffffU;
 // In place of an owner: the record does not serve the node any more.
 constexpr std::uint32_t kReplaced = 0xffffffffU;
 
@@ -113,6 +114,10 @@ class Dag {
   void set_leaf(NodeNumber node, const std::array<VertexNumber, kCorners>& vertices,
                 RecordNumber record, std::uint32_t owner) {
     set_owner(node, record, owner);
+    // Who walks by may look at them before they are known.
+    for (CornerNumber& neighbour : records_[record].neighbours) {
+      atomic(neighbour).store(kNoCorner, std::memory_order_release);
+    }
     nodes_[node].vertices = vertices;
     atomic(nodes_[node].family).store(record << 2, std::memory_order_release);
   }
@@ -135,6 +140,18 @@ class Dag {
   void set_neighbour(CornerNumber corner, CornerNumber beyond) {
     atomic(records_[record_of(simplex_of(corner))].neighbours[corner & 3])
         .store(beyond, std::memory_order_release);
+  }
+
+  // The same of what may be no leaf any more, or become none meanwhile, or not be complete:
+  // kNoCorner then, or its neighbour at some time.
+  CornerNumber neighbour_if_leaf(CornerNumber corner) const {
+    const NodeNumber node = simplex_of(corner);
+    const RecordNumber record = record_if_leaf(node);
+    if (record == kNoRecord) return kNoCorner;
+    const CornerNumber beyond =
+        atomic(records_[record].neighbours[corner & 3]).load(std::memory_order_acquire);
+    // Whoever takes a record for another node says so before it writes neighbours.
+    return owner(node, record) == kReplaced ? kNoCorner : beyond;
   }
 
   Children children(NodeNumber node) const {

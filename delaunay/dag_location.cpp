@@ -1,5 +1,7 @@
 #include "delaunay/dag_location.h"
 
+#include "delaunay/internal/leaf_walk.h"
+
 namespace delray::delaunay {
 
 NodeNumber root_of(const Dag<2>& dag, const Orientation<2>& orientation, const glm::dvec2& q) {
@@ -36,6 +38,14 @@ NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNum
     const VertexNumber c = dag.vertex(corner_of(second, 1));
     node = at_b <= 0 && orientation(c, apex, q) >= 0 ? second : third;
   }
+}
+
+NodeNumber walk_to(const Dag<2>& dag, const Orientation<2>& orientation, NodeNumber start,
+                   const glm::dvec2& q) {
+  return internal::walk_over_leaves(dag, start, [&](NodeNumber node, unsigned k) {
+    const CornerNumber corner = corner_of(node, k);
+    return orientation(dag.vertex(next_corner(corner)), dag.vertex(previous_corner(corner)), q) < 0;
+  });
 }
 
 }  // namespace delray::delaunay

@@ -27,4 +27,12 @@ NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNum
 NodeNumber descend(const Dag<3>& dag, const Orientation<3>& orientation, NodeNumber node,
                    const glm::dvec3& q);
 
+// A leaf that contained q when it was read, found by walking from a leaf below `start` over edges
+// or facets that q lies beyond (Devillers, Pion, Teillaud 2002); or kNoNode if the way was long, or
+// lost in what other threads are doing. O(1) for a start nearby.
+NodeNumber walk_to(const Dag<2>& dag, const Orientation<2>& orientation, NodeNumber start,
+                   const glm::dvec2& q);
+NodeNumber walk_to(const Dag<3>& dag, const Orientation<3>& orientation, NodeNumber start,
+                   const glm::dvec3& q);
+
 }  // namespace delray::delaunay

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "delaunay/dag_location.h"
+#include "delaunay/internal/leaf_walk.h"
 #include "delaunay/internal/orientation3.h"
 
 namespace delray::delaunay {
@@ -37,6 +38,13 @@ NodeNumber descend(const Dag<3>& dag, const Orientation<3>& orientation, NodeNum
     }
     node = best;
   }
+}
+
+NodeNumber walk_to(const Dag<3>& dag, const Orientation<3>& orientation, NodeNumber start,
+                   const glm::dvec3& q) {
+  return internal::walk_over_leaves(dag, start, [&](NodeNumber node, unsigned k) {
+    return orientation.with(q, k, vertices_of(dag, node)) < 0;
+  });
 }
 
 }  // namespace delray::delaunay

@@ -102,7 +102,7 @@ std::span<const Method> methods() {
       {.name = "optimistic",
        .description = "threads lock the simplices that they need and undo what cannot go on",
        .dims = {2, 3},
-       .locations = {"dag"},
+       .locations = {"walk", "dag"},
        .splits = all_splits,
        .orders = {"brio", "random"},
        .deadlocks = {"detection", "priorities"},
@@ -111,7 +111,7 @@ std::span<const Method> methods() {
        .description = "as optimistic, but instead of undoing its work a thread uses what a waiting "
                       "thread has locked",
        .dims = {2, 3},
-       .locations = {"dag"},
+       .locations = {"walk", "dag"},
        .splits = all_splits,
        .orders = {"brio", "random"},
        .triangulate = internal::insert_by_burglary},

@@ -3,10 +3,10 @@
 #include <mutex>
 #include <vector>
 
-#include "delaunay/dag_location.h"
 #include "delaunay/internal/add_counts.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/leaf_search.h"
 #include "delaunay/internal/node_locks.h"
 #include "delaunay/internal/point_supply.h"
 #include "delaunay/internal/team.h"
@@ -47,6 +47,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
     NodeLocks<D, kCounted> access(triangulation.dag, team, blocking,
                                   static_cast<std::uint32_t>(thread),
                                   options.deadlocks == "priorities");
+    LeafSearch<D> search(triangulation, options.location);
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
     supply.for_each(thread, [&](VertexNumber vertex) {
@@ -54,12 +55,11 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       phases.next_point();
       if (run.is_first(vertex)) return;
       const auto& q = run.point(vertex);
-      NodeNumber node = root_of(triangulation.dag, triangulation.orientation, q);
-      for (;;) {
-        node = descend(triangulation.dag, triangulation.orientation, node, q);
-        if (insert(run, triangulation, node, vertex, access, suspects, phases)) break;
+      NodeNumber node = search.find(q);
+      while (!insert(run, triangulation, node, vertex, access, suspects, phases)) {
         access.rollback();
         suspects.clear();
+        node = search.find_below(node, q);
       }
       access.commit();
     });

@@ -15,7 +15,7 @@ namespace delray::delaunay::internal {
 
 // Leaves stay locked until commit() or undo(), also if they are replaced meanwhile, by whomsoever:
 // a thread that waits for a leaf waits until its owner is done with everything. What the thread
-// creates meanwhile nobody else gets to see before commit() or show(): it needs no locks.
+// creates meanwhile is locked too, since others may walk by.
 template <int D>
 class HeldLeaves {
  public:
@@ -52,7 +52,9 @@ class HeldLeaves {
 
   void reserve(NodeNumber count) { cache_.reserve(count); }
   NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
-    return cache_.create(vertices, 0);
+    const NodeNumber node = cache_.create(vertices, owner_);
+    created_.push_back({node, dag_.record_of(node)});
+    return node;
   }
   bool is_new(NodeNumber node) const { return cache_.is_new(node); }
   // REQUIRES: locked or new.
@@ -62,30 +64,19 @@ class HeldLeaves {
 
   // Lets others see all that was done, though it stays locked.
   void show() {
-    cache_.for_each_new([&](NodeNumber node) {
-      const RecordNumber record = dag_.record_of(node);
-      dag_.set_owner(node, record, owner_);
-      held_.push_back({node, record});
-    });
+    held_.insert(held_.end(), created_.begin(), created_.end());
+    created_.clear();
     for (const Retired& retired : retired_) dag_.set_children(retired.leaf, retired.children);
     retired_.clear();
     cache_.forget_new();
   }
   void commit() {
-    for (const Retired& retired : retired_) {
-      const RecordNumber record = dag_.record_of(retired.leaf);
-      dag_.set_children(retired.leaf, retired.children);
-      if (cache_.is_new(retired.leaf)) cache_.recycle(record);
-    }
+    for (const Retired& retired : retired_) dag_.set_children(retired.leaf, retired.children);
     release();
   }
   // As if nothing had been created or retired. REQUIRES: nothing was shown.
   void undo() {
-    cache_.for_each_new([&](NodeNumber node) {
-      const RecordNumber record = dag_.record_of(node);
-      dag_.abandon(node);
-      cache_.recycle(record);
-    });
+    for (const HeldLeaf& created : created_) dag_.abandon(created.node);
     release();
   }
 
@@ -96,16 +87,19 @@ class HeldLeaves {
   };
 
   // The records of what is no leaf any more will serve others.
-  void release() {
-    for (const HeldLeaf& held : held_) {
-      if (dag_.is_leaf(held.node)) {
-        dag_.set_owner(held.node, held.record, 0);
-      } else {
-        dag_.set_owner(kNoNode, held.record, 0);
-        cache_.recycle(held.record);
-      }
+  void release(const HeldLeaf& leaf) {
+    if (dag_.is_leaf(leaf.node)) {
+      dag_.set_owner(leaf.node, leaf.record, 0);
+    } else {
+      dag_.set_owner(kNoNode, leaf.record, 0);
+      cache_.recycle(leaf.record);
     }
+  }
+  void release() {
+    for (const HeldLeaf& held : held_) release(held);
+    for (const HeldLeaf& created : created_) release(created);
     held_.clear();
+    created_.clear();
     retired_.clear();
     cache_.forget_new();
   }
@@ -113,7 +107,7 @@ class HeldLeaves {
   Dag<D>& dag_;
   std::uint32_t owner_;
   NodeCache<D> cache_;
-  std::vector<HeldLeaf> held_;  // what others know of
+  std::vector<HeldLeaf> held_, created_;
   std::vector<Retired> retired_;
 };
 

@@ -33,14 +33,6 @@ class NodeCache {
     }
     return false;
   }
-  // Calls f(node) for all these.
-  template <class F>
-  void for_each_new(F&& f) const {
-    for (const Nodes& nodes : earlier_) {
-      for (NodeNumber node = nodes.first; node < nodes.last; ++node) f(node);
-    }
-    for (NodeNumber node = begin_; node < next_; ++node) f(node);
-  }
   void forget_new() {
     begin_ = next_;
     earlier_.clear();
