@@ -54,13 +54,14 @@ HWY_INLINE void shade_lit(const BatchShader& shader, const scenes::Material& mat
   F3 sum = surface.emission;
   if (!scene.environment.black) {
     const Reflectance mirrored = specular_albedo(lobes, clamp01(cosine));
-    sum = sum + ambient_diffuse(scene.environment, lobes, mirrored, surface.normal);
-    sum = sum + ambient_specular(scene, lobes, mirrored, surface.normal, view, cosine, active);
+    sum = sum + ambient_diffuse(scene.environment, lobes.diffuse, mirrored, surface.normal);
+    sum = sum +
+          ambient_specular(scene, lobes.roughness, mirrored, surface.normal, view, cosine, active);
     const float transmission = shading::clamp01(material.transmission);
     if (transmission > 0.0F) {
       const F share = set(transmission) * (set(1.0F) - clamp01(surface.metallic));
-      sum = sum +
-            ambient_transmitted(scene, lobes, mirrored, surface.base_colour, share, view, active);
+      sum = sum + ambient_transmitted(scene, lobes.roughness, mirrored, surface.base_colour, share,
+                                      view, active);
     }
   }
   sum = sum + direct(shader, lobes, load(points.position, i), surface.normal, view, cosine, i,

@@ -33,6 +33,13 @@ void shade(const BatchShader& shader, std::uint32_t material, const Points& poin
            const Vectors16& views, LaneMask lanes, std::span<const Vectors16> visibility,
            Shaded& shaded);
 
+// Surface::alpha alone, as coverage() gives it. Reads colours' alpha, uv and footprints of points.
+void coverage(const BatchShader& shader, std::uint32_t material, const Points& points,
+              LaneMask lanes, Floats16& alpha);
+
+// A texture at the points' uv and footprints.
+void sample(const Texture& texture, const Points& points, LaneMask lanes, Shaded& texels);
+
 // In parts, for renderers that send rays in between. What Surface and Lobes say of one point; lanes
 // may belong to different materials, each evaluated with a mask of its own.
 struct Surfaces {
@@ -45,6 +52,7 @@ struct Surfaces {
   Vectors16 emission;
   Vectors16 diffuse, entering, specular;  // of Lobes, as the next three
   Floats16 grazing, lobe_alpha, lobe_roughness;
+  Vectors16 mirrored;  // specular_albedo towards the viewer; unset if the environment is black
 };
 
 void evaluate(const BatchShader& shader, std::uint32_t material, const Points& points,

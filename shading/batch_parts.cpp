@@ -19,17 +19,23 @@ namespace HWY_NAMESPACE {
 
 void evaluate_block(const BatchShader& shader, std::uint32_t number, const Points& points,
                     const Vectors16& views, LaneMask mask, Surfaces& out) {
-  const scenes::Material& material = shader.material(number).material;
+  const BatchMaterial& constants = shader.material(number);
+  const scenes::Material& material = constants.material;
+  const bool varying =
+      (points.coloured ? constants.coloured : constants.plain) == BatchMaterial::Specular::varying;
   for (int i = 0; i < kBlockPoints; i += lanes()) {
     const M active = mask_of(mask, i);
     if (hn::AllFalse(FloatTag(), active)) continue;
-    const SurfaceLanes s = evaluate(shader, material, points, load(views, i), i, active);
+    const F3 view = load(views, i);
+    const SurfaceLanes s = evaluate(shader, material, points, view, i, active);
     store(load(points.position, i), active, i, out.position);
     store(s.geometric_normal, active, i, out.geometric_normal);
     store(s.normal, active, i, out.normal);
     const IntTag di;
-    hn::BlendedStore(hn::VecFromMask(di, hn::RebindMask(di, s.front)), hn::RebindMask(di, active),
-                     di, out.front + i);
+    hn::Store(
+        hn::IfThenElse(hn::RebindMask(di, active), hn::VecFromMask(di, hn::RebindMask(di, s.front)),
+                       hn::Load(di, out.front + i)),
+        di, out.front + i);
     store(s.base_colour, active, i, out.base_colour);
     store(s.alpha, active, i, out.alpha);
     store(s.metallic, active, i, out.metallic);
@@ -37,13 +43,17 @@ void evaluate_block(const BatchShader& shader, std::uint32_t number, const Point
     store(set(material.transmission), active, i, out.transmission);
     store(set(material.ior), active, i, out.ior);
     store(s.emission, active, i, out.emission);
-    const VaryingLobes l = varying_lobes(material, s);
+    const VaryingLobes l = varying ? varying_lobes(material, s) : constant_lobes(constants, s);
     store(l.diffuse, active, i, out.diffuse);
     store(l.entering, active, i, out.entering);
     store(l.specular, active, i, out.specular);
     store(l.grazing, active, i, out.grazing);
     store(l.alpha, active, i, out.lobe_alpha);
     store(l.roughness, active, i, out.lobe_roughness);
+    if (shader.shader->environment.black) continue;
+    LobeLanes<Coloured> lobes = ready(l);
+    if (!varying) lobes.constant = &constants;
+    store(specular_albedo(lobes, clamp01(dot(s.normal, view))).v, active, i, out.mirrored);
   }
 }
 
@@ -54,30 +64,28 @@ HWY_INLINE LobeLanes<Coloured> loaded_lobes(const Surfaces& s, int i) {
 
 // Each term of the light from everywhere, for one vector.
 struct Diffuse {
-  static HWY_INLINE F3 of(const BatchShader& shader, const Surfaces& s, const F3&, F cosine, M,
-                          int i) {
-    const LobeLanes<Coloured> lobes = loaded_lobes(s, i);
-    return ambient_diffuse(shader.shader->environment, lobes,
-                           specular_albedo(lobes, clamp01(cosine)), load(s.normal, i));
+  static HWY_INLINE F3 of(const BatchShader& shader, const Surfaces& s, const F3&, M, int i) {
+    return ambient_diffuse(shader.shader->environment, load(s.diffuse, i),
+                           Coloured{load(s.mirrored, i)}, load(s.normal, i));
   }
 };
 struct Specular {
-  static HWY_INLINE F3 of(const BatchShader& shader, const Surfaces& s, const F3& view, F cosine,
-                          M active, int i) {
-    const LobeLanes<Coloured> lobes = loaded_lobes(s, i);
-    return ambient_specular(*shader.shader, lobes, specular_albedo(lobes, clamp01(cosine)),
-                            load(s.normal, i), view, cosine, active);
+  static HWY_INLINE F3 of(const BatchShader& shader, const Surfaces& s, const F3& view, M active,
+                          int i) {
+    const F3 normal = load(s.normal, i);
+    return ambient_specular(*shader.shader, load(s.lobe_roughness, i),
+                            Coloured{load(s.mirrored, i)}, normal, view, dot(normal, view), active);
   }
 };
 struct Transmitted {
-  static HWY_INLINE F3 of(const BatchShader& shader, const Surfaces& s, const F3& view, F cosine,
-                          M active, int i) {
+  static HWY_INLINE F3 of(const BatchShader& shader, const Surfaces& s, const F3& view, M active,
+                          int i) {
     const F share = clamp01(load(s.transmission, i)) * (set(1.0F) - clamp01(load(s.metallic, i)));
     const M some = hn::And(active, hn::Gt(share, set(0.0F)));
     if (hn::AllFalse(FloatTag(), some)) return set(glm::vec3(0.0F));
-    const LobeLanes<Coloured> lobes = loaded_lobes(s, i);
-    return ambient_transmitted(*shader.shader, lobes, specular_albedo(lobes, clamp01(cosine)),
-                               load(s.base_colour, i), share, view, some);
+    return ambient_transmitted(*shader.shader, load(s.lobe_roughness, i),
+                               Coloured{load(s.mirrored, i)}, load(s.base_colour, i), share, view,
+                               some);
   }
 };
 
@@ -87,12 +95,9 @@ HWY_INLINE void ambient(const BatchShader& shader, const Surfaces& surfaces, con
   for (int i = 0; i < kBlockPoints; i += lanes()) {
     const M active = mask_of(mask, i);
     if (hn::AllFalse(FloatTag(), active)) continue;
-    F3 colour = set(glm::vec3(0.0F));
-    if (!shader.shader->environment.black) {
-      const F3 view = load(views, i);
-      const F cosine = dot(load(surfaces.normal, i), view);
-      colour = Term::of(shader, surfaces, view, cosine, active, i);
-    }
+    const F3 colour = shader.shader->environment.black
+                          ? set(glm::vec3(0.0F))
+                          : Term::of(shader, surfaces, load(views, i), active, i);
     store(colour, active, i, colours);
   }
 }
@@ -158,6 +163,34 @@ void environment_radiance_block(const BatchShader& shader, const Vectors16& dire
   }
 }
 
+void coverage_block(const BatchShader& shader, std::uint32_t number, const Points& points,
+                    LaneMask mask, Floats16& alphas) {
+  const scenes::Material& material = shader.material(number).material;
+  for (int i = 0; i < kBlockPoints; i += lanes()) {
+    const M active = mask_of(mask, i);
+    if (hn::AllFalse(FloatTag(), active)) continue;
+    F alpha = set(material.base_colour.w);
+    if (points.coloured) alpha = alpha * load(points.colour_alpha, i);
+    const bool textured = material.alpha != scenes::Material::Alpha::opaque &&
+                          material.base_colour_texture != scenes::kNone;
+    if (textured) {
+      const Texture& texture = shader.shader->textures[material.base_colour_texture];
+      alpha = alpha * looked_up(texture, points, i, active).alpha;
+    }
+    store(resolve_alpha(material, alpha), active, i, alphas);
+  }
+}
+
+void sample_block(const Texture& texture, const Points& points, LaneMask mask, Shaded& texels) {
+  for (int i = 0; i < kBlockPoints; i += lanes()) {
+    const M active = mask_of(mask, i);
+    if (hn::AllFalse(FloatTag(), active)) continue;
+    const TexelLanes texel = looked_up(texture, points, i, active);
+    store(texel.colour, active, i, texels.colour);
+    store(texel.alpha, active, i, texels.alpha);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::shading
 HWY_AFTER_NAMESPACE();
@@ -172,6 +205,8 @@ HWY_EXPORT(ambient_transmitted_block);
 HWY_EXPORT(reflect_light_block);
 HWY_EXPORT(reflect_block);
 HWY_EXPORT(environment_radiance_block);
+HWY_EXPORT(coverage_block);
+HWY_EXPORT(sample_block);
 
 void evaluate(const BatchShader& shader, std::uint32_t material, const Points& points,
               const Vectors16& views, LaneMask lanes, Surfaces& surfaces) {
@@ -207,6 +242,15 @@ void reflect(const Surfaces& surfaces, const Vectors16& views, const Vectors16& 
 void environment_radiance(const BatchShader& shader, const Vectors16& directions, float roughness,
                           LaneMask lanes, Vectors16& colours) {
   HWY_DYNAMIC_DISPATCH(environment_radiance_block)(shader, directions, roughness, lanes, colours);
+}
+
+void coverage(const BatchShader& shader, std::uint32_t material, const Points& points,
+              LaneMask lanes, Floats16& alpha) {
+  HWY_DYNAMIC_DISPATCH(coverage_block)(shader, material, points, lanes, alpha);
+}
+
+void sample(const Texture& texture, const Points& points, LaneMask lanes, Shaded& texels) {
+  HWY_DYNAMIC_DISPATCH(sample_block)(texture, points, lanes, texels);
 }
 
 Surface surface_at(const Surfaces& s, int lane) {

@@ -138,8 +138,9 @@ HWY_INLINE LaneMask bits_of(M mask, int i) {
   return bits << i;
 }
 
+// Masked stores are very slow on some machines, and nobody else writes to the block.
 HWY_INLINE void store(F v, M mask, int i, Floats16& to) {
-  hn::BlendedStore(v, mask, FloatTag(), to.lane + i);
+  hn::Store(hn::IfThenElse(mask, v, load(to, i)), FloatTag(), to.lane + i);
 }
 HWY_INLINE void store(const F3& v, M mask, int i, Vectors16& to) {
   store(v.x, mask, i, to.x);

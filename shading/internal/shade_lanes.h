@@ -15,32 +15,29 @@ HWY_BEFORE_NAMESPACE();
 namespace delray::shading {
 namespace HWY_NAMESPACE {
 
-// `mirrored` is specular_albedo at `facing`, the cosine between normal and view, from 0 to 1.
+// `mirrored` is specular_albedo at the cosine between normal and view.
 template <class Reflectance>
-HWY_INLINE F3 ambient_diffuse(const Environment& e, const LobeLanes<Reflectance>& lobes,
-                              const Reflectance& mirrored, const F3& normal) {
-  return times(lobes.diffuse, one_minus(mirrored)) * diffuse_radiance(e, normal);
+HWY_INLINE F3 ambient_diffuse(const Environment& e, const F3& diffuse, const Reflectance& mirrored,
+                              const F3& normal) {
+  return times(diffuse, one_minus(mirrored)) * diffuse_radiance(e, normal);
 }
 
 // `cosine` is that between normal and view, of either sign.
 template <class Reflectance>
-HWY_INLINE F3 ambient_specular(const Shader& shader, const LobeLanes<Reflectance>& lobes,
-                               const Reflectance& mirrored, const F3& normal, const F3& view,
-                               F cosine, M active) {
+HWY_INLINE F3 ambient_specular(const Shader& shader, F roughness, const Reflectance& mirrored,
+                               const F3& normal, const F3& view, F cosine, M active) {
   const F3 direction = normal * (set(2.0F) * cosine) - view;
-  return times(radiance(shader.environment, shader.textures, direction, lobes.roughness, active),
+  return times(radiance(shader.environment, shader.textures, direction, roughness, active),
                mirrored);
 }
 
 // `share` is what of the light that is not mirrored goes through, 0 to 1.
 template <class Reflectance>
-HWY_INLINE F3 ambient_transmitted(const Shader& shader, const LobeLanes<Reflectance>& lobes,
-                                  const Reflectance& mirrored, const F3& base_colour, F share,
-                                  const F3& view, M active) {
+HWY_INLINE F3 ambient_transmitted(const Shader& shader, F roughness, const Reflectance& mirrored,
+                                  const F3& base_colour, F share, const F3& view, M active) {
   const F3 through = times(base_colour, one_minus(mirrored)) * share;
-  return where(hn::Gt(share, set(0.0F)),
-               through * radiance(shader.environment, shader.textures, negated(view),
-                                  lobes.roughness, active));
+  const F3 behind = radiance(shader.environment, shader.textures, negated(view), roughness, active);
+  return where(hn::Gt(share, set(0.0F)), through * behind);
 }
 
 struct ReflectedLanes {

@@ -137,6 +137,16 @@ HWY_INLINE VaryingLobes varying_lobes(const scenes::Material& material,
   return {diffuse_of(material, surface), entering, specular, grazing, wide * wide, roughness};
 }
 
+HWY_INLINE VaryingLobes constant_lobes(const BatchMaterial& material, const SurfaceLanes& surface) {
+  const Lobes& l = material.lobes;
+  return {diffuse_of(material.material, surface),
+          set(l.entering),
+          set(l.specular),
+          set(l.grazing),
+          set(l.alpha),
+          set(l.roughness)};
+}
+
 HWY_INLINE LobeLanes<Coloured> ready(const VaryingLobes& l) {
   const F3 rise{l.grazing - l.specular.x, l.grazing - l.specular.y, l.grazing - l.specular.z};
   return {l.diffuse,         {l.entering * set(kInversePi)},

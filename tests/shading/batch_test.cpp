@@ -206,6 +206,32 @@ TEST(Batch, LanesThatAreNotMeantMakeNoDifference) {
   });
 }
 
+TEST(Batch, TexturesAndCoverageAreThoseOfTheScalarFunctions) {
+  raster::for_each_target([] {
+    for (std::uint32_t seed = 1; seed <= kSeeds / 2; ++seed) {
+      const Case c(seed);
+      const std::uint32_t m = seed % 3;
+      Floats16 alpha;
+      coverage(c.batch, m, c.points, kAllLanes, alpha);
+      for (int i = 0; i < kBlockPoints; ++i) {
+        const Point& p = c.point[i];
+        ASSERT_TRUE(same(alpha[i],
+                         coverage(c.shader, c.shader.materials[m], p.uv, p.footprint, p.colour.w)))
+            << "seed " << seed << " lane " << i;
+      }
+      for (const Texture& texture : c.shader.textures) {
+        Shaded texels;
+        sample(texture, c.points, kAllLanes, texels);
+        for (int i = 0; i < kBlockPoints; ++i) {
+          const glm::vec4 texel = sample(texture, c.point[i].uv, c.point[i].footprint);
+          ASSERT_TRUE(equal(texels.colour.get(i), glm::vec3(texel))) << "seed " << seed;
+          ASSERT_TRUE(same(texels.alpha[i], texel.w)) << "seed " << seed << " lane " << i;
+        }
+      }
+    }
+  });
+}
+
 TEST(Batch, DirectionsLeadToTheEye) {
   raster::for_each_target([] {
     const glm::vec3 eye(1, 2, 3), otherwise(0, 0, 1);
