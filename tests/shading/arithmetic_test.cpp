@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace delray::shading {
@@ -20,6 +21,13 @@ TEST(Arithmetic, FloorIsFloor) {
   }
   EXPECT_EQ(floor_to_int(-1.0F), -1);
   EXPECT_EQ(floor_to_int(-0.0F), 0);
+}
+
+TEST(Arithmetic, ClampingLeavesNothingButZeroToOne) {
+  EXPECT_EQ(clamp01(-1.0F), 0.0F);
+  EXPECT_EQ(clamp01(0.25F), 0.25F);
+  EXPECT_EQ(clamp01(7.0F), 1.0F);
+  EXPECT_EQ(clamp01(std::numeric_limits<float>::quiet_NaN()), 0.0F);
 }
 
 TEST(Arithmetic, LogarithmIsAsAccurateAsStated) {

@@ -39,6 +39,42 @@ TEST(Brdf, IsReciprocal) {
   }
 }
 
+// The model as the papers write it, in doubles.
+glm::dvec3 textbook(const Lobes& lobes, const glm::dvec3& n, const glm::dvec3& v,
+                    const glm::dvec3& l) {
+  const glm::dvec3 h = glm::normalize(v + l);
+  const double n_l = glm::dot(n, l), n_v = glm::dot(n, v), n_h = glm::dot(n, h);
+  const double a2 = std::pow(static_cast<double>(lobes.alpha), 2);
+  const glm::dvec3 specular(lobes.specular), rise = glm::dvec3(lobes.grazing) - specular;
+  const auto schlick = [&](double cosine) { return specular + rise * std::pow(1.0 - cosine, 5); };
+  const double distribution = a2 / (M_PI * std::pow(n_h * n_h * (a2 - 1.0) + 1.0, 2));
+  const auto lambda = [&](double c) {
+    return (std::sqrt(1.0 + a2 * (1.0 / (c * c) - 1.0)) - 1.0) / 2;
+  };
+  const double masking = 1.0 / (1.0 + lambda(n_l) + lambda(n_v));
+  const glm::dvec3 entering = 1.0 / (1.0 - (specular + rise / 21.0));
+  const glm::dvec3 diffuse =
+      glm::dvec3(lobes.diffuse) / M_PI * entering * (1.0 - schlick(n_l)) * (1.0 - schlick(n_v));
+  return (diffuse + schlick(glm::dot(v, h)) * distribution * masking / (4.0 * n_l * n_v)) * n_l;
+}
+
+TEST(Brdf, IsTheModelOfThePapers) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> unit(0.02F, 1.0F);
+  for (int i = 0; i < 20000; ++i) {
+    const Lobes l = lobes(random_surface(random));
+    const glm::vec3 v = above(unit(random), 6.0F * unit(random));
+    // Near the mirrored direction too, where the highlight is.
+    glm::vec3 light = above(unit(random), 6.0F * unit(random));
+    if (i % 2 == 0) light = glm::normalize(glm::vec3(-v.x, -v.y, v.z) + light * 0.05F);
+    const glm::vec3 got = reflect(l, kNormal, v, light);
+    const glm::dvec3 expected = textbook(l, kNormal, v, light);
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_NEAR(got[k], expected[k], 2e-3 * expected[k] + 1e-6) << "seed 2, try " << i;
+    }
+  }
+}
+
 TEST(Brdf, ReflectsNoMoreThanItGets) {
   // White metal and white plastic are the hardest cases.
   for (const float metallic : {0.0F, 1.0F}) {

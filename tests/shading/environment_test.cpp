@@ -6,6 +6,7 @@
 #include <random>
 
 #include "shading/arithmetic.h"
+#include "shading/internal/gradient.h"
 
 namespace delray::shading {
 namespace {
@@ -55,6 +56,18 @@ TEST(Environment, DiffuseRadianceOfAGradientIsItsIntegral) {
     const glm::dvec3 exact = integrate(environment, {}, normal);
     const glm::vec3 got = diffuse_radiance(environment, normal);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[k], exact[k], 1e-3) << "seed 5, direction " << i;
+  }
+}
+
+TEST(Environment, DiffuseWeightsAreAsAccurateAsStated) {
+  for (int i = -1000; i <= 1000; ++i) {
+    const double cosine = i / 1000.0, angle = std::acos(cosine), scale = 2.0 / (3.0 * M_PI);
+    const GradientWeights got = diffuse_weights(static_cast<float>(cosine));
+    const double zenith = scale * (std::sin(angle) + (M_PI - angle) * cosine);
+    const double ground = scale * (std::sin(angle) - angle * cosine);
+    ASSERT_NEAR(got.zenith, zenith, 4e-7) << cosine;
+    ASSERT_NEAR(got.ground, ground, 4e-7) << cosine;
+    ASSERT_NEAR(got.horizon, 1.0 - zenith - ground, 8e-7) << cosine;
   }
 }
 
