@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 
 #include "loadbalance/region_index.h"
 
@@ -37,6 +38,17 @@ Balance balance(const Partition& partition, std::span<const WeightedBox> boxes, 
     result.over_share =
         *std::max_element(result.loads.begin(), result.loads.end()) * owners / result.alone;
   }
+  return result;
+}
+
+PartitionReport report(const Partitioner& partitioner, const Costs& costs, int ranks,
+                       int regions_per_rank) {
+  PartitionReport result;
+  const auto begin = std::chrono::steady_clock::now();
+  result.partition = partition_for_ranks(partitioner, costs, ranks, regions_per_rank);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.predicted = imbalance(loads(costs, result.partition, ranks));
+  result.balance = balance(result.partition, costs.boxes, ranks);
   return result;
 }
 

@@ -26,4 +26,18 @@ struct Balance {
 // REQUIRES: owners in [0, owners); costs as for make_costs.
 Balance balance(const Partition& partition, std::span<const WeightedBox> boxes, int owners);
 
+// What there is to say of a partition before anything is rendered. Afterwards imbalance() of the
+// ranks' busy times tells what the prediction was worth.
+struct PartitionReport {
+  Partition partition;
+  double predicted = 1;  // imbalance of the loads that the grid gives
+  Balance balance;       // of costs.boxes
+  double seconds = 0;    // that cutting took, here
+};
+
+// Cuts for `ranks` ranks, regions_per_rank regions for each, and looks at the outcome.
+// REQUIRES: ranks, regions_per_rank >= 1.
+PartitionReport report(const Partitioner& partitioner, const Costs& costs, int ranks,
+                       int regions_per_rank = 1);
+
 }  // namespace delray::loadbalance

@@ -101,6 +101,21 @@ TEST(Balance, OfMahdAndKdSplitIsWithin135Percent) {
   }
 }
 
+TEST(PartitionReport, SaysWhatItsPartsSay) {
+  const Rect frame{0, 0, 320, 200};
+  const auto boxes = testing::boxes(testing::Scenery::horizon, frame, 500, 2);
+  const Costs costs = testing::costs_of(frame, 8, boxes);
+  for (const Partitioner& partitioner : partitioners()) {
+    const PartitionReport result = report(partitioner, costs, 4, 3);
+    const std::vector<double> predicted = loads(costs, result.partition, 4);
+    EXPECT_EQ(result.predicted, imbalance(predicted));
+    EXPECT_EQ(result.balance.loads, balance(result.partition, boxes, 4).loads);
+    EXPECT_GT(result.balance.overlap, 1);
+    EXPECT_GE(result.seconds, 0);
+    for (const Region& region : result.partition.regions) EXPECT_LT(region.owner, 4);
+  }
+}
+
 TEST(Imbalance, IsTheLargestOverTheMean) {
   EXPECT_EQ(imbalance(std::vector<double>{1, 2, 3}), 1.5);
   EXPECT_EQ(imbalance(std::vector<double>{0, 0}), 1);
