@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scenes/internal/generators.h"
+#include "scenes/internal/order.h"
 
 namespace delray::scenes {
 namespace {
@@ -66,7 +67,9 @@ Scene generate(std::string_view name) {
     if (kind != g.name) continue;
     const std::uint64_t count = triangles.empty() ? g.default_triangles : number(name, triangles);
     if (count < 1 || count > kMostTriangles) refuse(name, "triangles must be from 1 to 1e9");
-    return g.generate(count, seed.empty() ? kDefaultSeed : number(name, seed));
+    Scene scene = g.generate(count, seed.empty() ? kDefaultSeed : number(name, seed));
+    for (Mesh& mesh : scene.meshes) internal::order_for_locality(mesh);
+    return scene;
   }
   refuse(name, "there is no such kind of scene");
 }

@@ -49,6 +49,32 @@ glm::vec4 colour_at(std::uint64_t seed, const glm::vec3& p, const glm::vec3& nor
   return {colour, 1.0F};
 }
 
+// The n x n vertices, and the cells between them, are numbered block by block, so that what is
+// close together in the terrain is so in memory too.
+class Blocks {
+ public:
+  static constexpr std::uint32_t kSide = 8;
+
+  explicit Blocks(std::uint32_t n) : n_(n) {}
+  // Of element (i, j).
+  std::size_t number(std::size_t i, std::size_t j) const {
+    const std::size_t i0 = i / kSide * kSide, j0 = j / kSide * kSide;
+    const std::size_t width = std::min<std::size_t>(kSide, n_ - i0);
+    const std::size_t height = std::min<std::size_t>(kSide, n_ - j0);
+    return j0 * n_ + i0 * height + (j - j0) * width + (i - i0);
+  }
+  // Calls f(i, j) for every element.
+  template <class F>
+  void for_each(F&& f) const {
+    parallel::parallel_for(0, n_, kRowsPerBlock, [&](std::size_t j) {
+      for (std::size_t i = 0; i < n_; ++i) f(i, j);
+    });
+  }
+
+ private:
+  std::uint32_t n_;
+};
+
 Mesh height_field(std::uint32_t n, std::uint64_t seed) {
   Mesh mesh;
   mesh.name = "terrain";
@@ -59,30 +85,34 @@ Mesh height_field(std::uint32_t n, std::uint64_t seed) {
   const float spacing = 2.0F / static_cast<float>(n - 1);
   int octaves = 4;  // the last one has waves of a few cells
   while (octaves < 12 && (1U << octaves) * 4 < n) ++octaves;
-  parallel::parallel_for(0, n, kRowsPerBlock, [&](std::size_t row) {
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const float x = -1.0F + static_cast<float>(i) * spacing;
-      const float z = -1.0F + static_cast<float>(row) * spacing;
-      const float y = height_at(seed, glm::vec2(x, z) * 1.15F, octaves);
-      mesh.positions[row * n + i] = {x, y, z};
-    }
+  const Blocks points(n);
+  points.for_each([&](std::size_t i, std::size_t j) {
+    const float x = -1.0F + static_cast<float>(i) * spacing;
+    const float z = -1.0F + static_cast<float>(j) * spacing;
+    const float y = height_at(seed, glm::vec2(x, z) * 1.15F, octaves);
+    mesh.positions[points.number(i, j)] = {x, y, z};
   });
-  parallel::parallel_for(0, n, kRowsPerBlock, [&](std::size_t row) {
-    const std::size_t below = row == 0 ? row : row - 1,
-                      above = std::min<std::size_t>(row + 1, n - 1);
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t left = i == 0 ? i : i - 1, right = std::min<std::size_t>(i + 1, n - 1);
-      const glm::vec3 x = mesh.positions[row * n + right] - mesh.positions[row * n + left];
-      const glm::vec3 z = mesh.positions[above * n + i] - mesh.positions[below * n + i];
-      const std::size_t v = row * n + i;
-      mesh.normals[v] = glm::normalize(glm::cross(z, x));
-      mesh.colours[v] = colour_at(seed, mesh.positions[v], mesh.normals[v]);
-    }
+  points.for_each([&](std::size_t i, std::size_t j) {
+    const std::size_t left = i == 0 ? i : i - 1, right = std::min<std::size_t>(i + 1, n - 1);
+    const std::size_t below = j == 0 ? j : j - 1, above = std::min<std::size_t>(j + 1, n - 1);
+    const glm::vec3 x =
+        mesh.positions[points.number(right, j)] - mesh.positions[points.number(left, j)];
+    const glm::vec3 z =
+        mesh.positions[points.number(i, above)] - mesh.positions[points.number(i, below)];
+    const std::size_t v = points.number(i, j);
+    mesh.normals[v] = glm::normalize(glm::cross(z, x));
+    mesh.colours[v] = colour_at(seed, mesh.positions[v], mesh.normals[v]);
   });
-  append_grid_triangles(mesh, n, n, false, false);
-  // Along i runs x and along j runs z, whose cross product points down.
-  parallel::parallel_blocks(0, mesh.triangles.size(), 65536, [&](std::size_t a, std::size_t b) {
-    for (std::size_t t = a; t < b; ++t) std::swap(mesh.triangles[t].y, mesh.triangles[t].z);
+  const Blocks cells(n - 1);
+  mesh.triangles.resize(std::size_t{2} * (n - 1) * (n - 1));
+  cells.for_each([&](std::size_t i, std::size_t j) {
+    const auto corner = [&](std::size_t right, std::size_t above) {
+      return static_cast<std::uint32_t>(points.number(i + right, j + above));
+    };
+    // Along i runs x and along j runs z, whose cross product points down.
+    const std::size_t t = 2 * cells.number(i, j);
+    mesh.triangles[t] = {corner(0, 0), corner(1, 1), corner(1, 0)};
+    mesh.triangles[t + 1] = {corner(0, 0), corner(0, 1), corner(1, 1)};
   });
   return mesh;
 }

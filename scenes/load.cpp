@@ -9,6 +9,7 @@
 #include "scenes/internal/import.h"
 #include "scenes/internal/load_content.h"
 #include "scenes/internal/load_gltf.h"
+#include "scenes/internal/order.h"
 #include "scenes/internal/up_axis.h"
 
 namespace delray::scenes {
@@ -68,6 +69,9 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   if (progress) progress->advance();
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y
+  // Exporters of glTF order triangles for renderers.
+  if (!says_up)
+    for (Mesh& mesh : scene.meshes) order_for_locality(mesh);
   scene.z_up = !says_up && guess_z_up(scene, format == Format::stl);
   if (progress) progress->advance();
   return scene;
