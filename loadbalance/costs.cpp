@@ -13,6 +13,10 @@ namespace {
 
 using geometry::Rect;
 
+// Cells and boxes for each part of a partition: of pieces much larger than a thousandth of its
+// share a part gets some too many or too few.
+constexpr std::int64_t kPiecesPerPart = 1000;
+
 // The first pixel of cell i of `cells` over `pixels` pixels.
 int border(int i, int cells, int pixels) {
   return static_cast<int>(std::int64_t{i} * pixels / cells);
@@ -77,10 +81,16 @@ Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox>
 
 int cost_cell_side(Rect frame, int parts) {
   assert(parts >= 1);
-  constexpr std::int64_t kCellsPerPart = 1000;
   int side = 16;
-  while (side > 2 && std::int64_t{side} * side * kCellsPerPart * parts > frame.area()) side /= 2;
+  while (side > 2 && std::int64_t{side} * side * kPiecesPerPart * parts > frame.area()) side /= 2;
   return side;
+}
+
+int primitives_per_box(std::uint64_t primitives, int parts) {
+  assert(parts >= 1);
+  const auto pieces =
+      static_cast<std::uint64_t>(kPiecesPerPart) * static_cast<std::uint64_t>(parts);
+  return static_cast<int>(std::clamp<std::uint64_t>(primitives / pieces, 1, 256));
 }
 
 void sum_over_ranks(Costs& costs, comm::Communicator& communicator) {

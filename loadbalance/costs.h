@@ -47,6 +47,11 @@ Costs make_costs(geometry::Rect frame, int columns, int rows, std::span<const We
 // thousand cells for each part. A power of two from 2 to 16. REQUIRES: parts >= 1.
 int cost_cell_side(geometry::Rect frame, int parts);
 
+// How many primitives to take together in a box for that, of so many in the frame: about a thousand
+// boxes for each part, so that a small scene gives each primitive its own. From 1 to 256.
+// REQUIRES: parts >= 1.
+int primitives_per_box(std::uint64_t primitives, int parts);
+
 // Adds up the costs that the ranks know of and strings their boxes together by rank; every rank
 // gets the same, bit by bit. Collective: two rounds of messages, cells once and boxes once.
 // REQUIRES: all ranks have the same frame, columns and rows.

@@ -19,8 +19,6 @@ namespace {
 
 // Triangles in a group: few enough that its box is small, many enough that its header is not.
 constexpr std::uint32_t kGroupTriangles = 256;
-// Pixels along the side of a cost cell.
-constexpr int kCostCell = 16;
 // What setting up a triangle costs, in pixels shaded.
 constexpr double kTriangleCost = 0.5;
 
@@ -63,9 +61,9 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
 
 loadbalance::Partition cut_screen(Rank& rank, std::span<const loadbalance::WeightedBox> boxes) {
   const geometry::Rect frame = rank.screen.frame();
-  loadbalance::Costs costs =
-      loadbalance::make_costs(frame, (frame.width() + kCostCell - 1) / kCostCell,
-                              (frame.height() + kCostCell - 1) / kCostCell, boxes);
+  const int side = loadbalance::cost_cell_side(frame, rank.ranks());
+  loadbalance::Costs costs = loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
+                                                     (frame.height() + side - 1) / side, boxes);
   loadbalance::sum_over_ranks(costs, rank.communicator);
   return loadbalance::find_partitioner(rank.options.partition)
       ->partition(costs, frame, rank.ranks());

@@ -65,6 +65,18 @@ TEST(Costs, OfAnEmptyFrame) {
   EXPECT_EQ(total(costs.cells), 0);
 }
 
+TEST(Costs, AreFineEnoughForTheNumberOfParts) {
+  const Rect frame{0, 0, 1920, 1080};
+  EXPECT_EQ(cost_cell_side(frame, 1), 16);
+  EXPECT_EQ(cost_cell_side(frame, 16), 8);
+  EXPECT_EQ(cost_cell_side(frame, 64), 4);
+  EXPECT_EQ(cost_cell_side(frame, 100000), 2);
+  EXPECT_EQ(cost_cell_side({}, 1), 2);
+  EXPECT_EQ(primitives_per_box(13000000, 64), 203);
+  EXPECT_EQ(primitives_per_box(13000000, 16), 256);
+  EXPECT_EQ(primitives_per_box(32000, 64), 1);
+}
+
 // Which pixels a cell has, and which cells a box overlaps, must agree.
 TEST(Costs, EachBoxTouchesExactlyTheCellsItOverlaps) {
   const unsigned seed = 31;
