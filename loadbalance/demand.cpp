@@ -7,8 +7,8 @@ RankReport demand(comm::Communicator& communicator, const TaskGrid& tasks,
                   const ScheduleOptions& options, TaskFunction work) {
   const std::uint64_t batch = batch_of(options);
   const auto amount = [batch](std::uint64_t, std::uint64_t) { return batch; };
-  const std::vector<int> flat(static_cast<std::size_t>(communicator.size()), 0);
-  return run_masters(communicator, tasks, options, work, {flat, amount});
+  return run_masters(communicator, tasks, options, work, MasterTree::flat(communicator, options),
+                     amount);
 }
 
 }  // namespace delray::loadbalance::internal

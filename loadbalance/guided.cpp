@@ -9,14 +9,14 @@ namespace delray::loadbalance::internal {
 RankReport guided(comm::Communicator& communicator, const TaskGrid& tasks,
                   const ScheduleOptions& options, TaskFunction work) {
   assert(options.share > 0);
-  const std::vector<int> flat(static_cast<std::size_t>(communicator.size()), 0);
-  const double part = options.share / static_cast<double>(workers(flat, options));
+  const MasterTree tree = MasterTree::flat(communicator, options);
+  const double part = options.share / static_cast<double>(tree.workers(0));
   const std::uint64_t row = std::max(1U, tasks.rows > 1 ? tasks.columns : 1U);
   const auto amount = [part, row](std::uint64_t rest, std::uint64_t) {
     const auto rows = static_cast<std::uint64_t>(part * static_cast<double>(rest)) / row;
     return std::max<std::uint64_t>(1, rows) * row;
   };
-  return run_masters(communicator, tasks, options, work, {flat, amount});
+  return run_masters(communicator, tasks, options, work, tree, amount);
 }
 
 }  // namespace delray::loadbalance::internal

@@ -1,5 +1,6 @@
 #include "loadbalance/internal/masters.h"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -10,31 +11,19 @@
 namespace delray::loadbalance::internal {
 namespace {
 
-// By rank: how many ranks do tasks there or below.
-std::vector<std::uint64_t> workers_below(const std::vector<int>& master,
-                                         const ScheduleOptions& options) {
-  std::vector<std::uint64_t> count(master.size(), 1);
-  if (!options.master_works && master.size() > 1) {
-    for (std::size_t k = 1; k < master.size(); ++k) count[master[k]] = 0;
-  }
-  for (std::size_t k = master.size() - 1; k > 0; --k) count[master[k]] += count[k];
-  return count;
-}
-
 class Node {
  public:
   Node(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
-       TaskFunction work, const Masters& masters)
+       TaskFunction work, const MasterTree& tree, Amount amount)
       : communicator_(communicator),
-        masters_(masters),
-        workers_(workers_below(masters.master, options)),
-        master_(masters.master[communicator.rank()]),
+        tree_(tree),
+        amount_(amount),
+        master_(tree.master(communicator.rank())),
         ahead_(options.ahead.value_or(0)),
         is_root_(communicator.rank() == 0),
         has_all_(is_root_) {
-    for (int k = communicator.rank() + 1; k < communicator.size(); ++k) {
-      if (masters.master[k] == communicator.rank()) asking_.push_back(k);
-    }
+    const int end = tree.end_below(communicator.rank());
+    for (int k = tree.first_below(communicator.rank()); k < end; ++k) asking_.push_back(k);
     below_ = asking_.size();
     works_ = below_ == 0 || options.master_works;
     crew_.emplace(communicator, options, work, works_);
@@ -89,7 +78,7 @@ class Node {
       const int to = asking_.front();
       asking_.pop_front();
       if (pool_.size() == 0) --below_;  // an empty message: it need not ask again
-      const std::vector<TaskRange> tasks = take(workers_[to]);
+      const std::vector<TaskRange> tasks = take(tree_.workers(to));
       crew_->send(to, kTagTasks, comm::Buffer::of(std::span<const TaskRange>(tasks)));
     }
     const bool is_dry = works_ && crew_->waiting() <= ahead_;
@@ -104,12 +93,12 @@ class Node {
 
   std::vector<TaskRange> take(std::uint64_t workers) {
     if (pool_.size() == 0) return {};
-    return pool_.take_front(masters_.amount(pool_.size(), workers));
+    return pool_.take_front(amount_(pool_.size(), workers));
   }
 
   comm::Communicator& communicator_;
-  const Masters& masters_;
-  std::vector<std::uint64_t> workers_;  // by rank
+  MasterTree tree_;
+  Amount amount_;
   int master_;
   std::uint64_t ahead_;
   bool is_root_, works_ = true;
@@ -123,19 +112,41 @@ class Node {
 
 }  // namespace
 
+int MasterTree::first_below(int rank) const {
+  return static_cast<int>(std::min(ranks, rank * fan_out + 1));
+}
+
+int MasterTree::end_below(int rank) const {
+  return static_cast<int>(std::min(ranks, rank * fan_out + fan_out + 1));
+}
+
+std::uint64_t MasterTree::workers(int rank) const {
+  const std::int64_t first_leaf = (ranks - 2 + fan_out) / fan_out;  // masters have lower numbers
+  const std::int64_t first_worker = masters_work ? 0 : first_leaf;
+  std::int64_t count = 0;
+  for (std::int64_t first = rank, last = rank; first < ranks;
+       first = first * fan_out + 1, last = last * fan_out + fan_out) {
+    count +=
+        std::max<std::int64_t>(0, std::min(last, ranks - 1) - std::max(first, first_worker) + 1);
+  }
+  return static_cast<std::uint64_t>(count);
+}
+
+MasterTree MasterTree::flat(const comm::Communicator& communicator,
+                            const ScheduleOptions& options) {
+  return {communicator.size(), std::max(1, communicator.size() - 1), options.master_works};
+}
+
 RankReport run_masters(comm::Communicator& communicator, const TaskGrid& tasks,
-                       const ScheduleOptions& options, TaskFunction work, const Masters& masters) {
-  return Node(communicator, tasks, options, work, masters).run();
+                       const ScheduleOptions& options, TaskFunction work, const MasterTree& tree,
+                       Amount amount) {
+  return Node(communicator, tasks, options, work, tree, amount).run();
 }
 
 std::uint64_t batch_of(const ScheduleOptions& options) {
   if (options.batch > 0) return options.batch;
   return static_cast<std::uint64_t>(options.threads > 0 ? options.threads
                                                         : parallel::arena_threads());
-}
-
-std::uint64_t workers(const std::vector<int>& master, const ScheduleOptions& options) {
-  return workers_below(master, options)[0];
 }
 
 }  // namespace delray::loadbalance::internal
