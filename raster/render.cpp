@@ -124,6 +124,7 @@ Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Sh
       std::unique_ptr<Memory>(new Memory{scene, std::move(shader), scenes::first_primitives(scene),
                                          any_blended(scene), SceneClusters(scene.meshes)});
 }
+void Renderer::recycle(Picture&& picture) { memory_->scratch.spare = std::move(picture); }
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

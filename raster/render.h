@@ -105,6 +105,10 @@ class Renderer {
   Result render(comm::Communicator& communicator, const scenes::Camera& camera,
                 const RenderOptions& options, parallel::Progress* progress = nullptr);
 
+  // Gives the memory of a picture that is no longer needed to the next frame: fresh memory takes
+  // longer to write to than a simple scene takes to draw.
+  void recycle(Picture&& picture);
+
  private:
   struct Memory;
   std::unique_ptr<Memory> memory_;

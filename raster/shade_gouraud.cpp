@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <bit>
 
+#include <hwy/cache_control.h>
+
 namespace delray::raster {
 namespace {
 
 // Multipliers of Fibonacci hashing (Knuth 1973, 6.4).
 constexpr std::uint32_t kGoldenRatio32 = 0x9E3779B9U;
-constexpr std::uint64_t kGoldenRatio64 = 0x9E3779B97F4A7C15U;
 
 }  // namespace
 
@@ -32,34 +33,65 @@ std::uint64_t GouraudTile::find_triangles(const VisibilityTile& tile, const geom
   };
   std::uint64_t shown = 0;
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
+  // Mostly a pixel shows what the one before it or above it shows.
   std::uint32_t last = kNothing;
   std::uint16_t index = kNoTriangle;
-  for (int j = j0; j < j0 + rect.height(); ++j)
+  for (int j = j0; j < j0 + rect.height(); ++j) {
+    const std::int64_t* const keys = tile.key + j * kTileSize;
+    const std::int64_t* const above = j == j0 ? keys : keys - kTileSize;
     for (int i = i0; i < i0 + rect.width(); ++i) {
-      const std::uint32_t number = number_of(tile.key[j * kTileSize + i]);
+      const std::uint32_t number = number_of(keys[i]);
       if (number != last) {
         last = number;
-        index = number == kNothing ? kNoTriangle : static_cast<std::uint16_t>(index_of(number));
+        if (number == kNothing)
+          index = kNoTriangle;
+        else if (j > j0 && number == number_of(above[i]))
+          index = index_[(j - 1) * kTileSize + i];
+        else
+          index = static_cast<std::uint16_t>(index_of(number));
       }
       index_[j * kTileSize + i] = index;
       shown += index != kNoTriangle;
     }
+  }
   for (const std::uint32_t slot : used_triangle_slots_) triangle_slots_[slot].number = kNothing;
   used_triangle_slots_.clear();
   return shown;
 }
 
-std::uint32_t GouraudTile::vertex_of(std::uint64_t key, bool& is_new) {
-  std::uint64_t slot = (key * kGoldenRatio64) >> vertex_slot_shift_;
-  while (vertex_slots_[slot].key != key) {
-    if (vertex_slots_[slot].key == kNoVertex) {
-      is_new = true;
-      vertex_slots_[slot] = {key, static_cast<std::uint32_t>(radiances_.size())};
-      used_vertex_slots_.push_back(static_cast<std::uint32_t>(slot));
-      radiances_.emplace_back();
-      break;
+// What triangles refer to is scattered in memory: all of it is asked for before any is needed.
+void GouraudTile::look_up_triangles(const DrawList& list) {
+  seen_in_.resize(numbers_.size());
+  for (std::size_t t = 0; t < numbers_.size(); ++t) {
+    seen_in_[t].draw = list.cluster_of(numbers_[t]).draw;
+    seen_in_[t].triangle = list.triangle_of(numbers_[t]);
+    hwy::Prefetch(&list.draws[seen_in_[t].draw].mesh->triangles[seen_in_[t].triangle]);
+  }
+  for (SeenIn& seen : seen_in_) {
+    const scenes::Mesh& mesh = *list.draws[seen.draw].mesh;
+    seen.corners = mesh.triangles[seen.triangle];
+    for (int k = 0; k < 3; ++k) {
+      hwy::Prefetch(&mesh.positions[seen.corners[k]]);
+      if (!mesh.normals.empty()) hwy::Prefetch(&mesh.normals[seen.corners[k]]);
+      if (!mesh.colours.empty()) hwy::Prefetch(&mesh.colours[seen.corners[k]]);
     }
-    slot = (slot + 1) & (vertex_slots_.size() - 1);
+  }
+}
+
+std::uint32_t GouraudTile::vertex_of(std::uint32_t draw, std::uint32_t vertex, std::uint32_t side,
+                                     bool& is_new) {
+  const std::uint64_t key = std::uint64_t{draw} << 33 | std::uint64_t{vertex} << 1 | side;
+  // Neighbours have neighbouring numbers, and so neighbouring slots.
+  std::size_t slot = vertex + draw * kGoldenRatio32;
+  for (;; ++slot) {
+    slot &= vertex_slots_.size() - 1;
+    if (vertex_slots_[slot].key == key) break;
+    if (vertex_slots_[slot].key != kNoVertex) continue;
+    is_new = true;
+    vertex_slots_[slot] = {key, static_cast<std::uint32_t>(radiances_.size())};
+    used_vertex_slots_.push_back(static_cast<std::uint32_t>(slot));
+    radiances_.emplace_back();
+    break;
   }
   return vertex_slots_[slot].vertex;
 }
@@ -78,7 +110,8 @@ void GouraudTile::light(const FrameShading& frame, std::size_t number) {
 
 // Corner k of triangle i of the block becomes `vertex`.
 void GouraudTile::add_vertex(const FrameShading& frame, std::uint32_t material, int i, int k,
-                             const scenes::Mesh& mesh, std::uint32_t vertex) {
+                             const scenes::Mesh& mesh, std::uint32_t mesh_vertex,
+                             std::uint32_t vertex) {
   const bool coloured = !mesh.colours.empty();
   const std::size_t number = std::size_t{2} * material + static_cast<std::size_t>(coloured);
   if (blocks_.size() <= number) blocks_.resize(number + 1);
@@ -99,7 +132,7 @@ void GouraudTile::add_vertex(const FrameShading& frame, std::uint32_t material, 
   copy(geometry_.geometric_normal, points.geometric_normal);
   copy(mesh.normals.empty() ? geometry_.geometric_normal : geometry_.normal[k], points.normal);
   if (coloured) {
-    const glm::vec4& colour = mesh.colours[mesh_corners_[i][k]];
+    const glm::vec4& colour = mesh.colours[mesh_vertex];
     points.colour.set(n, glm::vec3(colour));
     points.colour_alpha[n] = colour.w;
   }
@@ -120,6 +153,7 @@ void GouraudTile::add_corners(const FrameShading& frame, int i, std::size_t t) {
     return;
   }
   PixelTriangle& triangle = triangles_[t];
+  triangle.a[3] = triangle.b[3] = triangle.c[3] = 0;
   triangle.x = static_cast<float>(geometry_.x[i]);
   triangle.y = static_cast<float>(geometry_.y[i]);
   for (int k = 0; k < 3; ++k) {
@@ -128,29 +162,27 @@ void GouraudTile::add_corners(const FrameShading& frame, int i, std::size_t t) {
     triangle.c[k] = geometry_.c[k][i];
     // A vertex without a normal of its own is lit as its triangle is; any other is the same for all
     // triangles that have it on the same side of the viewer.
+    const std::uint32_t mesh_vertex = seen_in_[t].corners[k];
     const bool own_normal = !mesh.normals.empty() && (geometry_.own_normal[k] >> i & 1) != 0;
     bool is_new = !own_normal;
     if (own_normal) {
       const std::uint32_t side = ~(geometry_.front[k] ^ geometry_.agree[k]) >> i & 1;
-      corners_[t][k] = vertex_of(
-          std::uint64_t{draw} << 33 | std::uint64_t{mesh_corners_[i][k]} << 1 | side, is_new);
+      corners_[t][k] = vertex_of(draw, mesh_vertex, side, is_new);
     } else {
       corners_[t][k] = static_cast<std::uint32_t>(radiances_.size());
       radiances_.emplace_back();
     }
-    if (is_new) add_vertex(frame, material, i, k, mesh, corners_[t][k]);
+    if (is_new) add_vertex(frame, material, i, k, mesh, mesh_vertex, corners_[t][k]);
   }
 }
 
 void GouraudTile::set_up_block(const FrameShading& frame, std::size_t first, int count) {
   for (int i = 0; i < count; ++i) {
-    const std::uint32_t number = numbers_[first + static_cast<std::size_t>(i)];
-    const std::uint32_t draw = frame.list.cluster_of(number).draw;
-    const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
-    if (draw_of_lane_[i] != draw) block_.set_draw(i, frame.list.draws[draw], frame.draws[draw]);
-    draw_of_lane_[i] = draw;
-    mesh_corners_[i] = mesh.triangles[frame.list.triangle_of(number)];
-    block_.set_triangle(i, mesh, mesh_corners_[i]);
+    const SeenIn& seen = seen_in_[first + static_cast<std::size_t>(i)];
+    const Draw& draw = frame.list.draws[seen.draw];
+    if (draw_of_lane_[i] != seen.draw) block_.set_draw(i, draw, frame.draws[seen.draw]);
+    draw_of_lane_[i] = seen.draw;
+    block_.set_triangle(i, *draw.mesh, seen.corners);
   }
   compute_geometry(frame.screen, block_, geometry_);
   for (int i = 0; i < count; ++i) add_corners(frame, i, first + static_cast<std::size_t>(i));
@@ -165,7 +197,7 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
   // At most half full.
   const std::size_t slots = std::bit_ceil(6 * numbers_.size() + 1);
   if (vertex_slots_.size() != slots) vertex_slots_.resize(slots);
-  vertex_slot_shift_ = 64 - std::bit_width(slots - 1);
+  look_up_triangles(frame.list);
   std::fill(std::begin(draw_of_lane_), std::end(draw_of_lane_), kNothing);
   for (std::size_t first = 0; first < numbers_.size(); first += kBlockSize)
     set_up_block(frame, first,
@@ -179,9 +211,10 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
     if (textured_[t] != 0) continue;
     for (int k = 0; k < 3; ++k) {
       const glm::vec3& radiance = radiances_[corners_[t][k]];
-      triangles_[t].red[k] = radiance.x;
-      triangles_[t].green[k] = radiance.y;
-      triangles_[t].blue[k] = radiance.z;
+      float(&colour)[4] = triangles_[t].colour[k];
+      colour[0] = radiance.x;
+      colour[1] = radiance.y;
+      colour[2] = radiance.z;
     }
   }
 }

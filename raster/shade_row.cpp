@@ -52,29 +52,53 @@ struct Colours {
   F red, green, blue;
 };
 
-// At pixels (x, y) with the fields of PixelTriangle that field(k) gives: the arithmetic of
-// weights_at and interpolate.
-template <class Field>
-HWY_INLINE Colours interpolated(F x, F y, Field&& field) {
+// Of pixels (x, y) that show the same triangle: the arithmetic of weights_at and interpolate.
+HWY_INLINE Colours interpolated(const PixelTriangle& t, F x, F y) {
   const Floats d;
-  const F zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-  const F dx = hn::Sub(x, field(9)), dy = hn::Sub(y, field(10));
+  const auto set = [&](float value) { return hn::Set(d, value); };
+  const F zero = hn::Zero(d), one = set(1.0F);
+  const F dx = hn::Sub(x, set(t.x)), dy = hn::Sub(y, set(t.y));
   F u[3];
   for (int k = 0; k < 3; ++k) {
     const F plane =
-        hn::Add(hn::Add(hn::Mul(field(k), dx), hn::Mul(field(3 + k), dy)), field(6 + k));
-    u[k] = hn::IfThenElse(hn::Gt(plane, zero), plane, zero);
+        hn::Add(hn::Add(hn::Mul(set(t.a[k]), dx), hn::Mul(set(t.b[k]), dy)), set(t.c[k]));
+    u[k] = hn::IfThenElseZero(hn::Gt(plane, zero), plane);
   }
   const F sum = hn::Add(hn::Add(u[0], u[1]), u[2]);
   const auto some = hn::Gt(sum, zero);
   const F w0 = hn::IfThenElse(some, hn::Div(u[0], sum), one);
-  const F w1 = hn::IfThenElse(some, hn::Div(u[1], sum), zero);
-  const F w2 = hn::IfThenElse(some, hn::Div(u[2], sum), zero);
-  const auto channel = [&](int first) {
-    return hn::Add(hn::Add(hn::Mul(field(first), w0), hn::Mul(field(first + 1), w1)),
-                   hn::Mul(field(first + 2), w2));
+  const F w1 = hn::IfThenElseZero(some, hn::Div(u[1], sum));
+  const F w2 = hn::IfThenElseZero(some, hn::Div(u[2], sum));
+  const auto channel = [&](int k) {
+    return hn::Add(hn::Add(hn::Mul(set(t.colour[0][k]), w0), hn::Mul(set(t.colour[1][k]), w1)),
+                   hn::Mul(set(t.colour[2][k]), w2));
   };
-  return {channel(11), channel(14), channel(17)};
+  return {channel(0), channel(1), channel(2)};
+}
+
+// The same of one pixel, to colour[0 .. 3]: quicker than to gather from sixteen triangles.
+HWY_INLINE void interpolate_one(const PixelTriangle& t, float x, float y, float* colour) {
+#if HWY_TARGET == HWY_SCALAR
+  const hn::Vec<Floats> columns = hn::Set(Floats(), x), rows = hn::Set(Floats(), y);
+  const Colours colours = interpolated(t, columns, rows);
+  colour[0] = hn::GetLane(colours.red);
+  colour[1] = hn::GetLane(colours.green);
+  colour[2] = hn::GetLane(colours.blue);
+#else
+  const HWY_CAPPED(float, 4) d;
+  const auto zero = hn::Zero(d);
+  const auto plane = hn::Add(hn::Add(hn::Mul(hn::LoadU(d, t.a), hn::Set(d, x - t.x)),
+                                     hn::Mul(hn::LoadU(d, t.b), hn::Set(d, y - t.y))),
+                             hn::LoadU(d, t.c));
+  const auto u = hn::IfThenElseZero(hn::Gt(plane, zero), plane);
+  const auto sum = hn::Add(hn::Add(hn::Broadcast<0>(u), hn::Broadcast<1>(u)), hn::Broadcast<2>(u));
+  const auto w = hn::IfThenElse(hn::Gt(sum, zero), hn::Div(u, sum),
+                                hn::IfThenElseZero(hn::FirstN(d, 1), hn::Set(d, 1.0F)));
+  hn::Store(hn::Add(hn::Add(hn::Mul(hn::LoadU(d, t.colour[0]), hn::Broadcast<0>(w)),
+                            hn::Mul(hn::LoadU(d, t.colour[1]), hn::Broadcast<1>(w))),
+                    hn::Mul(hn::LoadU(d, t.colour[2]), hn::Broadcast<2>(w))),
+            d, colour);
+#endif
 }
 
 // image::encode_srgb.
@@ -120,7 +144,6 @@ HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t
   const Floats d;
   const Ints di;
   const hn::Rebind<std::uint16_t, Ints> d16;
-  const auto* fields = reinterpret_cast<const float*>(triangles);
   const int lanes = static_cast<int>(hn::Lanes(d));
   const F row = hn::Set(d, static_cast<float>(y));
   for (int i = 0; i < count; i += lanes) {
@@ -132,15 +155,17 @@ HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t
         std::fill_n(pixels + i, lanes, Colour());
         continue;
       }
-      const float* const one = fields + kPixelTriangleFloats * index[i];
-      store(interpolated(column, row, [&](int k) { return hn::Set(d, one[k]); }),
-            hn::Eq(triangle, triangle), pixels + i);
+      store(interpolated(triangles[index[i]], column, row), hn::Eq(triangle, triangle), pixels + i);
       continue;
     }
-    const auto shown = hn::Not(hn::Eq(triangle, hn::Set(di, kNoTriangle)));
-    const I at = hn::Mul(hn::IfThenElseZero(shown, triangle), hn::Set(di, kPixelTriangleFloats));
-    store(interpolated(column, row, [&](int k) { return hn::GatherIndex(d, fields + k, at); }),
-          shown, pixels + i);
+    HWY_ALIGN float colours[4 * kBlockSize];
+    for (int k = 0; k < lanes; ++k)
+      if (index[i + k] != kNoTriangle)
+        interpolate_one(triangles[index[i + k]], static_cast<float>(x + i + k),
+                        static_cast<float>(y), colours + 4 * k);
+    F red, green, blue, unused;
+    hn::LoadInterleaved4(d, colours, red, green, blue, unused);
+    store({red, green, blue}, hn::Not(hn::Eq(triangle, hn::Set(di, kNoTriangle))), pixels + i);
   }
 }
 

@@ -120,7 +120,7 @@ Picture render(Rank& rank) {
   std::vector<geometry::Rect> regions;
   for (const loadbalance::Region& region : partition.regions)
     if (region.owner == rank.number()) regions.push_back(region.rect);
-  image::BasicImage<Colour> image(rank.screen.width, rank.screen.height);
+  image::BasicImage<Colour> image = take_image<Colour>(rank.screen, rank.scratch);
   rank.render(list, regions, image);
 
   communicator.mark(comm::Phase::gather, 0);

@@ -13,7 +13,7 @@ Picture render(Rank& rank) {
   const auto [begin, end] = rank.own_primitives();
   const DrawList list =
       make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
-  image::BasicImage<Colour> image(rank.screen.width, rank.screen.height);
+  image::BasicImage<Colour> image = take_image<Colour>(rank.screen, rank.scratch);
   const geometry::Rect frame = rank.screen.frame();
   rank.render(list, {&frame, 1}, image);
   if (rank.ranks() == 1) return image;

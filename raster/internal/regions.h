@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <span>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "raster/internal/draw_into_tiles.h"
@@ -13,10 +15,20 @@ namespace delray::raster {
 
 // Memory that one frame leaves to the next.
 struct Scratch {
+  Picture spare;  // nobody's any more
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
   LargeTriangles large;
 };
+
+// An image of any content, the spare one if that fits.
+template <class Colour>
+image::BasicImage<Colour> take_image(const Screen& screen, Scratch& scratch) {
+  if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
+      spare != nullptr && spare->width == screen.width && spare->height == screen.height)
+    return std::exchange(*spare, {});
+  return image::BasicImage<Colour>(screen.width, screen.height);
+}
 
 // What rendering took, summed over threads, and what it did.
 struct RegionCounts {

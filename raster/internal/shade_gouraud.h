@@ -13,14 +13,14 @@
 
 namespace delray::raster {
 
-// What the pixels of a triangle look up: barycentrics and the colours of the corners, as floats so
-// that they may be gathered.
+// What the pixels of a triangle look up: barycentrics, and the colour of corner k as red, green,
+// blue. Padded to vectors of four; the padding of a, b and c is 0.
 struct PixelTriangle {
-  float a[3], b[3], c[3];
-  float x, y;
-  float red[3], green[3], blue[3];
+  float a[4], b[4], c[4];
+  float colour[3][4];
+  float x, y, padding[2];
 };
-inline constexpr int kPixelTriangleFloats = 20;
+inline constexpr int kPixelTriangleFloats = 28;
 static_assert(sizeof(PixelTriangle) == kPixelTriangleFloats * sizeof(float));
 
 // Index of a pixel that shows no triangle, or none that is shaded here.
@@ -59,18 +59,27 @@ class GouraudTile {
     std::uint32_t vertex = 0;
   };
 
+  // Where a triangle comes from.
+  struct SeenIn {
+    std::uint32_t draw, triangle;
+    glm::uvec3 corners;
+  };
+
   std::uint64_t find_triangles(const VisibilityTile& tile, const geometry::Rect& rect);
+  void look_up_triangles(const DrawList& list);
   void set_up_triangles(const FrameShading& frame);
   void set_up_block(const FrameShading& frame, std::size_t first, int count);
   void add_corners(const FrameShading& frame, int i, std::size_t triangle);
-  std::uint32_t vertex_of(std::uint64_t key, bool& is_new);
+  std::uint32_t vertex_of(std::uint32_t draw, std::uint32_t vertex, std::uint32_t side,
+                          bool& is_new);
   void add_vertex(const FrameShading& frame, std::uint32_t material, int i, int k,
-                  const scenes::Mesh& mesh, std::uint32_t vertex);
+                  const scenes::Mesh& mesh, std::uint32_t mesh_vertex, std::uint32_t vertex);
   void light(const FrameShading& frame, std::size_t block);
 
   std::uint16_t index_[kTilePixels];    // by pixel of the tile
   std::vector<std::uint32_t> numbers_;  // distinct triangles
   std::vector<PixelTriangle> triangles_;
+  std::vector<SeenIn> seen_in_;
   std::vector<glm::uvec3> corners_;  // of triangles: into radiances_
   std::vector<std::uint8_t> textured_;
   bool any_textured_ = false;
@@ -82,13 +91,11 @@ class GouraudTile {
   std::vector<TriangleSlot> triangle_slots_;
   std::vector<std::uint32_t> used_triangle_slots_;
   std::vector<VertexSlot> vertex_slots_;  // a power of two of them
-  int vertex_slot_shift_ = 0;
   std::vector<std::uint32_t> used_vertex_slots_;
 
   TriangleBlock block_;
   TriangleGeometry geometry_;
   std::uint32_t draw_of_lane_[kBlockSize];
-  glm::uvec3 mesh_corners_[kBlockSize];
 
   std::vector<glm::vec3> radiances_;
   // By material, without and with colours of vertices; null where none was needed.

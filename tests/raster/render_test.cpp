@@ -157,9 +157,15 @@ TEST(Render, MemoryOfOneFrameLeavesNoTraceInTheNext) {
   const Result expected = rendered(scene, random_scene_camera(), small);
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
     Renderer renderer(scene);
-    renderer.render(communicator, other, large);
-    const Result result = renderer.render(communicator, random_scene_camera(), small);
+    renderer.recycle(renderer.render(communicator, other, large).picture);
+    Result result = renderer.render(communicator, random_scene_camera(), small);
     EXPECT_TRUE(same_bytes(result.picture, expected.picture));
+    const auto* const memory = std::get<image::Image8>(result.picture).colour.data();
+    renderer.recycle(renderer.render(communicator, other, small).picture);
+    renderer.recycle(std::move(result.picture));
+    result = renderer.render(communicator, random_scene_camera(), small);
+    EXPECT_TRUE(same_bytes(result.picture, expected.picture));
+    EXPECT_EQ(std::get<image::Image8>(result.picture).colour.data(), memory);
   });
 }
 

@@ -105,7 +105,9 @@ TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
   for (int i = 0; i < 5000; ++i) colours.push_back(unit(random) * unit(random));
   for_each_target([&] {
     for (const float colour : colours) {
-      const PixelTriangle flat{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, 0, 0, {colour}, {0}, {colour}};
+      PixelTriangle flat{};
+      flat.c[0] = 1;
+      flat.colour[0][0] = flat.colour[0][2] = colour;
       const std::uint16_t index[kBlockSize] = {0, kNoTriangle, 0};
       image::Rgba8 pixels[kBlockSize];
       shade_row({&flat, 1}, index, 5, 7, 3, pixels);
