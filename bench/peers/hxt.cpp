@@ -31,6 +31,7 @@ struct HxtOptions {
 int hxtMeshCreate(HxtMesh** mesh);
 int hxtMeshDelete(HxtMesh** mesh);
 int hxtDelaunay(HxtMesh* mesh, HxtOptions* options);
+int hxtSetMessageCallback(int (*callback)(void* message));
 }
 
 namespace delray::bench {
@@ -39,6 +40,8 @@ HxtResult triangulate_with_hxt(std::span<const glm::dvec3> points, int threads) 
   if (std::string(GMSH_API_VERSION).substr(0, 3) != "4.8") {
     throw std::runtime_error("HXT's types are known for Gmsh 4.8 alone");
   }
+  // It would print a line for every duplicate.
+  hxtSetMessageCallback([](void*) { return 0; });
   HxtMesh* mesh = nullptr;
   if (hxtMeshCreate(&mesh) < 0) throw std::runtime_error("HXT makes no mesh");
   constexpr std::size_t kAlignment = 64, kPerVertex = 4;
