@@ -18,7 +18,7 @@ namespace delray::raster {
 inline constexpr std::size_t kMostLanes = 16;
 // Triangles of which at most so many columns and rows of pixel centres lie in the box are drawn
 // pixel by pixel, many triangles at a time.
-inline constexpr int kSmallSide = 4;
+inline constexpr int kSmallSide = 8;
 // A cluster is compact if its coordinates, seen from its corner, are below this: products of
 // differences then fit 32 bits, and a position fits one word.
 inline constexpr int kCompact = 1 << 15;

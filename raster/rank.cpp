@@ -15,8 +15,8 @@ template <class Colour>
 void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
                   image::BasicImage<Colour>& image) {
   communicator.mark(comm::Phase::rasterize, 0);
-  const RegionCounts done =
-      render_regions(screen, list, shader, options, regions, scratch, image, progress);
+  const RegionCounts done = render_regions(screen, list, shader, options, regions,
+                                           depths_are_distances(), scratch, image, progress);
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
   counts.phases += done.phases;

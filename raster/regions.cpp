@@ -11,14 +11,15 @@ namespace delray::raster {
 template <class Colour>
 RegionCounts render_regions(const Screen& screen, const DrawList& list,
                             const shading::Shader& shader, const RenderOptions& options,
-                            std::span<const geometry::Rect> regions, Scratch& scratch,
-                            image::BasicImage<Colour>& image, parallel::Progress* progress) {
+                            std::span<const geometry::Rect> regions, bool distances,
+                            Scratch& scratch, image::BasicImage<Colour>& image,
+                            parallel::Progress* progress) {
   RegionCounts counts;
   const TileJobs tiles = make_tile_jobs(screen, regions);
   if (progress != nullptr) progress->start(tiles.jobs.size());
   const std::vector<PreparedDraw> draws =
       prepare_draws(screen, list, shader, options.cull_single_sided);
-  const FrameShading frame = make_frame_shading(screen, shader, list, options.lighting);
+  const FrameShading frame = make_frame_shading(screen, shader, list, options.lighting, distances);
   scratch.tiles.begin(screen, tiles);
 
   // Which frame the triangles that a thread remembers belong to.
@@ -75,10 +76,10 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
 }
 
 template RegionCounts render_regions(const Screen&, const DrawList&, const shading::Shader&,
-                                     const RenderOptions&, std::span<const geometry::Rect>,
+                                     const RenderOptions&, std::span<const geometry::Rect>, bool,
                                      Scratch&, image::Image8&, parallel::Progress*);
 template RegionCounts render_regions(const Screen&, const DrawList&, const shading::Shader&,
-                                     const RenderOptions&, std::span<const geometry::Rect>,
+                                     const RenderOptions&, std::span<const geometry::Rect>, bool,
                                      Scratch&, image::ImageF&, parallel::Progress*);
 
 }  // namespace delray::raster

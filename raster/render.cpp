@@ -146,8 +146,9 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   result.statistics = summarize(reports);
   if (memory_->blended)
     result.statistics.warnings.emplace_back("transparent materials are drawn opaque");
-  std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
-             result.picture);
+  if (!rank.depths_are_distances())
+    std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
+               result.picture);
   return result;
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 // Multipliers of Fibonacci hashing (Knuth 1973, 6.4).
 constexpr std::uint32_t kGoldenRatio32 = 0x9E3779B9U;
+constexpr std::uint64_t kGoldenRatio64 = 0x9E3779B97F4A7C15U;
 
 }  // namespace
 
@@ -59,7 +60,7 @@ std::uint64_t GouraudTile::find_triangles(const VisibilityTile& tile, const geom
   return shown;
 }
 
-// What triangles refer to is scattered in memory: all of it is asked for before any is needed.
+// What triangles refer to is scattered in memory: it is asked for some time before it is needed.
 void GouraudTile::look_up_triangles(const DrawList& list) {
   seen_in_.resize(numbers_.size());
   for (std::size_t t = 0; t < numbers_.size(); ++t) {
@@ -67,7 +68,12 @@ void GouraudTile::look_up_triangles(const DrawList& list) {
     seen_in_[t].triangle = list.triangle_of(numbers_[t]);
     hwy::Prefetch(&list.draws[seen_in_[t].draw].mesh->triangles[seen_in_[t].triangle]);
   }
-  for (SeenIn& seen : seen_in_) {
+}
+
+void GouraudTile::look_up_corners(const DrawList& list, std::size_t first) {
+  const std::size_t last = std::min(first + kBlockSize, seen_in_.size());
+  for (std::size_t t = first; t < last; ++t) {
+    SeenIn& seen = seen_in_[t];
     const scenes::Mesh& mesh = *list.draws[seen.draw].mesh;
     seen.corners = mesh.triangles[seen.triangle];
     for (int k = 0; k < 3; ++k) {
@@ -81,8 +87,8 @@ void GouraudTile::look_up_triangles(const DrawList& list) {
 std::uint32_t GouraudTile::vertex_of(std::uint32_t draw, std::uint32_t vertex, std::uint32_t side,
                                      bool& is_new) {
   const std::uint64_t key = std::uint64_t{draw} << 33 | std::uint64_t{vertex} << 1 | side;
-  // Neighbours have neighbouring numbers, and so neighbouring slots.
-  std::size_t slot = vertex + draw * kGoldenRatio32;
+  // Neighbours often have neighbouring numbers: eight of them share cache lines.
+  std::size_t slot = (((vertex >> 3) + draw) * kGoldenRatio64 >> vertex_slot_shift_) ^ (vertex & 7);
   for (;; ++slot) {
     slot &= vertex_slots_.size() - 1;
     if (vertex_slots_[slot].key == key) break;
@@ -195,13 +201,19 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
   any_textured_ = false;
   radiances_.clear();
   // At most half full.
-  const std::size_t slots = std::bit_ceil(6 * numbers_.size() + 1);
+  const std::size_t slots = std::bit_ceil(6 * numbers_.size() + 8);
   if (vertex_slots_.size() != slots) vertex_slots_.resize(slots);
+  vertex_slot_shift_ = 64 - std::bit_width(slots - 1);
   look_up_triangles(frame.list);
   std::fill(std::begin(draw_of_lane_), std::end(draw_of_lane_), kNothing);
-  for (std::size_t first = 0; first < numbers_.size(); first += kBlockSize)
+  constexpr std::size_t kAhead = 4 * kBlockSize;
+  for (std::size_t first = 0; first < kAhead; first += kBlockSize)
+    look_up_corners(frame.list, first);
+  for (std::size_t first = 0; first < numbers_.size(); first += kBlockSize) {
+    look_up_corners(frame.list, first + kAhead);
     set_up_block(frame, first,
                  static_cast<int>(std::min<std::size_t>(kBlockSize, numbers_.size() - first)));
+  }
   for (const std::size_t block : open_blocks_) light(frame, block);
   open_blocks_.clear();
   for (const std::uint32_t slot : used_vertex_slots_) vertex_slots_[slot].key = kNoVertex;
@@ -247,7 +259,7 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
         static_cast<std::size_t>(rect.x0);
     std::copy(colours, colours + width, image.colour.data() + first);
     const std::int64_t* const keys = tile.key + (j0 + j) * kTileSize + i0;
-    for (int i = 0; i < width; ++i) image.depth[first + i] = depth_of(keys[i]);
+    for (int i = 0; i < width; ++i) image.depth[first + i] = frame.shown_depth(keys[i]);
   }
   return shown;
 }

@@ -159,10 +159,13 @@ HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t
       continue;
     }
     HWY_ALIGN float colours[4 * kBlockSize];
-    for (int k = 0; k < lanes; ++k)
-      if (index[i + k] != kNoTriangle)
-        interpolate_one(triangles[index[i + k]], static_cast<float>(x + i + k),
-                        static_cast<float>(y), colours + 4 * k);
+    for (int k = 0; k < lanes; ++k) {
+      // There is a triangle, or all would be equal; without a branch, which would often be guessed
+      // wrong.
+      const std::uint16_t t = index[i + k] == kNoTriangle ? std::uint16_t{0} : index[i + k];
+      interpolate_one(triangles[t], static_cast<float>(x + i + k), static_cast<float>(y),
+                      colours + 4 * k);
+    }
     F red, green, blue, unused;
     hn::LoadInterleaved4(d, colours, red, green, blue, unused);
     store({red, green, blue}, hn::Not(hn::Eq(triangle, hn::Set(di, kNoTriangle))), pixels + i);

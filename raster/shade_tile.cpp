@@ -52,8 +52,8 @@ void store(const glm::vec3& colour, image::Rgba8& pixel) {
 }  // namespace
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
-                                const DrawList& list, Lighting lighting) {
-  FrameShading frame{screen, shader, list, {}, {}, {}, lighting};
+                                const DrawList& list, Lighting lighting, bool distances) {
+  FrameShading frame{screen, shader, list, {}, {}, {}, lighting, distances};
   frame.draws.reserve(list.draws.size());
   for (const Draw& draw : list.draws) frame.draws.push_back(make_shaded_draw(screen.view, draw));
   if (lighting == Lighting::gouraud) {
@@ -142,7 +142,7 @@ std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const V
     const std::uint32_t number = number_of(tile.key[i]);
     const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                               static_cast<std::size_t>(x);
-    image.depth[pixel] = depth_of(tile.key[i]);
+    image.depth[pixel] = frame.shown_depth(tile.key[i]);
     if (number == kNothing) {
       image.colour[pixel] = {};
       return false;

@@ -49,19 +49,17 @@ glm::vec4 colour_at(std::uint64_t seed, const glm::vec3& p, const glm::vec3& nor
   return {colour, 1.0F};
 }
 
-// The n x n vertices, and the cells between them, are numbered block by block, so that what is
-// close together in the terrain is so in memory too.
-class Blocks {
+// The n x n vertices, and the cells between them, are numbered column by column in strips of a few
+// rows, so that what is close together in the terrain is so in memory too.
+class Strips {
  public:
-  static constexpr std::uint32_t kSide = 8;
+  static constexpr std::size_t kRows = 8;
 
-  explicit Blocks(std::uint32_t n) : n_(n) {}
-  // Of element (i, j).
+  explicit Strips(std::size_t n) : n_(n) {}
+  // Of element i of row j.
   std::size_t number(std::size_t i, std::size_t j) const {
-    const std::size_t i0 = i / kSide * kSide, j0 = j / kSide * kSide;
-    const std::size_t width = std::min<std::size_t>(kSide, n_ - i0);
-    const std::size_t height = std::min<std::size_t>(kSide, n_ - j0);
-    return j0 * n_ + i0 * height + (j - j0) * width + (i - i0);
+    const std::size_t first = j / kRows * kRows;
+    return first * n_ + i * std::min(kRows, n_ - first) + (j - first);
   }
   // Calls f(i, j) for every element.
   template <class F>
@@ -72,7 +70,7 @@ class Blocks {
   }
 
  private:
-  std::uint32_t n_;
+  std::size_t n_;
 };
 
 Mesh height_field(std::uint32_t n, std::uint64_t seed) {
@@ -85,7 +83,7 @@ Mesh height_field(std::uint32_t n, std::uint64_t seed) {
   const float spacing = 2.0F / static_cast<float>(n - 1);
   int octaves = 4;  // the last one has waves of a few cells
   while (octaves < 12 && (1U << octaves) * 4 < n) ++octaves;
-  const Blocks points(n);
+  const Strips points(n);
   points.for_each([&](std::size_t i, std::size_t j) {
     const float x = -1.0F + static_cast<float>(i) * spacing;
     const float z = -1.0F + static_cast<float>(j) * spacing;
@@ -103,7 +101,7 @@ Mesh height_field(std::uint32_t n, std::uint64_t seed) {
     mesh.normals[v] = glm::normalize(glm::cross(z, x));
     mesh.colours[v] = colour_at(seed, mesh.positions[v], mesh.normals[v]);
   });
-  const Blocks cells(n - 1);
+  const Strips cells(n - 1);
   mesh.triangles.resize(std::size_t{2} * (n - 1) * (n - 1));
   cells.for_each([&](std::size_t i, std::size_t j) {
     const auto corner = [&](std::size_t right, std::size_t above) {

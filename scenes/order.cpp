@@ -16,7 +16,7 @@ constexpr std::size_t kRun = 128;
 constexpr double kWorthwhile = 0.8;
 // It is not asked for where the sides of a run's box add up to no more than so many times the side
 // of a square of its area: those of a flat square add up to 2 or 3.
-constexpr double kCompact = 3;
+constexpr double kCompact = 4;
 constexpr std::size_t kGrain = 1 << 14;  // triangles: some hundred microseconds
 constexpr int kAxisBits = 21;
 

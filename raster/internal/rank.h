@@ -29,6 +29,8 @@ struct Rank {
 
   // The primitives that this rank has before anything travels: an equal part of all, in order.
   std::pair<std::uint64_t, std::uint64_t> own_primitives() const;
+  // A single rank's depths need no compositing, which wants them as they are rasterized.
+  bool depths_are_distances() const { return ranks() == 1; }
   // Renders `list` into `regions` of `image` and counts.
   template <class Colour>
   void render(const DrawList& list, std::span<const geometry::Rect> regions,

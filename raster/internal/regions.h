@@ -38,12 +38,13 @@ struct RegionCounts {
 };
 
 // Renders the list into those pixels of the image (which has the frame's size) that `regions`
-// cover; depths are -near / distance. The regions are disjoint. Parallel: batches of clusters, then
-// tiles.
+// cover; depths are -near / distance, or with `distances` those. The regions are disjoint.
+// Parallel: batches of clusters, then tiles.
 template <class Colour>
 RegionCounts render_regions(const Screen& screen, const DrawList& list,
                             const shading::Shader& shader, const RenderOptions& options,
-                            std::span<const geometry::Rect> regions, Scratch& scratch,
-                            image::BasicImage<Colour>& image, parallel::Progress* progress);
+                            std::span<const geometry::Rect> regions, bool distances,
+                            Scratch& scratch, image::BasicImage<Colour>& image,
+                            parallel::Progress* progress);
 
 }  // namespace delray::raster

@@ -67,6 +67,7 @@ class GouraudTile {
 
   std::uint64_t find_triangles(const VisibilityTile& tile, const geometry::Rect& rect);
   void look_up_triangles(const DrawList& list);
+  void look_up_corners(const DrawList& list, std::size_t first);
   void set_up_triangles(const FrameShading& frame);
   void set_up_block(const FrameShading& frame, std::size_t first, int count);
   void add_corners(const FrameShading& frame, int i, std::size_t triangle);
@@ -91,6 +92,7 @@ class GouraudTile {
   std::vector<TriangleSlot> triangle_slots_;
   std::vector<std::uint32_t> used_triangle_slots_;
   std::vector<VertexSlot> vertex_slots_;  // a power of two of them
+  int vertex_slot_shift_ = 0;
   std::vector<std::uint32_t> used_vertex_slots_;
 
   TriangleBlock block_;

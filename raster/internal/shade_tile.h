@@ -21,9 +21,17 @@ struct FrameShading {
   std::vector<scenes::Material> untextured;  // the shader's materials without textures; for gouraud
   shading::BatchShader untextured_batch;     // the same, for many vertices at a time
   Lighting lighting;
+  // Images get distances along the view axis rather than -near / distance.
+  bool distances;
+
+  float shown_depth(std::int64_t key) const {
+    const float depth = depth_of(key);
+    const float distance = distance_of(depth, screen.view.near);
+    return distances && depth < 0 ? distance : depth;
+  }
 };
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
-                                const DrawList& list, Lighting lighting);
+                                const DrawList& list, Lighting lighting, bool distances);
 
 // Triangles seen lately, and their lit vertices; neighbouring pixels mostly show the same few. One
 // per thread.

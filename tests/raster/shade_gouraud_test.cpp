@@ -42,7 +42,8 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   draw_into_tiles(task, tiles, workers, large, seconds);
   for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, large, tiles);
 
-  const FrameShading frame = make_frame_shading(screen, shader, list, Lighting::gouraud);
+  const FrameShading frame =
+      make_frame_shading(screen, shader, list, Lighting::gouraud, width % 2 == 0);
   SeenTriangles seen;
   seen.clear();
   GouraudTile gouraud;
