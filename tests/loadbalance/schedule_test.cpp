@@ -6,7 +6,8 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
-#include <numeric>
+#include <memory>
+#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -189,21 +190,25 @@ TEST(Schedules, OfSeveralRunsDoNotMeet) {
     network.jitter = seed % 2 == 0 ? 1e-3 : 0.1;
     const int ranks = 2 + static_cast<int>(seed % 6);
     const TaskGrid grid{static_cast<std::uint32_t>(seed % 11), 3};
+    std::mt19937_64 random(seed);
+    std::vector<const Schedule*> chosen(16);
+    for (auto& schedule : chosen) schedule = &schedules()[random() % schedules().size()];
+    for (std::size_t run = 1; run < chosen.size(); run += 2) {
+      if (random() % 2 == 0) chosen[run] = chosen[run - 1];
+    }
     std::vector<std::unique_ptr<Log>> logs;
-    for (std::size_t run = 0; run < 2 * schedules().size(); ++run) {
+    for (std::size_t run = 0; run < chosen.size(); ++run) {
       logs.push_back(std::make_unique<Log>(grid));
     }
     comm::run_simulated(ranks, network, seed, [&](comm::Communicator& communicator) {
       const int next = (communicator.rank() + 1) % ranks;
       for (std::size_t run = 0; run < logs.size(); ++run) {
         communicator.send(next, kOther, comm::Buffer());
-        const Schedule& chosen =
-            schedules()[(seed * 5 + run * (run / 8 + 1) * 3) % schedules().size()];
         ScheduleOptions options;
         options.threads = 1;
         options.fan_out = 2 + static_cast<int>(run % 3);
         options.master_works = run % 4 != 1;
-        chosen.run(communicator, grid, options, [&](std::uint32_t task, int) {
+        chosen[run]->run(communicator, grid, options, [&](std::uint32_t task, int) {
           ++logs[run]->times[task];
           communicator.work(comm::Work::seconds_e9, 1000 * (task % 7) * (task % 7));
         });
