@@ -77,22 +77,42 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
                  worker.result);
 }
 
-Worker::TouchedTile& touch(std::uint32_t tile, Worker& worker) {
-  std::uint32_t& number = worker.touched_number[tile];
-  if (number == 0) {
-    worker.touched.push_back({tile, 0, 0, 0, 0});
-    number = static_cast<std::uint32_t>(worker.touched.size());
+// The tiles of a batch by number. Mostly one thing lies in the same tile as the one before it.
+class TouchedTiles {
+ public:
+  explicit TouchedTiles(Worker& worker) : worker_(worker) {}
+
+  Worker::TouchedTile& operator[](std::uint32_t tile) {
+    if (tile != last_tile_) {
+      last_tile_ = tile;
+      last_ = find(tile);
+    }
+    return worker_.touched[last_];
   }
-  return worker.touched[number - 1];
-}
+
+ private:
+  std::size_t find(std::uint32_t tile) {
+    std::uint32_t& number = worker_.touched_number[tile];
+    if (number == 0) {
+      worker_.touched.push_back({tile, 0, 0, 0, 0});
+      number = static_cast<std::uint32_t>(worker_.touched.size());
+    }
+    return number - 1;
+  }
+
+  Worker& worker_;
+  std::uint32_t last_tile_ = kNothing;
+  std::size_t last_ = 0;
+};
 
 // By counting, into worker.fragments and worker.entries.
 void sort_by_tile(Worker& worker) {
   const SetUpResult& result = worker.result;
   worker.touched.clear();
+  TouchedTiles tiles(worker);
   for (std::size_t i = 0; i < result.fragments; ++i)
-    ++touch(result.address[i] / kTilePixels, worker).last_fragment;
-  for (const SetUpResult::Entry& entry : result.entries) ++touch(entry.tile, worker).last_entry;
+    ++tiles[result.address[i] / kTilePixels].last_fragment;
+  for (const SetUpResult::Entry& entry : result.entries) ++tiles[entry.tile].last_entry;
   std::uint32_t fragments = 0, entries = 0;
   for (Worker::TouchedTile& tile : worker.touched) {
     const std::uint32_t here = tile.last_fragment, entries_here = tile.last_entry;
@@ -103,14 +123,15 @@ void sort_by_tile(Worker& worker) {
   }
   if (worker.fragments.size() < fragments) worker.fragments.resize(fragments);
   if (worker.entries.size() < entries) worker.entries.resize(entries);
+  Fragment* const sorted = worker.fragments.data();
   for (std::size_t i = 0; i < result.fragments; ++i) {
     const std::uint32_t address = result.address[i];
-    worker.fragments[touch(address / kTilePixels, worker).last_fragment++] = {
+    sorted[tiles[address / kTilePixels].last_fragment++] = {
         static_cast<std::int64_t>(std::uint64_t{result.code[i]} << 32 | result.number[i]),
         address % kTilePixels};
   }
   for (const SetUpResult::Entry& entry : result.entries)
-    worker.entries[touch(entry.tile, worker).last_entry++] = entry.entry;
+    worker.entries[tiles[entry.tile].last_entry++] = entry.entry;
   for (const Worker::TouchedTile& tile : worker.touched) worker.touched_number[tile.tile] = 0;
 }
 

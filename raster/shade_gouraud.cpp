@@ -84,22 +84,29 @@ void GouraudTile::look_up_corners(const DrawList& list, std::size_t first) {
   }
 }
 
-std::uint32_t GouraudTile::vertex_of(std::uint32_t draw, std::uint32_t vertex, std::uint32_t side,
-                                     bool& is_new) {
+inline std::uint32_t GouraudTile::vertex_of(std::uint32_t draw, std::uint32_t vertex,
+                                            std::uint32_t side, bool& is_new) {
   const std::uint64_t key = std::uint64_t{draw} << 33 | std::uint64_t{vertex} << 1 | side;
+  const std::size_t last = vertex_slots_.size() - 1;
   // Neighbours often have neighbouring numbers: eight of them share cache lines.
   std::size_t slot = (((vertex >> 3) + draw) * kGoldenRatio64 >> vertex_slot_shift_) ^ (vertex & 7);
-  for (;; ++slot) {
-    slot &= vertex_slots_.size() - 1;
-    if (vertex_slots_[slot].key == key) break;
-    if (vertex_slots_[slot].key != kNoVertex) continue;
-    is_new = true;
-    vertex_slots_[slot] = {key, static_cast<std::uint32_t>(radiances_.size())};
-    used_vertex_slots_.push_back(static_cast<std::uint32_t>(slot));
-    radiances_.emplace_back();
-    break;
+  const VertexSlot* const slots = vertex_slots_.data();
+  while (slots[slot].key != key) {
+    if (slots[slot].key == kNoVertex) {
+      is_new = true;
+      return remember_vertex(slot, key);
+    }
+    slot = (slot + 1) & last;
   }
-  return vertex_slots_[slot].vertex;
+  return slots[slot].vertex;
+}
+
+std::uint32_t GouraudTile::remember_vertex(std::size_t slot, std::uint64_t key) {
+  const auto vertex = static_cast<std::uint32_t>(radiances_.size());
+  vertex_slots_[slot] = {key, vertex};
+  used_vertex_slots_.push_back(static_cast<std::uint32_t>(slot));
+  radiances_.emplace_back();
+  return vertex;
 }
 
 void GouraudTile::light(const FrameShading& frame, std::size_t number) {
@@ -200,8 +207,8 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
   textured_.assign(numbers_.size(), 0);
   any_textured_ = false;
   radiances_.clear();
-  // At most half full.
-  const std::size_t slots = std::bit_ceil(6 * numbers_.size() + 8);
+  // Never full: a triangle has three corners.
+  const std::size_t slots = std::bit_ceil(4 * numbers_.size() + 8);
   if (vertex_slots_.size() != slots) vertex_slots_.resize(slots);
   vertex_slot_shift_ = 64 - std::bit_width(slots - 1);
   look_up_triangles(frame.list);

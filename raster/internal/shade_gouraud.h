@@ -73,6 +73,7 @@ class GouraudTile {
   void add_corners(const FrameShading& frame, int i, std::size_t triangle);
   std::uint32_t vertex_of(std::uint32_t draw, std::uint32_t vertex, std::uint32_t side,
                           bool& is_new);
+  std::uint32_t remember_vertex(std::size_t slot, std::uint64_t key);
   void add_vertex(const FrameShading& frame, std::uint32_t material, int i, int k,
                   const scenes::Mesh& mesh, std::uint32_t mesh_vertex, std::uint32_t vertex);
   void light(const FrameShading& frame, std::size_t block);
