@@ -41,6 +41,16 @@ std::uint64_t GouraudTile::find_triangles(const VisibilityTile& tile, const geom
     const std::int64_t* const keys = tile.key + j * kTileSize;
     const std::int64_t* const above = j == j0 ? keys : keys - kTileSize;
     for (int i = i0; i < i0 + rect.width(); ++i) {
+      if (i % kBlockSize == 0 && i + kBlockSize <= i0 + rect.width()) {
+        std::uint32_t different = 0;
+        for (int k = 0; k < kBlockSize; ++k) different |= number_of(keys[i + k]) ^ last;
+        if (different == 0) {
+          std::fill_n(index_ + j * kTileSize + i, kBlockSize, index);
+          shown += index == kNoTriangle ? 0 : kBlockSize;
+          i += kBlockSize - 1;
+          continue;
+        }
+      }
       const std::uint32_t number = number_of(keys[i]);
       if (number != last) {
         last = number;
@@ -248,25 +258,33 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
   const int width = rect.width();
   alignas(64) std::uint16_t index[kTileSize + kBlockSize];
   alignas(64) Colour colours[kTileSize + kBlockSize];
+  alignas(64) float depths[kTileSize + kBlockSize];
+  // Rows of whole vectors go straight into the image, others might run over what is beside them.
+  const bool whole = width % kBlockSize == 0;
   for (int j = 0; j < rect.height(); ++j) {
     const std::uint16_t* const row = index_ + (j0 + j) * kTileSize + i0;
-    std::copy(row, row + width, index);
-    std::fill(index + width, index + width + kBlockSize, kNoTriangle);
-    if (any_textured_)
-      for (int i = 0; i < width; ++i)
-        if (index[i] != kNoTriangle && textured_[index[i]] != 0) index[i] = kNoTriangle;
-    shade_row(triangles_, index, rect.x0, rect.y0 + j, width, colours);
-    if (any_textured_)
-      for (int i = 0; i < width; ++i)
-        if (row[i] != kNoTriangle && textured_[row[i]] != 0)
-          shade_pixel(frame, seen, numbers_[row[i]], rect.x0 + i, rect.y0 + j, colours[i]);
-
     const std::size_t first =
         static_cast<std::size_t>(rect.y0 + j) * static_cast<std::size_t>(image.width) +
         static_cast<std::size_t>(rect.x0);
-    std::copy(colours, colours + width, image.colour.data() + first);
+    Colour* const to = whole ? image.colour.data() + first : colours;
+    if (whole && !any_textured_) {
+      shade_row(triangles_, row, rect.x0, rect.y0 + j, width, to);
+    } else {
+      std::copy(row, row + width, index);
+      std::fill(index + width, index + width + kBlockSize, kNoTriangle);
+      for (int i = 0; i < width && any_textured_; ++i)
+        if (index[i] != kNoTriangle && textured_[index[i]] != 0) index[i] = kNoTriangle;
+      shade_row(triangles_, index, rect.x0, rect.y0 + j, width, to);
+      for (int i = 0; i < width && any_textured_; ++i)
+        if (row[i] != kNoTriangle && textured_[row[i]] != 0)
+          shade_pixel(frame, seen, numbers_[row[i]], rect.x0 + i, rect.y0 + j, to[i]);
+    }
+    float* const depths_to = whole ? image.depth.data() + first : depths;
     const std::int64_t* const keys = tile.key + (j0 + j) * kTileSize + i0;
-    for (int i = 0; i < width; ++i) image.depth[first + i] = frame.shown_depth(keys[i]);
+    store_depths(keys, width, frame.distances ? frame.screen.view.near : 0.0F, depths_to);
+    if (whole) continue;
+    std::copy(colours, colours + width, image.colour.data() + first);
+    std::copy(depths, depths + width, image.depth.data() + first);
   }
   return shown;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
 #include "image/srgb.h"
 #include "raster/internal/shade_gouraud.h"
@@ -181,6 +182,26 @@ void shade_row_float(const PixelTriangle* triangles, const std::uint16_t* index,
   shade_pixels(triangles, index, x, y, count, pixels);
 }
 
+void store_depths(const std::int64_t* keys, int count, float near, float* depths) {
+  const Floats d;
+  const Ints di;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  HWY_ALIGN std::int32_t halves[2 * kBlockSize] = {};
+  for (int i = 0; i < count; i += lanes) {
+    const int here = std::min(lanes, count - i);
+    if (here == lanes)  // a size that the compiler knows
+      std::memcpy(halves, keys + i, sizeof(std::int64_t) * hn::Lanes(d));
+    else
+      std::memcpy(halves, keys + i, sizeof(std::int64_t) * static_cast<std::size_t>(here));
+    I number, code;
+    hn::LoadInterleaved2(di, halves, number, code);
+    const F depth = hn::BitCast(d, hn::Not(code));
+    const F shown = near > 0 ? hn::Div(hn::Set(d, -near), depth) : depth;
+    const auto empty = hn::RebindMask(d, hn::Eq(code, hn::Set(di, kEmptyCode)));
+    hn::StoreU(hn::IfThenElse(empty, hn::Set(d, image::kEmptyDepth), shown), d, depths + i);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raster
 HWY_AFTER_NAMESPACE();
@@ -190,6 +211,7 @@ namespace delray::raster {
 
 HWY_EXPORT(shade_row8);
 HWY_EXPORT(shade_row_float);
+HWY_EXPORT(store_depths);
 
 void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
                int count, image::Rgba8* pixels) {
@@ -198,6 +220,10 @@ void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* in
 void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
                int count, image::RgbaF* pixels) {
   HWY_DYNAMIC_DISPATCH(shade_row_float)(triangles.data(), index, x, y, count, pixels);
+}
+
+void store_depths(const std::int64_t* keys, int count, float near, float* depths) {
+  HWY_DYNAMIC_DISPATCH(store_depths)(keys, count, near, depths);
 }
 
 }  // namespace delray::raster

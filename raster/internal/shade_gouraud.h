@@ -34,6 +34,10 @@ void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* in
 void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
                int count, image::RgbaF* pixels);
 
+// The depths of `count` keys, or the distances that they stand for if `near` is not 0, infinity
+// where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
+void store_depths(const std::int64_t* keys, int count, float near, float* depths);
+
 // Memory for a tile. One per thread.
 class GouraudTile {
  public:

@@ -55,9 +55,9 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
     image::clear(image);
     std::uint64_t shown_by_vectors = 0;
     for (const TileJob& job : jobs.jobs) {
-      // In two parts, the first of which ends within a vector.
+      // Whole, or in two parts of which the first ends within a vector.
       const geometry::Rect r = screen.tile(job.tile);
-      const int x = std::min(r.x0 + 23, r.x1);
+      const int x = job.tile % 2 == 0 ? r.x1 : std::min(r.x0 + 23, r.x1);
       for (const geometry::Rect& part :
            {geometry::Rect{r.x0, r.y0, x, r.y1}, geometry::Rect{x, r.y0, r.x1, r.y1}})
         if (!part.empty())
