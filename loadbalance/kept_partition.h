@@ -20,6 +20,8 @@ class KeptPartition {
   // do or was for another frame. The reference stays valid until the next call. O(loads) when kept.
   const Partition& next(const Costs& costs);
 
+  // What next returned last: to scale costs to what it took with. Without regions before that.
+  const Partition& last() const { return partition_; }
   std::uint64_t frames() const { return frames_; }
   std::uint64_t recomputed() const { return recomputed_; }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "loadbalance/cost_model.h"
+
 namespace delray::loadbalance {
 namespace {
 
@@ -28,6 +30,20 @@ TEST(KeptPartition, IsCutAnewOnlyWhenSomebodyDoesTooMuch) {
   EXPECT_EQ(border({2, 1, 1, 0}), 1);
   EXPECT_EQ(kept.recomputed(), 2U);
   EXPECT_EQ(kept.frames(), 5U);
+}
+
+// The model takes both halves for equal; the first frame shows that the left one takes thrice as
+// long.
+TEST(KeptPartition, FollowsMeasurements) {
+  const Rect frame{0, 0, 8, 1};
+  KeptPartition kept(*find_partitioner("mahd"), 2, 1.25);
+  EXPECT_TRUE(kept.last().regions.empty());
+  Costs costs = costs_over(frame, {1, 1, 1, 1, 1, 1, 1, 1});
+  EXPECT_EQ(kept.next(costs).regions[0].rect.x1, 4);
+  scale_to_measured(costs, kept.last(), std::vector<double>{3, 1});
+  EXPECT_EQ(kept.next(costs).regions[0].rect.x1, 3);  // 2.25 of 4
+  EXPECT_EQ(kept.last().regions[0].rect.x1, 3);
+  EXPECT_EQ(kept.recomputed(), 2U);
 }
 
 TEST(KeptPartition, FollowsTheFrame) {
