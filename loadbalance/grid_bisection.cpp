@@ -100,6 +100,22 @@ GridBisection::Growth GridBisection::grow(const std::vector<std::uint32_t>& cell
   return growth;
 }
 
+GridBisection::Growth GridBisection::sweep(const std::vector<std::uint32_t>& cells,
+                                           const std::vector<std::uint32_t>& order, double wanted) {
+  for (const std::uint32_t cell : cells) side_[cell] = Side::outside;
+  Growth growth;
+  for (const std::uint32_t cell : order) {
+    const double with = growth.cost + costs_[cell];
+    const bool is_last = growth.taken.size() + 1 == cells.size();
+    if (is_last || (!growth.taken.empty() && with - wanted > wanted - growth.cost)) break;
+    growth.crossing -= gain(cell);
+    side_[cell] = Side::inside;
+    growth.taken.push_back(cell);
+    growth.cost = with;
+  }
+  return growth;
+}
+
 void GridBisection::refine(const std::vector<std::uint32_t>& cells, double wanted,
                            double inside_cost) {
   std::size_t inside_count = 0;
@@ -173,8 +189,14 @@ std::vector<std::uint32_t> GridBisection::take(std::vector<std::uint32_t>& cells
     if (std::find(corners.begin(), corners.begin() + k, corners[k]) != corners.begin() + k)
       continue;
     Growth growth = grow(cells, corners[k], wanted);
-    const bool better = growth.crossing < best.crossing;
-    if (best.taken.empty() || better) best = std::move(growth);
+    if (best.taken.empty() || growth.crossing < best.crossing) best = std::move(growth);
+  }
+  std::vector<std::uint32_t> by_column = cells;
+  std::stable_sort(by_column.begin(), by_column.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return column(a) < column(b); });
+  for (const auto* order : {&cells, &by_column}) {
+    Growth growth = sweep(cells, *order, wanted);
+    if (growth.crossing < best.crossing) best = std::move(growth);
   }
   for (const std::uint32_t cell : cells) side_[cell] = Side::outside;
   for (const std::uint32_t cell : best.taken) side_[cell] = Side::inside;

@@ -16,9 +16,9 @@ class GridBisection {
   // Takes cells out of `cells` (numbers row * columns + column, ascending, at least two) that have
   // about `share` of their cost, at least one and not all, and returns them, ascending: grown from
   // a corner of the set, next the cell that is tied most to those inside and least to those outside
-  // (greedy graph growing, Karypis and Kumar 1998), the best of four corners; then cells change
-  // sides at the border as long as less crosses it and the balance allows (Fiduccia and Mattheyses
-  // 1982). O(cells log cells).
+  // (greedy graph growing, Karypis and Kumar 1998), or row by row or column by column, whichever of
+  // these six leaves least crossing; then cells change sides at the border as long as less crosses
+  // it and the balance allows (Fiduccia and Mattheyses 1982). O(cells log cells).
   std::vector<std::uint32_t> take(std::vector<std::uint32_t>& cells, double share);
 
  private:
@@ -28,6 +28,9 @@ class GridBisection {
     double cost = 0, crossing = 0;
   };
   Growth grow(const std::vector<std::uint32_t>& cells, std::uint32_t seed, double wanted);
+  // Cells in `order` up to the wanted cost.
+  Growth sweep(const std::vector<std::uint32_t>& cells, const std::vector<std::uint32_t>& order,
+               double wanted);
   void refine(const std::vector<std::uint32_t>& cells, double wanted, double inside_cost);
   // Calls f(neighbour, tie) for the neighbours of a cell that are in the set.
   template <class F>

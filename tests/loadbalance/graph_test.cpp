@@ -45,6 +45,19 @@ TEST(Graph, SharesCostEvenly) {
   }
 }
 
+// What it is for: fewer primitives in several regions than rectangles have.
+TEST(Graph, SharesFewerPrimitivesThanRectanglesDo) {
+  const Rect frame{0, 0, 640, 360};
+  double regions = 0, rectangles = 0;
+  for (const testing::Scenery scenery : testing::kSceneries) {
+    const auto boxes = testing::boxes(scenery, frame, 5000, 3);
+    const Costs costs = testing::costs_of(frame, 8, boxes);
+    regions += report(*find_partitioner("graph"), costs, 8).balance.overlap - 1;
+    rectangles += report(*find_partitioner("mahd"), costs, 8).balance.overlap - 1;
+  }
+  EXPECT_LT(regions, 0.85 * rectangles);
+}
+
 TEST(Graph, SharesCellsWhereThereIsNoCost) {
   const Costs costs = make_costs({0, 0, 64, 32}, 16, 8, {});
   std::vector<std::int64_t> area(4);
