@@ -1,6 +1,5 @@
 #include "delaunay/internal/burglary.h"
 
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -11,10 +10,8 @@
 #include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insert_shaken.h"
 #include "delaunay/internal/insertion.h"
-#include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/insertion_team.h"
 #include "delaunay/internal/leaf_search.h"
-#include "delaunay/internal/point_supply.h"
-#include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -36,30 +33,29 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
   PointSupply supply = insert_alone(run, triangulation);
-  Team team;
   ThreadWaits waits(run.parts());
-  std::mutex finishing;
-  bool robbed = false;
-  const auto work = [&](std::size_t thread) {
-    BurglarLocks<D, kCounted> access(triangulation.dag, team, waits,
-                                     static_cast<std::uint32_t>(thread), run.parts());
-    LeafSearch<D> search(triangulation, options.location);
-    InsertionPhases phases(options);
-    std::vector<NodeNumber> suspects;
-    supply.for_each(thread, [&](VertexNumber vertex) {
-      team.check();
-      phases.next_point();
-      if (run.is_first(vertex)) return;
-      const NodeNumber leaf = search.find(run.point(vertex));
-      insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
-      access.commit();
-    });
-    const std::lock_guard alone(finishing);
-    phases.finish();
-    robbed |= access.has_robbed();
-    if (kCounted) add(options.statistics->synchronization, access.counts());
+  struct Burglar {
+    BurglarLocks<D, kCounted> access;
+    LeafSearch<D> search;
   };
-  team.run(run.parts(), work);
+  bool robbed = false;
+  insert_with_team(
+      run, supply,
+      [&](Team& team, std::size_t thread) {
+        return Burglar{
+            {triangulation.dag, team, waits, static_cast<std::uint32_t>(thread), run.parts()},
+            {triangulation, options.location}};
+      },
+      [&](Burglar& burglar, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const NodeNumber leaf = burglar.search.find(run.point(vertex));
+        insert_shaken(run, triangulation, leaf, vertex, burglar.access, suspects, phases);
+        burglar.access.commit();
+      },
+      [&](const Burglar& burglar) {
+        robbed |= burglar.access.has_robbed();
+        if (kCounted) add(options.statistics->synchronization, burglar.access.counts());
+      });
   // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
   // without a burglary; with one, all that came after it may have built on what it left.
   std::optional<std::uint64_t> repaired = 0;
@@ -74,11 +70,9 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
 }  // namespace
 
 Triangulation insert_by_burglary(PointView<double> points, const Options& options) {
-  const auto insert = [&]<int D>() {
-    return options.statistics != nullptr ? insert_all_points<D, true>(points, options)
-                                         : insert_all_points<D, false>(points, options);
-  };
-  return options.dim == 2 ? insert.template operator()<2>() : insert.template operator()<3>();
+  return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
+    return insert_all_points<D, kCounted>(points, options);
+  });
 }
 
 }  // namespace delray::delaunay::internal

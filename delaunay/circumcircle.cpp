@@ -1,6 +1,5 @@
 #include "delaunay/internal/circumcircle.h"
 
-#include <mutex>
 #include <vector>
 
 #include "delaunay/dag_location.h"
@@ -11,9 +10,7 @@
 #include "delaunay/internal/delaunay_repair.h"
 #include "delaunay/internal/insert_in_leaf.h"
 #include "delaunay/internal/insert_shaken.h"
-#include "delaunay/internal/insertion_phases.h"
-#include "delaunay/internal/point_supply.h"
-#include "delaunay/internal/team.h"
+#include "delaunay/internal/insertion_team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -24,32 +21,29 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   if (run.is_flat()) return run.finish();
   const DagTriangulation<2> triangulation = run.triangulation();
   PointSupply supply = insert_alone(run, triangulation);
-  Team team;
   CurrentPoints current(run.parts());
-  std::mutex finishing;
   bool robbed = false;
-  const auto work = [&](std::size_t thread) {
-    CircleAccess<kCounted> access(triangulation, team, current, static_cast<std::uint32_t>(thread));
-    InsertionPhases phases(options);
-    std::vector<NodeNumber> suspects;
-    supply.for_each(thread, [&](VertexNumber vertex) {
-      team.check();
-      phases.next_point();
-      if (run.is_first(vertex)) return;
-      const glm::dvec2& q = run.point(vertex);
-      const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
-                                      root_of(triangulation.dag, triangulation.orientation, q), q);
-      // Not before, because the others wait for this point from now on.
-      access.begin(vertex);
-      insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
-      access.commit();
-    });
-    const std::lock_guard alone(finishing);
-    phases.finish();
-    robbed |= access.has_robbed();
-    if (kCounted) add(options.statistics->synchronization, access.counts());
-  };
-  team.run(run.parts(), work);
+  insert_with_team(
+      run, supply,
+      [&](Team& team, std::size_t thread) {
+        return CircleAccess<kCounted>(triangulation, team, current,
+                                      static_cast<std::uint32_t>(thread));
+      },
+      [&](CircleAccess<kCounted>& access, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const glm::dvec2& q = run.point(vertex);
+        const NodeNumber leaf =
+            descend(triangulation.dag, triangulation.orientation,
+                    root_of(triangulation.dag, triangulation.orientation, q), q);
+        // Not before, because the others wait for this point from now on.
+        access.begin(vertex);
+        insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
+        access.commit();
+      },
+      [&](const CircleAccess<kCounted>& access) {
+        robbed |= access.has_robbed();
+        if (kCounted) add(options.statistics->synchronization, access.counts());
+      });
   // As in the burglary method.
   const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;
   if (kCounted) options.statistics->synchronization.repaired += repaired;

@@ -1,11 +1,10 @@
 #include "delaunay/internal/delaunay_repair.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "delaunay/internal/sole_dag_access.h"
-#include "delaunay/internal/team.h"
+#include "delaunay/internal/wrong_corners.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -21,34 +20,12 @@ bool is_wrong(const DagTriangulation<2>& triangulation, CornerNumber corner) {
              : conflict(triangulation, simplex_of(corner), triangulation.points[far]);
 }
 
-std::vector<CornerNumber> wrong_edges(const DagTriangulation<2>& triangulation,
-                                      std::size_t threads) {
-  const Dag<2>& dag = triangulation.dag;
-  std::vector<std::vector<CornerNumber>> found(threads);
-  Team team;
-  team.run(threads, [&](std::size_t thread) {
-    const auto end = static_cast<NodeNumber>(std::size_t{dag.size()} * (thread + 1) / threads);
-    for (auto node = static_cast<NodeNumber>(std::size_t{dag.size()} * thread / threads);
-         node < end; ++node) {
-      if (!dag.is_live(node)) continue;
-      for (unsigned k = 0; k < 3; ++k) {
-        const CornerNumber corner = corner_of(node, k);
-        if (corner < dag.neighbour(corner) && is_wrong(triangulation, corner)) {
-          found[thread].push_back(corner);
-        }
-      }
-    }
-  });
-  for (std::size_t thread = 1; thread < threads; ++thread) {
-    found[0].insert(found[0].end(), found[thread].begin(), found[thread].end());
-  }
-  return std::move(found[0]);
-}
-
 }  // namespace
 
 std::uint64_t repair(const DagTriangulation<2>& triangulation, std::size_t threads) {
-  std::vector<CornerNumber> suspects = wrong_edges(triangulation, threads);
+  std::vector<CornerNumber> suspects =
+      wrong_corners(triangulation.dag, threads,
+                    [&](CornerNumber corner) { return is_wrong(triangulation, corner); });
   if (suspects.empty()) return 0;
   SoleDagAccess<2> access(triangulation.dag, 0);
   std::uint64_t replaced = 0;

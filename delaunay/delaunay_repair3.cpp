@@ -3,7 +3,7 @@
 
 #include "delaunay/internal/delaunay_repair.h"
 #include "delaunay/internal/sole_dag_access.h"
-#include "delaunay/internal/team.h"
+#include "delaunay/internal/wrong_corners.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -37,26 +37,8 @@ bool is_wrong(const DagTriangulation<3>& triangulation, CornerNumber corner) {
 
 std::vector<CornerNumber> wrong_facets(const DagTriangulation<3>& triangulation,
                                        std::size_t threads) {
-  const Dag<3>& dag = triangulation.dag;
-  std::vector<std::vector<CornerNumber>> found(threads);
-  Team team;
-  team.run(threads, [&](std::size_t thread) {
-    const auto end = static_cast<NodeNumber>(std::size_t{dag.size()} * (thread + 1) / threads);
-    for (auto node = static_cast<NodeNumber>(std::size_t{dag.size()} * thread / threads);
-         node < end; ++node) {
-      if (!dag.is_live(node)) continue;
-      for (unsigned k = 0; k < 4; ++k) {
-        const CornerNumber corner = corner_of(node, k);
-        if (corner < dag.neighbour(corner) && is_wrong(triangulation, corner)) {
-          found[thread].push_back(corner);
-        }
-      }
-    }
-  });
-  for (std::size_t thread = 1; thread < threads; ++thread) {
-    found[0].insert(found[0].end(), found[thread].begin(), found[thread].end());
-  }
-  return std::move(found[0]);
+  return wrong_corners(triangulation.dag, threads,
+                       [&](CornerNumber corner) { return is_wrong(triangulation, corner); });
 }
 
 // Flips until nothing wrong is left that can be flipped. Returns how many leaves were made.

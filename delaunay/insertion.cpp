@@ -159,13 +159,7 @@ Triangulation insert_descending(PointView<double> input, const Options& options)
     InsertionPhases phases(options);
     std::vector<NodeNumber> suspects;
     for (VertexNumber vertex = 0; vertex < run.end(0); ++vertex) {
-      phases.next_point();
-      if (run.is_first(vertex)) continue;
-      const auto& q = run.point(vertex);
-      const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
-                                      root_of(triangulation.dag, triangulation.orientation, q), q);
-      phases.located();
-      insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+      insert_from_root(run, triangulation, vertex, access, suspects, phases);
     }
     phases.finish();
   }

@@ -1,15 +1,12 @@
 #include "delaunay/internal/optimistic.h"
 
-#include <mutex>
 #include <vector>
 
 #include "delaunay/internal/add_counts.h"
 #include "delaunay/internal/dag_run.h"
-#include "delaunay/internal/insertion_phases.h"
+#include "delaunay/internal/insertion_team.h"
 #include "delaunay/internal/leaf_search.h"
 #include "delaunay/internal/node_locks.h"
-#include "delaunay/internal/point_supply.h"
-#include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -40,45 +37,41 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
   PointSupply supply = run.supply();
-  Team team;
   Blocking blocking(run.parts());
-  std::mutex finishing;
-  const auto work = [&](std::size_t thread) {
-    NodeLocks<D, kCounted> access(triangulation.dag, team, blocking,
-                                  static_cast<std::uint32_t>(thread),
-                                  options.deadlocks == "priorities");
-    LeafSearch<D> search(triangulation, options.location);
-    InsertionPhases phases(options);
-    std::vector<NodeNumber> suspects;
-    supply.for_each(thread, [&](VertexNumber vertex) {
-      team.check();
-      phases.next_point();
-      if (run.is_first(vertex)) return;
-      const auto& q = run.point(vertex);
-      NodeNumber node = search.find(q);
-      while (!insert(run, triangulation, node, vertex, access, suspects, phases)) {
-        access.rollback();
-        suspects.clear();
-        node = search.find_below(node, q);
-      }
-      access.commit();
-    });
-    const std::lock_guard alone(finishing);
-    phases.finish();
-    if (kCounted) add(options.statistics->synchronization, access.counts());
+  struct Locker {
+    NodeLocks<D, kCounted> access;
+    LeafSearch<D> search;
   };
-  team.run(run.parts(), work);
+  insert_with_team(
+      run, supply,
+      [&](Team& team, std::size_t thread) {
+        return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread),
+                       options.deadlocks == "priorities"},
+                      {triangulation, options.location}};
+      },
+      [&](Locker& locker, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const auto& q = run.point(vertex);
+        NodeNumber node = locker.search.find(q);
+        while (!insert(run, triangulation, node, vertex, locker.access, suspects, phases)) {
+          locker.access.rollback();
+          suspects.clear();
+          node = locker.search.find_below(node, q);
+        }
+        locker.access.commit();
+      },
+      [&](const Locker& locker) {
+        if (kCounted) add(options.statistics->synchronization, locker.access.counts());
+      });
   return run.finish();
 }
 
 }  // namespace
 
 Triangulation insert_optimistically(PointView<double> points, const Options& options) {
-  const auto insert = [&]<int D>() {
-    return options.statistics != nullptr ? insert_all_points<D, true>(points, options)
-                                         : insert_all_points<D, false>(points, options);
-  };
-  return options.dim == 2 ? insert.template operator()<2>() : insert.template operator()<3>();
+  return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
+    return insert_all_points<D, kCounted>(points, options);
+  });
 }
 
 }  // namespace delray::delaunay::internal

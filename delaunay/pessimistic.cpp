@@ -6,10 +6,8 @@
 #include "delaunay/dag_location.h"
 #include "delaunay/internal/dag_run.h"
 #include "delaunay/internal/insert_in_leaf.h"
-#include "delaunay/internal/insertion_phases.h"
-#include "delaunay/internal/point_supply.h"
+#include "delaunay/internal/insertion_team.h"
 #include "delaunay/internal/sole_dag_access.h"
-#include "delaunay/internal/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -21,30 +19,25 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
   PointSupply supply = run.supply();
-  Team team;
   std::mutex leaves;
   std::uint64_t entered = 0;
-  const auto work = [&](std::size_t thread) {
-    SoleDagAccess<D> access(triangulation.dag, static_cast<std::uint32_t>(thread));
-    InsertionPhases phases(options);
-    std::vector<NodeNumber> suspects;
-    supply.for_each(thread, [&](VertexNumber vertex) {
-      team.check();
-      phases.next_point();
-      if (run.is_first(vertex)) return;
-      const auto& q = run.point(vertex);
-      NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
-                                root_of(triangulation.dag, triangulation.orientation, q), q);
-      const std::lock_guard alone(leaves);
-      ++entered;
-      leaf = descend(triangulation.dag, triangulation.orientation, leaf, q);
-      phases.located();
-      insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
-    });
-    const std::lock_guard alone(leaves);
-    phases.finish();
-  };
-  team.run(run.parts(), work);
+  insert_with_team(
+      run, supply,
+      [&](Team&, std::size_t thread) {
+        return SoleDagAccess<D>(triangulation.dag, static_cast<std::uint32_t>(thread));
+      },
+      [&](SoleDagAccess<D>& access, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const auto& q = run.point(vertex);
+        NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                  root_of(triangulation.dag, triangulation.orientation, q), q);
+        const std::lock_guard alone(leaves);
+        ++entered;
+        leaf = descend(triangulation.dag, triangulation.orientation, leaf, q);
+        phases.located();
+        insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+      },
+      [](const SoleDagAccess<D>&) {});
   if (options.statistics != nullptr) options.statistics->synchronization.lock_calls = entered;
   return run.finish();
 }

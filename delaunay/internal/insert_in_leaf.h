@@ -30,6 +30,20 @@ void insert_in_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, No
   phases.legalized();
 }
 
+// Goes down the history to the leaf of a point and inserts it there.
+template <int D>
+void insert_from_root(DagRun<D>& run, const DagTriangulation<D>& triangulation, VertexNumber vertex,
+                      SoleDagAccess<D>& access, std::vector<NodeNumber>& suspects,
+                      InsertionPhases& phases) {
+  phases.next_point();
+  if (run.is_first(vertex)) return;
+  const auto& q = run.point(vertex);
+  const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                  root_of(triangulation.dag, triangulation.orientation, q), q);
+  phases.located();
+  insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+}
+
 // How many points of a part insert_alone() inserts at most.
 template <int D>
 std::size_t points_alone(const DagRun<D>& run, std::size_t part) {
@@ -49,13 +63,7 @@ PointSupply insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulatio
   for (std::size_t part = 0; part < run.parts(); ++part) {
     const std::size_t end = run.begin(part) + points_alone(run, part);
     for (auto vertex = static_cast<VertexNumber>(run.begin(part)); vertex < end; ++vertex) {
-      phases.next_point();
-      if (run.is_first(vertex)) continue;
-      const auto& q = run.point(vertex);
-      const NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
-                                      root_of(triangulation.dag, triangulation.orientation, q), q);
-      phases.located();
-      insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+      insert_from_root(run, triangulation, vertex, access, suspects, phases);
     }
     others.set(part, end, run.end(part));
   }
