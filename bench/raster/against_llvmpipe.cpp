@@ -5,10 +5,10 @@
 //
 // SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], or layers:back or layers:front, 32 full-screen
 // layers drawn from back to front or from front to back; without any, those of the README. Both
-// must cover the same pixels, but for a few on edges, before anything is timed. Then llvmpipe with
-// one and with two threads of its own (the faster median counts) and Delray with each number of
-// threads take turns; the table has medians in milliseconds, Delray's over llvmpipe's, and over
-// Delray's with the first number of threads, without and with culling of faces that look away.
+// must cover the same pixels, but for a few on edges. For each number of threads llvmpipe with
+// one and with two threads of its own (the faster median counts) and Delray take turns; the table
+// has medians in milliseconds, Delray's over llvmpipe's, and over Delray's with the first number of
+// threads, without culling and with it: of faces that look away and of hidden clusters.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -73,32 +73,35 @@ scenes::Scene make_scene(const std::string& name, scenes::Camera& camera, float 
   return scene;
 }
 
-// One side of the comparison.
-struct Delray {
-  int threads;
-  bool cull;
-  std::vector<double> seconds = {};
-};
-
+// Frames of a scene on one rank whose threads stay alive.
 class Frames {
  public:
-  Frames(const scenes::Scene& scene, const scenes::Camera& camera, const Arguments& arguments)
-      : renderer_(scene), camera_(camera) {
+  Frames(comm::Communicator& communicator, const scenes::Scene& scene, const scenes::Camera& camera,
+         const Arguments& arguments)
+      : communicator_(communicator), renderer_(scene), camera_(camera) {
     options_.width = arguments.width;
     options_.height = arguments.height;
     options_.lighting = raster::Lighting::gouraud;
   }
 
-  raster::Result render(int threads, bool cull) {
+  raster::Result render(bool cull) {
     options_.cull_single_sided = cull;
+    options_.skip_hidden_clusters = cull;
+    return renderer_.render(communicator_, camera_, options_);
+  }
+  // Draws into the memory of the last picture, as llvmpipe does all the time.
+  double seconds(bool cull) {
     raster::Result result;
-    comm::run_threads(1, threads, [&](comm::Communicator& communicator) {
-      result = renderer_.render(communicator, camera_, options_);
+    const double seconds = bench::seconds_of([&] {
+      result = render(cull);
+      return 0;
     });
-    return result;
+    renderer_.recycle(std::move(result.picture));
+    return seconds;
   }
 
  private:
+  comm::Communicator& communicator_;
   raster::Renderer renderer_;
   scenes::Camera camera_;
   raster::RenderOptions options_;
@@ -114,6 +117,24 @@ std::size_t differences(const raster::Picture& picture, const std::vector<std::u
   return result;
 }
 
+// Medians of the turns of all sides.
+struct Medians {
+  double peer;                 // of the faster number of llvmpipe's threads
+  std::array<double, 2> ours;  // without and with culling
+};
+
+Medians take_turns(Frames& frames, std::array<std::unique_ptr<bench::Llvmpipe>, 2>& peers,
+                   int turns) {
+  std::array<std::vector<double>, 2> peer, ours;
+  for (const bool cull : {false, true}) frames.seconds(cull);
+  for (int turn = 0; turn < turns; ++turn) {
+    for (int i = 0; i < 2; ++i) peer[i].push_back(peers[i]->render());
+    for (const bool cull : {false, true}) ours[cull].push_back(frames.seconds(cull));
+  }
+  return {std::min(bench::median(peer[0]), bench::median(peer[1])),
+          {bench::median(ours[0]), bench::median(ours[1])}};
+}
+
 bool compare(const std::string& path, const Arguments& arguments) {
   const std::string name = path.substr(path.rfind('/') + 1);
   scenes::Camera camera;
@@ -125,42 +146,34 @@ bool compare(const std::string& path, const Arguments& arguments) {
   const scenes::View view = scenes::make_view(camera, arguments.width, arguments.height);
 
   std::array<std::unique_ptr<bench::Llvmpipe>, 2> peers;
-  for (int i = 0; i < 2; ++i) peers[i] = std::make_unique<bench::Llvmpipe>(scene, view, i + 1);
-  Frames frames(scene, camera, arguments);
-  peers[0]->render();
-  peers[1]->render();
-  const raster::Result first = frames.render(arguments.threads.back(), false);
-  const std::size_t different = differences(first.picture, peers[0]->coverage());
+  for (int i = 0; i < 2; ++i) {
+    peers[i] = std::make_unique<bench::Llvmpipe>(scene, view, i + 1);
+    peers[i]->render();
+  }
+  std::vector<Medians> medians;
+  std::size_t different = 0;
+  for (const int threads : arguments.threads) {
+    comm::run_threads(1, threads, [&](comm::Communicator& communicator) {
+      Frames frames(communicator, scene, camera, arguments);
+      different = differences(frames.render(false).picture, peers[0]->coverage());
+      medians.push_back(take_turns(frames, peers, arguments.turns));
+    });
+  }
   constexpr std::size_t kEdges = 2000;  // one pixel of so many may differ
   if (different > static_cast<std::size_t>(arguments.width) * arguments.height / kEdges) {
     std::printf("%-24s %zu pixels are covered by one and not by the other\n", name.c_str(),
                 different);
     return false;
   }
-
-  std::vector<Delray> sides;
-  for (const int threads : arguments.threads) sides.push_back({threads, false});
-  for (const int threads : arguments.threads) sides.push_back({threads, true});
-  std::array<std::vector<double>, 2> peer_seconds;
-  for (Delray& side : sides) frames.render(side.threads, side.cull);
-  for (int turn = 0; turn < arguments.turns; ++turn) {
-    for (int i = 0; i < 2; ++i) peer_seconds[i].push_back(peers[i]->render());
-    for (Delray& side : sides) {
-      side.seconds.push_back(
-          bench::seconds_of([&] { return frames.render(side.threads, side.cull); }));
+  for (const bool cull : {false, true}) {
+    for (std::size_t i = 0; i < medians.size(); ++i) {
+      const double seconds = medians[i].ours[cull];
+      constexpr double kMilli = 1e3;
+      std::printf("%-24s %10zu %7d %5s %10.2f %10.2f %8.3f %10.3f\n", name.c_str(),
+                  static_cast<std::size_t>(scenes::triangle_count(scene)), arguments.threads[i],
+                  cull ? "yes" : "no", medians[i].peer * kMilli, seconds * kMilli,
+                  seconds / medians[i].peer, seconds / medians[0].ours[cull]);
     }
-  }
-  const double peer = std::min(bench::median(peer_seconds[0]), bench::median(peer_seconds[1]));
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const Delray& side = sides[i];
-    const double seconds = bench::median(side.seconds);
-    const Delray& first_threads = sides[i / arguments.threads.size() * arguments.threads.size()];
-    const double over_first = seconds / bench::median(first_threads.seconds);
-    constexpr double kMilli = 1e3;
-    std::printf("%-24s %10zu %7d %5s %10.2f %10.2f %8.3f %10.3f\n", name.c_str(),
-                static_cast<std::size_t>(scenes::triangle_count(scene)), side.threads,
-                side.cull ? "yes" : "no", peer * kMilli, seconds * kMilli, seconds / peer,
-                over_first);
   }
   std::fflush(stdout);
   return true;
