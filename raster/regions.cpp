@@ -54,7 +54,7 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
     shade_seconds.measure([&] {
       const std::span<const geometry::Rect> rects = tiles.rects_of(job);
       if (!scratch.tiles.is_drawn_in(job.tile)) {
-        for (const geometry::Rect& r : rects) clear_pixels(r, image);
+        for (const geometry::Rect& r : rects) clear_pixels(r, window_of(image));
         return;
       }
       std::uint64_t shaded = 0;
@@ -62,8 +62,8 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
       static thread_local GouraudTile gouraud;
       for (const geometry::Rect& r : rects)
         shaded += options.lighting == Lighting::gouraud
-                      ? gouraud.shade(frame, seen_triangles(), tile, r, image)
-                      : shade_tile(frame, seen_triangles(), tile, r, image);
+                      ? gouraud.shade(frame, seen_triangles(), tile, r, window_of(image))
+                      : shade_tile(frame, seen_triangles(), tile, r, window_of(image));
       fragments.fetch_add(shaded, std::memory_order_relaxed);
     });
     if (progress != nullptr) progress->advance();

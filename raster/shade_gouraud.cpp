@@ -251,7 +251,7 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
 template <class Colour>
 std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
                                  const VisibilityTile& tile, const geometry::Rect& rect,
-                                 image::BasicImage<Colour>& image) {
+                                 const Window<Colour>& window) {
   const std::uint64_t shown = find_triangles(tile, rect);
   set_up_triangles(frame);
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
@@ -263,10 +263,8 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
   const bool whole = width % kBlockSize == 0;
   for (int j = 0; j < rect.height(); ++j) {
     const std::uint16_t* const row = index_ + (j0 + j) * kTileSize + i0;
-    const std::size_t first =
-        static_cast<std::size_t>(rect.y0 + j) * static_cast<std::size_t>(image.width) +
-        static_cast<std::size_t>(rect.x0);
-    Colour* const to = whole ? image.colour.data() + first : colours;
+    const std::size_t first = window.at(rect.x0, rect.y0 + j);
+    Colour* const to = whole ? window.colour + first : colours;
     if (whole && !any_textured_) {
       shade_row(triangles_, row, rect.x0, rect.y0 + j, width, to);
     } else {
@@ -279,21 +277,21 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
         if (row[i] != kNoTriangle && textured_[row[i]] != 0)
           shade_pixel(frame, seen, numbers_[row[i]], rect.x0 + i, rect.y0 + j, to[i]);
     }
-    float* const depths_to = whole ? image.depth.data() + first : depths;
+    float* const depths_to = whole ? window.depth + first : depths;
     const std::int64_t* const keys = tile.key + (j0 + j) * kTileSize + i0;
     store_depths(keys, width, frame.distances ? frame.screen.view.near : 0.0F, depths_to);
     if (whole) continue;
-    std::copy(colours, colours + width, image.colour.data() + first);
-    std::copy(depths, depths + width, image.depth.data() + first);
+    std::copy(colours, colours + width, window.colour + first);
+    std::copy(depths, depths + width, window.depth + first);
   }
   return shown;
 }
 
 template std::uint64_t GouraudTile::shade(const FrameShading&, SeenTriangles&,
                                           const VisibilityTile&, const geometry::Rect&,
-                                          image::Image8&);
+                                          const Window<image::Rgba8>&);
 template std::uint64_t GouraudTile::shade(const FrameShading&, SeenTriangles&,
                                           const VisibilityTile&, const geometry::Rect&,
-                                          image::ImageF&);
+                                          const Window<image::RgbaF>&);
 
 }  // namespace delray::raster

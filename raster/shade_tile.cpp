@@ -134,20 +134,19 @@ void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t n
 
 template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
-                         const geometry::Rect& rect, image::BasicImage<Colour>& image) {
+                         const geometry::Rect& rect, const Window<Colour>& window) {
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   const auto shade_one = [&](int x, int y) -> bool {
     const int i = (y - tile_y) * kTileSize + (x - tile_x);
     const std::uint32_t number = number_of(tile.key[i]);
-    const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                              static_cast<std::size_t>(x);
-    image.depth[pixel] = frame.shown_depth(tile.key[i]);
+    const std::size_t pixel = window.at(x, y);
+    window.depth[pixel] = frame.shown_depth(tile.key[i]);
     if (number == kNothing) {
-      image.colour[pixel] = {};
+      window.colour[pixel] = {};
       return false;
     }
-    shade_pixel(frame, seen, number, x, y, image.colour[pixel]);
+    shade_pixel(frame, seen, number, x, y, window.colour[pixel]);
     return true;
   };
   std::uint64_t shaded = 0;
@@ -159,11 +158,10 @@ std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const V
 }
 
 template <class Colour>
-void clear_pixels(const geometry::Rect& rect, image::BasicImage<Colour>& image) {
+void clear_pixels(const geometry::Rect& rect, const Window<Colour>& window) {
   for (int y = rect.y0; y < rect.y1; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
-    std::fill_n(image.colour.data() + row + rect.x0, rect.width(), Colour());
-    std::fill_n(image.depth.data() + row + rect.x0, rect.width(), image::kEmptyDepth);
+    std::fill_n(window.colour + window.at(rect.x0, y), rect.width(), Colour());
+    std::fill_n(window.depth + window.at(rect.x0, y), rect.width(), image::kEmptyDepth);
   }
 }
 
@@ -171,11 +169,11 @@ template void shade_pixel(const FrameShading&, SeenTriangles&, std::uint32_t, in
                           image::Rgba8&);
 template void shade_pixel(const FrameShading&, SeenTriangles&, std::uint32_t, int, int,
                           image::RgbaF&);
-template void clear_pixels(const geometry::Rect&, image::Image8&);
-template void clear_pixels(const geometry::Rect&, image::ImageF&);
+template void clear_pixels(const geometry::Rect&, const Window<image::Rgba8>&);
+template void clear_pixels(const geometry::Rect&, const Window<image::RgbaF>&);
 template std::uint64_t shade_tile(const FrameShading&, SeenTriangles&, const VisibilityTile&,
-                                  const geometry::Rect&, image::Image8&);
+                                  const geometry::Rect&, const Window<image::Rgba8>&);
 template std::uint64_t shade_tile(const FrameShading&, SeenTriangles&, const VisibilityTile&,
-                                  const geometry::Rect&, image::ImageF&);
+                                  const geometry::Rect&, const Window<image::RgbaF>&);
 
 }  // namespace delray::raster

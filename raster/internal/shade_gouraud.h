@@ -46,7 +46,7 @@ class GouraudTile {
   // As shade_tile does it, without asking `seen` but for triangles with a texture.
   template <class Colour>
   std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
-                      const geometry::Rect& rect, image::BasicImage<Colour>& image);
+                      const geometry::Rect& rect, const Window<Colour>& window);
 
  private:
   static constexpr std::uint32_t kTriangleSlots = 2 * kTilePixels;

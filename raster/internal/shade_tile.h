@@ -7,6 +7,7 @@
 #include "image/image.h"
 #include "raster/internal/seen_triangle.h"
 #include "raster/internal/visibility.h"
+#include "raster/internal/window.h"
 #include "raster/render.h"
 #include "shading/batch.h"
 
@@ -63,15 +64,15 @@ template <class Colour>
 void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y,
                  Colour& pixel);
 
-// Writes colour and depth of the pixels of `rect` (of the frame, within the tile) to the image,
-// whose pixel (0, 0) is the frame's. Returns how many of them show something. One by one: for
-// gouraud, internal/shade_gouraud.h has a faster way to the same colours.
+// Writes colour and depth of the pixels of `rect` (of the frame, within the tile) to the window.
+// Returns how many of them show something. One by one: for gouraud, internal/shade_gouraud.h has a
+// faster way to the same colours.
 template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
-                         const geometry::Rect& rect, image::BasicImage<Colour>& image);
+                         const geometry::Rect& rect, const Window<Colour>& window);
 
 // The same for pixels that show nothing.
 template <class Colour>
-void clear_pixels(const geometry::Rect& rect, image::BasicImage<Colour>& image);
+void clear_pixels(const geometry::Rect& rect, const Window<Colour>& window);
 
 }  // namespace delray::raster

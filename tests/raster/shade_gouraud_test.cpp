@@ -50,7 +50,8 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   image::BasicImage<Colour> expected(width, height), image(width, height);
   std::uint64_t shown = 0;
   for (const TileJob& job : jobs.jobs)
-    shown += shade_tile(frame, seen, tiles.open(job.tile), screen.tile(job.tile), expected);
+    shown +=
+        shade_tile(frame, seen, tiles.open(job.tile), screen.tile(job.tile), window_of(expected));
   for_each_target([&] {
     image::clear(image);
     std::uint64_t shown_by_vectors = 0;
@@ -61,7 +62,8 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
       for (const geometry::Rect& part :
            {geometry::Rect{r.x0, r.y0, x, r.y1}, geometry::Rect{x, r.y0, r.x1, r.y1}})
         if (!part.empty())
-          shown_by_vectors += gouraud.shade(frame, seen, tiles.open(job.tile), part, image);
+          shown_by_vectors +=
+              gouraud.shade(frame, seen, tiles.open(job.tile), part, window_of(image));
     }
     EXPECT_EQ(shown_by_vectors, shown);
     expect_same(image, expected);
