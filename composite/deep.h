@@ -2,70 +2,30 @@
 // them once, in one order, so that the picture does not depend on who composited what.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
+#include <cassert>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <utility>
 
+#include "composite/coverage.h"
+#include "composite/deep_image.h"
 #include "composite/layer.h"
-#include "image/image.h"
 
 namespace delray::composite {
 
-// One surface at one pixel. 28 bytes, without gaps: it travels as it is.
-struct Fragment {
-  image::RgbaF colour;  // alpha 1: nothing behind it is seen
-  float depth = 0;      // not NaN
-  std::uint32_t primitive_low = 0, primitive_high = 0;
-
-  std::uint64_t primitive() const {
-    return std::uint64_t{primitive_high} << 32 | std::uint64_t{primitive_low};
-  }
-};
-static_assert(sizeof(Fragment) == 28);
-
-// The order in which fragments are blended: front to back, ties by primitive number.
-inline bool in_front(const Fragment& a, const Fragment& b) {
-  return a.depth != b.depth ? a.depth < b.depth : a.primitive() < b.primitive();
-}
-
-// An image with a list of fragments for every pixel (Carpenter 1984). Pixel i, in row-major order,
-// has fragments [lists[i].first, lists[i].first + lists[i].size), in order, none behind an opaque
-// one.
-struct DeepImage {
-  struct List {
-    std::uint64_t first = 0;
-    std::uint32_t size = 0;
-  };
-
-  int width = 0, height = 0;
-  std::vector<List> lists;
-  std::vector<Fragment> fragments;  // in any order of pixels, gaps allowed
-
-  DeepImage() = default;
-  // No fragments. REQUIRES: w, h >= 0.
-  DeepImage(int w, int h)
-      : width(w), height(h), lists(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
-  std::span<const Fragment> at(std::size_t pixel) const {
-    return std::span(fragments).subspan(lists[pixel].first, lists[pixel].size);
-  }
-  // Gives a pixel its fragments: sorts them and drops what lies behind an opaque one. Those that it
-  // had are forgotten. O(k log k).
-  void set(std::size_t pixel, std::span<Fragment> unsorted);
-};
-
-// Every pixel blended front to back in linear light, then coded; the depth is that of the first
-// fragment. A single opaque fragment keeps its colour exactly. O(pixels + fragments), parallel.
-template <class Colour>
-image::BasicImage<Colour> flatten(const DeepImage& deep);
-
-// A message has the runs of covered pixels in the range, 8 bytes each, 4 bytes for each pixel in
-// them, and 28 for each fragment. Fragments, not pixels, count as composited: those that merge()
-// compares. Which side a message comes from makes no difference.
+// A message has the coverage of the range (see Coverage), then a u32 for each covered pixel, the
+// number of its fragments, then the fragments as they are. Fragments, not pixels, count as
+// composited: those that merge() compares. Which side a message comes from makes no difference.
+//
+// cut, merge and replace run in the caller's arena.
+template <class Payload>
 class DeepLayer final : public Layer {
  public:
-  explicit DeepLayer(DeepImage&& image) : image_(std::move(image)) {}
+  explicit DeepLayer(DeepImage<Payload>&& image) : image_(std::move(image)) {}
 
-  const DeepImage& image() const { return image_; }
+  DeepImage<Payload>& image() { return image_; }
+  const DeepImage<Payload>& image() const { return image_; }
 
   std::uint64_t pixels() const override { return image_.lists.size(); }
   comm::Buffer cut(PixelRange range) override;
@@ -74,12 +34,178 @@ class DeepLayer final : public Layer {
   bool empty() const override;
 
  private:
-  DeepImage image_;
+  struct Arrived;
+  // The fragments of `own` and `arrived` in order, up to the first opaque one.
+  static void merge_lists(std::span<const DeepFragment<Payload>> own,
+                          std::span<const DeepFragment<Payload>> arrived,
+                          std::vector<DeepFragment<Payload>>& merged);
+  std::uint64_t merge_group(PixelRange range, const Arrived& arrived, std::size_t group,
+                            std::size_t chunk);
+
+  DeepImage<Payload> image_;
 };
 
-std::unique_ptr<Layer> make_deep(DeepImage&& image);
+template <class Payload>
+std::unique_ptr<Layer> make_deep(DeepImage<Payload>&& image) {
+  return std::make_unique<DeepLayer<Payload>>(std::move(image));
+}
 
-extern template image::Image8 flatten(const DeepImage& deep);
-extern template image::ImageF flatten(const DeepImage& deep);
+// The image of a part that began as make_deep; only the part's ranges of it are final.
+//
+// REQUIRES: the part's layer is a DeepLayer<Payload>.
+template <class Payload>
+DeepImage<Payload> take_deep(Part&& part) {
+  return std::move(dynamic_cast<DeepLayer<Payload>&>(*part.layer).image());
+}
+
+extern template class DeepLayer<image::RgbaF>;
+
+// ---
+
+// What cut() wrote.
+template <class Payload>
+struct DeepLayer<Payload>::Arrived {
+  Coverage coverage;
+  const std::uint32_t* sizes;  // of the covered pixels
+  const DeepFragment<Payload>* fragments;
+  std::vector<std::uint64_t> before;  // fragments before each group
+
+  Arrived(PixelRange range, const comm::Buffer& message)
+      : coverage(range.size(), message.data()), before(coverage.groups() + 1) {
+    const std::byte* const after = message.data() + coverage.encoded_bytes();
+    sizes = reinterpret_cast<const std::uint32_t*>(after);
+    fragments = reinterpret_cast<const DeepFragment<Payload>*>(after + coverage.covered() *
+                                                                           sizeof(std::uint32_t));
+    parallel::parallel_for(0, coverage.groups(), 1, [&](std::size_t i) {
+      const Coverage::Group at = coverage.group(i);
+      for (std::uint64_t k = 0; k < at.covered; ++k) before[i + 1] += sizes[at.covered_before + k];
+    });
+    for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
+    assert(reinterpret_cast<const std::byte*>(fragments + before.back()) ==
+           message.data() + message.size());
+  }
+};
+
+template <class Payload>
+comm::Buffer DeepLayer<Payload>::cut(PixelRange range) {
+  assert(range.begin <= range.end && range.end <= pixels());
+  std::vector<std::uint64_t> before((range.size() + kGroupPixels - 1) / kGroupPixels + 1);
+  const Coverage coverage(range.size(),
+                          [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+                            std::uint64_t fragments = 0;
+                            for (std::uint64_t i = begin; i < end; ++i) {
+                              const std::uint32_t size = image_.lists[range.begin + i].size;
+                              fragments += size;
+                              mask[(i - begin) / 64] |= std::uint64_t{size > 0} << (i - begin) % 64;
+                            }
+                            before[begin / kGroupPixels + 1] = fragments;
+                          });
+  for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
+
+  const std::size_t bytes = coverage.encoded_bytes() + coverage.covered() * sizeof(std::uint32_t);
+  comm::Buffer buffer(bytes + before.back() * sizeof(DeepFragment<Payload>));
+  auto* sizes = reinterpret_cast<std::uint32_t*>(coverage.encode(buffer.data()));
+  auto* fragments = reinterpret_cast<DeepFragment<Payload>*>(buffer.data() + bytes);
+  parallel::parallel_for(0, coverage.groups(), 1, [&](std::size_t i) {
+    std::uint32_t* size = sizes + coverage.group(i).covered_before;
+    DeepFragment<Payload>* next = fragments + before[i];
+    for_each_covered(coverage, i, [&](std::uint64_t pixel, std::uint64_t /*k*/) {
+      const auto list = image_.at(range.begin + pixel);
+      *size++ = static_cast<std::uint32_t>(list.size());
+      next = std::copy(list.begin(), list.end(), next);
+    });
+  });
+  return buffer;
+}
+
+template <class Payload>
+void DeepLayer<Payload>::merge_lists(std::span<const DeepFragment<Payload>> own,
+                                     std::span<const DeepFragment<Payload>> arrived,
+                                     std::vector<DeepFragment<Payload>>& merged) {
+  merged.clear();
+  auto a = own.begin(), b = arrived.begin();
+  while (a != own.end() || b != arrived.end()) {
+    const bool from_own = b == arrived.end() || (a != own.end() && !in_front(*b, *a));
+    merged.push_back(from_own ? *a++ : *b++);
+    if (is_opaque(merged.back().payload)) return;
+  }
+}
+
+// Fragments stay where they are as long as there are no more of them than before; otherwise the
+// pixel's list moves to the group's own chunk.
+template <class Payload>
+std::uint64_t DeepLayer<Payload>::merge_group(PixelRange range, const Arrived& arrived,
+                                              std::size_t group, std::size_t chunk) {
+  std::uint64_t composited = 0;
+  std::vector<DeepFragment<Payload>> merged;
+  std::vector<DeepFragment<Payload>>& grown = image_.chunks[chunk];
+  const std::uint32_t* size = arrived.sizes + arrived.coverage.group(group).covered_before;
+  const DeepFragment<Payload>* next = arrived.fragments + arrived.before[group];
+  for_each_covered(arrived.coverage, group, [&](std::uint64_t pixel, std::uint64_t /*k*/) {
+    typename DeepImage<Payload>::List& list = image_.lists[range.begin + pixel];
+    const std::span<const DeepFragment<Payload>> own = image_.at(range.begin + pixel);
+    const std::span<const DeepFragment<Payload>> other(next, *size++);
+    next += other.size();
+    composited += own.size() + other.size();
+    const bool hides_other =
+        !own.empty() && is_opaque(own.back().payload) && in_front(own.back(), other.front());
+    if (hides_other) return;
+    merge_lists(own, other, merged);
+    if (merged.size() <= own.size()) {
+      std::copy(merged.begin(), merged.end(), image_.chunks[list.chunk].begin() + list.first);
+    } else {
+      list.chunk = static_cast<std::uint32_t>(chunk);
+      list.first = static_cast<std::uint32_t>(grown.size());
+      grown.insert(grown.end(), merged.begin(), merged.end());
+    }
+    list.size = static_cast<std::uint32_t>(merged.size());
+  });
+  return composited;
+}
+
+template <class Payload>
+std::uint64_t DeepLayer<Payload>::merge(PixelRange range, const comm::Buffer& pixels,
+                                        Side /*from*/) {
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  const Arrived arrived(range, pixels);
+  const std::size_t groups = arrived.coverage.groups(), first_chunk = image_.chunks.size();
+  image_.chunks.resize(first_chunk + groups);
+  return parallel::parallel_reduce(
+      0, groups, 1, std::uint64_t{0},
+      [&](std::size_t first, std::size_t last) {
+        std::uint64_t composited = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          composited += merge_group(range, arrived, i, first_chunk + i);
+        }
+        return composited;
+      },
+      std::plus<>());
+}
+
+template <class Payload>
+void DeepLayer<Payload>::replace(PixelRange range, const comm::Buffer& pixels) {
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  const Arrived arrived(range, pixels);
+  image_.clear(range.begin, range.end);
+  const std::size_t groups = arrived.coverage.groups(), first_chunk = image_.chunks.size();
+  image_.chunks.resize(first_chunk + groups);
+  parallel::parallel_for(0, groups, 1, [&](std::size_t i) {
+    image_.chunks[first_chunk + i].assign(arrived.fragments + arrived.before[i],
+                                          arrived.fragments + arrived.before[i + 1]);
+    const std::uint32_t* sizes = arrived.sizes + arrived.coverage.group(i).covered_before;
+    std::uint32_t first = 0;
+    for_each_covered(arrived.coverage, i, [&](std::uint64_t pixel, std::uint64_t k) {
+      image_.lists[range.begin + pixel] = {static_cast<std::uint32_t>(first_chunk + i), first,
+                                           sizes[k]};
+      first += sizes[k];
+    });
+  });
+}
+
+template <class Payload>
+bool DeepLayer<Payload>::empty() const {
+  const auto lists = image_.lists.span();
+  return std::all_of(lists.begin(), lists.end(), [](const auto& list) { return list.size == 0; });
+}
 
 }  // namespace delray::composite
