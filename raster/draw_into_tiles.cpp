@@ -217,18 +217,21 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
   ProcessorSeconds set_up_seconds, sort_seconds, rasterize_seconds;
   parallel::parallel_for(0, threads, 1, [&](std::size_t thread) {
     Worker& worker = *workers[thread];
+    StageClock<3> clock;
     for (;;) {
       const std::size_t begin = next.fetch_add(batch, std::memory_order_relaxed);
-      if (begin >= order.size()) return;
+      if (begin >= order.size()) break;
       worker.result.clear();
-      set_up_seconds.measure([&] {
-        for (std::size_t i = begin; i < std::min(begin + batch, order.size()); ++i)
-          set_up_one(task, order[i], tiles, worker);
-      });
-      sort_seconds.measure([&] { sort_by_tile(worker); });
-      rasterize_seconds.measure([&] { draw_touched(task, worker, tiles); });
+      for (std::size_t i = begin; i < std::min(begin + batch, order.size()); ++i)
+        set_up_one(task, order[i], tiles, worker);
+      clock.finish(0);
+      sort_by_tile(worker);
+      clock.finish(1);
+      draw_touched(task, worker, tiles);
+      clock.finish(2);
       if (task.progress != nullptr) task.progress->advance(0);
     }
+    clock.add_to({&set_up_seconds, &sort_seconds, &rasterize_seconds});
   });
   seconds.set_up += set_up_seconds.seconds();
   seconds.sort += sort_seconds.seconds();

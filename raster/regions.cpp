@@ -48,25 +48,36 @@ RegionCounts render_regions(const Screen& screen, const DrawList& list,
 
   ProcessorSeconds rasterize_seconds, shade_seconds;
   std::atomic<std::uint64_t> fragments{0};
-  parallel::parallel_for(0, tiles.jobs.size(), 1, [&](std::size_t k) {
-    const TileJob& job = tiles.jobs[k];
-    rasterize_seconds.measure([&] { draw_large(task, job.tile, scratch.large, scratch.tiles); });
-    shade_seconds.measure([&] {
-      const std::span<const geometry::Rect> rects = tiles.rects_of(job);
-      if (!scratch.tiles.is_drawn_in(job.tile)) {
-        for (const geometry::Rect& r : rects) clear_pixels(r, window_of(image));
-        return;
-      }
-      std::uint64_t shaded = 0;
-      const VisibilityTile& tile = scratch.tiles.open(job.tile);
-      static thread_local GouraudTile gouraud;
-      for (const geometry::Rect& r : rects)
-        shaded += options.lighting == Lighting::gouraud
-                      ? gouraud.shade(frame, seen_triangles(), tile, r, window_of(image))
-                      : shade_tile(frame, seen_triangles(), tile, r, window_of(image));
-      fragments.fetch_add(shaded, std::memory_order_relaxed);
-    });
-    if (progress != nullptr) progress->advance();
+  const auto shade = [&](const TileJob& job) -> std::uint64_t {
+    const std::span<const geometry::Rect> rects = tiles.rects_of(job);
+    if (!scratch.tiles.is_drawn_in(job.tile)) {
+      for (const geometry::Rect& r : rects) clear_pixels(r, window_of(image));
+      return 0;
+    }
+    std::uint64_t shaded = 0;
+    const VisibilityTile& tile = scratch.tiles.open(job.tile);
+    static thread_local GouraudTile gouraud;
+    for (const geometry::Rect& r : rects)
+      shaded += options.lighting == Lighting::gouraud
+                    ? gouraud.shade(frame, seen_triangles(), tile, r, window_of(image))
+                    : shade_tile(frame, seen_triangles(), tile, r, window_of(image));
+    return shaded;
+  };
+  std::atomic<std::size_t> next{0};
+  parallel::parallel_for(0, scratch.workers.size(), 1, [&](std::size_t) {
+    StageClock<2> clock;
+    std::uint64_t shaded = 0;
+    for (;;) {
+      const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
+      if (k >= tiles.jobs.size()) break;
+      draw_large(task, tiles.jobs[k].tile, scratch.large, scratch.tiles);
+      clock.finish(0);
+      shaded += shade(tiles.jobs[k]);
+      clock.finish(1);
+      if (progress != nullptr) progress->advance();
+    }
+    fragments.fetch_add(shaded, std::memory_order_relaxed);
+    clock.add_to({&rasterize_seconds, &shade_seconds});
   });
   counts.phases.rasterize = seconds.rasterize + rasterize_seconds.seconds();
   counts.phases.shade = shade_seconds.seconds();
