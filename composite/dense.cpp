@@ -1,10 +1,8 @@
 #include "composite/dense.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cstring>
 
-#include "image/operators.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::composite {
@@ -35,13 +33,14 @@ void copy(T* to, const T* from, std::size_t first, std::size_t last) {
 
 template <class Colour>
 comm::Buffer DenseLayer<Colour>::cut(PixelRange range) {
-  assert(range.begin <= range.end && range.end <= pixels());
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  const image::BasicImage<Colour>& image = this->image();
   comm::Buffer buffer(range.size() * (sizeof(Colour) + sizeof(float)));
   auto* colour = reinterpret_cast<Colour*>(buffer.data());
   auto* depth = reinterpret_cast<float*>(buffer.data() + range.size() * sizeof(Colour));
   parallel::parallel_blocks(0, range.size(), kGrain, [&](std::size_t first, std::size_t last) {
-    copy(colour, image_.colour.data() + range.begin, first, last);
-    copy(depth, image_.depth.data() + range.begin, first, last);
+    copy(colour, image.colour.data() + range.begin, first, last);
+    copy(depth, image.depth.data() + range.begin, first, last);
   });
   return buffer;
 }
@@ -49,12 +48,13 @@ comm::Buffer DenseLayer<Colour>::cut(PixelRange range) {
 template <class Colour>
 std::uint64_t DenseLayer<Colour>::merge(PixelRange range, const comm::Buffer& pixels, Side from) {
   assert(range.begin <= range.end && range.end <= this->pixels());
+  image::BasicImage<Colour>& image = this->image();
   const Encoded<Colour> other = decode<Colour>(range, pixels);
-  const image::Tie tie = from == Side::lower ? image::Tie::other : image::Tie::target;
+  const image::Tie tie = this->tie_of(from);
   parallel::parallel_blocks(0, range.size(), kGrain, [&](std::size_t first, std::size_t last) {
     const std::size_t size = last - first;
-    image::z_merge(image_.colour.span().subspan(range.begin + first, size),
-                   image_.depth.span().subspan(range.begin + first, size),
+    image::z_merge(image.colour.span().subspan(range.begin + first, size),
+                   image.depth.span().subspan(range.begin + first, size),
                    std::span<const Colour>(other.colour + first, size),
                    std::span<const float>(other.depth + first, size), tie);
   });
@@ -64,17 +64,12 @@ std::uint64_t DenseLayer<Colour>::merge(PixelRange range, const comm::Buffer& pi
 template <class Colour>
 void DenseLayer<Colour>::replace(PixelRange range, const comm::Buffer& pixels) {
   assert(range.begin <= range.end && range.end <= this->pixels());
+  image::BasicImage<Colour>& image = this->image();
   const Encoded<Colour> other = decode<Colour>(range, pixels);
   parallel::parallel_blocks(0, range.size(), kGrain, [&](std::size_t first, std::size_t last) {
-    copy(image_.colour.data() + range.begin, other.colour, first, last);
-    copy(image_.depth.data() + range.begin, other.depth, first, last);
+    copy(image.colour.data() + range.begin, other.colour, first, last);
+    copy(image.depth.data() + range.begin, other.depth, first, last);
   });
-}
-
-template <class Colour>
-bool DenseLayer<Colour>::empty() const {
-  return std::all_of(image_.depth.data(), image_.depth.data() + image_.pixels(),
-                     [](float depth) { return depth == image::kEmptyDepth; });
 }
 
 template class DenseLayer<image::Rgba8>;

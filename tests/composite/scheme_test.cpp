@@ -6,10 +6,14 @@
 #include <functional>
 #include <mutex>
 #include <random>
+#include <string>
+#include <tuple>
 
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "comm/threads.h"
+#include "composite/codec.h"
+#include "composite/deep.h"
 #include "composite/dense.h"
 
 namespace delray::composite {
@@ -92,11 +96,89 @@ std::vector<int> rank_counts() {
   return result;
 }
 
+// Fragments of few depths, so that many tie, some opaque; primitives are the rank's own.
+std::vector<Fragment> fragments(int rank, std::size_t pixel) {
+  std::minstd_rand random(static_cast<unsigned>(pixel * 31 + static_cast<unsigned>(rank)));
+  std::vector<Fragment> result;
+  if (pixel % 7 == 0) return result;
+  for (unsigned k = random() % 4; k > 0; --k) {
+    const float alpha = random() % 3 == 0 ? 1.0F : static_cast<float>(random() % 64) / 64;
+    const float value = static_cast<float>(random() % 256) / 256 * alpha;
+    result.push_back({{value, value / 2, alpha - value, alpha},
+                      static_cast<float>(random() % 3),
+                      static_cast<std::uint32_t>(100 * rank) + k,
+                      static_cast<std::uint32_t>(random() % 2)});
+  }
+  return result;
+}
+
+DeepImage<RgbaF> deep_image(int rank, Size size) {
+  DeepImage<RgbaF> image(size.width, size.height);
+  for (std::size_t i = 0; i < image.lists.size(); ++i) {
+    std::vector<Fragment> list = fragments(rank, i);
+    image.set(i, list);
+  }
+  return image;
+}
+
+// The plain loop of blending: all fragments of all ranks, nearest first.
+ImageF blended_reference(int ranks, Size size) {
+  ImageF result(size.width, size.height);
+  clear(result);
+  for (std::size_t i = 0; i < result.pixels(); ++i) {
+    std::vector<Fragment> all;
+    for (int rank = 0; rank < ranks; ++rank) {
+      for (const Fragment& fragment : fragments(rank, i)) all.push_back(fragment);
+    }
+    std::sort(all.begin(), all.end(), [](const Fragment& a, const Fragment& b) {
+      return std::tuple(a.depth, a.primitive()) < std::tuple(b.depth, b.primitive());
+    });
+    float through = 1;
+    for (const auto& [colour, depth, low, high] : all) {
+      RgbaF& sum = result.colour[i];
+      sum = {sum.r + through * colour.r, sum.g + through * colour.g, sum.b + through * colour.b,
+             sum.a + through * colour.a};
+      through *= 1.0F - colour.a;
+    }
+    if (!all.empty()) result.depth[i] = all.front().depth;
+  }
+  return result;
+}
+
+// What is composited; every scheme runs on all of them.
+struct Kind {
+  std::string name;
+  std::function<std::unique_ptr<Layer>(int rank, Size size)> make;
+  std::function<bool(Part&& gathered, int ranks, Size size)> equals_reference;
+};
+
 template <class Colour>
-void expect_reference(const Scheme& scheme, const Runner& runner, int ranks, Size size, int root) {
+Kind opaque(const Codec& codec, const std::string& colour) {
+  return {codec.name + (" " + colour),
+          [&codec](int rank, Size size) { return codec.make(partial_image<Colour>(rank, size)); },
+          [](Part&& gathered, int ranks, Size size) {
+            return same(take_image<Colour>(std::move(gathered)), reference<Colour>(ranks, size));
+          }};
+}
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> result;
+  for (const Codec& codec : codecs()) {
+    result.push_back(opaque<Rgba8>(codec, "of 8 bits"));
+    result.push_back(opaque<RgbaF>(codec, "of floats"));
+  }
+  result.push_back({"deep", [](int rank, Size size) { return make_deep(deep_image(rank, size)); },
+                    [](Part&& gathered, int ranks, Size size) {
+                      return same(flatten<RgbaF>(take_deep<RgbaF>(std::move(gathered))),
+                                  blended_reference(ranks, size));
+                    }});
+  return result;
+}
+
+void expect_reference(const Scheme& scheme, const Kind& kind, const Runner& runner, int ranks,
+                      Size size, int root) {
   runner.run(ranks, [&](comm::Communicator& communicator) {
-    auto layer = make_dense(partial_image<Colour>(communicator.rank(), size));
-    Part part = scheme.compose(communicator, std::move(layer), {});
+    Part part = scheme.compose(communicator, kind.make(communicator.rank(), size), {});
     part = gather(communicator, std::move(part), root);
     if (communicator.rank() != root) {
       EXPECT_TRUE(part.ranges.empty());
@@ -107,22 +189,35 @@ void expect_reference(const Scheme& scheme, const Runner& runner, int ranks, Siz
     if (pixels > 0) {
       EXPECT_EQ(part.ranges[0], (PixelRange{0, pixels}));
     }
-    EXPECT_TRUE(same(take_image<Colour>(std::move(part)), reference<Colour>(ranks, size)));
+    EXPECT_TRUE(kind.equals_reference(std::move(part), ranks, size));
   });
 }
 
 TEST(Schemes, EqualTheSequentialReferenceAfterGathering) {
   for (const Scheme& scheme : schemes()) {
-    for (const Runner& runner : runners()) {
-      for (const int ranks : rank_counts()) {
-        for (const Size size : kSizes) {
-          SCOPED_TRACE(std::string(scheme.name) + " over " + runner.name + ", " +
-                       std::to_string(ranks) + " ranks, " + std::to_string(size.width) + " x " +
-                       std::to_string(size.height));
-          expect_reference<Rgba8>(scheme, runner, ranks, size, 0);
-          expect_reference<RgbaF>(scheme, runner, ranks, size, ranks - 1);
+    for (const Kind& kind : kinds()) {
+      for (const Runner& runner : runners()) {
+        for (const int ranks : rank_counts()) {
+          for (const Size size : kSizes) {
+            SCOPED_TRACE(std::string(scheme.name) + ", " + kind.name + ", over " + runner.name +
+                         ", " + std::to_string(ranks) + " ranks, " + std::to_string(size.width) +
+                         " x " + std::to_string(size.height));
+            expect_reference(scheme, kind, runner, ranks, size, size.width % ranks);
+          }
         }
       }
+    }
+  }
+}
+
+// Messages of several groups of pixels, merged by several threads.
+TEST(Schemes, EqualTheReferenceOnLargerImages) {
+  const Runner runner{"threads",
+                      [](int ranks, const auto& body) { comm::run_threads(ranks, 2, body); }};
+  for (const Scheme& scheme : schemes()) {
+    for (const Kind& kind : kinds()) {
+      SCOPED_TRACE(std::string(scheme.name) + ", " + kind.name);
+      expect_reference(scheme, kind, runner, 3, {239, 101}, 1);
     }
   }
 }

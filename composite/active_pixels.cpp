@@ -1,0 +1,251 @@
+#include "composite/internal/active_pixels.h"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "composite/active_pixels.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target, which includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+#ifndef DELRAY_COMPOSITE_ACTIVE_PIXELS
+#define DELRAY_COMPOSITE_ACTIVE_PIXELS
+namespace delray::composite::internal {
+
+inline constexpr std::size_t kMostLanes = 8;
+
+// Element j of row b: how many of the bits below j are set in b. The values of covered pixels, one
+// after the other, get to their lanes by it.
+using ExpandTable = std::array<std::array<std::uint8_t, kMostLanes>, 256>;
+constexpr ExpandTable make_expand_table() {
+  ExpandTable table{};
+  for (unsigned bits = 0; bits < table.size(); ++bits) {
+    for (unsigned j = 0; j < kMostLanes; ++j) {
+      table[bits][j] = static_cast<std::uint8_t>(std::popcount(bits & ((1U << j) - 1)));
+    }
+  }
+  return table;
+}
+inline constexpr ExpandTable kExpand = make_expand_table();
+
+}  // namespace delray::composite::internal
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::composite::internal {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Rows of kExpand are for no more than 8 lanes.
+using Depths = hn::CappedTag<float, kMostLanes>;
+using Codes = hn::RebindToUnsigned<Depths>;
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+void find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask) {
+  const Depths d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto empty = hn::Set(d, image::kEmptyDepth);
+  std::size_t i = 0;
+  for (; i + 64 <= size; i += 64) {
+    std::uint64_t bits = 0;
+    for (std::size_t j = 0; j < 64; j += lanes) {
+      std::uint8_t some[8] = {};
+      hn::StoreMaskBits(d, hn::Ne(hn::LoadU(d, depth + i + j), empty), some);
+      bits |= std::uint64_t{some[0]} << j;
+    }
+    mask[i / 64] = bits;
+  }
+  for (; i < size; ++i) {
+    mask[i / 64] |= std::uint64_t{depth[i] != image::kEmptyDepth} << i % 64;
+  }
+}
+
+void compress_loop(const std::uint32_t* values, const std::uint64_t* mask, std::uint32_t* to,
+                   const std::uint32_t* end) {
+  const Codes d;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::uint64_t lane_bits = (std::uint64_t{1} << lanes) - 1;
+  for (std::size_t i = 0; to < end; ++i) {
+    const std::uint64_t bits = mask[i];
+    const std::uint32_t* from = values + i * 64;
+    if (bits == kAll) {
+      std::memcpy(to, from, 64 * sizeof *to);
+      to += 64;
+      continue;
+    }
+    for (std::uint64_t rest = bits; rest != 0; rest = lanes < 64 ? rest >> lanes : 0) {
+      const auto some = static_cast<std::uint8_t>(rest & lane_bits);
+      if (some != 0) {
+        std::uint8_t loaded[8] = {some};
+        const auto packed = hn::Compress(hn::LoadU(d, from), hn::LoadMaskBits(d, loaded));
+        const auto count = static_cast<std::size_t>(std::popcount(some));
+        if (to + lanes <= end) {
+          hn::StoreU(packed, d, to);
+        } else {
+          HWY_ALIGN std::uint32_t last[kMostLanes];
+          hn::Store(packed, d, last);
+          std::memcpy(to, last, count * sizeof *to);
+        }
+        to += count;
+      }
+      from += lanes;
+    }
+  }
+}
+
+// The next `lanes` values, or fewer and something else at the end of what is readable.
+template <class D, class T>
+HWY_INLINE auto load_some(D d, const T* from, bool at_end, std::size_t count) {
+  if (HWY_UNLIKELY(at_end)) {
+    HWY_ALIGN T last[kMostLanes] = {};
+    std::memcpy(last, from, count * sizeof(T));
+    return hn::Load(d, last);
+  }
+  return hn::LoadU(d, from);
+}
+
+template <bool kOtherWinsTies, class V>
+HWY_INLINE auto other_wins(V other, V own) {
+  if constexpr (kOtherWinsTies) {
+    return hn::Le(other, own);
+  } else {
+    return hn::Lt(other, own);
+  }
+}
+
+template <bool kOtherWinsTies>
+void z_merge_loop(std::uint32_t* HWY_RESTRICT colour, float* HWY_RESTRICT depth,
+                  const std::uint64_t* HWY_RESTRICT mask, std::size_t elements,
+                  const std::uint32_t* HWY_RESTRICT other_colour,
+                  const float* HWY_RESTRICT other_depth, std::size_t readable) {
+  const Depths d;
+  const Codes du;
+  const hn::RebindToSigned<Depths> di;
+  const hn::Rebind<std::uint8_t, Depths> d8;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::uint64_t lane_bits = (std::uint64_t{1} << lanes) - 1;
+  const auto merge = [&](std::size_t at, auto received, auto other, auto code) HWY_ATTR {
+    const auto own = hn::LoadU(d, depth + at);
+    const auto wins = hn::And(received, other_wins<kOtherWinsTies>(other, own));
+    hn::StoreU(hn::IfThenElse(wins, other, own), d, depth + at);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(du, wins), code, hn::LoadU(du, colour + at)), du,
+               colour + at);
+  };
+  const auto everything = hn::Eq(hn::Zero(d), hn::Zero(d));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < elements; ++i) {
+    const std::uint64_t bits = mask[i];
+    std::size_t at = i * 64;
+    if (bits == kAll) {
+      for (std::size_t j = 0; j < 64; j += lanes) {
+        merge(at + j, everything, hn::LoadU(d, other_depth + next + j),
+              hn::LoadU(du, other_colour + next + j));
+      }
+      next += 64;
+      continue;
+    }
+    for (std::uint64_t rest = bits; rest != 0; rest >>= lanes, at += lanes) {
+      const auto some = static_cast<std::uint8_t>(rest & lane_bits);
+      if (some == 0) continue;
+      const auto count = static_cast<std::size_t>(std::popcount(some));
+      const bool at_end = next + lanes > readable;
+      auto other = load_some(d, other_depth + next, at_end, count);
+      auto code = load_some(du, other_colour + next, at_end, count);
+      if (lanes > 1) {
+        const auto index =
+            hn::IndicesFromVec(d, hn::PromoteTo(di, hn::LoadU(d8, kExpand[some].data())));
+        other = hn::TableLookupLanes(other, index);
+        code = hn::BitCast(du, hn::TableLookupLanes(hn::BitCast(d, code), index));
+      }
+      std::uint8_t loaded[8] = {some};
+      merge(at, hn::LoadMaskBits(d, loaded), other, code);
+      next += count;
+    }
+  }
+}
+
+void z_merge_any(std::uint32_t* colour, float* depth, const std::uint64_t* mask,
+                 std::size_t elements, const std::uint32_t* other_colour, const float* other_depth,
+                 std::size_t readable, image::Tie tie) {
+  if (tie == image::Tie::other) {
+    z_merge_loop<true>(colour, depth, mask, elements, other_colour, other_depth, readable);
+  } else {
+    z_merge_loop<false>(colour, depth, mask, elements, other_colour, other_depth, readable);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::composite::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::composite::internal {
+
+HWY_EXPORT(find_covered_loop);
+HWY_EXPORT(compress_loop);
+HWY_EXPORT(z_merge_any);
+
+void find_covered(std::span<const float> depth, GroupMask& mask) {
+  assert(depth.size() <= kGroupPixels);
+  HWY_DYNAMIC_DISPATCH(find_covered_loop)(depth.data(), depth.size(), mask.data());
+}
+
+void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to) {
+  HWY_DYNAMIC_DISPATCH(compress_loop)(values, mask.data(), to.data(), to.data() + to.size());
+}
+
+void compress(const image::Rgba8* values, const GroupMask& mask, std::span<image::Rgba8> to) {
+  compress(reinterpret_cast<const std::uint32_t*>(values), mask,
+           {reinterpret_cast<std::uint32_t*>(to.data()), to.size()});
+}
+
+void compress(const float* values, const GroupMask& mask, std::span<float> to) {
+  compress(reinterpret_cast<const std::uint32_t*>(values), mask,
+           {reinterpret_cast<std::uint32_t*>(to.data()), to.size()});
+}
+
+void compress(const image::RgbaF* values, const GroupMask& mask, std::span<image::RgbaF> to) {
+  image::RgbaF* next = to.data();
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    for (std::uint64_t bits = mask[i]; bits != 0; bits &= bits - 1) {
+      *next++ = values[i * 64 + static_cast<std::size_t>(std::countr_zero(bits))];
+    }
+  }
+  assert(next == to.data() + to.size());
+}
+
+void z_merge(image::Rgba8* colour, float* depth, const GroupMask& mask,
+             const ActivePixels<image::Rgba8>& other, image::Tie tie) {
+  HWY_DYNAMIC_DISPATCH(z_merge_any)
+  (reinterpret_cast<std::uint32_t*>(colour), depth, mask.data(), mask.size(),
+   reinterpret_cast<const std::uint32_t*>(other.colour), other.depth, other.readable, tie);
+}
+
+void z_merge(image::RgbaF* colour, float* depth, const GroupMask& mask,
+             const ActivePixels<image::RgbaF>& other, image::Tie tie) {
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == ~std::uint64_t{0}) {
+      image::z_merge(std::span(colour + i * 64, 64), std::span(depth + i * 64, 64),
+                     std::span(other.colour + k, 64), std::span(other.depth + k, 64), tie);
+      k += 64;
+      continue;
+    }
+    for (std::uint64_t bits = mask[i]; bits != 0; bits &= bits - 1, ++k) {
+      const std::size_t at = i * 64 + static_cast<std::size_t>(std::countr_zero(bits));
+      if (other.depth[k] < depth[at] || (tie == image::Tie::other && other.depth[k] == depth[at])) {
+        colour[at] = other.colour[k];
+        depth[at] = other.depth[k];
+      }
+    }
+  }
+}
+
+}  // namespace delray::composite::internal
+#endif  // HWY_ONCE

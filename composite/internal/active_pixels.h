@@ -1,0 +1,39 @@
+// Loops over the covered pixels of a group, for ActiveLayer: SIMD through Highway, chosen at run
+// time, for values of 4 bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "composite/coverage.h"
+#include "image/image.h"
+#include "image/operators.h"
+
+namespace delray::composite::internal {
+
+// Sets the bits of the pixels that have a depth. REQUIRES: `mask` is zero and not smaller.
+void find_covered(std::span<const float> depth, GroupMask& mask);
+
+// Copies the values of covered pixels to `to`, one after the other. `values` are those of all
+// pixels of the group; size(to) of them are covered.
+void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to);
+void compress(const image::Rgba8* values, const GroupMask& mask, std::span<image::Rgba8> to);
+void compress(const float* values, const GroupMask& mask, std::span<float> to);
+void compress(const image::RgbaF* values, const GroupMask& mask, std::span<image::RgbaF> to);
+
+// What compress gave, of two planes.
+template <class Colour>
+struct ActivePixels {
+  const Colour* colour;
+  const float* depth;
+  std::size_t readable;  // values that both pointers may be read at
+};
+
+// image::z_merge of covered pixels into the pixels of a group.
+void z_merge(image::Rgba8* colour, float* depth, const GroupMask& mask,
+             const ActivePixels<image::Rgba8>& other, image::Tie tie);
+void z_merge(image::RgbaF* colour, float* depth, const GroupMask& mask,
+             const ActivePixels<image::RgbaF>& other, image::Tie tie);
+
+}  // namespace delray::composite::internal
