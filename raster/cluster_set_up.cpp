@@ -333,7 +333,19 @@ HWY_EXPORT(set_up_compact);
 
 namespace {
 
-// One triangle after the other: clusters that are clipped, masked or large on the screen.
+void append_blended(const Screen& screen, const geometry::Rect& wanted,
+                    const ScreenTriangle& triangle, const geometry::Rect& box,
+                    SetUpResult& result) {
+  const geometry::Rect pixels = geometry::intersection(box, wanted);
+  if (pixels.empty()) return;
+  const auto entry = static_cast<std::uint32_t>(result.blended_triangles.size());
+  result.blended_triangles.push_back(triangle);
+  for (int y = pixels.y0 / kTileSize; y <= (pixels.y1 - 1) / kTileSize; ++y)
+    for (int x = pixels.x0 / kTileSize; x <= (pixels.x1 - 1) / kTileSize; ++x)
+      result.blended_entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
+}
+
+// One triangle after the other: clusters that are clipped, masked, blended or large on the screen.
 void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                  const Cluster& cluster, const ScreenVertices& vertices, std::uint32_t first_number,
                  const geometry::Rect& wanted, SetUpResult& result) {
@@ -341,7 +353,10 @@ void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBl
   for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
     bool handed = false;
     const auto emit = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
-      append_triangle(screen, wanted, triangle, pixels, draw.masked, result);
+      if (draw.blended)
+        append_blended(screen, wanted, triangle, pixels, result);
+      else
+        append_triangle(screen, wanted, triangle, pixels, draw.masked, result);
       handed |= !geometry::intersection(pixels, wanted).empty();
     };
     const Fate fate = set_up(screen, draw, vertices, corners_at(block, mesh_cluster, place),
@@ -361,8 +376,8 @@ void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const Cluste
   // Whole pixels, so that pixel centres are where they are in the frame.
   const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;
   const int origin_x = low_x * kSubpixels, origin_y = low_y * kSubpixels;
-  if (draw.masked || vertices.any_outside || vertices.high_x - origin_x >= kCompact ||
-      vertices.high_y - origin_y >= kCompact) {
+  if (draw.masked || draw.blended || vertices.any_outside ||
+      vertices.high_x - origin_x >= kCompact || vertices.high_y - origin_y >= kCompact) {
     set_up_each(screen, draw, block, cluster, vertices, first_number, wanted, result);
     return;
   }

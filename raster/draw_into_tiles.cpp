@@ -135,17 +135,23 @@ void sort_by_tile(Worker& worker) {
   for (const Worker::TouchedTile& tile : worker.touched) worker.touched_number[tile.tile] = 0;
 }
 
-void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, const Worker& worker,
+void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Worker& worker,
                FrameTiles& tiles) {
   const auto index = static_cast<int>(touched.tile);
   VisibilityTile& tile = tiles.open(index);
   const geometry::Rect& rect = tiles.rect(index);
-  rasterize_fragments(
+  const auto fragments =
       std::span(worker.fragments)
-          .subspan(touched.first_fragment, touched.last_fragment - touched.first_fragment),
-      tile);
+          .subspan(touched.first_fragment, touched.last_fragment - touched.first_fragment);
   const auto entries = std::span(worker.entries)
                            .subspan(touched.first_entry, touched.last_entry - touched.first_entry);
+  if (task.shade_now) {
+    worker.shaded += draw_and_shade(fragments, rect, task.shade_now, tile);
+    worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries, task.solid,
+                                    task.shade_now, tile);
+    return;
+  }
+  rasterize_fragments(fragments, tile);
   if (entries.empty()) return;
   rasterize(task.screen, rect, worker.result.triangles, entries, tile);
   rasterize_masked(task.screen, rect, worker.result.triangles, entries, task.solid, tile);
@@ -169,43 +175,45 @@ void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) 
   }
 }
 
-void collect_large(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
-                   LargeTriangles& large) {
-  large.triangles.clear();
-  large.first.clear();
-  large.entries.clear();
-  std::size_t entries = 0;
-  for (const auto& worker : workers) entries += worker->result.large_entries.size();
-  if (entries == 0) return;
-  large.first.assign(static_cast<std::size_t>(screen.tiles()) + 1, 0);
+void bin(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
+         std::vector<ScreenTriangle> SetUpResult::*triangles,
+         std::vector<SetUpResult::Entry> SetUpResult::*entries, BinnedTriangles& bins) {
+  bins.triangles.clear();
+  bins.first.clear();
+  bins.entries.clear();
+  std::size_t count = 0;
+  for (const auto& worker : workers) count += (worker->result.*entries).size();
+  if (count == 0) return;
+  bins.first.assign(static_cast<std::size_t>(screen.tiles()) + 1, 0);
   for (const auto& worker : workers)
-    for (const SetUpResult::Entry& entry : worker->result.large_entries)
-      ++large.first[entry.tile + 1];
-  std::partial_sum(large.first.begin(), large.first.end(), large.first.begin());
-  std::vector<std::uint32_t> next(large.first.begin(), large.first.end() - 1);
-  large.entries.resize(entries);
+    for (const SetUpResult::Entry& entry : worker->result.*entries) ++bins.first[entry.tile + 1];
+  std::partial_sum(bins.first.begin(), bins.first.end(), bins.first.begin());
+  std::vector<std::uint32_t> next(bins.first.begin(), bins.first.end() - 1);
+  bins.entries.resize(count);
   for (const auto& worker : workers) {
-    const auto offset = static_cast<std::uint32_t>(large.triangles.size());
-    const SetUpResult& result = worker->result;
-    large.triangles.insert(large.triangles.end(), result.large_triangles.begin(),
-                           result.large_triangles.end());
-    for (const SetUpResult::Entry& entry : result.large_entries)
-      large.entries[next[entry.tile]++] = entry.entry + offset;
+    const auto offset = static_cast<std::uint32_t>(bins.triangles.size());
+    const std::vector<ScreenTriangle>& from = worker->result.*triangles;
+    bins.triangles.insert(bins.triangles.end(), from.begin(), from.end());
+    for (const SetUpResult::Entry& entry : worker->result.*entries)
+      bins.entries[next[entry.tile]++] = entry.entry + offset;
   }
 }
 
 }  // namespace
 
 TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
-                               std::vector<std::unique_ptr<Worker>>& workers, LargeTriangles& large,
-                               DrawSeconds& seconds) {
+                               std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
+                               DrawCosts& costs) {
   const auto threads = static_cast<std::size_t>(parallel::arena_threads());
   while (workers.size() < threads) workers.push_back(std::make_unique<Worker>());
   for (const auto& worker : workers) {
     worker->result.clear();
     worker->result.large_triangles.clear();
     worker->result.large_entries.clear();
+    worker->result.blended_triangles.clear();
+    worker->result.blended_entries.clear();
     worker->result.counts = {};
+    worker->shaded = 0;
     worker->touched_number.assign(static_cast<std::size_t>(task.screen.tiles()), 0);
   }
 
@@ -233,19 +241,26 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
     }
     clock.add_to({&set_up_seconds, &sort_seconds, &rasterize_seconds});
   });
-  seconds.set_up += set_up_seconds.seconds();
-  seconds.sort += sort_seconds.seconds();
-  seconds.rasterize += rasterize_seconds.seconds();
+  costs.set_up += set_up_seconds.seconds();
+  costs.sort += sort_seconds.seconds();
+  costs.rasterize += rasterize_seconds.seconds();
 
-  collect_large(task.screen, workers, large);
+  bin(task.screen, workers, &SetUpResult::large_triangles, &SetUpResult::large_entries,
+      later.large);
+  bin(task.screen, workers, &SetUpResult::blended_triangles, &SetUpResult::blended_entries,
+      later.blended);
   TriangleCounts counts;
-  for (const auto& worker : workers) counts += worker->result.counts;
+  for (const auto& worker : workers) {
+    counts += worker->result.counts;
+    costs.shaded += worker->shaded;
+  }
   return counts;
 }
 
-void draw_large(const DrawIntoTiles& task, int tile, LargeTriangles& large, FrameTiles& tiles) {
+std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
+                         FrameTiles& tiles) {
   const std::span<std::uint32_t> entries = large.of_tile(tile);
-  if (entries.empty()) return;
+  if (entries.empty()) return 0;
   const auto nearest = [&](std::uint32_t entry) {
     const ScreenVertex* v = large.triangles[entry & kIndex].vertex;
     return std::min({v[0].depth, v[1].depth, v[2].depth});
@@ -253,8 +268,13 @@ void draw_large(const DrawIntoTiles& task, int tile, LargeTriangles& large, Fram
   std::sort(entries.begin(), entries.end(),
             [&](std::uint32_t a, std::uint32_t b) { return nearest(a) < nearest(b); });
   VisibilityTile& opened = tiles.open(tile);
+  if (task.shade_now) {
+    return draw_and_shade(task.screen, tiles.rect(tile), large.triangles, entries, task.solid,
+                          task.shade_now, opened);
+  }
   rasterize(task.screen, tiles.rect(tile), large.triangles, entries, opened);
   rasterize_masked(task.screen, tiles.rect(tile), large.triangles, entries, task.solid, opened);
+  return 0;
 }
 
 }  // namespace delray::raster

@@ -63,7 +63,7 @@ DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
     if (is_new) {
       MeshClusters* clusters = known == nullptr ? nullptr : known->of(*piece.mesh);
       if (clusters == nullptr) clusters = &list.own.emplace_back();
-      list.draws.push_back({piece.mesh, piece.transform, clusters});
+      list.draws.push_back({piece.mesh, piece.transform, clusters, piece.primitive - piece.first});
     }
     const std::uint32_t draw = found->second;
     list.draws[draw].clusters->make(*piece.mesh, piece.first, piece.count);

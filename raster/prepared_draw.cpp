@@ -7,13 +7,18 @@
 namespace delray::raster {
 namespace {
 
-// Whether alpha may leave nothing of some pixels. Blended materials are drawn opaque, but not where
-// there is nothing of them at all.
+// Whether alpha may not be the same all over the mesh.
+bool alpha_varies(const shading::Shader& shader, const scenes::Material& material,
+                  const scenes::Mesh& mesh) {
+  return !mesh.colours.empty() || (material.base_colour_texture != scenes::kNone &&
+                                   !shader.textures[material.base_colour_texture].opaque);
+}
+
+// Whether alpha may leave nothing of some pixels.
 bool may_have_holes(const shading::Shader& shader, const scenes::Material& material,
                     const scenes::Mesh& mesh) {
-  if (material.alpha == scenes::Material::Alpha::opaque) return false;
-  return material.base_colour_texture != scenes::kNone || !mesh.colours.empty() ||
-         !(shading::coverage(shader, material, {}, {}, 1.0F) > 0);
+  if (material.alpha != scenes::Material::Alpha::mask) return false;
+  return alpha_varies(shader, material, mesh) || material.base_colour.w < material.alpha_cutoff;
 }
 
 // Angles must be the same in the mesh and in the world, or nearly: then cones are used.
@@ -33,6 +38,12 @@ void prepare_cones(const scenes::View& view, const glm::mat4x3& transform, Prepa
 
 }  // namespace
 
+bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh) {
+  const scenes::Material& material = shading::material(shader, mesh.material);
+  if (material.alpha != scenes::Material::Alpha::blend) return false;
+  return alpha_varies(shader, material, mesh) || !(material.base_colour.w >= 1.0F);
+}
+
 std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& list,
                                         const shading::Shader& shader, bool cull_single_sided) {
   std::vector<PreparedDraw> draws(list.draws.size());
@@ -43,6 +54,7 @@ std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& li
     prepared.draw = &draw;
     prepared.to_view = to_view(screen.view, *draw.transform);
     prepared.masked = may_have_holes(shader, material, *draw.mesh);
+    prepared.blended = is_blended(shader, *draw.mesh);
     if (!cull_single_sided || material.double_sided) continue;
     // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,
     // unless the transform mirrors.

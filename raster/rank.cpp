@@ -1,6 +1,19 @@
 #include "raster/internal/rank.h"
 
+#include "raster/internal/samples.h"
+
 namespace delray::raster {
+namespace {
+
+// The samples of a tile, row by row. One per thread.
+template <class Colour>
+Window<Colour> tile_window(const geometry::Rect& rect) {
+  static thread_local image::BasicImage<Colour> of_thread(kTileSize, kTileSize);
+  return {of_thread.colour.data(), of_thread.depth.data(), rect.x0 / kTileSize * kTileSize,
+          rect.y0 / kTileSize * kTileSize, kTileSize};
+}
+
+}  // namespace
 
 std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives() const {
   const std::uint64_t all = first_primitives.back();
@@ -11,21 +24,73 @@ std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives() const {
   return {begin(k), begin(k + 1)};
 }
 
-template <class Colour>
 void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
-                  image::BasicImage<Colour>& image) {
+                  FinishTile finish) {
   communicator.mark(comm::Phase::rasterize, 0);
-  const RegionCounts done = render_regions(screen, list, shader, options, regions,
-                                           depths_are_distances(), scratch, image, progress);
+  std::vector<geometry::Rect> in_samples;
+  for (const geometry::Rect& r : regions)
+    in_samples.push_back(samples_of(r, options.supersampling));
+  const RegionCounts done =
+      render_regions({screen, list, shader, options, in_samples, depths_are_distances(), progress},
+                     scratch, finish);
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
-  counts.phases += done.phases;
-  counts.triangles += done.triangles;
-  counts.fragments += done.fragments;
-  counts.tiles += done.tiles;
+  counts += done;
 }
 
-template void Rank::render(const DrawList&, std::span<const geometry::Rect>, image::Image8&);
-template void Rank::render(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
+template <class Colour>
+void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
+                         image::BasicImage<Colour>& image) {
+  const int n = options.supersampling;
+  const Window<Colour> window = window_of(image);
+  render(list, regions, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    for (const geometry::Rect& rect : rects) {
+      if (n == 1) {
+        tile.shade(rect, window);
+      } else if (tile.empty()) {
+        clear_pixels(pixels_of(rect, n), window);
+      } else {
+        const Window<Colour> samples = tile_window<Colour>(rect);
+        tile.shade(rect, samples);
+        resolve(samples, n, pixels_of(rect, n), window);
+      }
+    }
+  });
+}
+
+template <class Colour>
+image::BasicImage<Colour> Rank::render_samples(const DrawList& list) {
+  const int n = options.supersampling;
+  image::BasicImage<Colour> image =
+      take_image<Colour>(options.width * samples_per_pixel(), options.height);
+  const geometry::Rect all = frame();
+  render(list, {&all, 1}, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    for (const geometry::Rect& rect : rects) {
+      if (n == 1) {
+        tile.shade(rect, window_of(image));
+        continue;
+      }
+      const Window<Colour> samples = tile_window<Colour>(rect);
+      tile.shade(rect, samples);
+      gather_samples(samples, n, pixels_of(rect, n), image);
+    }
+  });
+  return image;
+}
+
+template <class Colour>
+image::BasicImage<Colour> Rank::take_image(int width, int height) {
+  if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
+      spare != nullptr && spare->width == width && spare->height == height)
+    return std::exchange(*spare, {});
+  return image::BasicImage<Colour>(width, height);
+}
+
+template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::Image8&);
+template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
+template image::Image8 Rank::render_samples(const DrawList&);
+template image::ImageF Rank::render_samples(const DrawList&);
+template image::Image8 Rank::take_image(int, int);
+template image::ImageF Rank::take_image(int, int);
 
 }  // namespace delray::raster

@@ -21,7 +21,7 @@ struct Report {
   RankStatistics rank;
   Phases phases;
   TriangleCounts triangles;
-  std::uint64_t fragments, triangles_travelled;
+  std::uint64_t fragments, shaded, triangles_travelled;
 };
 
 void check(const RenderOptions& options) {
@@ -32,10 +32,16 @@ void check(const RenderOptions& options) {
   known(composite::find_scheme(options.scheme) != nullptr, "compositing scheme", options.scheme);
   known(loadbalance::find_partitioner(options.partition) != nullptr, "partition",
         options.partition);
+  const int n = options.supersampling;
+  if (n != 1 && n != 2 && n != 4)
+    throw std::invalid_argument("a pixel has 1, 2 or 4 samples in either direction");
   const int longest = std::max(options.width, options.height);
-  if (std::min(options.width, options.height) < 1 || longest > kLargestSide)
+  if (std::min(options.width, options.height) < 1 || longest > kLargestSide / n)
     throw std::invalid_argument("a picture's sides are from 1 to " + std::to_string(kLargestSide) +
-                                " pixels");
+                                " samples");
+  if (options.shade == Shade::composited &&
+      (options.strategy != "sort-last" || options.lighting != Lighting::phong))
+    throw std::invalid_argument("only sort-last shades after compositing, and only with phong");
 }
 
 void to_distances(std::span<float> depths, float near) {
@@ -63,6 +69,7 @@ Report make_report(const Rank& rank, std::span<const comm::Event> events) {
   report.phases = phases;
   report.triangles = rank.counts.triangles;
   report.fragments = rank.counts.fragments;
+  report.shaded = rank.counts.shaded;
   report.triangles_travelled = rank.triangles_travelled;
   return report;
 }
@@ -84,16 +91,15 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
     statistics.clusters_hidden += report.triangles.hidden_clusters;
     statistics.triangles_travelled += report.triangles_travelled;
     statistics.fragments += report.fragments;
+    statistics.shaded += report.shaded;
   }
   if (sum > 0) statistics.imbalance = busiest / (sum / static_cast<double>(reports.size()));
   return statistics;
 }
 
-bool any_blended(const scenes::Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const scenes::Mesh& mesh) {
-    return mesh.material < scene.materials.size() &&
-           scene.materials[mesh.material].alpha == scenes::Material::Alpha::blend;
-  });
+bool any_blended(const shading::Shader& shader, const scenes::Scene& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                     [&](const scenes::Mesh& mesh) { return is_blended(shader, mesh); });
 }
 
 }  // namespace
@@ -120,9 +126,10 @@ struct Renderer::Memory {
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
   if (shader == nullptr)
     shader = std::make_shared<const shading::Shader>(shading::make_shader(scene));
+  const bool blended = any_blended(*shader, scene);
   memory_ =
       std::unique_ptr<Memory>(new Memory{scene, std::move(shader), scenes::first_primitives(scene),
-                                         any_blended(scene), SceneClusters(scene.meshes)});
+                                         blended, SceneClusters(scene.meshes)});
 }
 void Renderer::recycle(Picture&& picture) { memory_->scratch.spare = std::move(picture); }
 Renderer::~Renderer() = default;
@@ -132,11 +139,14 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
                         const RenderOptions& options, parallel::Progress* progress) {
   check(options);
-  const Screen screen = make_screen(scenes::make_view(camera, options.width, options.height));
+  const Screen screen = make_screen(scenes::make_view(camera, options.width * options.supersampling,
+                                                      options.height * options.supersampling));
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
-  Rank rank{recording, memory_->scene, memory_->first_primitives, *memory_->shader, screen,
-            options,   progress,       memory_->clusters,         memory_->scratch};
+  Rank rank{recording,        memory_->scene, memory_->first_primitives,
+            *memory_->shader, screen,         options,
+            memory_->blended, progress,       memory_->clusters,
+            memory_->scratch};
   Result result;
   result.picture = find_strategy(options.strategy)->render(rank);
 
@@ -144,8 +154,6 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
       comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
   if (communicator.rank() != 0) return result;
   result.statistics = summarize(reports);
-  if (memory_->blended)
-    result.statistics.warnings.emplace_back("transparent materials are drawn opaque");
   if (!rank.depths_are_distances())
     std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
                result.picture);

@@ -28,16 +28,25 @@ enum class Lighting : std::uint8_t { phong, gouraud };
 // that is shared out needs, or its number, which is enough where every rank has the whole scene.
 enum class Travel : std::uint8_t { geometry, numbers };
 
+// When a pixel is shaded (Molnar et al. 1992). deferred: once everything that the rank has is
+// drawn. immediate: whenever it comes to show another triangle, so that hidden surfaces are shaded
+// too. composited: once the ranks' pixels are composited, by the rank that owns it then, so that
+// what travels is what shading needs, not colours (sort-last with phong lighting).
+enum class Shade : std::uint8_t { deferred, immediate, composited };
+
 struct RenderOptions {
   int width = 1024, height = 768;
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
+  int supersampling = 1;      // 1, 2 or 4: so many samples per pixel in either direction
   Lighting lighting = Lighting::phong;
+  Shade shade = Shade::deferred;
   // Faces away from the viewer of materials that are not double-sided are not drawn.
   bool cull_single_sided = false;
   // Clusters of triangles behind what was drawn before are skipped whole: the same picture sooner.
   bool skip_hidden_clusters = true;
   std::string strategy = "sort-last";
   std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
+  std::string codec = "dense";         // of composite::codecs(); sort-last
   std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first
   Travel travel = Travel::geometry;    // sort-first
 };
@@ -70,7 +79,8 @@ struct Statistics {
   // that depends on which of them was faster.
   std::uint64_t triangles_hidden = 0, clusters_hidden = 0;
   std::uint64_t triangles_travelled = 0;  // sent from one rank to another, once per receiver
-  std::uint64_t fragments = 0;            // visible pixels, before ranks are composited
+  // Before ranks are composited: surfaces seen at samples, and how often one was shaded.
+  std::uint64_t fragments = 0, shaded = 0;
   std::vector<std::string> warnings;
 };
 
@@ -97,11 +107,12 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   // Collective: every rank calls it with the same scene, camera and options. Uncovered pixels are
-  // transparent black with depth image::kEmptyDepth. Blended materials are drawn opaque
-  // where their alpha is above 0, with a warning. `progress` counts tiles of this rank.
+  // transparent black with depth image::kEmptyDepth. A pixel's depth is that of the nearest
+  // surface at its samples, opaque or not. `progress` counts tiles of this rank.
   //
-  // Throws std::invalid_argument for names that are in no table and for sizes below 1 or above
-  // 65534; parallel::Interrupted when asked to stop.
+  // Throws std::invalid_argument for names that are in no table, for options that exclude each
+  // other and for sizes in samples below 1 or above 65534; parallel::Interrupted when asked to
+  // stop.
   Result render(comm::Communicator& communicator, const scenes::Camera& camera,
                 const RenderOptions& options, parallel::Progress* progress = nullptr);
 

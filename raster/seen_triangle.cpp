@@ -39,6 +39,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   result.material = &shading::material(shader, mesh.material);
   result.has_uv = !mesh.uvs.empty();
   result.has_tangent = !mesh.tangents.empty();
+  result.blended = shaded.blended;
   std::array<glm::vec3, 3> view;
   for (int k = 0; k < 3; ++k) {
     const glm::vec3& p = mesh.positions[corners[k]];

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "image/srgb.h"
+#include "composite/fragment.h"
 #include "shading/shade.h"
 
 namespace delray::raster {
@@ -41,12 +41,15 @@ glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x
   return lit * glm::vec3(shading::sample(frame.shader.textures[texture], uv, footprint));
 }
 
-void store(const glm::vec3& colour, image::RgbaF& pixel) {
-  pixel = {colour.x, colour.y, colour.z, 1.0F};
+image::RgbaF premultiplied(const glm::vec3& colour, float alpha) {
+  return {colour.x * alpha, colour.y * alpha, colour.z * alpha, alpha};
 }
-void store(const glm::vec3& colour, image::Rgba8& pixel) {
-  pixel = {image::encode_srgb(colour.x), image::encode_srgb(colour.y), image::encode_srgb(colour.z),
-           255};
+
+float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
+  return seen.blended == 0
+             ? 1.0F
+             : shading::coverage(frame.shader, frame.shader.materials[seen.material], seen.point.uv,
+                                 seen.point.footprint, seen.point.colour.w);
 }
 
 }  // namespace
@@ -55,7 +58,10 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
                                 const DrawList& list, Lighting lighting, bool distances) {
   FrameShading frame{screen, shader, list, {}, {}, {}, lighting, distances};
   frame.draws.reserve(list.draws.size());
-  for (const Draw& draw : list.draws) frame.draws.push_back(make_shaded_draw(screen.view, draw));
+  for (const Draw& draw : list.draws) {
+    frame.draws.push_back(make_shaded_draw(screen.view, draw));
+    frame.draws.back().blended = is_blended(shader, *draw.mesh);
+  }
   if (lighting == Lighting::gouraud) {
     frame.untextured = shader.materials;
     for (scenes::Material& material : frame.untextured) {
@@ -122,14 +128,31 @@ bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number,
                            point.colour.w) > 0;
 }
 
+SeenPoint point_seen(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
+                     int y) {
+  const SeenTriangle& triangle = seen.get(frame, number);
+  return {point_at(triangle, x, y),
+          static_cast<std::uint32_t>(triangle.material - frame.shader.materials.data()),
+          triangle.blended ? 1U : 0U};
+}
+
+image::RgbaF shade(const FrameShading& frame, const SeenPoint& seen) {
+  return premultiplied(radiance(frame, frame.shader.materials[seen.material], seen.point),
+                       alpha_at(frame, seen));
+}
+
+image::RgbaF colour_at(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
+                       int y) {
+  if (frame.lighting == Lighting::phong) return shade(frame, point_seen(frame, seen, number, x, y));
+  const SeenTriangle& triangle = seen.get(frame, number);
+  const float alpha = triangle.blended ? alpha_at(frame, point_seen(frame, seen, number, x, y)) : 1;
+  return premultiplied(gouraud(frame, triangle, x, y), alpha);
+}
+
 template <class Colour>
 void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y,
                  Colour& pixel) {
-  const SeenTriangle& triangle = seen.get(frame, number);
-  store(frame.lighting == Lighting::gouraud
-            ? gouraud(frame, triangle, x, y)
-            : radiance(frame, *triangle.material, point_at(triangle, x, y)),
-        pixel);
+  composite::store(colour_at(frame, seen, number, x, y), pixel);
 }
 
 template <class Colour>

@@ -12,6 +12,7 @@
 #include "raster/internal/gather_regions.h"
 #include "raster/internal/processor_seconds.h"
 #include "raster/internal/rank.h"
+#include "raster/internal/samples.h"
 #include "raster/internal/travel.h"
 
 namespace delray::raster {
@@ -49,7 +50,7 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
     seconds.measure([&] {
       for (std::size_t i = begin; i < end; ++i) {
         const Extent e = extent(rank.screen, draws[draw_of[i]], groups[i].first, groups[i].count);
-        boxes[i].box = e.box;
+        boxes[i].box = pixels_of(e.box, rank.options.supersampling);
         boxes[i].cost =
             e.triangles == 0 ? 0 : kTriangleCost * groups[i].count + static_cast<double>(e.pixels);
       }
@@ -60,7 +61,7 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
 }
 
 loadbalance::Partition cut_screen(Rank& rank, std::span<const loadbalance::WeightedBox> boxes) {
-  const geometry::Rect frame = rank.screen.frame();
+  const geometry::Rect frame = rank.frame();
   const int side = loadbalance::cost_cell_side(frame, rank.ranks());
   loadbalance::Costs costs = loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
                                                      (frame.height() + side - 1) / side, boxes);
@@ -120,8 +121,8 @@ Picture render(Rank& rank) {
   std::vector<geometry::Rect> regions;
   for (const loadbalance::Region& region : partition.regions)
     if (region.owner == rank.number()) regions.push_back(region.rect);
-  image::BasicImage<Colour> image = take_image<Colour>(rank.screen, rank.scratch);
-  rank.render(list, regions, image);
+  auto image = rank.take_image<Colour>(rank.options.width, rank.options.height);
+  rank.render_pixels(list, regions, image);
 
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();

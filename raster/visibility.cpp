@@ -243,19 +243,51 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
   for (const std::uint32_t entry : entries) {
     if (!(entry & kMasked)) continue;
     const ScreenTriangle& triangle = triangles[entry & kIndex];
-    const ScreenVertex* v = triangle.vertex;
-    const geometry::Rect pixels =
-        geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
-    TileTriangle t;
-    if (pixels.empty() || !make_tile_triangle(triangle, screen, tile_x, tile_y, t)) continue;
-    for (int j = pixels.y0 - tile_y; j < pixels.y1 - tile_y; ++j)
-      for (int i = pixels.x0 - tile_x; i < pixels.x1 - tile_x; ++i) {
-        if (!covers(t, i, j)) continue;
-        const std::int64_t key = key_of(depth_at(t, i, j), triangle.number);
-        std::int64_t& old = tile.key[j * kTileSize + i];
-        if (key < old && solid(triangle.number, tile_x + i, tile_y + j)) old = key;
-      }
+    for_each_covered(screen, rect, triangle, [&](int i, int j, std::int64_t key) {
+      std::int64_t& old = tile.key[j * kTileSize + i];
+      if (key < old && solid(triangle.number, tile_x + i, tile_y + j)) old = key;
+    });
   }
+}
+
+std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
+                             std::span<const ScreenTriangle> triangles,
+                             std::span<const std::uint32_t> entries,
+                             const std::function<bool(std::uint32_t, int, int)>& solid,
+                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             VisibilityTile& tile) {
+  std::uint64_t shaded = 0;
+  const int tile_x = rect.x0 / kTileSize * kTileSize;
+  const int tile_y = rect.y0 / kTileSize * kTileSize;
+  for (const std::uint32_t entry : entries) {
+    const ScreenTriangle& triangle = triangles[entry & kIndex];
+    for_each_covered(screen, rect, triangle, [&](int i, int j, std::int64_t key) {
+      std::int64_t& old = tile.key[j * kTileSize + i];
+      if (key >= old) return;
+      if ((entry & kMasked) != 0 && !solid(triangle.number, tile_x + i, tile_y + j)) return;
+      old = key;
+      ++shaded;
+      shade(triangle.number, tile_x + i, tile_y + j);
+    });
+  }
+  return shaded;
+}
+
+std::uint64_t draw_and_shade(std::span<const Fragment> fragments, const geometry::Rect& rect,
+                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             VisibilityTile& tile) {
+  std::uint64_t shaded = 0;
+  const int tile_x = rect.x0 / kTileSize * kTileSize;
+  const int tile_y = rect.y0 / kTileSize * kTileSize;
+  for (const Fragment& fragment : fragments) {
+    std::int64_t& old = tile.key[fragment.pixel];
+    if (fragment.key >= old) continue;
+    old = fragment.key;
+    ++shaded;
+    shade(number_of(old), tile_x + static_cast<int>(fragment.pixel % kTileSize),
+          tile_y + static_cast<int>(fragment.pixel / kTileSize));
+  }
+  return shaded;
 }
 
 }  // namespace delray::raster

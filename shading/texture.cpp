@@ -167,8 +167,10 @@ Texture make_texture(const scenes::Texture& texture) {
   if (empty) {
     result.texels[0] = {255, 255, 255, 255};
   } else {
-    std::copy_n(texture.texels.begin(), result.levels.size() == 1 ? total : result.levels[1].first,
-                result.texels.begin());
+    const std::size_t texels = result.levels.size() == 1 ? total : result.levels[1].first;
+    std::copy_n(texture.texels.begin(), texels, result.texels.begin());
+    result.opaque = std::all_of(result.texels.begin(), result.texels.begin() + texels,
+                                [](const image::Rgba8& texel) { return texel.a == 255; });
   }
   for (std::size_t i = 1; i < result.levels.size(); ++i) {
     reduce(result.texels.data() + result.levels[i - 1].first, result.levels[i - 1],

@@ -21,6 +21,7 @@ struct Texture {
   std::vector<image::Rgba8> texels;  // of all levels, one after the other
   std::vector<Level> levels;         // at least one
   bool srgb = true;
+  bool opaque = true;  // no texel has an alpha below 255
   scenes::Texture::Wrap wrap_u = scenes::Texture::Wrap::repeat;
   scenes::Texture::Wrap wrap_v = scenes::Texture::Wrap::repeat;
 };

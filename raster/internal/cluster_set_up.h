@@ -21,6 +21,9 @@ struct SetUpResult {
   };
   std::vector<ScreenTriangle> triangles, large_triangles;
   std::vector<Entry> entries, large_entries;
+  // All triangles of blended draws.
+  std::vector<ScreenTriangle> blended_triangles;
+  std::vector<Entry> blended_entries;
 
   TriangleCounts counts;
 

@@ -26,10 +26,11 @@ struct Worker {
   std::vector<TouchedTile> touched;
   std::vector<Fragment> fragments;     // by tile
   std::vector<std::uint32_t> entries;  // by tile
+  std::uint64_t shaded = 0;            // pixels, as they were drawn
 };
 
-// Triangles that touch many tiles.
-struct LargeTriangles {
+// Triangles by the tiles that they touch.
+struct BinnedTriangles {
   std::vector<ScreenTriangle> triangles;
   std::vector<std::uint32_t> first;  // one more than tiles; empty when there are no triangles
   std::vector<std::uint32_t> entries;
@@ -40,6 +41,12 @@ struct LargeTriangles {
   }
 };
 
+// What is left for when everything else is drawn: triangles that touch many tiles, and those of
+// blended draws.
+struct LaterTriangles {
+  BinnedTriangles large, blended;
+};
+
 struct DrawIntoTiles {
   const Screen& screen;
   const DrawList& list;
@@ -48,21 +55,27 @@ struct DrawIntoTiles {
   bool skip_hidden_clusters;
   // Whether alpha leaves anything of a triangle of a masked draw at a pixel; called by any thread.
   std::function<bool(std::uint32_t number, int x, int y)> solid;
+  // Called for every pixel as soon as it shows another triangle, by the thread that has its tile;
+  // pixels are drawn one by one then. Empty: never.
+  std::function<void(std::uint32_t number, int x, int y)> shade_now;
   parallel::Progress* progress = nullptr;
 };
 
-// Seconds of processor time, summed over threads.
-struct DrawSeconds {
+// Seconds of processor time, summed over threads, and how often a pixel was shaded meanwhile.
+struct DrawCosts {
   double set_up = 0, sort = 0, rasterize = 0;
+  std::uint64_t shaded = 0;
 };
 
-// Draws everything but large triangles, which are left in `large`. Parallel, nearest draws first;
-// the workers' memory is reused.
+// Draws everything but what it leaves in `later`. Parallel, nearest draws first; the workers'
+// memory is reused.
 TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
-                               std::vector<std::unique_ptr<Worker>>& workers, LargeTriangles& large,
-                               DrawSeconds& seconds);
+                               std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
+                               DrawCosts& costs);
 
-// Draws the large triangles of a tile, nearest first. The tile is the caller's alone.
-void draw_large(const DrawIntoTiles& task, int tile, LargeTriangles& large, FrameTiles& tiles);
+// Draws the large triangles of a tile, nearest first. The tile is the caller's alone. Returns how
+// often a pixel was shaded.
+std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
+                         FrameTiles& tiles);
 
 }  // namespace delray::raster

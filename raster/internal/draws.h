@@ -33,6 +33,7 @@ struct Draw {
   const scenes::Mesh* mesh = nullptr;
   const glm::mat4x3* transform = nullptr;
   MeshClusters* clusters = nullptr;
+  std::uint64_t first_primitive = 0;  // global number of the mesh's triangle 0
 };
 
 // Places [begin, end) of a cluster of a draw's mesh.
@@ -55,6 +56,9 @@ struct DrawList {
   const Cluster& cluster_of(std::uint32_t number) const { return clusters[number >> kClusterBits]; }
   std::uint32_t triangle_of(std::uint32_t number) const {
     return cluster_of(number).first + (number & (kClusterTriangles - 1));
+  }
+  std::uint64_t primitive_of(std::uint32_t number) const {
+    return draws[cluster_of(number).draw].first_primitive + triangle_of(number);
   }
   const ClusterBlock& block_of(const Cluster& cluster) const {
     return *draws[cluster.draw].clusters->blocks[cluster.first >> kBlockBits];

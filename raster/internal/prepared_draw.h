@@ -12,14 +12,18 @@ namespace delray::raster {
 struct PreparedDraw {
   const Draw* draw = nullptr;
   ToView to_view;
-  bool masked = false;  // holes are cut by alpha
-  int hidden_side = 0;  // sign of the area that is not drawn; 0: both are
+  bool masked = false;   // holes are cut by alpha
+  bool blended = false;  // what lies behind may shine through
+  int hidden_side = 0;   // sign of the area that is not drawn; 0: both are
   // Clusters that show nothing but hidden sides can be told by their cones: in the mesh's
   // coordinates, where the eye is, and how much longer things are in the world.
   bool cones = false;
   glm::vec3 eye{0};
   float scale = 1;
 };
+
+// Whether what lies behind a mesh of the material may shine through it somewhere.
+bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh);
 
 // Element i is draw i of the list, which it refers to. O(draws).
 std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& list,

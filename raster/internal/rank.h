@@ -16,8 +16,9 @@ struct Rank {
   const scenes::Scene& scene;
   std::span<const std::uint64_t> first_primitives;
   const shading::Shader& shader;
-  const Screen& screen;
+  const Screen& screen;  // in samples
   const RenderOptions& options;
+  bool transparent;  // some mesh of the scene is blended
   parallel::Progress* progress;
   SceneClusters& clusters;
   Scratch& scratch;
@@ -31,10 +32,21 @@ struct Rank {
   std::pair<std::uint64_t, std::uint64_t> own_primitives() const;
   // A single rank's depths need no compositing, which wants them as they are rasterized.
   bool depths_are_distances() const { return ranks() == 1; }
-  // Renders `list` into `regions` of `image` and counts.
+  geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
+  int samples_per_pixel() const { return options.supersampling * options.supersampling; }
+
+  // Renders `list` into regions (in pixels) and counts; `finish` as in render_regions, in samples.
+  void render(const DrawList& list, std::span<const geometry::Rect> regions, FinishTile finish);
+  // The same into an image of the frame: pixels, with samples averaged.
   template <class Colour>
-  void render(const DrawList& list, std::span<const geometry::Rect> regions,
-              image::BasicImage<Colour>& image);
+  void render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
+                     image::BasicImage<Colour>& image);
+  // The same for the whole frame, with the samples of a pixel together: see internal/samples.h.
+  template <class Colour>
+  image::BasicImage<Colour> render_samples(const DrawList& list);
+  // An image of any content; the spare one if that fits.
+  template <class Colour>
+  image::BasicImage<Colour> take_image(int width, int height);
 };
 
 // Runs f and adds the seconds that it took on this rank, waiting for others included.

@@ -16,6 +16,7 @@ struct ShadedDraw {
   ToView to_view;
   glm::mat3 normal_to_world{1.0F};
   float handedness = 1;  // -1 where the transform mirrors
+  bool blended = false;  // what is behind may be seen
 };
 ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
 
@@ -23,7 +24,7 @@ ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
 struct SeenTriangle {
   Barycentrics barycentrics;
   const scenes::Material* material = nullptr;
-  bool has_uv = false, has_tangent = false;
+  bool has_uv = false, has_tangent = false, blended = false;
   glm::vec3 geometric_normal{0, 0, 1};
   glm::vec3 position[3], normal[3];
   glm::vec4 tangent[3], colour[3];

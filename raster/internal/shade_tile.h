@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "raster/internal/prepared_draw.h"
 #include "raster/internal/seen_triangle.h"
 #include "raster/internal/visibility.h"
 #include "raster/internal/window.h"
@@ -59,7 +60,21 @@ class SeenTriangles {
 // Whether alpha leaves anything of the triangle at a pixel.
 bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y);
 
-// The colour of one pixel that shows the triangle.
+// What shading needs to know of a triangle at a pixel. It may travel.
+struct SeenPoint {
+  shading::Point point;
+  std::uint32_t material = 0;  // of the shader's
+  std::uint32_t blended = 0;   // whether what is behind may be seen
+};
+inline bool is_opaque(const SeenPoint& seen) { return seen.blended == 0; }
+SeenPoint point_seen(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
+                     int y);
+// Its colour by phong, premultiplied.
+image::RgbaF shade(const FrameShading& frame, const SeenPoint& point);
+
+// The colour of one pixel that shows the triangle, premultiplied.
+image::RgbaF colour_at(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
+                       int y);
 template <class Colour>
 void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y,
                  Colour& pixel);

@@ -83,11 +83,40 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
 // The same for fragments.
 void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile);
 
+// Calls f(i, j, key) for every pixel of `rect`, at (i, j) of its tile, whose centre the triangle
+// covers.
+template <class F>
+void for_each_covered(const Screen& screen, const geometry::Rect& rect,
+                      const ScreenTriangle& triangle, F&& f) {
+  const int tile_x = rect.x0 / kTileSize * kTileSize;
+  const int tile_y = rect.y0 / kTileSize * kTileSize;
+  const ScreenVertex* v = triangle.vertex;
+  const geometry::Rect pixels =
+      geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
+  TileTriangle t;
+  if (pixels.empty() || !make_tile_triangle(triangle, screen, tile_x, tile_y, t)) return;
+  for (int j = pixels.y0 - tile_y; j < pixels.y1 - tile_y; ++j)
+    for (int i = pixels.x0 - tile_x; i < pixels.x1 - tile_x; ++i)
+      if (covers(t, i, j)) f(i, j, key_of(depth_at(t, i, j), triangle.number));
+}
+
 // The same for masked entries alone: a pixel counts as covered if solid(number, x, y) says so.
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
                       std::span<const ScreenTriangle> triangles,
                       std::span<const std::uint32_t> entries,
                       const std::function<bool(std::uint32_t, int, int)>& solid,
                       VisibilityTile& tile);
+
+// The same for all entries, masked or not, and for fragments in `rect`'s tile, pixel by pixel:
+// `shade` is called whenever a pixel comes to show another triangle. They return how often.
+std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
+                             std::span<const ScreenTriangle> triangles,
+                             std::span<const std::uint32_t> entries,
+                             const std::function<bool(std::uint32_t, int, int)>& solid,
+                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             VisibilityTile& tile);
+std::uint64_t draw_and_shade(std::span<const Fragment> fragments, const geometry::Rect& rect,
+                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             VisibilityTile& tile);
 
 }  // namespace delray::raster

@@ -90,20 +90,24 @@ std::vector<std::int64_t> drawn(const Screen& screen, const scenes::Scene& scene
   const shading::Shader shader = shading::make_shader(scene);
   const std::vector<PreparedDraw> draws = prepare_draws(screen, list, shader, setting.cull);
   const TileJobs jobs = make_tile_jobs(screen, regions);
-  const DrawIntoTiles task{
-      screen, list, draws, jobs.wanted, setting.skip_hidden, [](std::uint32_t, int, int) {
-        return true;
-      }};
+  const DrawIntoTiles task{screen,
+                           list,
+                           draws,
+                           jobs.wanted,
+                           setting.skip_hidden,
+                           [](std::uint32_t, int, int) {
+        return true; },
+                           {}};
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
-  LargeTriangles large;
-  DrawSeconds seconds;
+  LaterTriangles later;
+  DrawCosts costs;
   std::vector<std::int64_t> keys(static_cast<std::size_t>(screen.width) * screen.height);
   parallel::Arena(setting.threads).execute([&] {
     for (int frame = 0; frame < 2; ++frame) {  // the second finds the memory of the first
       tiles.begin(screen, jobs);
-      counts = draw_into_tiles(task, tiles, workers, large, seconds);
-      for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, large, tiles);
+      counts = draw_into_tiles(task, tiles, workers, later, costs);
+      for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, later.large, tiles);
     }
   });
   for (const TileJob& job : jobs.jobs) {

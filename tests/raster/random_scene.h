@@ -63,6 +63,15 @@ inline scenes::Scene random_scene(unsigned seed, int triangles_per_mesh = 40) {
   return scene;
 }
 
+// The same with glass of its own colour, of a texture's and of the vertices' alpha.
+inline scenes::Scene transparent_scene(unsigned seed) {
+  scenes::Scene scene = random_scene(seed);
+  for (const std::size_t i : {0U, 1U}) scene.materials[i].alpha = scenes::Material::Alpha::blend;
+  scene.materials[0].base_colour.w = 0.4F;
+  for (glm::vec4& colour : scene.meshes[0].colours) colour.w = colour.x < 0.1F ? 0.0F : colour.y;
+  return scene;
+}
+
 inline scenes::Camera random_scene_camera() {
   scenes::Camera camera;
   camera.eye = {0.5F, 0.7F, 3};

@@ -32,15 +32,15 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   const std::vector<PreparedDraw> draws = prepare_draws(screen, list, shader, false);
   const geometry::Rect frame_rect = screen.frame();
   const TileJobs jobs = make_tile_jobs(screen, {&frame_rect, 1});
-  const DrawIntoTiles task{screen,      list, draws,
-                           jobs.wanted, true, [](std::uint32_t, int, int) { return true; }};
+  const DrawIntoTiles task{
+      screen, list, draws, jobs.wanted, true, [](std::uint32_t, int, int) { return true; }, {}};
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
-  LargeTriangles large;
-  DrawSeconds seconds;
+  LaterTriangles later;
+  DrawCosts costs;
   tiles.begin(screen, jobs);
-  draw_into_tiles(task, tiles, workers, large, seconds);
-  for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, large, tiles);
+  draw_into_tiles(task, tiles, workers, later, costs);
+  for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, later.large, tiles);
 
   const FrameShading frame =
       make_frame_shading(screen, shader, list, Lighting::gouraud, width % 2 == 0);
