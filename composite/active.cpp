@@ -60,7 +60,7 @@ comm::Buffer ActiveLayer<Colour>::cut(PixelRange range) {
   const float* const depth = this->image().depth.data() + range.begin;
   const Coverage coverage(range.size(),
                           [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
-                            internal::find_covered({depth + begin, end - begin}, mask);
+                            return internal::find_covered({depth + begin, end - begin}, mask);
                           });
   const std::uint64_t covered = coverage.covered();
   comm::Buffer buffer(coverage.encoded_bytes() + covered * (sizeof(Colour) + sizeof(float)));

@@ -46,10 +46,11 @@ using Depths = hn::CappedTag<float, kMostLanes>;
 using Codes = hn::RebindToUnsigned<Depths>;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-void find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask) {
+std::uint64_t find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask) {
   const Depths d;
   const std::size_t lanes = hn::Lanes(d);
   const auto empty = hn::Set(d, image::kEmptyDepth);
+  std::uint64_t covered = 0;
   std::size_t i = 0;
   for (; i + 64 <= size; i += 64) {
     std::uint64_t bits = 0;
@@ -59,10 +60,14 @@ void find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask
       bits |= std::uint64_t{some[0]} << j;
     }
     mask[i / 64] = bits;
+    covered += static_cast<std::uint64_t>(std::popcount(bits));
   }
   for (; i < size; ++i) {
-    mask[i / 64] |= std::uint64_t{depth[i] != image::kEmptyDepth} << i % 64;
+    const std::uint64_t bit = depth[i] != image::kEmptyDepth ? 1 : 0;
+    mask[i / 64] |= bit << i % 64;
+    covered += bit;
   }
+  return covered;
 }
 
 void compress_loop(const std::uint32_t* values, const std::uint64_t* mask, std::uint32_t* to,
@@ -191,9 +196,9 @@ HWY_EXPORT(find_covered_loop);
 HWY_EXPORT(compress_loop);
 HWY_EXPORT(z_merge_any);
 
-void find_covered(std::span<const float> depth, GroupMask& mask) {
+std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask) {
   assert(depth.size() <= kGroupPixels);
-  HWY_DYNAMIC_DISPATCH(find_covered_loop)(depth.data(), depth.size(), mask.data());
+  return HWY_DYNAMIC_DISPATCH(find_covered_loop)(depth.data(), depth.size(), mask.data());
 }
 
 void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to) {

@@ -55,15 +55,14 @@ const std::byte* take(const std::byte* from, T& value) {
 
 Coverage::Coverage(
     std::uint64_t pixels,
-    parallel::FunctionRef<void(std::uint64_t begin, std::uint64_t end, GroupMask& mask)> find)
+    parallel::FunctionRef<std::uint64_t(std::uint64_t begin, std::uint64_t end, GroupMask& mask)>
+        find)
     : pixels_(pixels), covered_before_(groups_of(pixels) + 1), masks_(new GroupMask[groups()]) {
   parallel::parallel_for(0, groups(), 1, [&](std::size_t i) {
     GroupMask& mask = masks_[i];
     mask.fill(0);
-    find(i * kGroupPixels, std::min((i + 1) * kGroupPixels, pixels_), mask);
-    std::uint64_t count = 0;
-    for (const std::uint64_t bits : mask) count += static_cast<std::uint64_t>(std::popcount(bits));
-    covered_before_[i + 1] = count;
+    covered_before_[i + 1] =
+        find(i * kGroupPixels, std::min((i + 1) * kGroupPixels, pixels_), mask);
   });
   sum_up(covered_before_);
 }

@@ -37,11 +37,13 @@ class Coverage {
     bool is_full() const { return covered == end - begin; }
   };
 
-  // Of a range of `pixels`: find(begin, end, mask) sets bits of a mask that is zero for the group
-  // that has those pixels of the range; it is called for each group, by several threads. O(pixels).
+  // Of a range of `pixels`: find(begin, end, mask) sets the bits of those pixels of the range,
+  // which are a group, in a mask that is zero, and returns how many it set; it is called for each
+  // group, by several threads. O(pixels).
   Coverage(
       std::uint64_t pixels,
-      parallel::FunctionRef<void(std::uint64_t begin, std::uint64_t end, GroupMask& mask)> find);
+      parallel::FunctionRef<std::uint64_t(std::uint64_t begin, std::uint64_t end, GroupMask& mask)>
+          find);
   // What encode wrote for a range of `pixels`.
   Coverage(std::uint64_t pixels, const std::byte* encoded);
 

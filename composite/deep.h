@@ -35,6 +35,11 @@ class DeepLayer final : public Layer {
 
  private:
   struct Arrived;
+  // Nothing of the other list is seen behind this one.
+  static bool hides(std::span<const DeepFragment<Payload>> list,
+                    std::span<const DeepFragment<Payload>> other) {
+    return !list.empty() && is_opaque(list.back().payload) && in_front(list.back(), other.front());
+  }
   // The fragments of `own` and `arrived` in order, up to the first opaque one.
   static void merge_lists(std::span<const DeepFragment<Payload>> own,
                           std::span<const DeepFragment<Payload>> arrived,
@@ -90,16 +95,23 @@ template <class Payload>
 comm::Buffer DeepLayer<Payload>::cut(PixelRange range) {
   assert(range.begin <= range.end && range.end <= pixels());
   std::vector<std::uint64_t> before((range.size() + kGroupPixels - 1) / kGroupPixels + 1);
-  const Coverage coverage(range.size(),
-                          [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
-                            std::uint64_t fragments = 0;
-                            for (std::uint64_t i = begin; i < end; ++i) {
-                              const std::uint32_t size = image_.lists[range.begin + i].size;
-                              fragments += size;
-                              mask[(i - begin) / 64] |= std::uint64_t{size > 0} << (i - begin) % 64;
-                            }
-                            before[begin / kGroupPixels + 1] = fragments;
-                          });
+  const auto find = [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+    std::uint64_t covered = 0, fragments = 0;
+    for (std::uint64_t first = begin; first < end; first += 64) {
+      std::uint64_t bits = 0;
+      for (std::uint64_t i = first; i < std::min(first + 64, end); ++i) {
+        const std::uint32_t size = image_.lists[range.begin + i].size;
+        const std::uint64_t bit = size > 0 ? 1 : 0;
+        fragments += size;
+        covered += bit;
+        bits |= bit << (i - first);
+      }
+      mask[(first - begin) / 64] = bits;
+    }
+    before[begin / kGroupPixels + 1] = fragments;
+    return covered;
+  };
+  const Coverage coverage(range.size(), find);
   for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
 
   const std::size_t bytes = coverage.encoded_bytes() + coverage.covered() * sizeof(std::uint32_t);
@@ -147,18 +159,20 @@ std::uint64_t DeepLayer<Payload>::merge_group(PixelRange range, const Arrived& a
     const std::span<const DeepFragment<Payload>> other(next, *size++);
     next += other.size();
     composited += own.size() + other.size();
-    const bool hides_other =
-        !own.empty() && is_opaque(own.back().payload) && in_front(own.back(), other.front());
-    if (hides_other) return;
-    merge_lists(own, other, merged);
-    if (merged.size() <= own.size()) {
-      std::copy(merged.begin(), merged.end(), image_.chunks[list.chunk].begin() + list.first);
+    if (hides(own, other)) return;
+    std::span<const DeepFragment<Payload>> result = other;
+    if (!own.empty() && !hides(other, own)) {
+      merge_lists(own, other, merged);
+      result = merged;
+    }
+    if (result.size() <= own.size()) {
+      std::copy(result.begin(), result.end(), image_.chunks[list.chunk].begin() + list.first);
     } else {
       list.chunk = static_cast<std::uint32_t>(chunk);
       list.first = static_cast<std::uint32_t>(grown.size());
-      grown.insert(grown.end(), merged.begin(), merged.end());
+      grown.insert(grown.end(), result.begin(), result.end());
     }
-    list.size = static_cast<std::uint32_t>(merged.size());
+    list.size = static_cast<std::uint32_t>(result.size());
   });
   return composited;
 }
@@ -187,6 +201,7 @@ void DeepLayer<Payload>::replace(PixelRange range, const comm::Buffer& pixels) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   const Arrived arrived(range, pixels);
   image_.clear(range.begin, range.end);
+  if (range.size() == image_.lists.size()) image_.chunks.clear();
   const std::size_t groups = arrived.coverage.groups(), first_chunk = image_.chunks.size();
   image_.chunks.resize(first_chunk + groups);
   parallel::parallel_for(0, groups, 1, [&](std::size_t i) {

@@ -12,8 +12,9 @@
 
 namespace delray::composite::internal {
 
-// Sets the bits of the pixels that have a depth. REQUIRES: `mask` is zero and not smaller.
-void find_covered(std::span<const float> depth, GroupMask& mask);
+// Sets the bits of the pixels that have a depth and returns how many. REQUIRES: `mask` is zero and
+// not smaller.
+std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask);
 
 // Copies the values of covered pixels to `to`, one after the other. `values` are those of all
 // pixels of the group; size(to) of them are covered.

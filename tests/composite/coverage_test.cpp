@@ -12,9 +12,13 @@ using Covered = std::function<bool(std::uint64_t pixel)>;
 
 Coverage coverage_of(std::uint64_t pixels, const Covered& covered) {
   return {pixels, [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+            std::uint64_t count = 0;
             for (std::uint64_t i = begin; i < end; ++i) {
-              mask[(i - begin) / 64] |= std::uint64_t{covered(i)} << (i - begin) % 64;
+              const std::uint64_t bit = covered(i) ? 1 : 0;
+              count += bit;
+              mask[(i - begin) / 64] |= bit << (i - begin) % 64;
             }
+            return count;
           }};
 }
 
