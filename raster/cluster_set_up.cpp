@@ -258,7 +258,8 @@ void set_up_compact(const Screen& screen, const PreparedDraw& draw, const Cluste
   const I small_side = hn::Set(d, kSmallSide);
   std::size_t kept = 0;
   for (std::size_t place = places.begin / lanes * lanes; place < places.end; place += lanes) {
-    const I places_here = hn::Iota(d, static_cast<std::int32_t>(place));
+    // Of a constant; counted from a variable, lanes are filled one by one.
+    const I places_here = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(place)));
     const I a = hn::PromoteTo(d, hn::LoadU(db, corners + place));
     const I b = hn::PromoteTo(d, hn::LoadU(db, corners + stride + place));
     const I c = hn::PromoteTo(d, hn::LoadU(db, corners + 2 * stride + place));

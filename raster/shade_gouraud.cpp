@@ -256,7 +256,7 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
   set_up_triangles(frame);
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
   const int width = rect.width();
-  alignas(64) std::uint16_t index[kTileSize + kBlockSize];
+  alignas(64) std::uint16_t index[kTileSize + kBlockSize + 1];
   alignas(64) Colour colours[kTileSize + kBlockSize];
   alignas(64) float depths[kTileSize + kBlockSize];
   // Rows of whole vectors go straight into the image, others might run over what is beside them.

@@ -36,6 +36,21 @@ constexpr std::array<std::int32_t, kSrgbBuckets> make_srgb_steps() {
 static_assert(image::internal::kBucketShift == 16);
 inline constexpr std::array<std::int32_t, kSrgbBuckets> kSrgbSteps = make_srgb_steps();
 
+// Codes above 10 are 269.025 x^(5/12) - 14.025 of linear light x (IEC 61966-2-1). x is 2^e m with m
+// from 1 to 2: element (e + 127) % 16 of the first table is 269.025 * 2^(5 e / 12), -9 <= e <= 0,
+// the other are the coefficients of a polynomial for m^(5/12), relative error 1.2e-6.
+alignas(64) inline constexpr float kPowerOfExponent[16] = {
+    0,           0,           0,           0,           0,           0,
+    19.9954028F, 26.6906605F, 35.6277574F, 47.5573505F, 63.4814467F, 84.7375651F,
+    113.111079F, 150.985177F, 201.541031F, 269.025F};
+inline constexpr float kPower[6] = {0.376330309F, 0.952814901F,   -0.491730163F,
+                                    0.208567785F, -0.0514170146F, 0.00543537306F};
+// Of codes that are computed with it: 3.3e-4 for the polynomial and less than 2e-4 for rounding.
+inline constexpr float kCodeError = 6e-4F;
+
+// A vector with so many changes of triangle at most is shaded run by run.
+inline constexpr int kMostChanges = 6;
+
 }  // namespace delray::raster
 #endif
 
@@ -53,26 +68,61 @@ struct Colours {
   F red, green, blue;
 };
 
-// Of pixels (x, y) that show the same triangle: the arithmetic of weights_at and interpolate.
-HWY_INLINE Colours interpolated(const PixelTriangle& t, F x, F y) {
-  const Floats d;
-  const auto set = [&](float value) { return hn::Set(d, value); };
-  const F zero = hn::Zero(d), one = set(1.0F);
-  const F dx = hn::Sub(x, set(t.x)), dy = hn::Sub(y, set(t.y));
+// What pixels look up of their triangles, before anything is divided.
+struct Corners {
   F u[3];
+  F colour[3][3];  // [corner][channel]
+};
+
+// The shares of a triangle's corners at pixels (x, y): the arithmetic of weights_at.
+HWY_INLINE void shares(const PixelTriangle& t, F x, float y, F (&u)[3]) {
+  const Floats d;
+  const F dx = hn::Sub(x, hn::Set(d, t.x));
+  const float dy = y - t.y;
+  for (int k = 0; k < 3; ++k)
+    u[k] = hn::Add(hn::Add(hn::Mul(hn::Set(d, t.a[k]), dx), hn::Set(d, t.b[k] * dy)),
+                   hn::Set(d, t.c[k]));
+}
+
+HWY_INLINE Corners corners_of(const PixelTriangle& t, F x, float y) {
+  const Floats d;
+  Corners corners;
+  shares(t, x, y, corners.u);
+  for (int k = 0; k < 3; ++k)
+    for (int channel = 0; channel < 3; ++channel)
+      corners.colour[k][channel] = hn::Set(d, t.colour[k][channel]);
+  return corners;
+}
+
+// The same where `lanes` are set; the other pixels stay as they are.
+HWY_INLINE void set_corners(hn::Mask<Floats> lanes, const PixelTriangle& t, F x, float y,
+                            Corners& corners) {
+  const Floats d;
+  F u[3];
+  shares(t, x, y, u);
   for (int k = 0; k < 3; ++k) {
-    const F plane =
-        hn::Add(hn::Add(hn::Mul(set(t.a[k]), dx), hn::Mul(set(t.b[k]), dy)), set(t.c[k]));
-    u[k] = hn::IfThenElseZero(hn::Gt(plane, zero), plane);
+    corners.u[k] = hn::IfThenElse(lanes, u[k], corners.u[k]);
+    for (int channel = 0; channel < 3; ++channel)
+      corners.colour[k][channel] =
+          hn::IfThenElse(lanes, hn::Set(d, t.colour[k][channel]), corners.colour[k][channel]);
   }
+}
+
+// The arithmetic of weights_at and interpolate.
+HWY_INLINE Colours interpolated(const Corners& corners) {
+  const Floats d;
+  const F zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  F u[3];
+  for (int k = 0; k < 3; ++k) u[k] = hn::IfThenElseZero(hn::Gt(corners.u[k], zero), corners.u[k]);
   const F sum = hn::Add(hn::Add(u[0], u[1]), u[2]);
-  const auto some = hn::Gt(sum, zero);
-  const F w0 = hn::IfThenElse(some, hn::Div(u[0], sum), one);
-  const F w1 = hn::IfThenElseZero(some, hn::Div(u[1], sum));
-  const F w2 = hn::IfThenElseZero(some, hn::Div(u[2], sum));
+  const auto some = hn::Ge(sum, hn::Set(d, kLeastSum));
+  const F share = hn::Div(one, sum);
+  const F w0 = hn::IfThenElse(some, hn::Mul(u[0], share), one);
+  const F w1 = hn::IfThenElseZero(some, hn::Mul(u[1], share));
+  const F w2 = hn::IfThenElseZero(some, hn::Mul(u[2], share));
   const auto channel = [&](int k) {
-    return hn::Add(hn::Add(hn::Mul(set(t.colour[0][k]), w0), hn::Mul(set(t.colour[1][k]), w1)),
-                   hn::Mul(set(t.colour[2][k]), w2));
+    return hn::Add(hn::Add(hn::Mul(corners.colour[0][k], w0), hn::Mul(corners.colour[1][k], w1)),
+                   hn::Mul(corners.colour[2][k], w2));
   };
   return {channel(0), channel(1), channel(2)};
 }
@@ -80,8 +130,7 @@ HWY_INLINE Colours interpolated(const PixelTriangle& t, F x, F y) {
 // The same of one pixel, to colour[0 .. 3]: quicker than to gather from sixteen triangles.
 HWY_INLINE void interpolate_one(const PixelTriangle& t, float x, float y, float* colour) {
 #if HWY_TARGET == HWY_SCALAR
-  const hn::Vec<Floats> columns = hn::Set(Floats(), x), rows = hn::Set(Floats(), y);
-  const Colours colours = interpolated(t, columns, rows);
+  const Colours colours = interpolated(corners_of(t, hn::Set(Floats(), x), y));
   colour[0] = hn::GetLane(colours.red);
   colour[1] = hn::GetLane(colours.green);
   colour[2] = hn::GetLane(colours.blue);
@@ -93,8 +142,9 @@ HWY_INLINE void interpolate_one(const PixelTriangle& t, float x, float y, float*
                              hn::LoadU(d, t.c));
   const auto u = hn::IfThenElseZero(hn::Gt(plane, zero), plane);
   const auto sum = hn::Add(hn::Add(hn::Broadcast<0>(u), hn::Broadcast<1>(u)), hn::Broadcast<2>(u));
-  const auto w = hn::IfThenElse(hn::Gt(sum, zero), hn::Div(u, sum),
-                                hn::IfThenElseZero(hn::FirstN(d, 1), hn::Set(d, 1.0F)));
+  const auto one = hn::Set(d, 1.0F);
+  const auto w = hn::IfThenElse(hn::Ge(sum, hn::Set(d, kLeastSum)), hn::Mul(u, hn::Div(one, sum)),
+                                hn::IfThenElseZero(hn::FirstN(d, 1), one));
   hn::Store(hn::Add(hn::Add(hn::Mul(hn::LoadU(d, t.colour[0]), hn::Broadcast<0>(w)),
                             hn::Mul(hn::LoadU(d, t.colour[1]), hn::Broadcast<1>(w))),
                     hn::Mul(hn::LoadU(d, t.colour[2]), hn::Broadcast<2>(w))),
@@ -102,8 +152,8 @@ HWY_INLINE void interpolate_one(const PixelTriangle& t, float x, float y, float*
 #endif
 }
 
-// image::encode_srgb.
-HWY_INLINE I encoded(F linear) {
+// image::encode_srgb, by table.
+HWY_INLINE I looked_up_code(F linear) {
   const Floats d;
   const Ints di;
   const F least = hn::Set(d, 0x1p-13F);
@@ -123,11 +173,60 @@ HWY_INLINE I encoded(F linear) {
   return hn::IfThenElse(hn::RebindMask(di, dark), hn::Zero(di), bounded);
 }
 
+// A code before it is rounded, within kCodeError. Whatever is not above 0 counts as 0, what is
+// above 1 as 1.
+HWY_INLINE F estimated_code(F linear) {
+  const Floats d;
+  const Ints di;
+  const F positive = hn::IfThenElseZero(hn::Gt(linear, hn::Zero(d)), linear);
+  const F x = hn::Min(positive, hn::Set(d, 1.0F));
+  const I bits = hn::BitCast(di, x);
+  const I exponent = hn::And(hn::ShiftRight<23>(bits), hn::Set(di, 15));
+  const F scale =
+      hn::TableLookupLanes(hn::Load(d, kPowerOfExponent), hn::IndicesFromVec(d, exponent));
+  const F m = hn::BitCast(
+      d, hn::Or(hn::And(bits, hn::Set(di, 0x7FFFFF)), hn::BitCast(di, hn::Set(d, 1.0F))));
+  F power = hn::Set(d, kPower[5]);
+  for (int k = 4; k >= 0; --k) power = hn::MulAdd(power, m, hn::Set(d, kPower[k]));
+  const F curve = hn::MulAdd(scale, power, hn::Set(d, -0.055F * 255));
+  const auto dark = hn::Lt(x, hn::Set(d, 0.0031308F));
+  if (HWY_LIKELY(hn::AllFalse(d, dark))) return curve;
+  return hn::IfThenElse(dark, hn::Mul(x, hn::Set(d, 12.92F * 255)), curve);
+}
+
+// In the lowest byte; the two above it are 0.
+struct Codes {
+  I red, green, blue;
+};
+// image::encode_srgb of each. Where vectors are long, gathering takes longer than to compute the
+// code, which is certain unless it is close to the next one; the result does not tell.
+HWY_INLINE Codes encoded(const Colours& colours) {
+  const Floats d;
+  if constexpr (hn::MaxLanes(Floats()) == kBlockSize) {
+    const Ints di;
+    // Added to a small number, leaves its nearest whole number in the lower bits.
+    const F rounder = hn::Set(d, 0x1p23F);
+    const F value[3] = {estimated_code(colours.red), estimated_code(colours.green),
+                        estimated_code(colours.blue)};
+    F rounded[3], off[3];
+    for (int k = 0; k < 3; ++k) {
+      rounded[k] = hn::Add(value[k], rounder);
+      off[k] = hn::Abs(hn::Sub(value[k], hn::Sub(rounded[k], rounder)));
+    }
+    const F farthest = hn::Max(hn::Max(off[0], off[1]), off[2]);
+    if (HWY_LIKELY(hn::AllTrue(d, hn::Lt(farthest, hn::Set(d, 0.5F - kCodeError)))))
+      return {hn::BitCast(di, rounded[0]), hn::BitCast(di, rounded[1]),
+              hn::BitCast(di, rounded[2])};
+  }
+  return {looked_up_code(colours.red), looked_up_code(colours.green), looked_up_code(colours.blue)};
+}
+
 HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::Rgba8* pixels) {
   const Ints d;
-  const I code = hn::Or(hn::Or(encoded(colours.red), hn::ShiftLeft<8>(encoded(colours.green))),
-                        hn::Or(hn::ShiftLeft<16>(encoded(colours.blue)),
-                               hn::Set(d, static_cast<std::int32_t>(0xFF000000U))));
+  const Codes codes = encoded(colours);
+  const I code = hn::Or(
+      hn::Or(codes.red, hn::ShiftLeft<8>(codes.green)),
+      hn::Or(hn::ShiftLeft<16>(codes.blue), hn::Set(d, static_cast<std::int32_t>(0xFF000000U))));
   hn::StoreU(hn::IfThenElseZero(shown, code), d, reinterpret_cast<std::int32_t*>(pixels));
 }
 HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::RgbaF* pixels) {
@@ -139,6 +238,14 @@ HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::RgbaF
       reinterpret_cast<float*>(pixels));
 }
 
+// Bit k: lane k + 1 has another triangle than lane k; whatever the last lane has.
+HWY_INLINE std::uint32_t changes_of(hn::Mask<Ints> changes) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Ints(), changes, bytes);
+  const std::uint32_t bits = bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
+  return bits & ((1U << (hn::Lanes(Ints()) - 1)) - 1);
+}
+
 template <class Colour>
 HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t* index, int x,
                              int y, int count, Colour* pixels) {
@@ -146,30 +253,45 @@ HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t
   const Ints di;
   const hn::Rebind<std::uint16_t, Ints> d16;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const F row = hn::Set(d, static_cast<float>(y));
+  // A constant; counted from a variable, lanes are filled one by one.
+  const I lane_numbers = hn::Iota(di, 0);
+  const auto row = static_cast<float>(y);
+  // No triangle is any triangle whose colour is not shown: without a branch, which would often be
+  // guessed wrong.
+  const auto triangle_at = [&](int i) -> const PixelTriangle& {
+    return triangles[index[i] == kNoTriangle ? std::uint16_t{0} : index[i]];
+  };
   for (int i = 0; i < count; i += lanes) {
-    const F column = hn::ConvertTo(d, hn::Iota(di, x + i));
     const I triangle = hn::PromoteTo(di, hn::LoadU(d16, index + i));
-    const I first = hn::Set(di, index[i]);
-    if (hn::AllTrue(di, hn::Eq(triangle, first))) {
-      if (index[i] == kNoTriangle) {
+    const I columns = hn::Add(hn::Set(di, x + i), lane_numbers);
+    const F column = hn::ConvertTo(d, columns);
+    if (hn::AllTrue(di, hn::Eq(triangle, hn::Set(di, index[i])))) {
+      if (index[i] == kNoTriangle)
         std::fill_n(pixels + i, lanes, Colour());
-        continue;
+      else
+        store(interpolated(corners_of(triangles[index[i]], column, row)),
+              hn::Eq(triangle, triangle), pixels + i);
+      continue;
+    }
+    const auto shown = hn::Ne(triangle, hn::Set(di, kNoTriangle));
+    const I next = hn::PromoteTo(di, hn::LoadU(d16, index + i + 1));
+    std::uint32_t changes = changes_of(hn::Ne(triangle, next));
+    if (std::popcount(changes) <= kMostChanges) {
+      Corners corners = corners_of(triangle_at(i), column, row);
+      for (; changes != 0; changes &= changes - 1) {
+        const int k = std::countr_zero(changes) + 1;
+        const auto rest = hn::Gt(columns, hn::Set(di, x + i + k - 1));
+        set_corners(hn::RebindMask(d, rest), triangle_at(i + k), column, row, corners);
       }
-      store(interpolated(triangles[index[i]], column, row), hn::Eq(triangle, triangle), pixels + i);
+      store(interpolated(corners), shown, pixels + i);
       continue;
     }
     HWY_ALIGN float colours[4 * kBlockSize];
-    for (int k = 0; k < lanes; ++k) {
-      // There is a triangle, or all would be equal; without a branch, which would often be guessed
-      // wrong.
-      const std::uint16_t t = index[i + k] == kNoTriangle ? std::uint16_t{0} : index[i + k];
-      interpolate_one(triangles[t], static_cast<float>(x + i + k), static_cast<float>(y),
-                      colours + 4 * k);
-    }
+    for (int k = 0; k < lanes; ++k)
+      interpolate_one(triangle_at(i + k), static_cast<float>(x + i + k), row, colours + 4 * k);
     F red, green, blue, unused;
     hn::LoadInterleaved4(d, colours, red, green, blue, unused);
-    store({red, green, blue}, hn::Not(hn::Eq(triangle, hn::Set(di, kNoTriangle))), pixels + i);
+    store({red, green, blue}, shown, pixels + i);
   }
 }
 
@@ -182,19 +304,28 @@ void shade_row_float(const PixelTriangle* triangles, const std::uint16_t* index,
   shade_pixels(triangles, index, x, y, count, pixels);
 }
 
+// The upper halves of a vector's worth of keys.
+HWY_INLINE I codes_of(const std::int64_t* keys) {
+  const Ints d;
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Set(d, static_cast<std::int32_t>(*keys >> 32));
+#else
+  const hn::Repartition<std::int64_t, Ints> d64;
+  const auto low = hn::LoadU(d64, keys);
+  const auto high = hn::LoadU(d64, keys + hn::Lanes(d64));
+  return hn::ConcatOdd(d, hn::BitCast(d, high), hn::BitCast(d, low));
+#endif
+}
+
 void store_depths(const std::int64_t* keys, int count, float near, float* depths) {
   const Floats d;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  HWY_ALIGN std::int32_t halves[2 * kBlockSize] = {};
+  std::int64_t rest[kBlockSize] = {};
   for (int i = 0; i < count; i += lanes) {
-    const int here = std::min(lanes, count - i);
-    if (here == lanes)  // a size that the compiler knows
-      std::memcpy(halves, keys + i, sizeof(std::int64_t) * hn::Lanes(d));
-    else
-      std::memcpy(halves, keys + i, sizeof(std::int64_t) * static_cast<std::size_t>(here));
-    I number, code;
-    hn::LoadInterleaved2(di, halves, number, code);
+    const std::int64_t* here = keys + i;
+    if (i + lanes > count) here = std::copy(here, keys + count, rest) - (count - i);
+    const I code = codes_of(here);
     const F depth = hn::BitCast(d, hn::Not(code));
     const F shown = near > 0 ? hn::Div(hn::Set(d, -near), depth) : depth;
     const auto empty = hn::RebindMask(d, hn::Eq(code, hn::Set(di, kEmptyCode)));

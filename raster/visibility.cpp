@@ -63,7 +63,8 @@ void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, i
   const auto numbers = hn::Set(dk, std::int64_t{number});
   const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
   for (int i = i0; i < i1; i += lanes) {
-    const auto column = hn::Iota(di, i);
+    // Of a constant; counted from a variable, lanes are filled one by one.
+    const auto column = hn::Add(hn::Iota(di, 0), hn::Set(di, i));
     const auto x = hn::Mul(slope_x, hn::Add(hn::Set(d, t.x), hn::ConvertTo(d, column)));
     const auto edge0 = hn::Mul(hn::Set(di, t.a[0]), column);
     const auto edge1 = hn::Mul(hn::Set(di, t.a[1]), column);

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "raster/internal/screen.h"
 
 namespace delray::raster {
 
-// Shares of the three vertices at a point of the triangle: not negative, their sum is 1.
+// Shares of the three vertices at a point of the triangle: not negative, their sum is 1 but for
+// rounding.
 struct Weights {
   float of[3];
   float sum;  // what the planes below add up to there, for derivatives
@@ -72,6 +74,9 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   return result;
 }
 
+// Sums from here on have a finite reciprocal.
+inline constexpr float kLeastSum = std::numeric_limits<float>::min();
+
 // At the centre of pixel (x, y). A pixel that snapping moved out of the triangle gets the weights
 // of a point on its border; where all is degenerate, those of the first vertex.
 inline Weights weights_at(const Barycentrics& t, int x, int y) {
@@ -80,8 +85,9 @@ inline Weights weights_at(const Barycentrics& t, int x, int y) {
   float u[3];
   for (int k = 0; k < 3; ++k) u[k] = std::max((t.a[k] * dx + t.b[k] * dy) + t.c[k], 0.0F);
   const float sum = (u[0] + u[1]) + u[2];
-  if (!(sum > 0)) return {{1, 0, 0}, 0};
-  return {{u[0] / sum, u[1] / sum, u[2] / sum}, sum};
+  if (!(sum >= kLeastSum)) return {{1, 0, 0}, 0};
+  const float share = 1 / sum;
+  return {{u[0] * share, u[1] * share, u[2] * share}, sum};
 }
 
 template <class Value>

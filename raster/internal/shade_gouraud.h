@@ -27,8 +27,8 @@ static_assert(sizeof(PixelTriangle) == kPixelTriangleFloats * sizeof(float));
 inline constexpr std::uint16_t kNoTriangle = 0xFFFFU;
 
 // Stores the colours of pixels x .. x + count - 1 of row y, pixel x + i of which shows triangle
-// index[i], or transparent black where that is kNoTriangle. `index` may be read, and `pixels`
-// changed, up to the next multiple of kBlockSize.
+// index[i], or transparent black where that is kNoTriangle. `pixels` may be changed up to the next
+// multiple of kBlockSize, and `index` read one further.
 void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
                int count, image::Rgba8* pixels);
 void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
@@ -82,8 +82,8 @@ class GouraudTile {
                   const scenes::Mesh& mesh, std::uint32_t mesh_vertex, std::uint32_t vertex);
   void light(const FrameShading& frame, std::size_t block);
 
-  std::uint16_t index_[kTilePixels];    // by pixel of the tile
-  std::vector<std::uint32_t> numbers_;  // distinct triangles
+  std::uint16_t index_[kTilePixels + 1];  // by pixel of the tile
+  std::vector<std::uint32_t> numbers_;    // distinct triangles
   std::vector<PixelTriangle> triangles_;
   std::vector<SeenIn> seen_in_;
   std::vector<glm::uvec3> corners_;  // of triangles: into radiances_

@@ -111,7 +111,7 @@ TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
       PixelTriangle flat{};
       flat.c[0] = 1;
       flat.colour[0][0] = flat.colour[0][2] = colour;
-      const std::uint16_t index[kBlockSize] = {0, kNoTriangle, 0};
+      const std::uint16_t index[kBlockSize + 1] = {0, kNoTriangle, 0};
       image::Rgba8 pixels[kBlockSize];
       shade_row({&flat, 1}, index, 5, 7, 3, pixels);
       const std::uint8_t code = image::encode_srgb(colour);
