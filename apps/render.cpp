@@ -15,6 +15,7 @@
 #include "apps/render_statistics.h"
 #include "apps/write_picture.h"
 #include "comm/agree_on_failure.h"
+#include "composite/codec.h"
 #include "composite/scheme.h"
 #include "loadbalance/partition.h"
 #include "parallel/arena.h"
@@ -29,6 +30,7 @@ int print_lists() {
   print_table(raster::strategies());
   print_table(loadbalance::partitioners());
   print_table(composite::schemes());
+  print_table(composite::codecs());
   print_table(raytrace::integrators());
   print_table(raytrace::schedules());
   return kDone;

@@ -25,6 +25,12 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
   options.lighting =
       request.lighting == "gouraud" ? raster::Lighting::gouraud : raster::Lighting::phong;
   options.strategy = request.strategy;
+  options.codec = request.codec;
+  options.shade = request.shade == "immediate"    ? raster::Shade::immediate
+                  : request.shade == "composited" ? raster::Shade::composited
+                                                  : raster::Shade::deferred;
+  options.supersampling = request.supersampling;
+  options.travel = request.travel == "numbers" ? raster::Travel::numbers : raster::Travel::geometry;
   options.scheme = request.scheme;
   options.partition = request.partition;
   return options;

@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "apps/list.h"
+#include "composite/codec.h"
 #include "composite/scheme.h"
 #include "image/io.h"
 #include "loadbalance/partition.h"
@@ -46,12 +47,28 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
   find_entry(raster::strategies(), request.strategy, "--strategy");
   find_entry(loadbalance::partitioners(), request.partition, "--partition");
   find_entry(composite::schemes(), request.scheme, "--compose");
-  if (request.strategy == "sort-last") refuse(command, {"--partition"}, "--strategy sort-last");
-  if (request.strategy == "sort-first") refuse(command, {"--compose"}, "--strategy sort-first");
+  find_entry(composite::codecs(), request.codec, "--codec");
+  if (request.strategy == "sort-last") {
+    refuse(command, {"--partition", "--travel"}, "--strategy sort-last");
+  } else {
+    refuse(command, {"--compose", "--codec"}, "--strategy " + request.strategy);
+  }
+  if (request.shade == "composited") {
+    if (request.strategy != "sort-last") {
+      throw UsageError("--shade composited: only --strategy sort-last composites");
+    }
+    if (request.lighting == "gouraud") {
+      throw UsageError("--shade composited: vertices are lit before with --shading gouraud");
+    }
+    refuse(command, {"--codec"}, "--shade composited");
+  }
 }
 
 void check_raytrace(const CLI::App& command, const RenderRequest& request) {
-  refuse(command, {"--strategy", "--partition", "--compose", "--shading"}, "--engine raytrace");
+  refuse(command,
+         {"--strategy", "--partition", "--compose", "--codec", "--shading", "--shade", "--samples",
+          "--travel"},
+         "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
   find_entry(raytrace::schedules(), request.schedule, "--schedule");
 }
@@ -90,6 +107,22 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--compose", request.scheme, "compositing scheme, sort-last")->group(raster);
   command.add_option("--shading", request.lighting, "phong (default) or gouraud")
       ->check(CLI::IsMember({"phong", "gouraud"}))
+      ->group(raster);
+  command.add_option("--codec", request.codec, "how pixels travel, sort-last")->group(raster);
+  command
+      .add_option("--shade", request.shade,
+                  "pixels: deferred (default), immediate, or composited (once ranks are)")
+      ->check(CLI::IsMember({"deferred", "immediate", "composited"}))
+      ->group(raster);
+  command
+      .add_option("--samples", request.supersampling,
+                  "per pixel, in either direction: 1 (default), 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->group(raster);
+  command
+      .add_option("--travel", request.travel,
+                  "primitives as geometry (default) or numbers, where they change rank")
+      ->check(CLI::IsMember({"geometry", "numbers"}))
       ->group(raster);
   const std::string raytrace = "Ray tracer";
   command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);

@@ -25,7 +25,8 @@ struct RenderRequest {
   bool list = false;
   // raster
   std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",
-              lighting = "phong";
+              lighting = "phong", codec = "dense", shade = "deferred", travel = "geometry";
+  int supersampling = 1;
   // raytrace
   std::string integrator = "whitted", schedule = "interlaced", data = "replicated";
   int samples = 1, depth = 8;

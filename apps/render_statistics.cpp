@@ -26,8 +26,15 @@ Json options_of(const RenderRequest& request, int ranks) {
   if (request.kind == Engine::raster) {
     options["strategy"] = request.strategy;
     options["shading"] = request.lighting;
-    if (request.strategy == "sort-first") options["partition"] = request.partition;
-    if (request.strategy == "sort-last") options["compose"] = request.scheme;
+    options["shade"] = request.shade;
+    options["samples"] = request.supersampling;
+    if (request.strategy == "sort-last") {
+      options["compose"] = request.scheme;
+      options["codec"] = request.codec;
+    } else {
+      options["partition"] = request.partition;
+      options["travel"] = request.travel;
+    }
   } else {
     options["integrator"] = request.integrator;
     options["spp"] = request.samples;

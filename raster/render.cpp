@@ -7,6 +7,7 @@
 #include "comm/collectives.h"
 #include "comm/ledger.h"
 #include "comm/recording.h"
+#include "composite/codec.h"
 #include "composite/scheme.h"
 #include "loadbalance/partition.h"
 #include "parallel/parallel_for.h"
@@ -30,6 +31,7 @@ void check(const RenderOptions& options) {
   };
   known(find_strategy(options.strategy) != nullptr, "strategy", options.strategy);
   known(composite::find_scheme(options.scheme) != nullptr, "compositing scheme", options.scheme);
+  known(composite::find_codec(options.codec) != nullptr, "codec", options.codec);
   known(loadbalance::find_partitioner(options.partition) != nullptr, "partition",
         options.partition);
   const int n = options.supersampling;

@@ -3,6 +3,7 @@
 // primitive numbers.
 #include <atomic>
 
+#include "composite/codec.h"
 #include "composite/deep.h"
 #include "composite/dense.h"
 #include "composite/scheme.h"
@@ -94,7 +95,8 @@ composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
 
 template <class Colour>
 composite::Part compose_colours(Rank& rank, const DrawList& list) {
-  return compose(rank, composite::make_dense(rank.render_samples<Colour>(list)));
+  const composite::Codec* const codec = composite::find_codec(rank.options.codec);
+  return compose(rank, codec->make(rank.render_samples<Colour>(list)));
 }
 
 // Transparent surfaces have to be blended in one order over all ranks.

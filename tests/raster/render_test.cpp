@@ -58,6 +58,10 @@ std::vector<RenderOptions> every_way(const RenderOptions& base) {
           if (shade == Shade::composited && base.lighting != Lighting::phong) continue;
           options.scheme = scheme.name;
           options.shade = shade;
+          options.codec = "dense";
+          ways.push_back(options);
+          if (shade == Shade::composited) continue;
+          options.codec = "active";
           ways.push_back(options);
         }
       continue;
@@ -73,7 +77,7 @@ std::vector<RenderOptions> every_way(const RenderOptions& base) {
 }
 
 std::string described(const RenderOptions& options, int ranks, int threads) {
-  return options.strategy + " " + options.scheme + " " + options.partition +
+  return options.strategy + " " + options.scheme + " " + options.codec + " " + options.partition +
          (options.travel == Travel::numbers ? " numbers " : " geometry ") +
          (options.shade == Shade::deferred ? "" : "composited ") +
          std::to_string(options.supersampling) + " samples " + std::to_string(ranks) + " x " +
@@ -449,6 +453,7 @@ TEST(Render, TellsOfWhatItDoesNotKnow) {
   expect_refused([](RenderOptions& o) { o.strategy = "sort-of"; });
   expect_refused([](RenderOptions& o) { o.scheme = "none"; });
   expect_refused([](RenderOptions& o) { o.partition = "none"; });
+  expect_refused([](RenderOptions& o) { o.codec = "none"; });
   expect_refused([](RenderOptions& o) { o.width = 0; });
   expect_refused([](RenderOptions& o) { o.height = 65535; });
   expect_refused([](RenderOptions& o) { o.supersampling = 3; });
