@@ -4,7 +4,6 @@
 
 #include <cassert>
 #include <cstring>
-#include <functional>
 #include <memory>
 #include <utility>
 
@@ -44,10 +43,15 @@ class DeepLayer final : public Layer {
   static void merge_lists(std::span<const DeepFragment<Payload>> own,
                           std::span<const DeepFragment<Payload>> arrived,
                           std::vector<DeepFragment<Payload>>& merged);
-  std::uint64_t merge_group(PixelRange range, const Arrived& arrived, std::size_t group,
-                            std::size_t chunk);
+  struct Merged {
+    std::uint64_t composited = 0, abandoned = 0;  // fragments: compared; whose memory is unused now
+  };
+  Merged merge_group(PixelRange range, const Arrived& arrived, std::size_t group,
+                     std::size_t chunk);
+  void abandon(std::uint64_t fragments);
 
   DeepImage<Payload> image_;
+  std::uint64_t abandoned_ = 0;  // fragments in chunks that no pixel has
 };
 
 template <class Payload>
@@ -146,9 +150,9 @@ void DeepLayer<Payload>::merge_lists(std::span<const DeepFragment<Payload>> own,
 // Fragments stay where they are as long as there are no more of them than before; otherwise the
 // pixel's list moves to the group's own chunk.
 template <class Payload>
-std::uint64_t DeepLayer<Payload>::merge_group(PixelRange range, const Arrived& arrived,
-                                              std::size_t group, std::size_t chunk) {
-  std::uint64_t composited = 0;
+auto DeepLayer<Payload>::merge_group(PixelRange range, const Arrived& arrived, std::size_t group,
+                                     std::size_t chunk) -> Merged {
+  Merged counts;
   std::vector<DeepFragment<Payload>> merged;
   std::vector<DeepFragment<Payload>>& grown = image_.chunks[chunk];
   const std::uint32_t* size = arrived.sizes + arrived.coverage.group(group).covered_before;
@@ -158,7 +162,7 @@ std::uint64_t DeepLayer<Payload>::merge_group(PixelRange range, const Arrived& a
     const std::span<const DeepFragment<Payload>> own = image_.at(range.begin + pixel);
     const std::span<const DeepFragment<Payload>> other(next, *size++);
     next += other.size();
-    composited += own.size() + other.size();
+    counts.composited += own.size() + other.size();
     if (hides(own, other)) return;
     std::span<const DeepFragment<Payload>> result = other;
     if (!own.empty() && !hides(other, own)) {
@@ -166,15 +170,28 @@ std::uint64_t DeepLayer<Payload>::merge_group(PixelRange range, const Arrived& a
       result = merged;
     }
     if (result.size() <= own.size()) {
+      counts.abandoned += own.size() - result.size();
       std::copy(result.begin(), result.end(), image_.chunks[list.chunk].begin() + list.first);
     } else {
+      counts.abandoned += own.size();
       list.chunk = static_cast<std::uint32_t>(chunk);
       list.first = static_cast<std::uint32_t>(grown.size());
       grown.insert(grown.end(), result.begin(), result.end());
     }
     list.size = static_cast<std::uint32_t>(result.size());
   });
-  return composited;
+  return counts;
+}
+
+// So that memory is in proportion to what pixels have, however often lists have moved.
+template <class Payload>
+void DeepLayer<Payload>::abandon(std::uint64_t fragments) {
+  abandoned_ += fragments;
+  std::uint64_t all = 0;
+  for (const auto& chunk : image_.chunks) all += chunk.size();
+  if (abandoned_ <= all / 2) return;
+  image_.compact();
+  abandoned_ = 0;
 }
 
 template <class Payload>
@@ -184,24 +201,27 @@ std::uint64_t DeepLayer<Payload>::merge(PixelRange range, const comm::Buffer& pi
   const Arrived arrived(range, pixels);
   const std::size_t groups = arrived.coverage.groups(), first_chunk = image_.chunks.size();
   image_.chunks.resize(first_chunk + groups);
-  return parallel::parallel_reduce(
-      0, groups, 1, std::uint64_t{0},
-      [&](std::size_t first, std::size_t last) {
-        std::uint64_t composited = 0;
-        for (std::size_t i = first; i < last; ++i) {
-          composited += merge_group(range, arrived, i, first_chunk + i);
-        }
-        return composited;
-      },
-      std::plus<>());
+  std::vector<Merged> merged(groups);
+  parallel::parallel_for(0, groups, 1, [&](std::size_t i) {
+    merged[i] = merge_group(range, arrived, i, first_chunk + i);
+  });
+  Merged sum;
+  for (const Merged& of_group : merged) {
+    sum.composited += of_group.composited;
+    sum.abandoned += of_group.abandoned;
+  }
+  abandon(sum.abandoned);
+  return sum.composited;
 }
 
 template <class Payload>
 void DeepLayer<Payload>::replace(PixelRange range, const comm::Buffer& pixels) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   const Arrived arrived(range, pixels);
+  std::uint64_t forgotten = 0;
+  for (std::uint64_t i = range.begin; i < range.end; ++i) forgotten += image_.lists[i].size;
   image_.clear(range.begin, range.end);
-  if (range.size() == image_.lists.size()) image_.chunks.clear();
+  abandon(forgotten);
   const std::size_t groups = arrived.coverage.groups(), first_chunk = image_.chunks.size();
   image_.chunks.resize(first_chunk + groups);
   parallel::parallel_for(0, groups, 1, [&](std::size_t i) {

@@ -73,6 +73,27 @@ struct DeepImage {
       std::fill(lists.data() + begin, lists.data() + end, List{});
     });
   }
+  // Gives back the memory of fragments that no pixel has. O(pixels + fragments), parallel.
+  void compact() {
+    constexpr std::size_t kPixelsOfChunk = 4096;
+    std::vector<std::vector<DeepFragment<Payload>>> compacted((lists.size() + kPixelsOfChunk - 1) /
+                                                              kPixelsOfChunk);
+    parallel::parallel_for(0, compacted.size(), 1, [&](std::size_t i) {
+      const std::size_t begin = i * kPixelsOfChunk;
+      const std::size_t end = std::min(begin + kPixelsOfChunk, lists.size());
+      std::size_t size = 0;
+      for (std::size_t pixel = begin; pixel < end; ++pixel) size += lists[pixel].size;
+      compacted[i].reserve(size);
+      for (std::size_t pixel = begin; pixel < end; ++pixel) {
+        const auto first = static_cast<std::uint32_t>(compacted[i].size());
+        const auto fragments = at(pixel);
+        compacted[i].insert(compacted[i].end(), fragments.begin(), fragments.end());
+        lists[pixel].chunk = static_cast<std::uint32_t>(i);
+        lists[pixel].first = first;
+      }
+    });
+    chunks = std::move(compacted);
+  }
   // Gives a pixel its fragments: sorts them and drops what lies behind an opaque one. Those that it
   // had are forgotten. For few pixels or one thread; see DeepTile. O(k log k).
   void set(std::size_t pixel, std::span<DeepFragment<Payload>> unsorted) {

@@ -206,6 +206,40 @@ TEST(DeepLayer, CarriesWhateverTheOwnerShades) {
   }
 }
 
+TEST(DeepLayer, KeepsMemoryInProportionToItsFragments) {
+  constexpr std::size_t kPixels = 5000;
+  const auto size_of = [](const DeepLayer<RgbaF>& layer) {
+    std::size_t size = 0;
+    for (const auto& chunk : layer.image().chunks) size += chunk.size();
+    return size;
+  };
+  const auto glass = [](std::uint64_t primitive) {
+    DeepImage<RgbaF> image(kPixels, 1);
+    for (std::size_t i = 0; i < kPixels; i += 2) {
+      std::vector<Fragment> list = {fragment(1, primitive, {0, 0, 0, 0.5F})};
+      image.set(i, list);
+    }
+    return image;
+  };
+  DeepLayer<RgbaF> layer(glass(0));
+  for (std::uint64_t primitive = 1; primitive < 30; ++primitive) {
+    DeepLayer<RgbaF> other(glass(primitive));
+    layer.merge({0, kPixels}, other.cut({0, kPixels}), Side::higher);
+    const std::size_t used = kPixels / 2 * (primitive + 1);
+    EXPECT_GE(size_of(layer), used);
+    EXPECT_LE(size_of(layer), 2 * used);
+  }
+  for (std::size_t i = 0; i < kPixels; ++i) {
+    ASSERT_EQ(layer.image().at(i).size(), i % 2 == 0 ? 30U : 0U);
+    for (std::size_t k = 0; k < layer.image().at(i).size(); ++k) {
+      EXPECT_EQ(layer.image().at(i)[k].primitive(), k);
+    }
+  }
+  DeepLayer<RgbaF> nothing(DeepImage<RgbaF>(kPixels, 1));
+  layer.replace({0, kPixels}, nothing.cut({0, kPixels}));
+  EXPECT_EQ(size_of(layer), 0U);
+}
+
 TEST(DeepLayer, SendsFourBytesPerPixelAndItsFragments) {
   const Surfaces lists = surfaces(9000, 1);
   std::size_t covered = 0, fragments = 0;
