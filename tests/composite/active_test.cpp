@@ -132,16 +132,15 @@ void expect_dense(const BasicImage<Colour>& own, const BasicImage<Colour>& other
 TYPED_TEST(ActiveLayers, LeaveTheBytesThatDenseOnesLeave) {
   constexpr int kPixels = 9001;
   constexpr PixelRange kRanges[] = {{0, kPixels}, {13, 8205}, {100, 163}, {77, 78}, {500, 500}};
+  const std::vector<Shape> all = shapes(), few = {all[0], all[2], all[4]};
   std::vector<BasicImage<TypeParam>> own, other;
-  for (const Shape& shape : shapes()) {
-    own.push_back(picture<TypeParam>(kPixels, shape.covered, 1));
-    other.push_back(picture<TypeParam>(kPixels, shape.covered, 2));
-  }
+  for (const Shape& shape : few) own.push_back(picture<TypeParam>(kPixels, shape.covered, 1));
+  for (const Shape& shape : all) other.push_back(picture<TypeParam>(kPixels, shape.covered, 2));
   on_every_target([&] {
     for (std::size_t i = 0; i < own.size(); ++i) {
       for (std::size_t k = 0; k < other.size(); ++k) {
         for (const PixelRange& range : kRanges) {
-          SCOPED_TRACE(std::string(shapes()[k].name) + " onto " + shapes()[i].name + " from " +
+          SCOPED_TRACE(std::string(all[k].name) + " onto " + few[i].name + " from " +
                        std::to_string(range.begin) + " to " + std::to_string(range.end));
           expect_dense(own[i], other[k], range, Side::lower);
           expect_dense(own[i], other[k], range, Side::higher);
