@@ -30,6 +30,11 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
                   : request.shade == "composited" ? raster::Shade::composited
                                                   : raster::Shade::deferred;
   options.supersampling = request.supersampling;
+  options.costs =
+      request.costs == "measured" ? raster::CostSource::measured : raster::CostSource::model;
+  options.regions_per_rank = request.regions_per_rank;
+  options.keep_factor = request.keep_factor;
+  options.report_partition = !request.statistics.empty();
   options.travel = request.travel == "numbers" ? raster::Travel::numbers : raster::Travel::geometry;
   options.scheme = request.scheme;
   options.partition = request.partition;

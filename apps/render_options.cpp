@@ -49,7 +49,8 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
   find_entry(composite::schemes(), request.scheme, "--compose");
   find_entry(composite::codecs(), request.codec, "--codec");
   if (request.strategy == "sort-last") {
-    refuse(command, {"--partition", "--travel"}, "--strategy sort-last");
+    refuse(command, {"--partition", "--travel", "--costs", "--regions", "--keep"},
+           "--strategy sort-last");
   } else {
     refuse(command, {"--compose", "--codec"}, "--strategy " + request.strategy);
   }
@@ -67,7 +68,7 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
 void check_raytrace(const CLI::App& command, const RenderRequest& request) {
   refuse(command,
          {"--strategy", "--partition", "--compose", "--codec", "--shading", "--shade", "--samples",
-          "--travel"},
+          "--travel", "--costs", "--regions", "--keep"},
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
   find_entry(raytrace::schedules(), request.schedule, "--schedule");
@@ -123,6 +124,21 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--travel", request.travel,
                   "primitives as geometry (default) or numbers, where they change rank")
       ->check(CLI::IsMember({"geometry", "numbers"}))
+      ->group(raster);
+  command
+      .add_option("--costs", request.costs,
+                  "what partitions go by: model (default), or measured in the last frame")
+      ->check(CLI::IsMember({"model", "measured"}))
+      ->group(raster);
+  command
+      .add_option("--regions", request.regions_per_rank, "of the screen, for each rank (default 1)")
+      ->check(CLI::Range(1, 64))
+      ->group(raster);
+  command
+      .add_option("--keep", request.keep_factor,
+                  "keep the last frame's partition while no rank does more than so many times an "
+                  "equal share (default 1.2)")
+      ->check(CLI::Range(1.0, 1000.0))
       ->group(raster);
   const std::string raytrace = "Ray tracer";
   command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);

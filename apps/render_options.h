@@ -26,7 +26,9 @@ struct RenderRequest {
   // raster
   std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",
               lighting = "phong", codec = "dense", shade = "deferred", travel = "geometry";
-  int supersampling = 1;
+  std::string costs = "model";
+  int supersampling = 1, regions_per_rank = 1;
+  double keep_factor = 1.2;
   // raytrace
   std::string integrator = "whitted", schedule = "interlaced", data = "replicated";
   int samples = 1, depth = 8;

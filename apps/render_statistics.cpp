@@ -34,6 +34,9 @@ Json options_of(const RenderRequest& request, int ranks) {
     } else {
       options["partition"] = request.partition;
       options["travel"] = request.travel;
+      options["costs"] = request.costs;
+      options["regions"] = request.regions_per_rank;
+      options["keep"] = request.keep_factor;
     }
   } else {
     options["integrator"] = request.integrator;
@@ -57,6 +60,28 @@ Json phases_of(const raytrace::Statistics& s) {
   return {{"transform", 0}, {"bin", 0},          {"rasterize", 0}, {"trace", s.trace_seconds},
           {"shade", 0},     {"redistribute", 0}, {"compose", 0},   {"gather", s.gather_seconds}};
 }
+
+// What only the rasterizer counts.
+Json raster_of(const raster::Statistics& s) {
+  Json counts = {{"triangles",
+                  {{"in", s.triangles_in},
+                   {"culled", s.triangles_culled},
+                   {"clipped", s.triangles_clipped},
+                   {"hidden", s.triangles_hidden},
+                   {"rasterized", s.triangles_rasterized},
+                   {"travelled", s.triangles_travelled}}},
+                 {"fragments", s.fragments},
+                 {"shaded", s.shaded}};
+  if (s.partition) {
+    counts["partition"] = {{"predicted_imbalance", s.partition->predicted},
+                           {"over_share", s.partition->over_share},
+                           {"overlap", s.partition->overlap},
+                           {"seconds", s.partition->seconds},
+                           {"kept", s.partition->kept}};
+  }
+  return counts;
+}
+Json raster_of(const raytrace::Statistics&) { return nullptr; }
 
 raytrace::RayCounts rays_of(const raster::Statistics&) { return {}; }
 raytrace::RayCounts rays_of(const raytrace::Statistics& s) { return s.rays; }
@@ -119,6 +144,7 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"phases", phases_of(s)},
             {"rays",
              {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}}},
+            {"raster", raster_of(s)},
             {"imbalance", imbalance_of(s.ranks)},
             {"ranks", ranks_of(s.ranks)},
         };

@@ -61,7 +61,8 @@ DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
     const auto [found, is_new] =
         draw_of.emplace(piece.transform, static_cast<std::uint32_t>(list.draws.size()));
     if (is_new) {
-      MeshClusters* clusters = known == nullptr ? nullptr : known->of(*piece.mesh);
+      MeshClusters* clusters = piece.clusters;
+      if (clusters == nullptr && known != nullptr) clusters = known->of(*piece.mesh);
       if (clusters == nullptr) clusters = &list.own.emplace_back();
       list.draws.push_back({piece.mesh, piece.transform, clusters, piece.primitive - piece.first});
     }

@@ -6,10 +6,9 @@
 
 namespace delray::raster {
 
-Extent extent(const Screen& screen, const PreparedDraw& draw, std::uint32_t first,
-              std::uint32_t count) {
+Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t count) {
   Extent result;
-  result.box = {screen.width, screen.height, 0, 0};
+  result.box = {screen_.width, screen_.height, 0, 0};
   const auto include = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
     result.box = {std::min(result.box.x0, pixels.x0), std::min(result.box.y0, pixels.y0),
                   std::max(result.box.x1, pixels.x1), std::max(result.box.y1, pixels.y1)};
@@ -19,15 +18,19 @@ Extent extent(const Screen& screen, const PreparedDraw& draw, std::uint32_t firs
         (2 * kSubpixelBits + 1);
     result.pixels += std::min<std::int64_t>(area + 1, pixels.area());
   };
-  ScreenVertices vertices;
   const std::uint32_t end = first + count;
   for (std::uint32_t t = first; t < end;) {
     const ClusterBlock& block = *draw.draw->clusters->blocks[t >> kBlockBits];
     const MeshCluster& cluster = block.clusters[part_with(block, t)];
-    transform(draw.to_view, screen, draw.draw->mesh->positions, block.vertices_of(cluster),
-              vertices);
+    if (cluster_ != &cluster || draw_ != &draw) {
+      transform(draw.to_view, screen_, draw.draw->mesh->positions, block.vertices_of(cluster),
+                vertices_);
+      cluster_ = &cluster;
+      draw_ = &draw;
+    }
     for (; t < std::min(end, cluster.first + cluster.count); ++t)
-      set_up(screen, draw, vertices, corners_at(block, cluster, t - cluster.first), t, 0, include);
+      set_up(screen_, draw, vertices_, corners_at(block, cluster, t - cluster.first), t, 0,
+             include);
   }
   if (result.triangles == 0) result.box = {};
   return result;

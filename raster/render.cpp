@@ -11,6 +11,7 @@
 #include "composite/scheme.h"
 #include "loadbalance/partition.h"
 #include "parallel/parallel_for.h"
+#include "raster/internal/frame_memory.h"
 #include "raster/internal/rank.h"
 #include "raster/strategies.h"
 
@@ -41,6 +42,9 @@ void check(const RenderOptions& options) {
   if (std::min(options.width, options.height) < 1 || longest > kLargestSide / n)
     throw std::invalid_argument("a picture's sides are from 1 to " + std::to_string(kLargestSide) +
                                 " samples");
+  if (options.regions_per_rank < 1 || !(options.keep_factor >= 1))
+    throw std::invalid_argument(
+        "a rank has at least one region, kept up to a factor of at least 1");
   if (options.shade == Shade::composited &&
       (options.strategy != "sort-last" || options.lighting != Lighting::phong))
     throw std::invalid_argument("only sort-last shades after compositing, and only with phong");
@@ -123,6 +127,7 @@ struct Renderer::Memory {
   bool blended;
   SceneClusters clusters;
   Scratch scratch = {};
+  FrameMemory memory = {};
 };
 
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
@@ -148,7 +153,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   Rank rank{recording,        memory_->scene, memory_->first_primitives,
             *memory_->shader, screen,         options,
             memory_->blended, progress,       memory_->clusters,
-            memory_->scratch};
+            memory_->scratch, memory_->memory};
   Result result;
   result.picture = find_strategy(options.strategy)->render(rank);
 
@@ -156,6 +161,8 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
       comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
   if (communicator.rank() != 0) return result;
   result.statistics = summarize(reports);
+  if (options.strategy != "sort-last")
+    result.statistics.partition = memory_->memory.screen.statistics();
   if (!rank.depths_are_distances())
     std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
                result.picture);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,6 +35,11 @@ enum class Travel : std::uint8_t { geometry, numbers };
 // what travels is what shading needs, not colours (sort-last with phong lighting).
 enum class Shade : std::uint8_t { deferred, immediate, composited };
 
+// What partitions take for the cost of primitives and pixels. model: prices that are fixed.
+// measured: prices fitted to what ranks did and how long it took them in the last frame, regions
+// scaled to what they took.
+enum class CostSource : std::uint8_t { model, measured };
+
 struct RenderOptions {
   int width = 1024, height = 768;
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
@@ -48,7 +54,13 @@ struct RenderOptions {
   std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
   std::string codec = "dense";         // of composite::codecs(); sort-last
   std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first
-  Travel travel = Travel::geometry;    // sort-first
+  CostSource costs = CostSource::model;
+  int regions_per_rank = 1;  // more than one: the costliest go first to the least loaded rank
+  // A partition is kept from frame to frame for as long as no rank would have to do more than so
+  // many times an equal share.
+  double keep_factor = 1.2;
+  bool report_partition = false;     // costs time of about that of cutting
+  Travel travel = Travel::geometry;  // sort-first
 };
 
 // The first four are seconds of processor time, summed over threads: clusters culled, transformed
@@ -68,6 +80,15 @@ struct RankStatistics {
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
 };
 
+// What there is to say of the screen's partition: see loadbalance/balance.h.
+struct PartitionStatistics {
+  double predicted = 1;   // imbalance that the costs foretell
+  double over_share = 1;  // largest load over an equal share, what falls to several owners counted
+  double overlap = 1;     // owners of a primitive, on average
+  double seconds = 0;     // that cutting took on rank 0; 0 when kept
+  bool kept = false;      // from the last frame
+};
+
 struct Statistics {
   Phases phases;                      // summed over ranks
   std::vector<RankStatistics> ranks;  // ascending
@@ -81,6 +102,7 @@ struct Statistics {
   std::uint64_t triangles_travelled = 0;  // sent from one rank to another, once per receiver
   // Before ranks are composited: surfaces seen at samples, and how often one was shaded.
   std::uint64_t fragments = 0, shaded = 0;
+  std::optional<PartitionStatistics> partition;  // if asked for, and the screen was cut
   std::vector<std::string> warnings;
 };
 

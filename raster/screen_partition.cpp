@@ -2,32 +2,42 @@
 
 #include <algorithm>
 
+#include "comm/collectives.h"
+#include "loadbalance/balance.h"
 #include "loadbalance/costs.h"
 #include "parallel/parallel_for.h"
 #include "raster/internal/extent.h"
 #include "raster/internal/processor_seconds.h"
+#include "raster/internal/rank.h"
 #include "raster/internal/samples.h"
 
 namespace delray::raster {
-namespace {
 
-// Triangles in a group: few enough that its box is small, many enough that its header is not.
-constexpr std::uint32_t kGroupTriangles = 256;
-// What setting up a triangle costs, in pixels shaded.
-constexpr double kTriangleCost = 0.5;
-
-}  // namespace
-
-std::vector<Piece> groups_of(std::span<const Piece> pieces) {
+std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {
   std::vector<Piece> groups;
   for (const Piece& piece : pieces)
-    for (std::uint32_t done = 0; done < piece.count; done += kGroupTriangles)
+    for (std::uint32_t done = 0; done < piece.count; done += triangles)
       groups.push_back({piece.mesh, piece.transform, piece.first + done,
-                        std::min(kGroupTriangles, piece.count - done), piece.primitive + done});
+                        std::min(triangles, piece.count - done), piece.primitive + done,
+                        piece.clusters});
   return groups;
 }
 
-std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups) {
+std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int parts) {
+  return static_cast<std::uint32_t>(loadbalance::primitives_per_box(triangles, parts));
+}
+
+std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
+                                                                std::span<const Piece> groups) {
+  loadbalance::RasterCostModel model;
+  samples_.clear();
+  if (rank.options.costs == CostSource::measured && rank.ranks() > 1) {
+    for (const comm::Buffer& from :
+         comm::all_gather(rank.communicator, comm::Buffer::of_value(sample_)))
+      samples_.push_back(from.as<loadbalance::RasterSample>()[0]);
+    model = loadbalance::fit(samples_);
+  }
+
   const DrawList list = make_draw_list({groups.begin(), groups.end()}, &rank.clusters);
   const std::vector<PreparedDraw> draws =
       prepare_draws(rank.screen, list, rank.shader, rank.options.cull_single_sided);
@@ -39,14 +49,19 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
     draw_of[i] = draw;
   }
   std::vector<loadbalance::WeightedBox> boxes(groups.size());
+  constexpr std::size_t kGrain = 1024;  // triangles
+  const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
   ProcessorSeconds seconds;
-  parallel::parallel_blocks(0, groups.size(), 4, [&](std::size_t begin, std::size_t end) {
+  parallel::parallel_blocks(0, groups.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Extents extents(rank.screen);
     seconds.measure([&] {
       for (std::size_t i = begin; i < end; ++i) {
-        const Extent e = extent(rank.screen, draws[draw_of[i]], groups[i].first, groups[i].count);
-        boxes[i].box = pixels_of(e.box, rank.options.supersampling);
-        boxes[i].cost =
-            e.triangles == 0 ? 0 : kTriangleCost * groups[i].count + static_cast<double>(e.pixels);
+        const Extent e = extents.of(draws[draw_of[i]], groups[i].first, groups[i].count);
+        if (e.triangles == 0) continue;
+        const double triangles = groups[i].count;
+        boxes[i] = {pixels_of(e.box, rank.options.supersampling),
+                    model(triangles, static_cast<double>(e.pixels)), model.setup(triangles),
+                    groups[i].count};
       }
     });
   });
@@ -54,14 +69,48 @@ std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece
   return boxes;
 }
 
-loadbalance::Partition cut_screen(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
-                                  int parts) {
+const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
+                                                   std::span<const loadbalance::WeightedBox> boxes,
+                                                   int parts) {
+  const RenderOptions& options = rank.options;
+  const Kind kind{options.partition, rank.ranks(), parts, options.regions_per_rank,
+                  options.keep_factor};
+  if (!kept_ || !(kind == kind_))
+    kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
+                  options.regions_per_rank);
+  kind_ = kind;
+
   const geometry::Rect frame = rank.frame();
-  const int side = loadbalance::cost_cell_side(frame, parts);
+  const int side = loadbalance::cost_cell_side(frame, parts * options.regions_per_rank);
   loadbalance::Costs costs = loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
                                                      (frame.height() + side - 1) / side, boxes);
   loadbalance::sum_over_ranks(costs, rank.communicator);
-  return loadbalance::find_partitioner(rank.options.partition)->partition(costs, frame, parts);
+  if (!samples_.empty() && kept_->last().frame == frame) {
+    std::vector<double> seconds;
+    for (const loadbalance::RasterSample& sample : samples_) seconds.push_back(sample.seconds);
+    seconds.resize(static_cast<std::size_t>(parts));
+    loadbalance::scale_to_measured(costs, kept_->last(), seconds);
+  }
+  const std::uint64_t cuts = kept_->recomputed();
+  const double before = rank.communicator.seconds();
+  const loadbalance::Partition& partition = kept_->next(costs);
+  statistics_.reset();
+  if (!options.report_partition || rank.number() != 0) return partition;
+  statistics_.emplace();
+  statistics_->kept = kept_->recomputed() == cuts;
+  if (!statistics_->kept) statistics_->seconds = rank.communicator.seconds() - before;
+  statistics_->predicted = loadbalance::imbalance(loadbalance::loads(costs, partition, parts));
+  const loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);
+  statistics_->over_share = balance.over_share;
+  statistics_->overlap = balance.overlap;
+  return partition;
+}
+
+void ScreenPartition::measure(const Rank& rank) {
+  const Phases& phases = rank.counts.phases;
+  sample_ = {static_cast<double>(rank.counts.triangles.in),
+             static_cast<double>(rank.counts.fragments),
+             phases.transform + phases.rasterize + phases.shade};
 }
 
 }  // namespace delray::raster

@@ -20,6 +20,7 @@ struct Piece {
   const glm::mat4x3* transform = nullptr;
   std::uint32_t first = 0, count = 0;
   std::uint64_t primitive = 0;
+  MeshClusters* clusters = nullptr;  // of the mesh, where it is not the scene's
 };
 
 // The pieces of primitives [begin, end) of the scene, one per instance that has any.

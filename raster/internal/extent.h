@@ -13,10 +13,21 @@ struct Extent {
   std::uint64_t pixels = 0;  // of the triangles' own areas, rounded up to one each
 };
 
-// Of triangles [first, first + count) of a draw's mesh. One thread.
-//
-// REQUIRES: their clusters were made.
-Extent extent(const Screen& screen, const PreparedDraw& draw, std::uint32_t first,
-              std::uint32_t count);
+// Finds extents, best one after the other along a mesh: the vertices of the last cluster are kept.
+// One per thread.
+class Extents {
+ public:
+  // Refers to the screen.
+  explicit Extents(const Screen& screen) : screen_(screen) {}
+
+  // Of triangles [first, first + count) of a draw's mesh. REQUIRES: their clusters were made.
+  Extent of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t count);
+
+ private:
+  const Screen& screen_;
+  const PreparedDraw* draw_ = nullptr;
+  const MeshCluster* cluster_ = nullptr;
+  ScreenVertices vertices_;  // of the cluster
+};
 
 }  // namespace delray::raster

@@ -11,6 +11,8 @@
 
 namespace delray::raster {
 
+struct FrameMemory;
+
 struct Rank {
   comm::Communicator& communicator;
   const scenes::Scene& scene;
@@ -22,6 +24,7 @@ struct Rank {
   parallel::Progress* progress;
   SceneClusters& clusters;
   Scratch& scratch;
+  FrameMemory& memory;
   RegionCounts counts = {};
   std::uint64_t triangles_travelled = 0;
 

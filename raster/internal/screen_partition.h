@@ -1,23 +1,59 @@
 // Which part of the screen is whose, where primitives go to the ranks whose regions they touch.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "loadbalance/partition.h"
-#include "raster/internal/rank.h"
+#include "loadbalance/cost_model.h"
+#include "loadbalance/kept_partition.h"
+#include "raster/internal/draws.h"
+#include "raster/render.h"
 
 namespace delray::raster {
 
-// The pieces cut into groups of neighbouring triangles. Groups of a piece follow each other.
-std::vector<Piece> groups_of(std::span<const Piece> pieces);
+struct Rank;
 
-// The box of every group on the screen, in pixels, and what it may cost. Empty boxes cost nothing.
-std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups);
+// The pieces cut into groups of at most so many neighbouring triangles. Groups of a piece follow
+// each other.
+std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles);
 
-// The frame cut by options.partition into `parts` regions of about equal cost over all ranks'
-// boxes. Collective.
-loadbalance::Partition cut_screen(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
-                                  int parts);
+// Cuts the screen frame after frame, by what the frames before have taught. One per rank.
+class ScreenPartition {
+ public:
+  // The triangles to take together for `parts` regions, of so many in the scene.
+  static std::uint32_t group_triangles(std::uint64_t triangles, int parts);
+
+  // The box of every group on the screen, in pixels, and what it may cost. Empty boxes cost
+  // nothing. Collective where costs are measured, one message of 24 bytes from each rank then.
+  std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups);
+
+  // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
+  // boxes, or as it was cut for the last frame. Collective. Valid until the next call.
+  const loadbalance::Partition& cut(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
+                                    int parts);
+
+  // Of the last cut, on rank 0 where options.report_partition asked for it.
+  const std::optional<PartitionStatistics>& statistics() const { return statistics_; }
+
+  // Remembers what the rank did in this frame, for the costs of the next.
+  void measure(const Rank& rank);
+
+ private:
+  // What decides whether a partition may be kept at all.
+  struct Kind {
+    std::string partition;
+    int ranks, parts, regions_per_rank;
+    double keep_factor;
+    bool operator==(const Kind&) const = default;
+  };
+
+  Kind kind_{};
+  std::optional<loadbalance::KeptPartition> kept_;
+  std::optional<PartitionStatistics> statistics_;
+  loadbalance::RasterSample sample_;                // this rank's last frame
+  std::vector<loadbalance::RasterSample> samples_;  // all ranks'
+};
 
 }  // namespace delray::raster

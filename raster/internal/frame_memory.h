@@ -1,0 +1,14 @@
+// What strategies remember from frame to frame, on one rank.
+#pragma once
+
+#include "raster/internal/group_traffic.h"
+#include "raster/internal/screen_partition.h"
+
+namespace delray::raster {
+
+struct FrameMemory {
+  ScreenPartition screen;
+  GroupTraffic traffic;
+};
+
+}  // namespace delray::raster
