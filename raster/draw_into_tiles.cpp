@@ -4,6 +4,7 @@
 #include <atomic>
 #include <numeric>
 #include <thread>
+#include <utility>
 
 #include "parallel/arena.h"
 #include "parallel/parallel_for.h"
@@ -18,35 +19,6 @@ namespace {
 constexpr std::size_t kBatchClusters = 32;
 // Batches per thread at least, for balance.
 constexpr std::size_t kLeastBatches = 16;
-
-// Numbers of the list's clusters, those of near draws first.
-std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task) {
-  const DrawList& list = task.list;
-  std::vector<std::uint32_t> order(list.clusters.size());
-  std::iota(order.begin(), order.end(), 0U);
-  if (list.draws.size() < 2) return order;
-
-  std::vector<float> distance(list.draws.size());
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    geometry::Box3 box;
-    for (const auto& block : list.draws[i].clusters->blocks)
-      if (block != nullptr) box.include(block->box);
-    const ClusterBounds bounds = bound(task.screen, task.draws[i], box);
-    distance[i] = bounds.nearest;  // ascends with distance
-  }
-  // By counting: the order of clusters within a draw stays.
-  std::vector<std::uint32_t> draws(list.draws.size()), rank(list.draws.size());
-  std::iota(draws.begin(), draws.end(), 0U);
-  std::stable_sort(draws.begin(), draws.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return distance[a] < distance[b]; });
-  for (std::uint32_t i = 0; i < draws.size(); ++i) rank[draws[i]] = i;
-  std::vector<std::uint32_t> next(list.draws.size() + 1);
-  for (const Cluster& cluster : list.clusters) ++next[rank[cluster.draw] + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::uint32_t k = 0; k < list.clusters.size(); ++k)
-    order[next[rank[list.clusters[k].draw]]++] = k;
-  return order;
-}
 
 void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& tiles,
                 Worker& worker) {
@@ -201,9 +173,36 @@ void bin(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
 
 }  // namespace
 
-TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
-                               std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
-                               DrawCosts& costs) {
+std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task,
+                                         std::span<const std::uint32_t> clusters) {
+  const DrawList& list = task.list;
+  if (list.draws.size() < 2) return {clusters.begin(), clusters.end()};
+
+  // By counting: the order of clusters within a draw stays.
+  std::vector<std::uint32_t> count(list.draws.size());
+  for (const std::uint32_t k : clusters) ++count[list.clusters[k].draw];
+  std::vector<std::uint32_t> draws;
+  std::vector<float> distance(list.draws.size());
+  for (std::uint32_t i = 0; i < distance.size(); ++i) {
+    if (count[i] == 0) continue;
+    draws.push_back(i);
+    geometry::Box3 box;
+    for (const auto& block : list.draws[i].clusters->blocks)
+      if (block != nullptr) box.include(block->box);
+    const ClusterBounds bounds = bound(task.screen, task.draws[i], box);
+    distance[i] = bounds.nearest;  // ascends with distance
+  }
+  std::stable_sort(draws.begin(), draws.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return distance[a] < distance[b]; });
+  std::vector<std::uint32_t>& next = count;
+  std::uint32_t first = 0;
+  for (const std::uint32_t draw : draws) first += std::exchange(next[draw], first);
+  std::vector<std::uint32_t> order(clusters.size());
+  for (const std::uint32_t k : clusters) order[next[list.clusters[k].draw]++] = k;
+  return order;
+}
+
+void begin_drawing(const Screen& screen, std::vector<std::unique_ptr<Worker>>& workers) {
   const auto threads = static_cast<std::size_t>(parallel::arena_threads());
   while (workers.size() < threads) workers.push_back(std::make_unique<Worker>());
   for (const auto& worker : workers) {
@@ -214,12 +213,17 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
     worker->result.blended_entries.clear();
     worker->result.counts = {};
     worker->shaded = 0;
-    worker->touched_number.assign(static_cast<std::size_t>(task.screen.tiles()), 0);
+    worker->touched_number.assign(static_cast<std::size_t>(screen.tiles()), 0);
   }
+}
 
-  const std::vector<std::uint32_t> order = nearest_first(task);
+void draw_clusters(const DrawIntoTiles& task, std::span<const std::uint32_t> clusters,
+                   FrameTiles& tiles, std::span<const std::unique_ptr<Worker>> workers,
+                   DrawCosts& costs) {
+  const std::size_t threads =
+      std::min(workers.size(), static_cast<std::size_t>(parallel::arena_threads()));
   const std::size_t batch =
-      std::clamp<std::size_t>(order.size() / (threads * kLeastBatches), 1, kBatchClusters);
+      std::clamp<std::size_t>(clusters.size() / (threads * kLeastBatches), 1, kBatchClusters);
   // Batches are taken in order, so that what is near is drawn early.
   std::atomic<std::size_t> next{0};
   ProcessorSeconds set_up_seconds, sort_seconds, rasterize_seconds;
@@ -228,10 +232,10 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
     StageClock<3> clock;
     for (;;) {
       const std::size_t begin = next.fetch_add(batch, std::memory_order_relaxed);
-      if (begin >= order.size()) break;
+      if (begin >= clusters.size()) break;
       worker.result.clear();
-      for (std::size_t i = begin; i < std::min(begin + batch, order.size()); ++i)
-        set_up_one(task, order[i], tiles, worker);
+      for (std::size_t i = begin; i < std::min(begin + batch, clusters.size()); ++i)
+        set_up_one(task, clusters[i], tiles, worker);
       clock.finish(0);
       sort_by_tile(worker);
       clock.finish(1);
@@ -244,10 +248,12 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
   costs.set_up += set_up_seconds.seconds();
   costs.sort += sort_seconds.seconds();
   costs.rasterize += rasterize_seconds.seconds();
+}
 
-  bin(task.screen, workers, &SetUpResult::large_triangles, &SetUpResult::large_entries,
-      later.large);
-  bin(task.screen, workers, &SetUpResult::blended_triangles, &SetUpResult::blended_entries,
+TriangleCounts end_drawing(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
+                           LaterTriangles& later, DrawCosts& costs) {
+  bin(screen, workers, &SetUpResult::large_triangles, &SetUpResult::large_entries, later.large);
+  bin(screen, workers, &SetUpResult::blended_triangles, &SetUpResult::blended_entries,
       later.blended);
   TriangleCounts counts;
   for (const auto& worker : workers) {
@@ -255,6 +261,16 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
     costs.shaded += worker->shaded;
   }
   return counts;
+}
+
+TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
+                               std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
+                               DrawCosts& costs) {
+  begin_drawing(task.screen, workers);
+  std::vector<std::uint32_t> clusters(task.list.clusters.size());
+  std::iota(clusters.begin(), clusters.end(), 0U);
+  draw_clusters(task, nearest_first(task, clusters), tiles, workers, costs);
+  return end_drawing(task.screen, workers, later, costs);
 }
 
 std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,

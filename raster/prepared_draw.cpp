@@ -44,23 +44,33 @@ bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh) {
   return alpha_varies(shader, material, mesh) || !(material.base_colour.w >= 1.0F);
 }
 
+PreparedDraw prepare_draw(const Screen& screen, const Draw& draw, const shading::Shader& shader,
+                          bool cull_single_sided) {
+  const scenes::Material& material = shading::material(shader, draw.mesh->material);
+  PreparedDraw prepared;
+  prepared.draw = &draw;
+  prepared.masked = may_have_holes(shader, material, *draw.mesh);
+  prepared.blended = is_blended(shader, *draw.mesh);
+  if (draw.transformed != nullptr) {
+    prepared.to_view = kInView;
+    prepared.hidden_side = draw.transformed->hidden_side;
+    return prepared;
+  }
+  prepared.to_view = to_view(screen.view, *draw.transform);
+  if (!cull_single_sided || material.double_sided) return prepared;
+  // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,
+  // unless the transform mirrors.
+  prepared.hidden_side = glm::determinant(glm::mat3(*draw.transform)) < 0 ? -1 : 1;
+  prepare_cones(screen.view, *draw.transform, prepared);
+  return prepared;
+}
+
 std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& list,
                                         const shading::Shader& shader, bool cull_single_sided) {
-  std::vector<PreparedDraw> draws(list.draws.size());
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    const Draw& draw = list.draws[i];
-    const scenes::Material& material = shading::material(shader, draw.mesh->material);
-    PreparedDraw& prepared = draws[i];
-    prepared.draw = &draw;
-    prepared.to_view = to_view(screen.view, *draw.transform);
-    prepared.masked = may_have_holes(shader, material, *draw.mesh);
-    prepared.blended = is_blended(shader, *draw.mesh);
-    if (!cull_single_sided || material.double_sided) continue;
-    // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,
-    // unless the transform mirrors.
-    prepared.hidden_side = glm::determinant(glm::mat3(*draw.transform)) < 0 ? -1 : 1;
-    prepare_cones(screen.view, *draw.transform, prepared);
-  }
+  std::vector<PreparedDraw> draws;
+  draws.reserve(list.draws.size());
+  for (const Draw& draw : list.draws)
+    draws.push_back(prepare_draw(screen, draw, shader, cull_single_sided));
   return draws;
 }
 

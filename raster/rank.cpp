@@ -15,35 +15,44 @@ Window<Colour> tile_window(const geometry::Rect& rect) {
 
 }  // namespace
 
-std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives() const {
+std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives(int holders) const {
   const std::uint64_t all = first_primitives.back();
-  const auto n = static_cast<std::uint64_t>(ranks());
+  const auto n = static_cast<std::uint64_t>(holders);
   const auto k = static_cast<std::uint64_t>(number());
+  if (k >= n) return {all, all};
   // The first `all % n` ranks have one more.
   const auto begin = [&](std::uint64_t i) { return all / n * i + std::min(i, all % n); };
   return {begin(k), begin(k + 1)};
 }
 
-void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
-                  FinishTile finish) {
-  communicator.mark(comm::Phase::rasterize, 0);
+RegionDrawing Rank::begin(const DrawList& list, std::span<const geometry::Rect> regions) {
   std::vector<geometry::Rect> in_samples;
   for (const geometry::Rect& r : regions)
     in_samples.push_back(samples_of(r, options.supersampling));
-  const RegionCounts done =
-      render_regions({screen, list, shader, options, in_samples, depths_are_distances(), progress},
-                     scratch, finish);
+  return RegionDrawing(
+      {screen, list, shader, options, in_samples, depths_are_distances(), progress}, scratch);
+}
+
+void Rank::end(RegionDrawing& drawing, FinishTile finish_tile) {
+  const RegionCounts done = drawing.finish(finish_tile);
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
   counts += done;
 }
 
+void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
+                  FinishTile finish_tile) {
+  communicator.mark(comm::Phase::rasterize, 0);
+  RegionDrawing drawing = begin(list, regions);
+  drawing.draw_all();
+  end(drawing, finish_tile);
+}
+
 template <class Colour>
-void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
-                         image::BasicImage<Colour>& image) {
+void Rank::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
   const int n = options.supersampling;
   const Window<Colour> window = window_of(image);
-  render(list, regions, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+  end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
     for (const geometry::Rect& rect : rects) {
       if (n == 1) {
         tile.shade(rect, window);
@@ -56,6 +65,15 @@ void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> r
       }
     }
   });
+}
+
+template <class Colour>
+void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
+                         image::BasicImage<Colour>& image) {
+  communicator.mark(comm::Phase::rasterize, 0);
+  RegionDrawing drawing = begin(list, regions);
+  drawing.draw_all();
+  end_pixels(drawing, image);
 }
 
 template <class Colour>
@@ -86,6 +104,8 @@ image::BasicImage<Colour> Rank::take_image(int width, int height) {
   return image::BasicImage<Colour>(width, height);
 }
 
+template void Rank::end_pixels(RegionDrawing&, image::Image8&);
+template void Rank::end_pixels(RegionDrawing&, image::ImageF&);
 template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::Image8&);
 template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
 template image::Image8 Rank::render_samples(const DrawList&);

@@ -1,11 +1,21 @@
 #include "raster/internal/regions.h"
 
 #include <atomic>
+#include <numeric>
 
 #include "parallel/parallel_for.h"
 #include "raster/internal/processor_seconds.h"
 
 namespace delray::raster {
+
+namespace {
+
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> drawings{0};
+  return ++drawings;
+}
+
+}  // namespace
 
 void RegionCounts::operator+=(const RegionCounts& other) {
   phases += other.phases;
@@ -15,90 +25,120 @@ void RegionCounts::operator+=(const RegionCounts& other) {
   tiles += other.tiles;
 }
 
-RegionCounts render_regions(const RegionTask& task, Scratch& scratch, FinishTile finish) {
+RegionDrawing::RegionDrawing(const RegionTask& task, Scratch& scratch)
+    : task_(task),
+      scratch_(scratch),
+      tiles_(make_tile_jobs(task.screen, task.regions)),
+      number_(next_number()),
+      frame_(make_frame_shading(task.screen, task.shader, task.list, task.options.lighting,
+                                task.distances)),
+      into_tiles_{task.screen,
+                  task.list,
+                  {},
+                  tiles_.wanted,
+                  task.options.skip_hidden_clusters,
+                  [this](std::uint32_t number, int x, int y) {
+                    return solid(frame_, memory().seen, number, x, y);
+                  },
+                  {},
+                  task.progress} {
   const Screen& screen = task.screen;
-  const RenderOptions& options = task.options;
-  RegionCounts counts;
-  const TileJobs tiles = make_tile_jobs(screen, task.regions);
-  if (task.progress != nullptr) task.progress->start(tiles.jobs.size());
-  const std::vector<PreparedDraw> draws =
-      prepare_draws(screen, task.list, task.shader, options.cull_single_sided);
-  const FrameShading frame =
-      make_frame_shading(screen, task.shader, task.list, options.lighting, task.distances);
-  scratch.tiles.begin(screen, tiles);
-
-  // Which frame the triangles that a thread remembers belong to.
-  static std::atomic<std::uint64_t> frames{0};
-  const std::uint64_t this_frame = ++frames;
-  const auto memory = [&]() -> TileMemory& {
-    static thread_local TileMemory of_thread;
-    static thread_local std::uint64_t seen_in = 0;
-    if (seen_in != this_frame) of_thread.seen.clear();
-    seen_in = this_frame;
-    return of_thread;
+  add_draws();
+  if (task.progress != nullptr) task.progress->start(tiles_.jobs.size());
+  scratch_.tiles.begin(screen, tiles_);
+  begin_drawing(screen, scratch_.workers);
+  if (task.options.shade != Shade::immediate) return;
+  const auto pixels =
+      static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
+  if (scratch_.shaded.size() < pixels) scratch_.shaded = image::Plane<image::RgbaF>(pixels);
+  into_tiles_.shade_now = [this](std::uint32_t number, int x, int y) {
+    scratch_.shaded[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.screen.width) +
+                    static_cast<std::size_t>(x)] = colour_at(frame_, memory().seen, number, x, y);
   };
-  DrawIntoTiles draw{
-      screen,
-      task.list,
-      draws,
-      tiles.wanted,
-      options.skip_hidden_clusters,
-      [&](std::uint32_t number, int x, int y) { return solid(frame, memory().seen, number, x, y); },
-      {},
-      task.progress};
-  const bool shade_now = options.shade == Shade::immediate;
-  if (shade_now) {
-    const auto pixels =
-        static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
-    if (scratch.shaded.size() < pixels) scratch.shaded = image::Plane<image::RgbaF>(pixels);
-    draw.shade_now = [&](std::uint32_t number, int x, int y) {
-      scratch.shaded[static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +
-                     static_cast<std::size_t>(x)] = colour_at(frame, memory().seen, number, x, y);
-    };
-  }
-  DrawCosts costs;
-  counts.triangles = draw_into_tiles(draw, scratch.tiles, scratch.workers, scratch.later, costs);
-  counts.phases.transform = costs.set_up;
-  counts.phases.bin = costs.sort;
+}
+
+// The triangles that a thread remembers belong to one drawing.
+TileMemory& RegionDrawing::memory() const {
+  static thread_local TileMemory of_thread;
+  static thread_local std::uint64_t seen_in = 0;
+  if (seen_in != number_) of_thread.seen.clear();
+  seen_in = number_;
+  return of_thread;
+}
+
+void RegionDrawing::add_draws() {
+  const std::vector<Draw>& draws = task_.list.draws;
+  // They may have moved.
+  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].draw = &draws[i];
+  for (std::size_t i = draws_.size(); i < draws.size(); ++i)
+    draws_.push_back(
+        prepare_draw(task_.screen, draws[i], task_.shader, task_.options.cull_single_sided));
+  into_tiles_.draws = draws_;
+  raster::add_draws(frame_);
+}
+
+std::vector<std::uint32_t> RegionDrawing::nearest_first(
+    std::span<const std::uint32_t> clusters) const {
+  return raster::nearest_first(into_tiles_, clusters);
+}
+
+void RegionDrawing::draw(std::span<const std::uint32_t> clusters) {
+  add_draws();
+  draw_clusters(into_tiles_, nearest_first(clusters), scratch_.tiles, scratch_.workers, costs_);
+}
+
+void RegionDrawing::draw_all() {
+  std::vector<std::uint32_t> clusters(task_.list.clusters.size());
+  std::iota(clusters.begin(), clusters.end(), 0U);
+  draw(clusters);
+}
+
+RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
+  const Screen& screen = task_.screen;
+  const bool shade_now = task_.options.shade == Shade::immediate;
+  RegionCounts counts;
+  counts.triangles = end_drawing(screen, scratch_.workers, scratch_.later, costs_);
+  counts.phases.transform = costs_.set_up;
+  counts.phases.bin = costs_.sort;
 
   ProcessorSeconds rasterize_seconds, shade_seconds;
-  std::atomic<std::uint64_t> fragments{0}, shaded{costs.shaded};
+  std::atomic<std::uint64_t> fragments{0}, shaded{costs_.shaded};
   std::atomic<std::size_t> next{0};
-  parallel::parallel_for(0, scratch.workers.size(), 1, [&](std::size_t) {
+  parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t) {
     StageClock<2> clock;
     TileMemory& mine = memory();
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
-      if (k >= tiles.jobs.size()) break;
-      const int index = tiles.jobs[k].tile;
-      shaded_here += draw_large(draw, index, scratch.later.large, scratch.tiles);
+      if (k >= tiles_.jobs.size()) break;
+      const int index = tiles_.jobs[k].tile;
+      shaded_here += draw_large(into_tiles_, index, scratch_.later.large, scratch_.tiles);
       const VisibilityTile* const tile =
-          scratch.tiles.is_drawn_in(index) ? &scratch.tiles.open(index) : nullptr;
-      find_blended(screen, scratch.tiles.rect(index), scratch.later.blended.triangles,
-                   scratch.later.blended.of_tile(index), tile, mine.blended);
+          scratch_.tiles.is_drawn_in(index) ? &scratch_.tiles.open(index) : nullptr;
+      find_blended(screen, scratch_.tiles.rect(index), scratch_.later.blended.triangles,
+                   scratch_.later.blended.of_tile(index), tile, mine.blended);
       clock.finish(0);
       const geometry::Rect corner = screen.tile(index);
       const image::RgbaF* const colours =
-          shade_now ? scratch.shaded.data() +
+          shade_now ? scratch_.shaded.data() +
                           static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
                     : nullptr;
-      TileView view(frame, tile, colours, mine);
-      finish(tiles.rects_of(tiles.jobs[k]), view);
+      TileView view(frame_, tile, colours, mine);
+      finish_tile(tiles_.rects_of(tiles_.jobs[k]), view);
       clock.finish(1);
       shown_here += view.shown();
       shaded_here += view.shaded();
-      if (task.progress != nullptr) task.progress->advance();
+      if (task_.progress != nullptr) task_.progress->advance();
     }
     fragments.fetch_add(shown_here, std::memory_order_relaxed);
     shaded.fetch_add(shaded_here, std::memory_order_relaxed);
     clock.add_to({&rasterize_seconds, &shade_seconds});
   });
-  counts.phases.rasterize = costs.rasterize + rasterize_seconds.seconds();
+  counts.phases.rasterize = costs_.rasterize + rasterize_seconds.seconds();
   counts.phases.shade = shade_seconds.seconds();
   counts.fragments = fragments;
   counts.shaded = shaded;
-  counts.tiles = tiles.jobs.size();
+  counts.tiles = tiles_.jobs.size();
   return counts;
 }
 

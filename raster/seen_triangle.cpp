@@ -14,9 +14,31 @@ glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
 
 }  // namespace
 
-ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw) {
+glm::vec3 position_in_world(const Draw& draw, std::uint32_t vertex) {
   const glm::mat4x3& m = *draw.transform;
+  const glm::vec3& p = draw.mesh->positions[vertex];
+  return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
+}
+
+glm::vec3 normal_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex) {
+  return unit(shaded.normal_to_world * draw.mesh->normals[vertex], glm::vec3(0.0F));
+}
+
+glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex) {
+  const glm::mat4x3& m = *draw.transform;
+  const glm::vec4& tangent = draw.mesh->tangents[vertex];
+  const glm::vec3 along = (m[0] * tangent.x + m[1] * tangent.y) + m[2] * tangent.z;
+  return glm::vec4(unit(along, {1, 0, 0}), tangent.w * shaded.handedness);
+}
+
+ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw) {
   ShadedDraw result;
+  if (draw.transformed != nullptr) {
+    result.to_view = kInView;
+    result.handedness = draw.transformed->handedness;
+    return result;
+  }
+  const glm::mat4x3& m = *draw.transform;
   result.to_view = to_view(view, m);
   // Normals go with the inverse transpose, which is the cofactors up to a factor.
   const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
@@ -33,7 +55,7 @@ ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw) {
 SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
                                 const Draw& draw, const ShadedDraw& shaded, std::uint32_t t) {
   const scenes::Mesh& mesh = *draw.mesh;
-  const glm::mat4x3& to_world = *draw.transform;
+  const TransformedVertices* const transformed = draw.transformed;
   const glm::uvec3& corners = mesh.triangles[t];
   SeenTriangle result;
   result.material = &shading::material(shader, mesh.material);
@@ -42,10 +64,12 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   result.blended = shaded.blended;
   std::array<glm::vec3, 3> view;
   for (int k = 0; k < 3; ++k) {
-    const glm::vec3& p = mesh.positions[corners[k]];
-    view[k] = shaded.to_view(p);
-    result.position[k] =
-        ((to_world[0] * p.x + to_world[1] * p.y) + to_world[2] * p.z) + to_world[3];
+    const std::uint32_t i = corners[k];
+    view[k] = shaded.to_view(mesh.positions[i]);
+    if (transformed == nullptr)
+      result.position[k] = position_in_world(draw, i);
+    else
+      result.position[k] = transformed->world.empty() ? glm::vec3(0.0F) : transformed->world[i];
   }
   result.barycentrics = make_barycentrics(screen, view);
   const glm::vec3* p = result.position;
@@ -53,17 +77,18 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
       unit(glm::cross(p[1] - p[0], p[2] - p[0]) * shaded.handedness, {0, 0, 1});
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t i = corners[k];
-    result.normal[k] = mesh.normals.empty() ? result.geometric_normal
-                                            : unit(shaded.normal_to_world * mesh.normals[i],
-                                                   result.geometric_normal);
+    result.normal[k] = result.geometric_normal;
+    if (!mesh.normals.empty()) {
+      const glm::vec3 normal =
+          transformed == nullptr ? normal_in_world(draw, shaded, i) : mesh.normals[i];
+      if (normal != glm::vec3(0.0F)) result.normal[k] = normal;
+    }
     result.uv[k] = result.has_uv ? mesh.uvs[i] : glm::vec2(0.0F);
     result.colour[k] = mesh.colours.empty() ? glm::vec4(1.0F) : mesh.colours[i];
     result.tangent[k] = glm::vec4(0.0F);
-    if (!result.has_tangent) continue;
-    const glm::vec4& tangent = mesh.tangents[i];
-    const glm::vec3 along =
-        (to_world[0] * tangent.x + to_world[1] * tangent.y) + to_world[2] * tangent.z;
-    result.tangent[k] = glm::vec4(unit(along, {1, 0, 0}), tangent.w * shaded.handedness);
+    if (result.has_tangent)
+      result.tangent[k] =
+          transformed == nullptr ? tangent_in_world(draw, shaded, i) : mesh.tangents[i];
   }
   return result;
 }

@@ -57,11 +57,7 @@ float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances) {
   FrameShading frame{screen, shader, list, {}, {}, {}, lighting, distances};
-  frame.draws.reserve(list.draws.size());
-  for (const Draw& draw : list.draws) {
-    frame.draws.push_back(make_shaded_draw(screen.view, draw));
-    frame.draws.back().blended = is_blended(shader, *draw.mesh);
-  }
+  add_draws(frame);
   if (lighting == Lighting::gouraud) {
     frame.untextured = shader.materials;
     for (scenes::Material& material : frame.untextured) {
@@ -73,6 +69,14 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
     frame.untextured_batch = shading::make_batch_shader(shader, frame.untextured);
   }
   return frame;
+}
+
+void add_draws(FrameShading& frame) {
+  for (std::size_t i = frame.draws.size(); i < frame.list.draws.size(); ++i) {
+    const Draw& draw = frame.list.draws[i];
+    frame.draws.push_back(make_shaded_draw(frame.screen.view, draw));
+    frame.draws.back().blended = is_blended(frame.shader, *draw.mesh);
+  }
 }
 
 void SeenTriangles::clear() {
@@ -97,6 +101,10 @@ const SeenTriangle& SeenTriangles::get(const FrameShading& frame, std::uint32_t 
 void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw,
                                    const glm::uvec3& corners, SeenTriangle& triangle) {
   const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
+  if (const auto* const transformed = frame.list.draws[draw].transformed) {
+    for (int k = 0; k < 3; ++k) triangle.radiance[k] = transformed->radiances[corners[k]];
+    return;
+  }
   const auto number = triangle.material - frame.shader.materials.data();
   const scenes::Material& material = frame.untextured[number];
   for (int k = 0; k < 3; ++k) {

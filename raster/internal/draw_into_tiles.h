@@ -67,8 +67,21 @@ struct DrawCosts {
   std::uint64_t shaded = 0;
 };
 
-// Draws everything but what it leaves in `later`. Parallel, nearest draws first; the workers'
-// memory is reused.
+// Numbers of clusters of the list, those of near draws first; those of a draw stay in their order.
+std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task,
+                                         std::span<const std::uint32_t> clusters);
+
+// In parts, for lists of which parts come later: gets the workers ready, whose memory is reused;
+// draws clusters of the list in about the order given, in parallel, but for what is left for the
+// end; hands that to `later` and returns what was counted.
+void begin_drawing(const Screen& screen, std::vector<std::unique_ptr<Worker>>& workers);
+void draw_clusters(const DrawIntoTiles& task, std::span<const std::uint32_t> clusters,
+                   FrameTiles& tiles, std::span<const std::unique_ptr<Worker>> workers,
+                   DrawCosts& costs);
+TriangleCounts end_drawing(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
+                           LaterTriangles& later, DrawCosts& costs);
+
+// All of the list at once, nearest draws first.
 TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
                                std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
                                DrawCosts& costs);

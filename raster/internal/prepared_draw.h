@@ -25,6 +25,9 @@ struct PreparedDraw {
 // Whether what lies behind a mesh of the material may shine through it somewhere.
 bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh);
 
+// Refers to the draw.
+PreparedDraw prepare_draw(const Screen& screen, const Draw& draw, const shading::Shader& shader,
+                          bool cull_single_sided);
 // Element i is draw i of the list, which it refers to. O(draws).
 std::vector<PreparedDraw> prepare_draws(const Screen& screen, const DrawList& list,
                                         const shading::Shader& shader, bool cull_single_sided);

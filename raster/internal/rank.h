@@ -32,13 +32,24 @@ struct Rank {
   int ranks() const { return communicator.size(); }
 
   // The primitives that this rank has before anything travels: an equal part of all, in order.
-  std::pair<std::uint64_t, std::uint64_t> own_primitives() const;
+  std::pair<std::uint64_t, std::uint64_t> own_primitives() const { return own_primitives(ranks()); }
+  // The same if the first `holders` ranks have them all.
+  std::pair<std::uint64_t, std::uint64_t> own_primitives(int holders) const;
   // A single rank's depths need no compositing, which wants them as they are rasterized.
   bool depths_are_distances() const { return ranks() == 1; }
   geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
   int samples_per_pixel() const { return options.supersampling * options.supersampling; }
 
-  // Renders `list` into regions (in pixels) and counts; `finish` as in render_regions, in samples.
+  // A drawing of `list`, or of what it is given later, into regions (in pixels).
+  RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
+  // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
+  void end(RegionDrawing& drawing, FinishTile finish_tile);
+  // The same into an image of the frame: pixels, with samples averaged.
+  template <class Colour>
+  void end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image);
+
+  // Renders `list` into regions (in pixels) and counts; `finish_tile` as in RegionDrawing, in
+  // samples.
   void render(const DrawList& list, std::span<const geometry::Rect> regions, FinishTile finish);
   // The same into an image of the frame: pixels, with samples averaged.
   template <class Colour>

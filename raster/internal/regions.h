@@ -40,9 +40,41 @@ struct RegionTask {
   parallel::Progress* progress;
 };
 
-// Draws the list, then hands every tile that the regions touch to finish(rects, view), where
-// `rects` are the parts of regions in it. Parallel: batches of clusters, then tiles.
 using FinishTile = parallel::FunctionRef<void(std::span<const geometry::Rect>, TileView&)>;
-RegionCounts render_regions(const RegionTask& task, Scratch& scratch, FinishTile finish);
+
+// A frame under way. The list may be given more draws and clusters until `finish`; calls are the
+// rank's own thread's.
+class RegionDrawing {
+ public:
+  RegionDrawing(const RegionTask& task, Scratch& scratch);
+  RegionDrawing(const RegionDrawing&) = delete;
+  RegionDrawing& operator=(const RegionDrawing&) = delete;
+
+  // Of the list's draws as they were when anything was drawn last, or at first.
+  const FrameShading& frame() const { return frame_; }
+  std::span<const PreparedDraw> draws() const { return draws_; }
+  // Numbers of clusters, those of near draws first.
+  std::vector<std::uint32_t> nearest_first(std::span<const std::uint32_t> clusters) const;
+
+  // Draws these clusters of the list. Parallel.
+  void draw(std::span<const std::uint32_t> clusters);
+  void draw_all();
+  // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
+  // parts of regions in it. Parallel. To be called once, in the end.
+  RegionCounts finish(FinishTile finish_tile);
+
+ private:
+  TileMemory& memory() const;
+  void add_draws();
+
+  const RegionTask task_;
+  Scratch& scratch_;
+  const TileJobs tiles_;
+  const std::uint64_t number_;  // no other drawing has it
+  std::vector<PreparedDraw> draws_;
+  FrameShading frame_;
+  DrawIntoTiles into_tiles_;
+  DrawCosts costs_;
+};
 
 }  // namespace delray::raster

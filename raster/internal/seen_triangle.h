@@ -20,6 +20,11 @@ struct ShadedDraw {
 };
 ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
 
+// Of a vertex that is not transformed yet. The normal is 0 where it has no direction.
+glm::vec3 position_in_world(const Draw& draw, std::uint32_t vertex);
+glm::vec3 normal_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex);
+glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex);
+
 // A triangle with its vertices' attributes in the world.
 struct SeenTriangle {
   Barycentrics barycentrics;

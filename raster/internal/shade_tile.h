@@ -34,6 +34,8 @@ struct FrameShading {
 };
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances);
+// Looks up the draws that the list has been given since.
+void add_draws(FrameShading& frame);
 
 // Triangles seen lately, and their lit vertices; neighbouring pixels mostly show the same few. One
 // per thread.

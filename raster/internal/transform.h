@@ -23,6 +23,10 @@ struct ToView {
   }
 };
 
+// Of what is in view coordinates already.
+inline constexpr ToView kInView = {
+    {glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)}};
+
 // Composed in double: eye and origin of a mesh may be far from the world's origin.
 ToView to_view(const scenes::View& view, const glm::mat4x3& transform);
 
