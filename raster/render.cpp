@@ -26,7 +26,7 @@ struct Report {
   std::uint64_t fragments, shaded, triangles_travelled;
 };
 
-void check(const RenderOptions& options) {
+void check(const RenderOptions& options, int ranks) {
   const auto known = [](bool found, const char* kind, const std::string& name) {
     if (!found) throw std::invalid_argument("there is no " + std::string(kind) + " '" + name + "'");
   };
@@ -48,6 +48,14 @@ void check(const RenderOptions& options) {
   if (options.shade == Shade::composited &&
       (options.strategy != "sort-last" || options.lighting != Lighting::phong))
     throw std::invalid_argument("only sort-last shades after compositing, and only with phong");
+  if (options.geometry_ranks < 0 ||
+      (options.geometry_ranks > 0 &&
+       (options.groups != Groups::two || options.strategy != "sort-middle")))
+    throw std::invalid_argument("ranks for geometry are of two groups, with sort-middle");
+  if (options.groups == Groups::two && ranks > 1 && options.geometry_ranks >= ranks)
+    throw std::invalid_argument("of " + std::to_string(ranks) + " ranks " +
+                                std::to_string(ranks - 1) +
+                                " at most can be for geometry, since others have to draw");
 }
 
 void to_distances(std::span<float> depths, float near) {
@@ -145,7 +153,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
                         const RenderOptions& options, parallel::Progress* progress) {
-  check(options);
+  check(options, communicator.size());
   const Screen screen = make_screen(scenes::make_view(camera, options.width * options.supersampling,
                                                       options.height * options.supersampling));
   std::vector<comm::Event> events;

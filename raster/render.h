@@ -40,6 +40,13 @@ enum class Shade : std::uint8_t { deferred, immediate, composited };
 // scaled to what they took.
 enum class CostSource : std::uint8_t { model, measured };
 
+// Sort-middle: every rank transforms and draws, or some transform and the others draw (Molnar et
+// al. 1994).
+enum class Groups : std::uint8_t { one, two };
+// Sort-middle: triangles are sent once a rank's geometry is all done, or in batches meanwhile,
+// which are drawn as they come.
+enum class Redistribution : std::uint8_t { at_end, immediate };
+
 struct RenderOptions {
   int width = 1024, height = 768;
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
@@ -53,7 +60,7 @@ struct RenderOptions {
   std::string strategy = "sort-last";
   std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
   std::string codec = "dense";         // of composite::codecs(); sort-last
-  std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first
+  std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first and -middle
   CostSource costs = CostSource::model;
   int regions_per_rank = 1;  // more than one: the costliest go first to the least loaded rank
   // A partition is kept from frame to frame for as long as no rank would have to do more than so
@@ -61,6 +68,10 @@ struct RenderOptions {
   double keep_factor = 1.2;
   bool report_partition = false;     // costs time of about that of cutting
   Travel travel = Travel::geometry;  // sort-first
+  Groups groups = Groups::one;       // sort-middle; a single rank does both
+  // Of two groups: ranks 0 .. geometry_ranks - 1 have the primitives, the others draw. 0: half.
+  int geometry_ranks = 0;
+  Redistribution redistribution = Redistribution::immediate;  // sort-middle
 };
 
 // The first four are seconds of processor time, summed over threads: clusters culled, transformed

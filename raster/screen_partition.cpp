@@ -71,7 +71,7 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
 
 const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
                                                    std::span<const loadbalance::WeightedBox> boxes,
-                                                   int parts) {
+                                                   int parts, int first_rank) {
   const RenderOptions& options = rank.options;
   const Kind kind{options.partition, rank.ranks(), parts, options.regions_per_rank,
                   options.keep_factor};
@@ -87,8 +87,7 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   loadbalance::sum_over_ranks(costs, rank.communicator);
   if (!samples_.empty() && kept_->last().frame == frame) {
     std::vector<double> seconds;
-    for (const loadbalance::RasterSample& sample : samples_) seconds.push_back(sample.seconds);
-    seconds.resize(static_cast<std::size_t>(parts));
+    for (int k = 0; k < parts; ++k) seconds.push_back(samples_[first_rank + k].seconds);
     loadbalance::scale_to_measured(costs, kept_->last(), seconds);
   }
   const std::uint64_t cuts = kept_->recomputed();

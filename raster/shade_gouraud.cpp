@@ -170,11 +170,12 @@ void GouraudTile::add_corners(const FrameShading& frame, int i, std::size_t t) {
   const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
   const auto material = static_cast<std::uint32_t>(&shading::material(frame.shader, mesh.material) -
                                                    frame.shader.materials.data());
-  if (frame.shader.materials[material].base_colour_texture != scenes::kNone) {
+  if (!without_textures_ && frame.shader.materials[material].base_colour_texture != scenes::kNone) {
     textured_[t] = 1;
     any_textured_ = true;
     return;
   }
+  const TransformedVertices* const transformed = frame.list.draws[draw].transformed;
   PixelTriangle& triangle = triangles_[t];
   triangle.a[3] = triangle.b[3] = triangle.c[3] = 0;
   triangle.x = static_cast<float>(geometry_.x[i]);
@@ -186,6 +187,11 @@ void GouraudTile::add_corners(const FrameShading& frame, int i, std::size_t t) {
     // A vertex without a normal of its own is lit as its triangle is; any other is the same for all
     // triangles that have it on the same side of the viewer.
     const std::uint32_t mesh_vertex = seen_in_[t].corners[k];
+    if (transformed != nullptr) {
+      corners_[t][k] = static_cast<std::uint32_t>(radiances_.size());
+      radiances_.push_back(transformed->radiances[mesh_vertex]);
+      continue;
+    }
     const bool own_normal = !mesh.normals.empty() && (geometry_.own_normal[k] >> i & 1) != 0;
     bool is_new = !own_normal;
     if (own_normal) {
@@ -246,6 +252,15 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
       colour[2] = radiance.z;
     }
   }
+}
+
+GouraudTile::LitCorners GouraudTile::light_corners(const FrameShading& frame,
+                                                   std::span<const std::uint32_t> numbers) {
+  numbers_.assign(numbers.begin(), numbers.end());
+  without_textures_ = true;
+  set_up_triangles(frame);
+  without_textures_ = false;
+  return {corners_, radiances_};
 }
 
 template <class Colour>

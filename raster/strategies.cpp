@@ -12,6 +12,8 @@ constexpr std::array kStrategies = {
     Strategy{"sort-last", "each rank draws its primitives; the images are composited", sort_last},
     Strategy{"sort-first", "primitives go to the ranks whose regions of the screen they touch",
              sort_first},
+    Strategy{"sort-middle", "transformed triangles go to the ranks whose regions they touch",
+             sort_middle},
 };
 
 }  // namespace

@@ -73,6 +73,7 @@ auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
 }
 
 Picture sort_first(Rank& rank);
+Picture sort_middle(Rank& rank);
 Picture sort_last(Rank& rank);
 
 }  // namespace delray::raster

@@ -30,9 +30,10 @@ class ScreenPartition {
   std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups);
 
   // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
-  // boxes, or as it was cut for the last frame. Collective. Valid until the next call.
+  // boxes, or as it was cut for the last frame. Collective. Valid until the next call. Owner k is
+  // rank first_rank + k.
   const loadbalance::Partition& cut(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
-                                    int parts);
+                                    int parts, int first_rank = 0);
 
   // Of the last cut, on rank 0 where options.report_partition asked for it.
   const std::optional<PartitionStatistics>& statistics() const { return statistics_; }

@@ -48,6 +48,14 @@ class GouraudTile {
   std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                       const geometry::Rect& rect, const Window<Colour>& window);
 
+  // Of triangles of the frame's list, each once: the radiance of corner k of triangle i, without
+  // any texture, is radiances[corners[i][k]]. Until the next call.
+  struct LitCorners {
+    std::span<const glm::uvec3> corners;
+    std::span<const glm::vec3> radiances;
+  };
+  LitCorners light_corners(const FrameShading& frame, std::span<const std::uint32_t> numbers);
+
  private:
   static constexpr std::uint32_t kTriangleSlots = 2 * kTilePixels;
   static constexpr std::uint64_t kNoVertex = ~std::uint64_t{0};
@@ -89,6 +97,7 @@ class GouraudTile {
   std::vector<glm::uvec3> corners_;  // of triangles: into radiances_
   std::vector<std::uint8_t> textured_;
   bool any_textured_ = false;
+  bool without_textures_ = false;
 
   struct TriangleSlot {
     std::uint32_t number = kNothing;

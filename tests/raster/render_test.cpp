@@ -66,6 +66,18 @@ std::vector<RenderOptions> every_way(const RenderOptions& base) {
         }
       continue;
     }
+    if (options.strategy == "sort-middle") {
+      int way = 0;
+      for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
+        options.partition = partitioner.name;
+        options.groups = way % 2 == 0 ? Groups::one : Groups::two;
+        options.redistribution =
+            way / 2 % 2 == 0 ? Redistribution::immediate : Redistribution::at_end;
+        ++way;
+        ways.push_back(options);
+      }
+      continue;
+    }
     for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
       for (const Travel travel : {Travel::geometry, Travel::numbers}) {
         options.partition = partitioner.name;
@@ -79,6 +91,8 @@ std::vector<RenderOptions> every_way(const RenderOptions& base) {
 std::string described(const RenderOptions& options, int ranks, int threads) {
   return options.strategy + " " + options.scheme + " " + options.codec + " " + options.partition +
          (options.travel == Travel::numbers ? " numbers " : " geometry ") +
+         (options.groups == Groups::two ? "two groups " : "") +
+         (options.redistribution == Redistribution::at_end ? "at end " : "") +
          (options.shade == Shade::deferred ? "" : "composited ") +
          std::to_string(options.supersampling) + " samples " + std::to_string(ranks) + " x " +
          std::to_string(threads);
@@ -460,6 +474,14 @@ TEST(Render, TellsOfWhatItDoesNotKnow) {
   expect_refused([](RenderOptions& o) {
     o.width = 40000;
     o.supersampling = 2;
+  });
+  expect_refused([](RenderOptions& o) {
+    o.strategy = "sort-middle";
+    o.geometry_ranks = 1;
+  });
+  expect_refused([](RenderOptions& o) {
+    o.groups = Groups::two;
+    o.geometry_ranks = 1;
   });
   expect_refused([](RenderOptions& o) {
     o.shade = Shade::composited;
