@@ -6,21 +6,17 @@
 // the lowest primitive. What touches its own rank's regions is drawn as it is, without travelling.
 #include <algorithm>
 #include <cstring>
-#include <limits>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
 #include "comm/collectives.h"
-#include "loadbalance/region_index.h"
 #include "parallel/parallel_for.h"
-#include "raster/internal/cull.h"
 #include "raster/internal/frame_memory.h"
 #include "raster/internal/gather_regions.h"
 #include "raster/internal/processor_seconds.h"
-#include "raster/internal/rank.h"
-#include "raster/internal/samples.h"
-#include "raster/internal/set_up.h"
 #include "raster/internal/transformed_clusters.h"
+#include "raster/internal/triangle_sorter.h"
 
 namespace delray::raster {
 namespace {
@@ -65,123 +61,6 @@ std::vector<std::uint32_t> number_globally(Rank& rank, DrawList& list) {
   return numbers;
 }
 
-// What becomes of a few clusters.
-struct Sorted {
-  struct Parcel {
-    int to;
-    std::uint64_t triangles = 0;
-    std::vector<std::byte> bytes = {};
-  };
-  std::vector<Parcel> parcels;
-  std::vector<std::uint32_t> staying;  // clusters that touch the rank's own regions
-  std::uint64_t culled = 0;            // triangles of clusters that do not stay
-
-  Parcel& parcel_to(int rank) {
-    const auto found = std::find_if(parcels.begin(), parcels.end(),
-                                    [&](const Parcel& parcel) { return parcel.to == rank; });
-    return found != parcels.end() ? *found : parcels.emplace_back(Parcel{rank});
-  }
-};
-
-// Finds out who draws what. One per thread and task.
-class Sorter {
- public:
-  Sorter(const Rank& rank, const RegionDrawing& drawing, const loadbalance::RegionIndex& regions)
-      : rank_(rank), drawing_(drawing), regions_(regions) {}
-
-  void sort(std::uint32_t number, Sorted& sorted) {
-    const Cluster& cluster = drawing_.frame().list.clusters[number];
-    const PreparedDraw& draw = drawing_.draws()[cluster.draw];
-    const ClusterBlock& block = drawing_.frame().list.block_of(cluster);
-    const MeshCluster& mesh_cluster = block.clusters[cluster.part];
-    const ClusterBounds bounds = bound(rank_.screen, draw, mesh_cluster.box);
-    find_owners(bounds.pixels);
-    if (bounds.outside || owners_.empty() ||
-        shows_hidden_side_only(rank_.screen, draw, mesh_cluster, bounds)) {
-      sorted.culled += cluster.end - cluster.begin;
-      return;
-    }
-    if (owners_.size() == 1 && owners_[0] == rank_.number()) {
-      sorted.staying.push_back(number);
-      return;
-    }
-    transform(draw.to_view, rank_.screen, draw.draw->mesh->positions,
-              block.vertices_of(mesh_cluster), vertices());
-    const bool stays = find_receivers(draw, block, cluster);
-    if (stays)
-      sorted.staying.push_back(number);
-    else
-      sorted.culled += cluster.end - cluster.begin - places_.size();
-    pack(draw, number, sorted);
-  }
-
- private:
-  static ScreenVertices& vertices() {
-    static thread_local ScreenVertices of_thread;
-    return of_thread;
-  }
-  static ClusterPacker& packer() {
-    static thread_local ClusterPacker of_thread;
-    return of_thread;
-  }
-
-  void find_owners(const geometry::Rect& samples) {
-    regions_.owners_of(pixels_of(samples, rank_.options.supersampling), owners_);
-  }
-
-  // Whether anything is for this rank itself. What others get is in places_ and receivers_.
-  bool find_receivers(const PreparedDraw& draw, const ClusterBlock& block, const Cluster& cluster) {
-    bool stays = false;
-    places_.clear();
-    receivers_.clear();
-    const bool one_owner = owners_.size() == 1;
-    for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-      geometry::Rect box{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
-      const Fate fate = set_up(
-          rank_.screen, draw, vertices(), corners_at(block, block.clusters[cluster.part], place),
-          cluster.first + place, 0, [&](const ScreenTriangle&, const geometry::Rect& pixels) {
-            box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0),
-                   std::max(box.x1, pixels.x1), std::max(box.y1, pixels.y1)};
-          });
-      if (fate == Fate::culled) continue;
-      if (!one_owner) find_owners(box);
-      bool travels = false;
-      for (const int owner : owners_) {
-        if (owner == rank_.number()) {
-          stays = true;
-          continue;
-        }
-        travels = true;
-        receivers_.emplace_back(owner, static_cast<std::uint8_t>(places_.size()));
-      }
-      if (travels) places_.push_back(static_cast<std::uint8_t>(place));
-    }
-    return stays;
-  }
-
-  void pack(const PreparedDraw& draw, std::uint32_t number, Sorted& sorted) {
-    if (places_.empty()) return;
-    packer().set(drawing_.frame(), draw, number, places_);
-    std::sort(receivers_.begin(), receivers_.end());
-    for (std::size_t first = 0, last; first < receivers_.size(); first = last) {
-      which_.clear();
-      for (last = first;
-           last < receivers_.size() && receivers_[last].first == receivers_[first].first; ++last)
-        which_.push_back(receivers_[last].second);
-      Sorted::Parcel& parcel = sorted.parcel_to(receivers_[first].first);
-      parcel.triangles += which_.size();
-      packer().pack(which_, parcel.bytes);
-    }
-  }
-
-  const Rank& rank_;
-  const RegionDrawing& drawing_;
-  const loadbalance::RegionIndex& regions_;
-  std::vector<int> owners_;
-  std::vector<std::uint8_t> places_, which_;
-  std::vector<std::pair<int, std::uint8_t>> receivers_;  // and index into places_
-};
-
 // Triangles on their way between ranks.
 class Redistributor {
  public:
@@ -202,15 +81,17 @@ class Redistributor {
     senders_left_ = senders[rank.number()];
   }
 
+  // Whether this rank neither gets nor sends anything.
+  bool nothing_travels() const { return buckets_.empty() && all_arrived(); }
   bool all_arrived() const { return senders_left_ == 0; }
 
   // Does the geometry of clusters of the list. Parallel. Appends those that stay here to `here`.
   void sort(std::span<const std::uint32_t> clusters, std::vector<std::uint32_t>& here) {
-    std::vector<Sorted> sorted((clusters.size() + kGrain - 1) / kGrain);
+    std::vector<SortedClusters> sorted((clusters.size() + kGrain - 1) / kGrain);
     ProcessorSeconds seconds;
     parallel::parallel_for(0, sorted.size(), 1, [&](std::size_t i) {
       seconds.measure([&] {
-        Sorter sorter(rank_, drawing_, regions_);
+        TriangleSorter sorter(rank_, drawing_, regions_);
         const std::size_t first = i * kGrain;
         for (const std::uint32_t number :
              clusters.subspan(first, std::min(kGrain, clusters.size() - first)))
@@ -218,10 +99,10 @@ class Redistributor {
       });
     });
     seconds_ += seconds.seconds();
-    for (Sorted& part : sorted) {
+    for (SortedClusters& part : sorted) {
       here.insert(here.end(), part.staying.begin(), part.staying.end());
       culled_ += part.culled;
-      for (Sorted::Parcel& parcel : part.parcels) {
+      for (SortedClusters::Parcel& parcel : part.parcels) {
         Bucket& bucket = buckets_.at(parcel.to);
         bucket.bytes += parcel.bytes.size();
         bucket.parts.push_back(std::move(parcel.bytes));
@@ -366,7 +247,9 @@ Picture render(Rank& rank) {
     if (region.owner == rank.number()) regions.push_back(region.rect);
   RegionDrawing drawing = rank.begin(list, regions);
   Redistributor redistributor(rank, partition, boxes, list, drawing);
-  if (rank.options.redistribution == Redistribution::at_end)
+  if (redistributor.nothing_travels())
+    drawing.draw(own);
+  else if (rank.options.redistribution == Redistribution::at_end)
     draw_at_end(rank, own, redistributor, drawing);
   else
     draw_at_once(rank, own, redistributor, drawing);
