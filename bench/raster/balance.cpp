@@ -1,0 +1,101 @@
+// How even the partitions of the screen are, by what the rasterizer counts: every partition on a
+// scene rendered sort-first by so many ranks. A rank's work is what it rasterized, triangles and
+// pixels, at prices fitted to the ranks' processor time; over_share is the largest rank's work over
+// an equal share of what one rank alone would do, so that triangles drawn by several count.
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "comm/threads.h"
+#include "loadbalance/cost_model.h"
+#include "loadbalance/partition.h"
+#include "raster/render.h"
+#include "scenes/generate.h"
+#include "scenes/load.h"
+
+using namespace delray;
+
+namespace {
+
+
+raster::Statistics rendered(const scenes::Scene& scene, const scenes::Camera& camera,
+                            const std::string& partition, int ranks, int regions_per_rank) {
+  raster::RenderOptions options;
+  options.width = 1920;
+  options.height = 1080;
+  options.lighting = raster::Lighting::gouraud;
+  options.strategy = "sort-first";
+  options.partition = partition;
+  options.regions_per_rank = regions_per_rank;
+  options.travel = raster::Travel::numbers;
+  options.skip_hidden_clusters = false;  // which are hidden depends on who came first
+  options.report_partition = true;
+  const auto shader = std::make_shared<const shading::Shader>(shading::make_shader(scene));
+  raster::Statistics statistics;
+  comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+    raster::Renderer renderer(scene, shader);
+    raster::Result result = renderer.render(communicator, camera, options);
+    if (communicator.rank() == 0) statistics = std::move(result.statistics);
+  });
+  return statistics;
+}
+
+loadbalance::RasterSample sample_of(const raster::RankStatistics& rank) {
+  return {static_cast<double>(rank.triangles), static_cast<double>(rank.fragments), rank.busy};
+}
+
+}  // namespace
+
+// [--regions PER_RANK] [SCENE ...]
+int main(int argc, char** argv) {
+  std::vector<std::string> names;
+  int regions_per_rank = 1;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--regions") == 0 && i + 1 < argc) {
+      ++i;
+      std::from_chars(argv[i], argv[i] + std::strlen(argv[i]), regions_per_rank);
+    } else {
+      names.emplace_back(argv[i]);
+    }
+  }
+  if (names.empty()) names = {"gen:field", "gen:city"};
+  std::printf("%-28s %5s %-12s %10s %10s %8s %9s %8s %9s\n", "scene", "ranks", "partition",
+              "over_share", "predicted", "overlap", "busy", "cut ms", "prices");
+  for (const std::string& name : names) {
+    std::vector<std::string> warnings;
+    scenes::Scene scene =
+        name.starts_with("gen:") ? scenes::generate(name) : scenes::load(name, warnings);
+    const scenes::Camera camera = scene.cameras.empty()
+                                      ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 16.0F / 9)
+                                      : scene.cameras[0];
+    scenes::complete(scene, camera);
+    const raster::Statistics alone = rendered(scene, camera, "mahd", 1, 1);
+    for (const int ranks : {16, 64}) {
+      std::vector<loadbalance::RasterSample> samples;
+      std::vector<raster::Statistics> all;
+      for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
+        all.push_back(rendered(scene, camera, partitioner.name, ranks, regions_per_rank));
+        for (const raster::RankStatistics& rank : all.back().ranks)
+          samples.push_back(sample_of(rank));
+      }
+      const loadbalance::RasterCostModel model = loadbalance::fit(samples);
+      const auto work = [&](const raster::RankStatistics& rank) {
+        return model(static_cast<double>(rank.triangles), static_cast<double>(rank.fragments));
+      };
+      const double share = work(alone.ranks[0]) / ranks;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        double largest = 0;
+        for (const raster::RankStatistics& rank : all[i].ranks)
+          largest = std::max(largest, work(rank));
+        std::printf("%-28s %5d %-12s %10.3f %10.3f %8.3f %9.3f %8.3f  %.2f\n", name.c_str(), ranks,
+                    loadbalance::partitioners()[i].name, largest / share,
+                    all[i].partition->over_share, all[i].partition->overlap, all[i].imbalance,
+                    all[i].partition->seconds * 1e3, model.per_triangle / model.per_pixel);
+        std::fflush(stdout);
+      }
+    }
+  }
+}
