@@ -7,6 +7,11 @@
 
 namespace delray::loadbalance {
 
+bool has_seconds(std::span<const RasterSample> samples) {
+  return std::any_of(samples.begin(), samples.end(),
+                     [](const RasterSample& sample) { return sample.seconds > 0; });
+}
+
 RasterCostModel fit(std::span<const RasterSample> samples) {
   const RasterCostModel model;
   double tt = 0, tp = 0, pp = 0, ts = 0, ps = 0, seconds = 0, modelled = 0;

@@ -24,6 +24,9 @@ struct RasterSample {
   double triangles = 0, pixels = 0, seconds = 0;
 };
 
+// Whether anybody took any time.
+bool has_seconds(std::span<const RasterSample> samples);
+
 // The model that comes nearest to the samples by least squares, neither price below 0. Where the
 // samples do not tell the two prices apart (one sample, or all in one proportion) the ratio of the
 // default model is kept; without any seconds, the default.

@@ -6,13 +6,18 @@
 
 namespace delray::raster {
 
-Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t count) {
+Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t count,
+                   std::vector<ScreenTriangle>& large) {
   Extent result;
   result.box = {screen_.width, screen_.height, 0, 0};
   const auto include = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
     result.box = {std::min(result.box.x0, pixels.x0), std::min(result.box.y0, pixels.y0),
                   std::max(result.box.x1, pixels.x1), std::max(result.box.y1, pixels.y1)};
     ++result.triangles;
+    if (pixels.area() > kLargeBox) {
+      large.push_back(triangle);
+      return;
+    }
     const std::int64_t area =
         doubled_area(triangle.vertex[0], triangle.vertex[1], triangle.vertex[2]) >>
         (2 * kSubpixelBits + 1);

@@ -78,7 +78,7 @@ Report make_report(const Rank& rank, std::span<const comm::Event> events) {
   report.rank.busy = phases.transform + phases.bin + phases.rasterize + phases.shade;
   report.rank.tasks = rank.counts.tiles;
   report.rank.triangles = rank.counts.triangles.rasterized;
-  report.rank.fragments = rank.counts.fragments;
+  report.rank.shaded = rank.counts.shaded;
   report.rank.bytes_sent = totals.bytes_sent;
   report.rank.bytes_received = totals.bytes_received;
   report.rank.messages = totals.messages_sent;

@@ -88,7 +88,7 @@ struct RankStatistics {
   int rank = 0;
   double busy = 0;          // transform + bin + rasterize + shade
   std::uint64_t tasks = 0;  // tiles
-  std::uint64_t triangles = 0, fragments = 0;  // rasterized; seen at samples
+  std::uint64_t triangles = 0, shaded = 0;  // triangles rasterized, samples shaded
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
 };
 

@@ -2,6 +2,8 @@
 // scene rendered sort-first by so many ranks. A rank's work is what it rasterized, triangles and
 // pixels, at prices fitted to the ranks' processor time; over_share is the largest rank's work over
 // an equal share of what one rank alone would do, so that triangles drawn by several count.
+// Triangles: drawn by all ranks over those of one alone. Pixels: the most that a rank shaded over
+// an equal share.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -19,7 +21,6 @@
 using namespace delray;
 
 namespace {
-
 
 raster::Statistics rendered(const scenes::Scene& scene, const scenes::Camera& camera,
                             const std::string& partition, int ranks, int regions_per_rank) {
@@ -44,7 +45,7 @@ raster::Statistics rendered(const scenes::Scene& scene, const scenes::Camera& ca
 }
 
 loadbalance::RasterSample sample_of(const raster::RankStatistics& rank) {
-  return {static_cast<double>(rank.triangles), static_cast<double>(rank.fragments), rank.busy};
+  return {static_cast<double>(rank.triangles), static_cast<double>(rank.shaded), rank.busy};
 }
 
 }  // namespace
@@ -62,15 +63,16 @@ int main(int argc, char** argv) {
     }
   }
   if (names.empty()) names = {"gen:field", "gen:city"};
-  std::printf("%-28s %5s %-12s %10s %10s %8s %9s %8s %9s\n", "scene", "ranks", "partition",
-              "over_share", "predicted", "overlap", "busy", "cut ms", "prices");
+  std::printf("%-22s %5s %-12s %10s %10s %10s %8s %8s %9s %8s\n", "scene", "ranks", "partition",
+              "over_share", "predicted", "triangles", "pixels", "busy", "cut ms", "prices");
   for (const std::string& name : names) {
     std::vector<std::string> warnings;
     scenes::Scene scene =
         name.starts_with("gen:") ? scenes::generate(name) : scenes::load(name, warnings);
-    const scenes::Camera camera = scene.cameras.empty()
-                                      ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 16.0F / 9)
-                                      : scene.cameras[0];
+    const scenes::Camera camera =
+        scene.cameras.empty()
+            ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 16.0F / 9)
+            : scene.cameras[0];
     scenes::complete(scene, camera);
     const raster::Statistics alone = rendered(scene, camera, "mahd", 1, 1);
     for (const int ranks : {16, 64}) {
@@ -83,17 +85,27 @@ int main(int argc, char** argv) {
       }
       const loadbalance::RasterCostModel model = loadbalance::fit(samples);
       const auto work = [&](const raster::RankStatistics& rank) {
-        return model(static_cast<double>(rank.triangles), static_cast<double>(rank.fragments));
+        return model(static_cast<double>(rank.triangles), static_cast<double>(rank.shaded));
       };
       const double share = work(alone.ranks[0]) / ranks;
       for (std::size_t i = 0; i < all.size(); ++i) {
         double largest = 0;
-        for (const raster::RankStatistics& rank : all[i].ranks)
+        std::uint64_t triangles = 0, pixels = 0;
+        for (const raster::RankStatistics& rank : all[i].ranks) {
           largest = std::max(largest, work(rank));
-        std::printf("%-28s %5d %-12s %10.3f %10.3f %8.3f %9.3f %8.3f  %.2f\n", name.c_str(), ranks,
+          triangles += rank.triangles;
+          pixels = std::max(pixels, rank.shaded);
+        }
+        const auto over = [](std::uint64_t a, std::uint64_t b) {
+          return static_cast<double>(a) / static_cast<double>(b);
+        };
+        std::printf("%-22s %5d %-12s %10.3f %10.3f %10.3f %8.3f %8.3f %9.3f %8.2f\n",
+                    name.substr(name.rfind('/') + 1).c_str(), ranks,
                     loadbalance::partitioners()[i].name, largest / share,
-                    all[i].partition->over_share, all[i].partition->overlap, all[i].imbalance,
-                    all[i].partition->seconds * 1e3, model.per_triangle / model.per_pixel);
+                    all[i].partition->over_share, over(triangles, alone.ranks[0].triangles),
+                    over(pixels * static_cast<std::uint64_t>(ranks), alone.ranks[0].shaded),
+                    all[i].imbalance, all[i].partition->seconds * 1e3,
+                    model.per_triangle / model.per_pixel);
         std::fflush(stdout);
       }
     }

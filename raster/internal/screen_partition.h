@@ -25,8 +25,11 @@ class ScreenPartition {
   // The triangles to take together for `parts` regions, of so many in the scene.
   static std::uint32_t group_triangles(std::uint64_t triangles, int parts);
 
-  // The box of every group on the screen, in pixels, and what it may cost. Empty boxes cost
-  // nothing. Collective where costs are measured, one message of 24 bytes from each rank then.
+  // The box of every group on the screen, in pixels, and what it may cost: its triangles, and the
+  // part of its pixels that is seen if all groups lie behind each other at random; cut() knows of
+  // those of large triangles, more exactly than by a box. Empty boxes cost nothing. Collective: a
+  // grid of 16 x 16 pixels is summed over ranks and, where costs are measured, every rank says what
+  // it did.
   std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups);
 
   // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
@@ -53,6 +56,7 @@ class ScreenPartition {
   Kind kind_{};
   std::optional<loadbalance::KeptPartition> kept_;
   std::optional<PartitionStatistics> statistics_;
+  std::vector<loadbalance::WeightedBox> large_;     // on rank 0: large triangles' pixels
   loadbalance::RasterSample sample_;                // this rank's last frame
   std::vector<loadbalance::RasterSample> samples_;  // all ranks'
 };

@@ -30,8 +30,9 @@ TEST(Extent, ContainsEveryPixel) {
   const PreparedMesh prepared(screen, mesh);
   const SetUpMesh set_up = set_up_mesh(screen, mesh);
   std::uint64_t with_pixels = 0;
+  std::vector<ScreenTriangle> large;
   for (std::uint32_t t = 0; t < 400; ++t) {
-    const Extent e = Extents(screen).of(prepared.draw, t, 1);
+    const Extent e = Extents(screen).of(prepared.draw, t, 1, large);
     EXPECT_EQ(e.triangles > 0, !e.box.empty());
     std::vector<int> pixels(150 * 90);
     for (const ScreenTriangle& triangle : set_up.triangles)
@@ -52,8 +53,9 @@ TEST(Extent, OfARangeIsThatOfItsTriangles) {
   const PreparedMesh prepared(screen, mesh);
   for (const auto& [first, count] : {std::pair{0U, 400U}, {70U, 200U}, {399U, 1U}, {5U, 0U}}) {
     Extent sum;
+    std::vector<ScreenTriangle> large, large_of_range;
     for (std::uint32_t t = first; t < first + count; ++t) {
-      const Extent e = Extents(screen).of(prepared.draw, t, 1);
+      const Extent e = Extents(screen).of(prepared.draw, t, 1, large);
       sum.triangles += e.triangles;
       sum.pixels += e.pixels;
       if (e.box.empty()) continue;
@@ -63,10 +65,11 @@ TEST(Extent, OfARangeIsThatOfItsTriangles) {
               : geometry::Rect{std::min(sum.box.x0, e.box.x0), std::min(sum.box.y0, e.box.y0),
                                std::max(sum.box.x1, e.box.x1), std::max(sum.box.y1, e.box.y1)};
     }
-    const Extent whole = Extents(screen).of(prepared.draw, first, count);
+    const Extent whole = Extents(screen).of(prepared.draw, first, count, large_of_range);
     EXPECT_EQ(whole.box, sum.box);
     EXPECT_EQ(whole.triangles, sum.triangles);
     EXPECT_EQ(whole.pixels, sum.pixels);
+    EXPECT_EQ(large_of_range.size(), large.size());
   }
 }
 

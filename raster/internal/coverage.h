@@ -1,0 +1,48 @@
+// How often the squares of a screen are covered: more often than is seen where surfaces lie behind
+// each other.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "comm/communicator.h"
+#include "loadbalance/costs.h"
+#include "raster/internal/screen_triangle.h"
+
+namespace delray::raster {
+
+class Coverage {
+ public:
+  // Pixels are pixels of the frame, which has n x n samples in each.
+  Coverage(const Screen& screen, int n);
+
+  // So many samples, anywhere in a box of pixels.
+  void add(const geometry::Rect& box, double samples, bool blended);
+  // A triangle, square by square. O(squares in its box).
+  void add_large(const ScreenTriangle& triangle, bool blended);
+  void sum_over_ranks(comm::Communicator& communicator);
+
+  // The part of what opaque surfaces cover in a box that is seen, if they lie at random. Blended
+  // ones are always seen.
+  double seen(const geometry::Rect& box) const;
+  // What is seen and drawn of large triangles at these prices for a sample, square by square.
+  std::vector<loadbalance::WeightedBox> costs_of_large(double seen_price, double drawn_price) const;
+
+ private:
+  static constexpr int kSide = 16;  // pixels
+
+  struct Square {
+    double opaque = 0, large_opaque = 0, large_blended = 0;  // samples
+  };
+  static geometry::Rect squares_of(const geometry::Rect& box);
+  template <class F>
+  void for_each_square(const geometry::Rect& box, F&& f) const;
+  double layers(const Square& square) const;
+
+  const Screen& screen_;
+  int n_, columns_, rows_;
+  geometry::Rect frame_;
+  std::vector<Square> squares_;
+};
+
+}  // namespace delray::raster
