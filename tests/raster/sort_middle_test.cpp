@@ -239,8 +239,9 @@ TEST(SortMiddle, CountsWhatTravels) {
         gouraud.messages;
     options.lighting = Lighting::phong;
     const Sent phong = sent(options, 4);
-    EXPECT_EQ(phong.statistics.triangles_travelled, travelled);
-    EXPECT_GT(phong.bytes, gouraud.bytes);
+    // Pixels cost more than with gouraud, so that regions are not quite the same.
+    EXPECT_GT(phong.statistics.triangles_travelled, travelled / 2);
+    EXPECT_GT(phong.bytes / phong.statistics.triangles_travelled, gouraud.bytes / travelled);
     EXPECT_EQ(phong.statistics.fragments, gouraud.statistics.fragments);
     EXPECT_GE(phong.statistics.triangles_in, 20000U);
   }
@@ -274,20 +275,25 @@ TEST(SortMiddle, ImmediateBatchesAreDrawnAsTheyCome) {
   for (RenderOptions options : variants(small_picture())) {
     if (options.groups == Groups::one) continue;
     SCOPED_TRACE(described(options));
-    std::vector<std::vector<comm::Event>> events(3);
-    comm::run_simulated(3, comm::any_order(), 1, [&](comm::Communicator& communicator) {
-      comm::Recording recording(communicator, events[communicator.rank()]);
-      render(recording, scene, scene.cameras[0], options);
-    });
     std::set<std::int32_t> rounds;
     std::size_t messages = 0;
-    for (const comm::Event& event : events[2]) {
-      if (event.kind != comm::Event::Kind::receive || event.tag >= comm::kReservedTags) continue;
-      ++messages;
-      rounds.insert(event.round);
+    constexpr int kOrders = 4;  // of what happens when
+    for (std::uint64_t seed = 0; seed < kOrders; ++seed) {
+      std::vector<std::vector<comm::Event>> events(3);
+      comm::run_simulated(3, comm::any_order(), seed, [&](comm::Communicator& communicator) {
+        comm::Recording recording(communicator, events[communicator.rank()]);
+        render(recording, scene, scene.cameras[0], options);
+      });
+      for (const int receiver : {1, 2})
+        for (const comm::Event& event : events[receiver]) {
+          if (event.kind != comm::Event::Kind::receive || event.tag >= comm::kReservedTags)
+            continue;
+          ++messages;
+          rounds.insert(event.round);
+        }
     }
     const bool immediate = options.redistribution == Redistribution::immediate;
-    EXPECT_EQ(messages > 2, immediate);
+    EXPECT_EQ(messages > 4 * kOrders, immediate);
     EXPECT_EQ(rounds.size() > 1, immediate);
   }
 }
