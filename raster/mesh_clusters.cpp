@@ -86,6 +86,17 @@ void bound(const scenes::Mesh& mesh, const ClusterBlock& block, MeshCluster& clu
   cluster.least_height = static_cast<float>(least_height * (1 - kRounding));
 }
 
+bool normals_agree(const scenes::Mesh& mesh, const MeshCluster& cluster) {
+  if (mesh.normals.empty()) return false;
+  for (std::uint32_t t = cluster.first; t < cluster.first + cluster.count; ++t) {
+    const glm::uvec3& corners = mesh.triangles[t];
+    const glm::vec3 edges = cross_of_edges(mesh, corners);
+    for (int k = 0; k < 3; ++k)
+      if (!normal_agrees(mesh, corners[k], edges)) return false;
+  }
+  return true;
+}
+
 std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t begin,
                                          std::uint32_t end) {
   auto block = std::make_unique<ClusterBlock>();
@@ -118,6 +129,7 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
       block->corners.insert(block->corners.end(), corner.begin(),
                             corner.begin() + cluster.corner_stride());
     bound(mesh, *block, cluster);
+    cluster.normals_agree = normals_agree(mesh, cluster);
     block->box.include(cluster.box);
     block->clusters.push_back(cluster);
   }

@@ -5,11 +5,14 @@
 namespace delray::raster {
 namespace {
 
+bool has_direction(const glm::vec3& v) {
+  const float squared = glm::dot(v, v);
+  return squared > 0 && squared <= std::numeric_limits<float>::max();
+}
+
 // `otherwise` where v has no direction.
 glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
-  const float squared = glm::dot(v, v);
-  const bool usable = squared > 0 && squared <= std::numeric_limits<float>::max();
-  return usable ? v * (1.0F / std::sqrt(squared)) : otherwise;
+  return has_direction(v) ? v * (1.0F / std::sqrt(glm::dot(v, v))) : otherwise;
 }
 
 }  // namespace
@@ -52,6 +55,19 @@ ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw) {
   return result;
 }
 
+Barycentrics make_screen_barycentrics(const Screen& screen, const ToView& to_view,
+                                      std::span<const glm::vec3> positions,
+                                      const glm::uvec3& corners) {
+  const std::uint32_t which[3] = {corners.x, corners.y, corners.z};
+  ScreenVertices v;
+  transform(to_view, screen, positions, which, v);
+  if (!v.any_outside)
+    return make_barycentrics(screen, std::array<ScreenVertex, 3>{v[0], v[1], v[2]});
+  return make_barycentrics(
+      screen, std::array<glm::vec3, 3>{to_view(positions[corners.x]), to_view(positions[corners.y]),
+                                       to_view(positions[corners.z])});
+}
+
 SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
                                 const Draw& draw, const ShadedDraw& shaded, std::uint32_t t) {
   const scenes::Mesh& mesh = *draw.mesh;
@@ -72,16 +88,22 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
       result.position[k] = transformed->world.empty() ? glm::vec3(0.0F) : transformed->world[i];
   }
   result.barycentrics = make_barycentrics(screen, view);
+  result.screen_barycentrics =
+      make_screen_barycentrics(screen, shaded.to_view, mesh.positions, corners);
+  result.front = result.screen_barycentrics.counter_clockwise == (shaded.handedness > 0);
   const glm::vec3* p = result.position;
   result.geometric_normal =
       unit(glm::cross(p[1] - p[0], p[2] - p[0]) * shaded.handedness, {0, 0, 1});
+  const glm::vec3 edges = cross_of_edges(mesh, corners);
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t i = corners[k];
     result.normal[k] = result.geometric_normal;
     if (!mesh.normals.empty()) {
       const glm::vec3 normal =
           transformed == nullptr ? normal_in_world(draw, shaded, i) : mesh.normals[i];
-      if (normal != glm::vec3(0.0F)) result.normal[k] = normal;
+      result.own_normal[k] = normal != glm::vec3(0.0F);
+      if (result.own_normal[k]) result.normal[k] = normal;
+      result.agrees[k] = normal_agrees(mesh, i, edges);
     }
     result.uv[k] = result.has_uv ? mesh.uvs[i] : glm::vec2(0.0F);
     result.colour[k] = mesh.colours.empty() ? glm::vec4(1.0F) : mesh.colours[i];

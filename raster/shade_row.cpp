@@ -74,7 +74,7 @@ struct Corners {
   F colour[3][3];  // [corner][channel]
 };
 
-// The shares of a triangle's corners at pixels (x, y): the arithmetic of weights_at.
+// The shares of a triangle's corners at pixels (x, y): the arithmetic of quick_weights_at.
 HWY_INLINE void shares(const PixelTriangle& t, F x, float y, F (&u)[3]) {
   const Floats d;
   const F dx = hn::Sub(x, hn::Set(d, t.x));
@@ -108,7 +108,7 @@ HWY_INLINE void set_corners(hn::Mask<Floats> lanes, const PixelTriangle& t, F x,
   }
 }
 
-// The arithmetic of weights_at and interpolate.
+// The arithmetic of quick_weights_at and interpolate.
 HWY_INLINE Colours interpolated(const Corners& corners) {
   const Floats d;
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0F);

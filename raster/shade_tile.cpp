@@ -31,13 +31,14 @@ glm::vec3 radiance(const FrameShading& frame, const scenes::Material& material,
 }
 
 glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x, int y) {
-  const Weights w = weights_at(triangle.barycentrics, x, y);
+  const Weights w = quick_weights_at(triangle.screen_barycentrics, x, y);
   const glm::vec3 lit = interpolate(w, triangle.radiance);
   const std::uint32_t texture = triangle.material->base_colour_texture;
   if (texture == scenes::kNone) return lit;
   const glm::vec2 uv = interpolate(w, triangle.uv);
-  const shading::Footprint footprint{derivative(w, triangle.barycentrics.a, triangle.uv, uv),
-                                     derivative(w, triangle.barycentrics.b, triangle.uv, uv)};
+  const shading::Footprint footprint{
+      derivative(w, triangle.screen_barycentrics.a, triangle.uv, uv),
+      derivative(w, triangle.screen_barycentrics.b, triangle.uv, uv)};
   return lit * glm::vec3(shading::sample(frame.shader.textures[texture], uv, footprint));
 }
 
@@ -100,7 +101,6 @@ const SeenTriangle& SeenTriangles::get(const FrameShading& frame, std::uint32_t 
 
 void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw,
                                    const glm::uvec3& corners, SeenTriangle& triangle) {
-  const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
   if (const auto* const transformed = frame.list.draws[draw].transformed) {
     for (int k = 0; k < 3; ++k) triangle.radiance[k] = transformed->radiances[corners[k]];
     return;
@@ -108,18 +108,19 @@ void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw
   const auto number = triangle.material - frame.shader.materials.data();
   const scenes::Material& material = frame.untextured[number];
   for (int k = 0; k < 3; ++k) {
-    const shading::Point point = corner(triangle, k);
+    shading::Point point = corner(triangle, k);
     // A vertex without a normal of its own is lit as its triangle is.
-    if (mesh.normals.empty()) {
+    if (!triangle.own_normal[k]) {
       triangle.radiance[k] = radiance(frame, material, point);
       continue;
     }
-    // The same vertex is lit on the other side where a neighbour faces away.
-    const glm::vec3 view = to_viewer(frame, point.position);
-    const bool front = glm::dot(point.geometric_normal, view) >= 0;
-    const bool agree = glm::dot(point.normal, point.geometric_normal) >= 0;
+    // The same vertex is lit on the other side where a neighbour faces away. Its normal says which
+    // side: a geometric one of zero leaves it as it is.
+    const bool turned = triangle.front != triangle.agrees[k];
+    if (turned) point.normal = -point.normal;
+    point.geometric_normal = glm::vec3(0.0F);
     const std::uint64_t key = (std::uint64_t{draw} << 33) | (std::uint64_t{corners[k]} << 1) |
-                              static_cast<std::uint64_t>(front == agree);
+                              static_cast<std::uint64_t>(turned);
     const std::uint64_t slot = (key * kGoldenRatio64) >> (64 - kVertexSlotBits);
     if (vertices_[slot] != key) {
       vertices_[slot] = key;

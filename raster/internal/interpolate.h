@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "raster/internal/screen.h"
+#include "raster/internal/screen_triangle.h"
 
 namespace delray::raster {
 
@@ -24,10 +24,55 @@ struct Weights {
 struct Barycentrics {
   float a[3], b[3], c[3];
   int x, y;
+  bool counter_clockwise;  // as seen on the screen; false without area
 };
 
-// From the vertices in view coordinates. A triangle without area, or seen edge-on, gives planes
-// that are finite.
+// From the vertices on the screen: u_k is the edge function opposite of vertex k over the distance
+// of the vertex. Exact but for the rounding of the planes, so that no pixel that is covered lies
+// outside. Returns whether the vertices run counter-clockwise; false without area.
+// REQUIRES: no vertex is kOutside.
+inline bool screen_planes(const Screen& screen, const std::array<ScreenVertex, 3>& vertices,
+                          float* a, float* b, float* c, int& origin_x, int& origin_y) {
+  const auto& [p, q, r] = vertices;
+  // The origin is a pixel of the frame amid the triangle: planes lose the least precision there.
+  const auto amid = [](int low, int high, int centre, int size) {
+    return std::clamp(((low + high) >> (kSubpixelBits + 1)) + centre, 0, size - 1);
+  };
+  origin_x =
+      amid(std::min({p.x, q.x, r.x}), std::max({p.x, q.x, r.x}), screen.centre_x, screen.width);
+  origin_y =
+      amid(std::min({p.y, q.y, r.y}), std::max({p.y, q.y, r.y}), screen.centre_y, screen.height);
+  const int from_x = (origin_x - screen.centre_x) * kSubpixels + kHalfPixel;
+  const int from_y = (origin_y - screen.centre_y) * kSubpixels + kHalfPixel;
+  // Whole numbers below 2^50: exact.
+  const double x0 = p.x - from_x, x1 = q.x - from_x, x2 = r.x - from_x;
+  const double y0 = p.y - from_y, y1 = q.y - from_y, y2 = r.y - from_y;
+  const double c0 = x1 * y2 - x2 * y1, c1 = x2 * y0 - x0 * y2, c2 = x0 * y1 - x1 * y0;
+  const bool counter_clockwise = (c0 + c1) + c2 < 0;
+  const double sign = counter_clockwise ? 1 : -1;  // depths are negative
+  const double near0 = sign * p.depth, near1 = sign * q.depth, near2 = sign * r.depth;
+  const double step0 = near0 * kSubpixels, step1 = near1 * kSubpixels, step2 = near2 * kSubpixels;
+  a[0] = static_cast<float>((y1 - y2) * step0);
+  a[1] = static_cast<float>((y2 - y0) * step1);
+  a[2] = static_cast<float>((y0 - y1) * step2);
+  b[0] = static_cast<float>((x2 - x1) * step0);
+  b[1] = static_cast<float>((x0 - x2) * step1);
+  b[2] = static_cast<float>((x1 - x0) * step2);
+  c[0] = static_cast<float>(c0 * near0);
+  c[1] = static_cast<float>(c1 * near1);
+  c[2] = static_cast<float>(c2 * near2);
+  return counter_clockwise;
+}
+inline Barycentrics make_barycentrics(const Screen& screen,
+                                      const std::array<ScreenVertex, 3>& vertices) {
+  Barycentrics result;
+  result.counter_clockwise =
+      screen_planes(screen, vertices, result.a, result.b, result.c, result.x, result.y);
+  return result;
+}
+
+// From the vertices in view coordinates, wherever they are. A triangle without area, or seen
+// edge-on, gives planes that are finite.
 inline Barycentrics make_barycentrics(const Screen& screen,
                                       const std::array<glm::vec3, 3>& vertices) {
   const scenes::View& view = screen.view;
@@ -55,7 +100,9 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   const double ray_x = (result.x + 0.5 - view.half_width) / view.scale;
   const double ray_y = (view.half_height - (result.y + 0.5)) / view.scale;
   const double step = 1.0 / view.scale;
-  const double facing = glm::dot(v[0], glm::cross(v[1] - v[0], v[2] - v[0])) < 0 ? -1.0 : 1.0;
+  const double volume = glm::dot(v[0], glm::cross(v[1] - v[0], v[2] - v[0]));
+  const double facing = volume < 0 ? -1.0 : 1.0;
+  result.counter_clockwise = volume > 0;
   double plane[3][3], largest = 0;
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3& p = v[(k + 1) % 3];
@@ -74,12 +121,23 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   return result;
 }
 
-// Sums from here on have a finite reciprocal.
-inline constexpr float kLeastSum = std::numeric_limits<float>::min();
-
 // At the centre of pixel (x, y). A pixel that snapping moved out of the triangle gets the weights
 // of a point on its border; where all is degenerate, those of the first vertex.
 inline Weights weights_at(const Barycentrics& t, int x, int y) {
+  const auto dx = static_cast<float>(x - t.x);
+  const auto dy = static_cast<float>(y - t.y);
+  float u[3];
+  for (int k = 0; k < 3; ++k) u[k] = std::max((t.a[k] * dx + t.b[k] * dy) + t.c[k], 0.0F);
+  const float sum = (u[0] + u[1]) + u[2];
+  if (!(sum > 0)) return {{1, 0, 0}, 0};
+  return {{u[0] / sum, u[1] / sum, u[2] / sum}, sum};
+}
+
+// Sums from here on have a finite reciprocal.
+inline constexpr float kLeastSum = std::numeric_limits<float>::min();
+
+// The same with one division, for Gouraud shading, which has little else to do at a pixel.
+inline Weights quick_weights_at(const Barycentrics& t, int x, int y) {
   const auto dx = static_cast<float>(x - t.x);
   const auto dy = static_cast<float>(y - t.y);
   float u[3];

@@ -31,12 +31,25 @@ struct MeshCluster {
   glm::vec3 axis{0, 0, 1};
   float cosine = -1;
   float least_height = 0;  // of all triangles: no two opposite parts of one are closer
+  // normal_agrees() at every corner of every triangle; false in a mesh without normals.
+  bool normals_agree = false;
 
   // From one corner's array to the next.
   std::uint32_t corner_stride() const {
     return (count + kCornerPadding - 1) / kCornerPadding * kCornerPadding;
   }
 };
+
+// Whether a corner's own normal is on the counter-clockwise side of the triangle; `edges` is the
+// cross product of two edges. In the mesh's coordinates, so that it is the same wherever the mesh
+// is.
+inline glm::vec3 cross_of_edges(const scenes::Mesh& mesh, const glm::uvec3& corners) {
+  const glm::vec3& p = mesh.positions[corners.x];
+  return glm::cross(mesh.positions[corners.y] - p, mesh.positions[corners.z] - p);
+}
+inline bool normal_agrees(const scenes::Mesh& mesh, std::uint32_t corner, const glm::vec3& edges) {
+  return glm::dot(mesh.normals[corner], edges) >= 0;
+}
 
 // The clusters of up to kBlockTriangles consecutive triangles of a mesh, ascending.
 struct ClusterBlock {

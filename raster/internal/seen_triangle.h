@@ -27,15 +27,23 @@ glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint
 
 // A triangle with its vertices' attributes in the world.
 struct SeenTriangle {
-  Barycentrics barycentrics;
+  Barycentrics barycentrics;         // from view coordinates
+  Barycentrics screen_barycentrics;  // from the screen where they can be; for Gouraud shading
   const scenes::Material* material = nullptr;
   bool has_uv = false, has_tangent = false, blended = false;
+  bool front = false;                       // the viewer sees the mesh's counter-clockwise side
+  bool own_normal[3] = {}, agrees[3] = {};  // of corner k: there is one; see normal_agrees()
   glm::vec3 geometric_normal{0, 0, 1};
   glm::vec3 position[3], normal[3];
   glm::vec4 tangent[3], colour[3];
   glm::vec2 uv[3];
   glm::vec3 radiance[3];  // of the vertices, for Gouraud shading
 };
+
+// Of a triangle of a mesh, from its vertices on the screen if all of them are inside.
+Barycentrics make_screen_barycentrics(const Screen& screen, const ToView& to_view,
+                                      std::span<const glm::vec3> positions,
+                                      const glm::uvec3& corners);
 
 // Everything but `radiance`. `t` is a triangle of the draw's mesh.
 SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,

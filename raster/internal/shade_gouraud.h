@@ -9,19 +9,22 @@
 
 #include "image/image.h"
 #include "raster/internal/shade_tile.h"
-#include "raster/internal/triangle_block.h"
+#include "raster/internal/tile_runs.h"
+#include "raster/internal/world_vertices.h"
 
 namespace delray::raster {
 
+inline constexpr int kBlockSize = 16;
+
 // What the pixels of a triangle look up: barycentrics, and the colour of corner k as red, green,
-// blue. Padded to vectors of four; the padding of a, b and c is 0.
-struct PixelTriangle {
+// blue. Vectors of four are loaded from each of them; a, b and c are padded with 0.
+struct alignas(32) PixelTriangle {
   float a[4], b[4], c[4];
-  float colour[3][4];
-  float x, y, padding[2];
+  float x, y;
+  float colour[3][3];
+  float padding;
 };
-inline constexpr int kPixelTriangleFloats = 28;
-static_assert(sizeof(PixelTriangle) == kPixelTriangleFloats * sizeof(float));
+static_assert(sizeof(PixelTriangle) == 96);
 
 // Index of a pixel that shows no triangle, or none that is shaded here.
 inline constexpr std::uint16_t kNoTriangle = 0xFFFFU;
@@ -39,17 +42,22 @@ void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* in
 void store_depths(const std::int64_t* keys, int count, float near, float* depths);
 
 // Memory for a tile. One per thread.
+//
+// The triangles that are seen are looked up cluster by cluster: their vertices have small numbers
+// there, are transformed together, and lit together with those of other clusters.
 class GouraudTile {
  public:
   GouraudTile();
 
-  // As shade_tile does it, without asking `seen` but for triangles with a texture.
+  // As shade_tile does it, without asking `seen` but for triangles with a texture, or with a vertex
+  // that has no normal.
   template <class Colour>
   std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                       const geometry::Rect& rect, const Window<Colour>& window);
 
-  // Of triangles of the frame's list, each once: the radiance of corner k of triangle i, without
-  // any texture, is radiances[corners[i][k]]. Until the next call.
+  // Of at most kTilePixels triangles of the frame's list, each once: the radiance of corner k of
+  // triangle i, without any texture, is radiances[corners[i][k]]. There are no others. Until the
+  // next call.
   struct LitCorners {
     std::span<const glm::uvec3> corners;
     std::span<const glm::vec3> radiances;
@@ -57,66 +65,98 @@ class GouraudTile {
   LitCorners light_corners(const FrameShading& frame, std::span<const std::uint32_t> numbers);
 
  private:
-  static constexpr std::uint32_t kTriangleSlots = 2 * kTilePixels;
-  static constexpr std::uint64_t kNoVertex = ~std::uint64_t{0};
+  static constexpr std::uint32_t kSlots = 2 * kTilePixels;
+  static constexpr std::uint16_t kNone = 0xFFFFU;
 
+  // The triangles of a cluster that are seen: a list through next_. What they refer to is scattered
+  // in memory: it is asked for some time before it is needed.
+  struct Group {
+    std::uint32_t cluster;
+    std::uint16_t head;
+    const ClusterBlock* block = nullptr;
+    const MeshCluster* part = nullptr;
+  };
+  // A triangle of the group at hand, with its corners among the vertices that the group uses.
+  struct Member {
+    std::uint16_t triangle;
+    std::uint8_t place;
+    std::uint8_t corner[3];
+  };
+  // What a group uses. Sets are sparse ones (Briggs & Torczon 1993): element v is in it if
+  // used[number[v]] == v, so that none of them needs to be cleared.
+  struct Members {
+    Member triangles[kClusterTriangles];
+    std::size_t triangle_count = 0;
+    std::uint8_t number[kClusterVertices] = {};     // of a vertex of the cluster, among those used
+    std::uint32_t used[kClusterVertices + 1] = {};  // vertices of the cluster
+    std::size_t used_count = 0;
+    std::uint32_t mesh_vertices[kClusterVertices] = {};  // of those used
+  };
   // Vertices of one material that wait to be lit together.
   struct VertexBlock {
     int count = 0;
     shading::Points points;
     std::uint32_t vertices[kBlockSize];
   };
-  struct VertexSlot {
-    std::uint64_t key = kNoVertex;
-    std::uint32_t vertex = 0;
-  };
 
-  // Where a triangle comes from.
-  struct SeenIn {
-    std::uint32_t draw, triangle;
-    glm::uvec3 corners;
-  };
-
+  void begin();
   std::uint64_t find_triangles(const VisibilityTile& tile, const geometry::Rect& rect);
-  void look_up_triangles(const DrawList& list);
-  void look_up_corners(const DrawList& list, std::size_t first);
+  std::uint16_t index_of(std::uint32_t number);
+  std::uint16_t add_triangle(std::uint32_t number);
+  std::size_t group_of(std::uint32_t cluster);
   void set_up_triangles(const FrameShading& frame);
-  void set_up_block(const FrameShading& frame, std::size_t first, int count);
-  void add_corners(const FrameShading& frame, int i, std::size_t triangle);
-  std::uint32_t vertex_of(std::uint32_t draw, std::uint32_t vertex, std::uint32_t side,
-                          bool& is_new);
-  std::uint32_t remember_vertex(std::size_t slot, std::uint64_t key);
-  void add_vertex(const FrameShading& frame, std::uint32_t material, int i, int k,
-                  const scenes::Mesh& mesh, std::uint32_t mesh_vertex, std::uint32_t vertex);
+  void set_up_groups(const FrameShading& frame);
+  void look_up(const FrameShading& frame, Group& group);
+  void collect(const FrameShading& frame, const Group& group, Members& members);
+  void set_up_group(const FrameShading& frame, const Group& group, const Members& members);
+  void set_up_member(const FrameShading& frame, const Cluster& cluster, const MeshCluster& part,
+                     const Member& member, std::uint32_t first_vertex, std::size_t used_count);
+  std::uint32_t turned(std::uint32_t used, std::size_t used_count);
+  void add_vertices(const FrameShading& frame, const scenes::Mesh& mesh, const Members& members,
+                    std::uint32_t first_vertex);
   void light(const FrameShading& frame, std::size_t block);
+  void set_colours();
+  void shade_one_by_one(std::uint16_t triangle) {
+    one_by_one_[triangle] = 1;
+    any_one_by_one_ = true;
+  }
 
-  std::uint16_t index_[kTilePixels + 1];  // by pixel of the tile
-  std::vector<std::uint32_t> numbers_;    // distinct triangles
+  TileRuns runs_;
+  std::uint16_t index_[kTilePixels + 2 * kBlockSize];  // by pixel of the tile
+  // By triangle that is seen.
+  std::vector<std::uint32_t> numbers_;
+  std::vector<std::uint16_t> next_;
   std::vector<PixelTriangle> triangles_;
-  std::vector<SeenIn> seen_in_;
-  std::vector<glm::uvec3> corners_;  // of triangles: into radiances_
-  std::vector<std::uint8_t> textured_;
-  bool any_textured_ = false;
+  std::vector<glm::uvec3> corners_;  // into radiances_
+  std::vector<std::uint8_t> one_by_one_;
+  bool any_one_by_one_ = false;
   bool without_textures_ = false;
 
-  struct TriangleSlot {
-    std::uint32_t number = kNothing;
-    std::uint32_t index = 0;
-  };
-  std::vector<TriangleSlot> triangle_slots_;
-  std::vector<std::uint32_t> used_triangle_slots_;
-  std::vector<VertexSlot> vertex_slots_;  // a power of two of them
-  int vertex_slot_shift_ = 0;
-  std::vector<std::uint32_t> used_vertex_slots_;
+  // Hash tables of indices into numbers_ and groups_, kNone where free.
+  std::uint16_t triangle_slots_[kSlots], group_slots_[kSlots];
+  std::vector<Group> groups_;
+  std::uint32_t last_cluster_ = kNothing;  // that a triangle was found of
+  std::size_t last_group_ = 0;
 
-  TriangleBlock block_;
-  TriangleGeometry geometry_;
-  std::uint32_t draw_of_lane_[kBlockSize];
+  Members members_[2];  // of a group and the next
+  // Of the group at hand: used vertices whose normals are turned, another sparse set.
+  std::uint8_t turned_number_[kClusterVertices];
+  std::uint32_t turned_[kClusterVertices + 1];
+  std::size_t turned_count_ = 0;
+  ScreenVertices screen_vertices_;
+  WorldVertices world_vertices_;
 
-  std::vector<glm::vec3> radiances_;
+  // By vertex: linear light, and 1, or 0 where it has no normal.
+  std::vector<glm::vec4> radiances_;
   // By material, without and with colours of vertices; null where none was needed.
   std::vector<std::unique_ptr<VertexBlock>> blocks_;
-  std::vector<std::size_t> open_blocks_;  // those with vertices in them
+  std::vector<std::size_t> open_blocks_;  // all with vertices in them, and others
+
+  // For light_corners.
+  std::unique_ptr<SeenTriangles> seen_;
+  std::vector<std::uint32_t> lit_of_vertex_;
+  std::vector<glm::uvec3> lit_corners_;
+  std::vector<glm::vec3> lit_radiances_;
 };
 
 }  // namespace delray::raster
