@@ -27,13 +27,12 @@ enum Attribute : std::uint8_t {
 struct Header {
   std::uint32_t cluster, material;
   std::uint16_t vertices, triangles;
-  std::uint8_t attributes;
-  std::int8_t handedness, hidden_side;
-  std::uint8_t unused;
+  std::uint8_t attributes, mirrored;
+  std::int16_t hidden_side;
 
   bool same_mesh(const Header& other) const {
     return material == other.material && attributes == other.attributes &&
-           handedness == other.handedness && hidden_side == other.hidden_side;
+           mirrored == other.mirrored && hidden_side == other.hidden_side;
   }
 };
 static_assert(sizeof(Header) == 16);
@@ -161,7 +160,7 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
       close_mesh();
       ArrivedMesh& mesh = meshes.emplace_back();
       mesh.mesh.material = header.material;
-      mesh.vertices.handedness = header.handedness;
+      mesh.vertices.handedness = header.mirrored != 0 ? -1.0F : 1.0F;
       mesh.vertices.hidden_side = header.hidden_side;
       mesh.clusters.blocks.push_back(std::make_unique<ClusterBlock>());
       list.draws.push_back({&mesh.mesh, &kIdentity, &mesh.clusters, 0, &mesh.vertices});
@@ -247,9 +246,8 @@ void ClusterPacker::append_section(std::uint32_t number, std::vector<std::byte>&
                       static_cast<std::uint16_t>(vertices_.size()),
                       static_cast<std::uint16_t>(triangles),
                       attributes_,
-                      static_cast<std::int8_t>(shaded_->handedness),
-                      static_cast<std::int8_t>(prepared_->hidden_side),
-                      0};
+                      static_cast<std::uint8_t>(shaded_->handedness < 0),
+                      static_cast<std::int16_t>(prepared_->hidden_side)};
   const std::size_t before = bytes.size();
   bytes.resize(before + sizeof(header) + corner_bytes(triangles) +
                vertices_.size() * vertex_bytes(attributes_));
