@@ -14,6 +14,7 @@
 
 #include "comm/communicator.h"
 #include "image/image.h"
+#include "loadbalance/cost_model.h"
 #include "parallel/progress.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
@@ -34,6 +35,10 @@ enum class Travel : std::uint8_t { geometry, numbers };
 // too. composited: once the ranks' pixels are composited, by the rank that owns it then, so that
 // what travels is what shading needs, not colours (sort-last with phong lighting).
 enum class Shade : std::uint8_t { deferred, immediate, composited };
+
+// What a triangle set up and a sample shaded cost beside each other, as fitted to what a few scenes
+// took (bench/raster/balance.cpp): phong takes many times as long for a sample.
+loadbalance::RasterCostModel cost_model(Lighting lighting);
 
 // What partitions take for the cost of primitives and pixels. model: prices that are fixed.
 // measured: prices fitted to what ranks did and how long it took them in the last frame, regions
@@ -86,8 +91,8 @@ struct Phases {
 
 struct RankStatistics {
   int rank = 0;
-  double busy = 0;          // transform + bin + rasterize + shade
-  std::uint64_t tasks = 0;  // tiles
+  double busy = 0;                          // transform + bin + rasterize + shade
+  std::uint64_t tasks = 0;                  // tiles
   std::uint64_t triangles = 0, shaded = 0;  // triangles rasterized, samples shaded
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
 };

@@ -17,16 +17,15 @@
 namespace delray::raster {
 namespace {
 
-// What a triangle set up and a pixel shaded cost beside each other, in this rasterizer, until it is
-// measured: phong takes many times as long for a pixel.
-loadbalance::RasterCostModel default_model(Lighting lighting) {
-  return lighting == Lighting::gouraud ? loadbalance::RasterCostModel{4, 1}
-                                       : loadbalance::RasterCostModel{0.2, 1};
-}
 // What a pixel costs that is drawn, beside one that is seen and shaded.
 constexpr double kDrawn = 0.05;
 
 }  // namespace
+
+loadbalance::RasterCostModel cost_model(Lighting lighting) {
+  return lighting == Lighting::gouraud ? loadbalance::RasterCostModel{3, 1}
+                                       : loadbalance::RasterCostModel{0.2, 1};
+}
 
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {
   std::vector<Piece> groups;
@@ -44,7 +43,7 @@ std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int part
 
 std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
                                                                 std::span<const Piece> groups) {
-  loadbalance::RasterCostModel model = default_model(rank.options.lighting);
+  loadbalance::RasterCostModel model = cost_model(rank.options.lighting);
   samples_.clear();
   if (rank.options.costs == CostSource::measured && rank.ranks() > 1) {
     for (const comm::Buffer& from :

@@ -1,9 +1,10 @@
 // How even the partitions of the screen are, by what the rasterizer counts: every partition on a
 // scene rendered sort-first by so many ranks. A rank's work is what it rasterized, triangles and
-// pixels, at prices fitted to the ranks' processor time; over_share is the largest rank's work over
+// pixels, at the prices of raster::cost_model; over_share is the largest rank's work over
 // an equal share of what one rank alone would do, so that triangles drawn by several count.
 // Triangles: drawn by all ranks over those of one alone. Pixels: the most that a rank shaded over
-// an equal share.
+// an equal share. Busy: the largest processor time of a rank over the mean. Fitted: the price of a
+// triangle, in samples, that fits the ranks' times best.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -23,11 +24,12 @@ using namespace delray;
 namespace {
 
 raster::Statistics rendered(const scenes::Scene& scene, const scenes::Camera& camera,
-                            const std::string& partition, int ranks, int regions_per_rank) {
+                            const std::string& partition, int ranks, int regions_per_rank,
+                            raster::Lighting lighting) {
   raster::RenderOptions options;
   options.width = 1920;
   options.height = 1080;
-  options.lighting = raster::Lighting::gouraud;
+  options.lighting = lighting;
   options.strategy = "sort-first";
   options.partition = partition;
   options.regions_per_rank = regions_per_rank;
@@ -50,21 +52,24 @@ loadbalance::RasterSample sample_of(const raster::RankStatistics& rank) {
 
 }  // namespace
 
-// [--regions PER_RANK] [SCENE ...]
+// [--regions PER_RANK] [--phong] [SCENE ...]
 int main(int argc, char** argv) {
   std::vector<std::string> names;
   int regions_per_rank = 1;
+  raster::Lighting lighting = raster::Lighting::gouraud;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--regions") == 0 && i + 1 < argc) {
       ++i;
       std::from_chars(argv[i], argv[i] + std::strlen(argv[i]), regions_per_rank);
+    } else if (std::strcmp(argv[i], "--phong") == 0) {
+      lighting = raster::Lighting::phong;
     } else {
       names.emplace_back(argv[i]);
     }
   }
   if (names.empty()) names = {"gen:field", "gen:city"};
   std::printf("%-22s %5s %-12s %10s %10s %10s %8s %8s %9s %8s\n", "scene", "ranks", "partition",
-              "over_share", "predicted", "triangles", "pixels", "busy", "cut ms", "prices");
+              "over_share", "predicted", "triangles", "pixels", "busy", "cut ms", "fitted");
   for (const std::string& name : names) {
     std::vector<std::string> warnings;
     scenes::Scene scene =
@@ -74,16 +79,17 @@ int main(int argc, char** argv) {
             ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 16.0F / 9)
             : scene.cameras[0];
     scenes::complete(scene, camera);
-    const raster::Statistics alone = rendered(scene, camera, "mahd", 1, 1);
+    const raster::Statistics alone = rendered(scene, camera, "mahd", 1, 1, lighting);
     for (const int ranks : {16, 64}) {
       std::vector<loadbalance::RasterSample> samples;
       std::vector<raster::Statistics> all;
       for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
-        all.push_back(rendered(scene, camera, partitioner.name, ranks, regions_per_rank));
+        all.push_back(rendered(scene, camera, partitioner.name, ranks, regions_per_rank, lighting));
         for (const raster::RankStatistics& rank : all.back().ranks)
           samples.push_back(sample_of(rank));
       }
-      const loadbalance::RasterCostModel model = loadbalance::fit(samples);
+      const loadbalance::RasterCostModel model = raster::cost_model(lighting);
+      const loadbalance::RasterCostModel fitted = loadbalance::fit(samples);
       const auto work = [&](const raster::RankStatistics& rank) {
         return model(static_cast<double>(rank.triangles), static_cast<double>(rank.shaded));
       };
@@ -105,7 +111,7 @@ int main(int argc, char** argv) {
                     all[i].partition->over_share, over(triangles, alone.ranks[0].triangles),
                     over(pixels * static_cast<std::uint64_t>(ranks), alone.ranks[0].shaded),
                     all[i].imbalance, all[i].partition->seconds * 1e3,
-                    model.per_triangle / model.per_pixel);
+                    fitted.per_triangle / fitted.per_pixel);
         std::fflush(stdout);
       }
     }
