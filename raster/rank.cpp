@@ -49,21 +49,26 @@ void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
 }
 
 template <class Colour>
+void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                  const Window<Colour>& window) {
+  for (const geometry::Rect& rect : rects) {
+    if (n == 1) {
+      tile.shade(rect, window);
+    } else if (tile.empty()) {
+      clear_pixels(pixels_of(rect, n), window);
+    } else {
+      const Window<Colour> samples = tile_window<Colour>(rect);
+      tile.shade(rect, samples);
+      resolve(samples, n, pixels_of(rect, n), window);
+    }
+  }
+}
+
+template <class Colour>
 void Rank::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
-  const int n = options.supersampling;
   const Window<Colour> window = window_of(image);
   end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
-    for (const geometry::Rect& rect : rects) {
-      if (n == 1) {
-        tile.shade(rect, window);
-      } else if (tile.empty()) {
-        clear_pixels(pixels_of(rect, n), window);
-      } else {
-        const Window<Colour> samples = tile_window<Colour>(rect);
-        tile.shade(rect, samples);
-        resolve(samples, n, pixels_of(rect, n), window);
-      }
-    }
+    store_pixels(rects, tile, options.supersampling, window);
   });
 }
 
@@ -112,5 +117,10 @@ template image::Image8 Rank::render_samples(const DrawList&);
 template image::ImageF Rank::render_samples(const DrawList&);
 template image::Image8 Rank::take_image(int, int);
 template image::ImageF Rank::take_image(int, int);
+
+template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
+                           const Window<image::Rgba8>&);
+template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
+                           const Window<image::RgbaF>&);
 
 }  // namespace delray::raster

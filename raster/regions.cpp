@@ -25,25 +25,46 @@ void RegionCounts::operator+=(const RegionCounts& other) {
   tiles += other.tiles;
 }
 
+PreparedFrame::PreparedFrame(const RegionTask& task)
+    : shading_(make_frame_shading(task.screen, task.shader, task.list, task.options.lighting,
+                                  task.distances)) {
+  add_draws(task);
+}
+
+void PreparedFrame::add_draws(const RegionTask& task) {
+  const std::vector<Draw>& draws = task.list.draws;
+  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].draw = &draws[i];
+  for (std::size_t i = draws_.size(); i < draws.size(); ++i)
+    draws_.push_back(
+        prepare_draw(task.screen, draws[i], task.shader, task.options.cull_single_sided));
+  raster::add_draws(shading_);
+}
+
 RegionDrawing::RegionDrawing(const RegionTask& task, Scratch& scratch)
+    : RegionDrawing(task, std::make_unique<PreparedFrame>(task), nullptr, scratch) {}
+
+RegionDrawing::RegionDrawing(const RegionTask& task, const PreparedFrame& frame, Scratch& scratch)
+    : RegionDrawing(task, nullptr, &frame, scratch) {}
+
+RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
+                             const PreparedFrame* frame, Scratch& scratch)
     : task_(task),
       scratch_(scratch),
       tiles_(make_tile_jobs(task.screen, task.regions)),
       number_(next_number()),
-      frame_(make_frame_shading(task.screen, task.shader, task.list, task.options.lighting,
-                                task.distances)),
+      own_frame_(std::move(own)),
+      frame_(own_frame_ != nullptr ? own_frame_.get() : frame),
       into_tiles_{task.screen,
                   task.list,
-                  {},
+                  frame_->draws(),
                   tiles_.wanted,
                   task.options.skip_hidden_clusters,
                   [this](std::uint32_t number, int x, int y) {
-                    return solid(frame_, memory().seen, number, x, y);
+                    return solid(frame_->shading(), memory().seen, number, x, y);
                   },
                   {},
                   task.progress} {
   const Screen& screen = task.screen;
-  add_draws();
   if (task.progress != nullptr) task.progress->start(tiles_.jobs.size());
   scratch_.tiles.begin(screen, tiles_);
   begin_drawing(screen, scratch_.workers);
@@ -52,8 +73,9 @@ RegionDrawing::RegionDrawing(const RegionTask& task, Scratch& scratch)
       static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
   if (scratch_.shaded.size() < pixels) scratch_.shaded = image::Plane<image::RgbaF>(pixels);
   into_tiles_.shade_now = [this](std::uint32_t number, int x, int y) {
-    scratch_.shaded[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.screen.width) +
-                    static_cast<std::size_t>(x)] = colour_at(frame_, memory().seen, number, x, y);
+    scratch_.shaded[static_cast<std::size_t>(y) * static_cast<std::size_t>(task_.screen.width) +
+                    static_cast<std::size_t>(x)] =
+        colour_at(frame_->shading(), memory().seen, number, x, y);
   };
 }
 
@@ -66,25 +88,21 @@ TileMemory& RegionDrawing::memory() const {
   return of_thread;
 }
 
-void RegionDrawing::add_draws() {
-  const std::vector<Draw>& draws = task_.list.draws;
-  // They may have moved.
-  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].draw = &draws[i];
-  for (std::size_t i = draws_.size(); i < draws.size(); ++i)
-    draws_.push_back(
-        prepare_draw(task_.screen, draws[i], task_.shader, task_.options.cull_single_sided));
-  into_tiles_.draws = draws_;
-  raster::add_draws(frame_);
-}
-
 std::vector<std::uint32_t> RegionDrawing::nearest_first(
     std::span<const std::uint32_t> clusters) const {
   return raster::nearest_first(into_tiles_, clusters);
 }
 
 void RegionDrawing::draw(std::span<const std::uint32_t> clusters) {
-  add_draws();
-  draw_clusters(into_tiles_, nearest_first(clusters), scratch_.tiles, scratch_.workers, costs_);
+  if (own_frame_ != nullptr) {
+    own_frame_->add_draws(task_);
+    into_tiles_.draws = own_frame_->draws();
+  }
+  draw_in_order(nearest_first(clusters));
+}
+
+void RegionDrawing::draw_in_order(std::span<const std::uint32_t> clusters) {
+  draw_clusters(into_tiles_, clusters, scratch_.tiles, scratch_.workers, costs_);
 }
 
 void RegionDrawing::draw_all() {
@@ -123,7 +141,7 @@ RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
           shade_now ? scratch_.shaded.data() +
                           static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
                     : nullptr;
-      TileView view(frame_, tile, colours, mine);
+      TileView view(frame_->shading(), tile, colours, mine);
       finish_tile(tiles_.rects_of(tiles_.jobs[k]), view);
       clock.finish(1);
       shown_here += view.shown();

@@ -42,6 +42,11 @@ void check(const RenderOptions& options, int ranks) {
   if (std::min(options.width, options.height) < 1 || longest > kLargestSide / n)
     throw std::invalid_argument("a picture's sides are from 1 to " + std::to_string(kLargestSide) +
                                 " samples");
+  if (!options.schedule.empty()) {
+    known(loadbalance::find_schedule(options.schedule) != nullptr, "schedule", options.schedule);
+    if (options.strategy != "sort-first" || options.block < 1)
+      throw std::invalid_argument("schedules hand out sort-first's blocks of at least a pixel");
+  }
   if (options.regions_per_rank < 1 || !(options.keep_factor >= 1))
     throw std::invalid_argument(
         "a rank has at least one region, kept up to a factor of at least 1");
@@ -79,6 +84,10 @@ Report make_report(const Rank& rank, std::span<const comm::Event> events) {
   report.rank.tasks = rank.counts.tiles;
   report.rank.triangles = rank.counts.triangles.rasterized;
   report.rank.shaded = rank.counts.shaded;
+  report.rank.requests = rank.schedule.requests;
+  report.rank.steals = rank.schedule.steals;
+  report.rank.blocks_stolen = rank.schedule.tasks_stolen;
+  report.rank.idle = rank.schedule.idle;
   report.rank.bytes_sent = totals.bytes_sent;
   report.rank.bytes_received = totals.bytes_received;
   report.rank.messages = totals.messages_sent;

@@ -71,6 +71,11 @@ struct RenderOptions {
   // A partition is kept from frame to frame for as long as no rank would have to do more than so
   // many times an equal share.
   double keep_factor = 1.2;
+  // Of loadbalance::schedules(): blocks of the screen change rank while they are rendered, for
+  // instance from a rank whose region takes long to one that is done with its own. Every rank needs
+  // all primitives then, and knows from their clusters' bounds which a block shows. Empty: none.
+  std::string schedule;
+  int block = 64;                    // pixels, the side of a block that is handed out
   bool report_partition = false;     // costs time of about that of cutting
   Travel travel = Travel::geometry;  // sort-first
   Groups groups = Groups::one;       // sort-middle; a single rank does both
@@ -95,6 +100,8 @@ struct RankStatistics {
   std::uint64_t tasks = 0;                  // tiles
   std::uint64_t triangles = 0, shaded = 0;  // triangles rasterized, samples shaded
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
+  std::uint64_t requests = 0, steals = 0, blocks_stolen = 0;       // of a schedule
+  double idle = 0;  // seconds that threads waited for tasks of a schedule
 };
 
 // What there is to say of the screen's partition: see loadbalance/balance.h.

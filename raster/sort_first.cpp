@@ -52,6 +52,7 @@ Picture render(Rank& rank) {
 }  // namespace
 
 Picture sort_first(Rank& rank) {
+  if (!rank.options.schedule.empty()) return sort_first_scheduled(rank);
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "comm/communicator.h"
+#include "loadbalance/schedule.h"
 #include "raster/internal/regions.h"
 #include "raster/render.h"
 
@@ -27,6 +28,7 @@ struct Rank {
   FrameMemory& memory;
   RegionCounts counts = {};
   std::uint64_t triangles_travelled = 0;
+  loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
 
   int number() const { return communicator.rank(); }
   int ranks() const { return communicator.size(); }
@@ -63,6 +65,11 @@ struct Rank {
   image::BasicImage<Colour> take_image(int width, int height);
 };
 
+// Parts of regions in a tile, rects in samples, into a window of pixels: n x n samples averaged.
+template <class Colour>
+void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                  const Window<Colour>& window);
+
 // Runs f and adds the seconds that it took on this rank, waiting for others included.
 template <class F>
 auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
@@ -73,6 +80,8 @@ auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
 }
 
 Picture sort_first(Rank& rank);
+// With options.schedule.
+Picture sort_first_scheduled(Rank& rank);
 Picture sort_middle(Rank& rank);
 Picture sort_last(Rank& rank);
 

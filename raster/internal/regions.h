@@ -40,6 +40,21 @@ struct RegionTask {
   parallel::Progress* progress;
 };
 
+// The list's draws as drawing and shading want them: what drawings of the same list share.
+class PreparedFrame {
+ public:
+  explicit PreparedFrame(const RegionTask& task);
+  // Those that the list has got since. The others may have moved.
+  void add_draws(const RegionTask& task);
+
+  const FrameShading& shading() const { return shading_; }
+  std::span<const PreparedDraw> draws() const { return draws_; }
+
+ private:
+  std::vector<PreparedDraw> draws_;
+  FrameShading shading_;
+};
+
 using FinishTile = parallel::FunctionRef<void(std::span<const geometry::Rect>, TileView&)>;
 
 // A frame under way. The list may be given more draws and clusters until `finish`; calls are the
@@ -47,32 +62,36 @@ using FinishTile = parallel::FunctionRef<void(std::span<const geometry::Rect>, T
 class RegionDrawing {
  public:
   RegionDrawing(const RegionTask& task, Scratch& scratch);
+  // Of a list to which nothing is added, with what others have prepared; the frame stays theirs.
+  RegionDrawing(const RegionTask& task, const PreparedFrame& frame, Scratch& scratch);
   RegionDrawing(const RegionDrawing&) = delete;
   RegionDrawing& operator=(const RegionDrawing&) = delete;
 
   // Of the list's draws as they were when anything was drawn last, or at first.
-  const FrameShading& frame() const { return frame_; }
-  std::span<const PreparedDraw> draws() const { return draws_; }
+  const FrameShading& frame() const { return frame_->shading(); }
+  std::span<const PreparedDraw> draws() const { return frame_->draws(); }
   // Numbers of clusters, those of near draws first.
   std::vector<std::uint32_t> nearest_first(std::span<const std::uint32_t> clusters) const;
 
-  // Draws these clusters of the list. Parallel.
+  // Draws these clusters of the list, near draws first or as they are given. Parallel.
   void draw(std::span<const std::uint32_t> clusters);
+  void draw_in_order(std::span<const std::uint32_t> clusters);
   void draw_all();
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
   // parts of regions in it. Parallel. To be called once, in the end.
   RegionCounts finish(FinishTile finish_tile);
 
  private:
+  RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
+                const PreparedFrame* frame, Scratch& scratch);
   TileMemory& memory() const;
-  void add_draws();
 
   const RegionTask task_;
   Scratch& scratch_;
   const TileJobs tiles_;
   const std::uint64_t number_;  // no other drawing has it
-  std::vector<PreparedDraw> draws_;
-  FrameShading frame_;
+  std::unique_ptr<PreparedFrame> own_frame_;
+  const PreparedFrame* frame_;
   DrawIntoTiles into_tiles_;
   DrawCosts costs_;
 };

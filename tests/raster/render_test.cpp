@@ -10,6 +10,7 @@
 #include "composite/scheme.h"
 #include "image/srgb.h"
 #include "loadbalance/partition.h"
+#include "loadbalance/schedule.h"
 #include "parallel/arena.h"
 #include "raster/strategies.h"
 #include "scenes/generate.h"
@@ -84,12 +85,20 @@ std::vector<RenderOptions> every_way(const RenderOptions& base) {
         options.travel = travel;
         ways.push_back(options);
       }
+    if (options.strategy != "sort-first") continue;
+    options.block = 16;
+    for (const loadbalance::Schedule& schedule : loadbalance::schedules()) {
+      options.schedule = schedule.name;
+      ways.push_back(options);
+      options.block = 40;
+    }
   }
   return ways;
 }
 
 std::string described(const RenderOptions& options, int ranks, int threads) {
-  return options.strategy + " " + options.scheme + " " + options.codec + " " + options.partition +
+  return options.strategy + " " + options.schedule + " " + options.scheme + " " + options.codec +
+         " " + options.partition +
          (options.travel == Travel::numbers ? " numbers " : " geometry ") +
          (options.groups == Groups::two ? "two groups " : "") +
          (options.redistribution == Redistribution::at_end ? "at end " : "") +
@@ -470,6 +479,16 @@ TEST(Render, TellsOfWhatItDoesNotKnow) {
   expect_refused([](RenderOptions& o) { o.codec = "none"; });
   expect_refused([](RenderOptions& o) { o.width = 0; });
   expect_refused([](RenderOptions& o) { o.height = 65535; });
+  expect_refused([](RenderOptions& o) { o.schedule = "stealing"; });
+  expect_refused([](RenderOptions& o) {
+    o.strategy = "sort-first";
+    o.schedule = "none";
+  });
+  expect_refused([](RenderOptions& o) {
+    o.strategy = "sort-first";
+    o.schedule = "stealing";
+    o.block = 0;
+  });
   expect_refused([](RenderOptions& o) { o.supersampling = 3; });
   expect_refused([](RenderOptions& o) {
     o.width = 40000;

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "comm/simulated.h"
 #include "comm/threads.h"
 #include "parallel/arena.h"
 #include "raster/internal/group_traffic.h"
@@ -118,6 +119,44 @@ TEST(SortFirst, MeasuredCostsAndMoreRegionsThanRanksGiveTheSamePictures) {
           EXPECT_GE(frame.partition->overlap, 1);
         }
       }
+}
+
+// One of the ranks takes ten times as long for everything.
+TEST(SortFirst, RanksThatAreDoneStealBlocksFromASlowOne) {
+  const scenes::Scene scene = scenes::generate("gen:terrain:5000");
+  RenderOptions options = sort_first_options();
+  options.block = 8;
+  comm::Network network;  // a block takes many times as long as a message
+  for (double& seconds : network.seconds_per_work) seconds *= 50;
+  comm::SimulationOptions slow;
+  slow.slowness = {1, 1, 10, 1};
+  double without = 0;
+  for (const char* schedule : {"static", "stealing", "neighbour-stealing"}) {
+    options.schedule = schedule;
+    std::vector<RankStatistics> ranks;
+    const std::vector<double> ends = comm::run_simulated(
+        4, network, 1,
+        [&](comm::Communicator& communicator) {
+          Result result = render(communicator, scene, scene.cameras[0], options);
+          if (communicator.rank() == 0) ranks = std::move(result.statistics.ranks);
+        },
+        slow);
+    const double end = *std::max_element(ends.begin(), ends.end());
+    std::uint64_t stolen = 0, blocks = 0;
+    for (const RankStatistics& rank : ranks) {
+      stolen += rank.blocks_stolen;
+      blocks += rank.tasks;
+    }
+    EXPECT_EQ(blocks, 15U * 12) << schedule;
+    if (options.schedule == "static") {
+      EXPECT_EQ(stolen, 0U);
+      without = end;
+    } else {
+      EXPECT_GT(stolen, 10U) << schedule;
+      // Who asks its neighbours only, before it runs dry, may be the slow one itself.
+      EXPECT_LT(end, (options.schedule == "stealing" ? 0.6 : 1.0) * without) << schedule;
+    }
+  }
 }
 
 TEST(SortFirst, ARendererMayServeOneNumberOfRanksAfterAnother) {
