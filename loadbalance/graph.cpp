@@ -1,6 +1,6 @@
 #include <cassert>
 #include <map>
-#include <numeric>
+#include <span>
 #include <utility>
 
 #include "loadbalance/internal/cut.h"
@@ -12,17 +12,17 @@ namespace {
 
 using geometry::Rect;
 
-void split(GridBisection& bisection, std::vector<std::uint32_t> cells, int owner, int parts,
+void split(GridBisection& bisection, std::span<std::uint32_t> cells, int owner, int parts,
            int depth, std::vector<int>& owners) {
   if (parts == 1 || cells.size() < 2) {
-    for (const std::uint32_t cell : cells) owners[cell] = owner;
+    for (const std::uint32_t cell : cells) owners[bisection.place(cell)] = owner;
     return;
   }
   const int first_parts = first_half(parts, depth);
-  std::vector<std::uint32_t> first =
-      bisection.take(cells, static_cast<double>(first_parts) / parts);
-  split(bisection, std::move(first), owner, first_parts, depth + 1, owners);
-  split(bisection, std::move(cells), owner + first_parts, parts - first_parts, depth + 1, owners);
+  const std::size_t taken = bisection.cut(cells, static_cast<double>(first_parts) / parts);
+  split(bisection, cells.first(taken), owner, first_parts, depth + 1, owners);
+  split(bisection, cells.subspan(taken), owner + first_parts, parts - first_parts, depth + 1,
+        owners);
 }
 
 // Runs of cells of one owner, joined with those of the row above that have the same ends.
@@ -54,11 +54,10 @@ std::vector<Region> rectangles(const Costs& costs, const std::vector<int>& owner
 Partition graph(const Costs& costs, Rect frame, int parts) {
   assert(parts >= 1 && frame == costs.frame);
   if (frame.empty()) return {frame, {}};
-  std::vector<std::uint32_t> cells(costs.cells.size());
-  std::iota(cells.begin(), cells.end(), 0U);
-  std::vector<int> owners(cells.size());
   GridBisection bisection(costs);
-  split(bisection, std::move(cells), 0, parts, 0, owners);
+  std::vector<std::uint32_t> cells = bisection.cells();
+  std::vector<int> owners(cells.size());
+  split(bisection, cells, 0, parts, 0, owners);
   return {frame, rectangles(costs, owners)};
 }
 

@@ -44,7 +44,7 @@ Partition whitman(const Costs& costs, geometry::Rect frame, int parts);
 // The grid as a graph, its cells weighted with their cost and the edges between neighbours with the
 // cost that crosses them, cut into parts of equal cost such that little crosses (Kurc, Aykanat and
 // Ozguc 1997): halved again and again, see GridBisection. Regions are unions of cells, not
-// rectangles, and may be in several pieces. O(cells log cells log parts).
+// rectangles, and may be in several pieces. O(cells log parts).
 Partition graph(const Costs& costs, geometry::Rect frame, int parts);
 
 // Sweep lines (Samanta et al. 1999): as the line goes over a region, the cost on its left grows by
