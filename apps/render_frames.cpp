@@ -34,6 +34,12 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
       request.costs == "measured" ? raster::CostSource::measured : raster::CostSource::model;
   options.regions_per_rank = request.regions_per_rank;
   options.keep_factor = request.keep_factor;
+  options.schedule = request.schedule;
+  options.block = request.block;
+  options.groups = request.groups == "two" ? raster::Groups::two : raster::Groups::one;
+  options.geometry_ranks = request.geometry_ranks;
+  options.redistribution = request.redistribution == "at-end" ? raster::Redistribution::at_end
+                                                              : raster::Redistribution::immediate;
   options.report_partition = !request.statistics.empty();
   options.travel = request.travel == "numbers" ? raster::Travel::numbers : raster::Travel::geometry;
   options.scheme = request.scheme;

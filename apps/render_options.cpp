@@ -11,6 +11,7 @@
 #include "composite/scheme.h"
 #include "image/io.h"
 #include "loadbalance/partition.h"
+#include "loadbalance/schedule.h"
 #include "raster/strategies.h"
 #include "raytrace/integrator.h"
 #include "raytrace/tiles.h"
@@ -43,7 +44,7 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
 }
 
 void check_raster(const CLI::App& command, const RenderRequest& request) {
-  refuse(command, {"--integrator", "--spp", "--depth", "--schedule", "--data"}, "--engine raster");
+  refuse(command, {"--integrator", "--spp", "--depth", "--data"}, "--engine raster");
   find_entry(raster::strategies(), request.strategy, "--strategy");
   find_entry(loadbalance::partitioners(), request.partition, "--partition");
   find_entry(composite::schemes(), request.scheme, "--compose");
@@ -53,6 +54,23 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
            "--strategy sort-last");
   } else {
     refuse(command, {"--compose", "--codec"}, "--strategy " + request.strategy);
+  }
+  if (request.strategy == "sort-first") {
+    if (!request.schedule.empty()) {
+      find_entry(loadbalance::schedules(), request.schedule, "--schedule");
+      refuse(command, {"--travel"}, "--schedule: every rank has all primitives");
+    } else {
+      refuse(command, {"--block"}, "no --schedule");
+    }
+  } else {
+    refuse(command, {"--schedule", "--block"}, "--strategy " + request.strategy);
+  }
+  if (request.strategy == "sort-middle") {
+    refuse(command, {"--travel"}, "--strategy sort-middle: triangles travel");
+    if (request.groups == "one") refuse(command, {"--geometry-ranks"}, "--groups one");
+  } else {
+    refuse(command, {"--groups", "--geometry-ranks", "--redistribute"},
+           "--strategy " + request.strategy);
   }
   if (request.shade == "composited") {
     if (request.strategy != "sort-last") {
@@ -65,10 +83,12 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
   }
 }
 
-void check_raytrace(const CLI::App& command, const RenderRequest& request) {
+void check_raytrace(const CLI::App& command, RenderRequest& request) {
+  if (request.schedule.empty()) request.schedule = "interlaced";
   refuse(command,
          {"--strategy", "--partition", "--compose", "--codec", "--shading", "--shade", "--samples",
-          "--travel", "--costs", "--regions", "--keep"},
+          "--travel", "--costs", "--regions", "--keep", "--block", "--groups", "--geometry-ranks",
+          "--redistribute"},
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
   find_entry(raytrace::schedules(), request.schedule, "--schedule");
@@ -140,6 +160,28 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
                   "equal share (default 1.2)")
       ->check(CLI::Range(1.0, 1000.0))
       ->group(raster);
+  command
+      .add_option("--block", request.block,
+                  "pixels, the side of a block that --schedule hands out (default 64)")
+      ->check(CLI::Range(1, 4096))
+      ->group(raster);
+  command
+      .add_option("--groups", request.groups,
+                  "sort-middle: ranks do both halves (one, default), or some geometry and the "
+                  "others pixels (two)")
+      ->check(CLI::IsMember({"one", "two"}))
+      ->group(raster);
+  command
+      .add_option("--geometry-ranks", request.geometry_ranks,
+                  "sort-middle, two groups: how many ranks do geometry (default half)")
+      ->check(CLI::Range(1, 1000000))
+      ->group(raster);
+  command
+      .add_option(
+          "--redistribute", request.redistribution,
+          "sort-middle: triangles are sent in batches at once (immediate, default) or at-end")
+      ->check(CLI::IsMember({"immediate", "at-end"}))
+      ->group(raster);
   const std::string raytrace = "Ray tracer";
   command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);
   command.add_option("--spp", request.samples, "samples per pixel (default 1)")
@@ -148,7 +190,10 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--depth", request.depth, "mirrored or refracted how often (default 8)")
       ->check(CLI::Range(0, 64))
       ->group(raytrace);
-  command.add_option("--schedule", request.schedule, "how ranks share the tiles")->group(raytrace);
+  command
+      .add_option("--schedule", request.schedule,
+                  "how ranks share the tiles; sort-first: blocks that change rank meanwhile")
+      ->group(raytrace);
   command.add_option("--data", request.data, "how ranks share the scene")
       ->check(CLI::IsMember({"replicated"}))
       ->group(raytrace);

@@ -25,12 +25,13 @@ struct RenderRequest {
   bool list = false;
   // raster
   std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",
-              lighting = "phong", codec = "dense", shade = "deferred", travel = "geometry";
+              lighting = "phong", codec = "dense", shade = "deferred", travel = "geometry",
+              groups = "one", redistribution = "immediate";
   std::string costs = "model";
-  int supersampling = 1, regions_per_rank = 1;
+  int supersampling = 1, regions_per_rank = 1, block = 64, geometry_ranks = 0;
   double keep_factor = 1.2;
-  // raytrace
-  std::string integrator = "whitted", schedule = "interlaced", data = "replicated";
+  // raytrace; schedule is raster's too
+  std::string integrator = "whitted", schedule, data = "replicated";
   int samples = 1, depth = 8;
 
   // Set by check:

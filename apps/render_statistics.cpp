@@ -37,6 +37,13 @@ Json options_of(const RenderRequest& request, int ranks) {
       options["costs"] = request.costs;
       options["regions"] = request.regions_per_rank;
       options["keep"] = request.keep_factor;
+      options["schedule"] = request.schedule;
+      options["block"] = request.block;
+    }
+    if (request.strategy == "sort-middle") {
+      options["groups"] = request.groups;
+      options["geometry_ranks"] = request.geometry_ranks;
+      options["redistribute"] = request.redistribution;
     }
   } else {
     options["integrator"] = request.integrator;
@@ -91,6 +98,17 @@ Json embree_of(const raytrace::Statistics& s) {
   return {{"version", s.embree_version}, {"isa", s.embree_isa}};
 }
 
+std::uint64_t steals_of(const raster::RankStatistics& rank) { return rank.steals; }
+double idle_of(const raster::RankStatistics& rank) { return rank.idle; }
+template <class Rank>
+std::uint64_t steals_of(const Rank&) {
+  return 0;
+}
+template <class Rank>
+double idle_of(const Rank&) {
+  return 0;
+}
+
 // In-process ranks share the memory of the process: each is told its peak.
 template <class Ranks>
 Json ranks_of(const Ranks& ranks) {
@@ -99,7 +117,8 @@ Json ranks_of(const Ranks& ranks) {
     rows.push_back({{"rank", i},
                     {"busy", ranks[i].busy},
                     {"tasks", ranks[i].tasks},
-                    {"steals", 0},
+                    {"steals", steals_of(ranks[i])},
+                    {"idle", idle_of(ranks[i])},
                     {"bytes_sent", ranks[i].bytes_sent},
                     {"bytes_received", ranks[i].bytes_received},
                     {"messages", ranks[i].messages},

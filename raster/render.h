@@ -37,7 +37,7 @@ enum class Travel : std::uint8_t { geometry, numbers };
 enum class Shade : std::uint8_t { deferred, immediate, composited };
 
 // What a triangle set up and a sample shaded cost beside each other, as fitted to what a few scenes
-// took (bench/raster/balance.cpp): phong takes many times as long for a sample.
+// took (bench/raster/balance.cpp): phong takes longer for a sample.
 loadbalance::RasterCostModel cost_model(Lighting lighting);
 
 // What partitions take for the cost of primitives and pixels. model: prices that are fixed.

@@ -24,7 +24,7 @@ constexpr double kDrawn = 0.05;
 
 loadbalance::RasterCostModel cost_model(Lighting lighting) {
   return lighting == Lighting::gouraud ? loadbalance::RasterCostModel{3, 1}
-                                       : loadbalance::RasterCostModel{0.2, 1};
+                                       : loadbalance::RasterCostModel{2, 1};
 }
 
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {

@@ -139,28 +139,26 @@ Picture render(Rank& rank) {
 
   communicator.mark(comm::Phase::redistribute, 0);
   loadbalance::ScheduleOptions how;
-  how.threads = parallel::arena_threads();
   how.initial = blocks_of_regions(rank, blocks);
 
   communicator.mark(comm::Phase::rasterize, 0);
   auto image = rank.take_image<Colour>(options.width, options.height);
   const Window<Colour> window = window_of(image);
   std::vector<std::unique_ptr<Hand>> hands;
-  for (int i = 0; i < how.threads; ++i) hands.push_back(std::make_unique<Hand>());
+  for (int i = 0; i < parallel::arena_threads(); ++i) hands.push_back(std::make_unique<Hand>());
   if (rank.progress != nullptr) rank.progress->start(blocks.grid().count());
   const auto render_block = [&](std::uint32_t block, int thread) {
     Hand& hand = *hands[thread];
-    hand.alone.execute([&] {
+    const RegionCounts done = hand.alone.execute([&] {
       const geometry::Rect region = samples_of(blocks.block(block), options.supersampling);
       RegionDrawing drawing(task_for({&region, 1}), frame, hand.scratch);
       drawing.draw_in_order(bins.of(block));
-      const RegionCounts done =
-          drawing.finish([&](std::span<const geometry::Rect> rects, TileView& tile) {
-            store_pixels(rects, tile, options.supersampling, window);
-          });
-      hand.counts += done;
-      if (thread == 0) tell_work(communicator, done);
+      return drawing.finish([&](std::span<const geometry::Rect> rects, TileView& tile) {
+        store_pixels(rects, tile, options.supersampling, window);
+      });
     });
+    hand.counts += done;
+    if (thread == 0) tell_work(communicator, done);
     hand.done.push_back(block);
     if (rank.progress != nullptr) rank.progress->advance();
   };
