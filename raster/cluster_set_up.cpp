@@ -19,27 +19,30 @@ inline constexpr std::size_t kMostLanes = 16;
 // Triangles of which at most so many columns and rows of pixel centres lie in the box are drawn
 // pixel by pixel, many triangles at a time.
 inline constexpr int kSmallSide = 8;
-// A cluster is compact if its coordinates, seen from its corner, are below this: products of
-// differences then fit 32 bits, and a position fits one word.
-inline constexpr int kCompact = 1 << 15;
+// But not those whose box has more pixel centres than this and that fit a window.
+inline constexpr int kTinyBox = 9;
+// A cluster is compact if its coordinates, seen from its corner, are below this: edge functions
+// then fit 32 bits, also 16 pixels beyond the corners, and a position fits one word.
+inline constexpr int kCompact = 30000;
+static_assert(std::int64_t{2} * kCompact * (kCompact + 16 * kSubpixels) < INT32_MAX);
 
-// Everything that a compact cluster's triangles have in common. Positions are seen from the pixel
-// corner (origin_x, origin_y) of the frame.
-struct CompactCluster {
-  explicit CompactCluster(const ScreenVertices& all) : vertices(all) {}
+// What a cluster's triangles have in common. Each is set up as seen from an origin of its own, a
+// pixel's corner in the frame; that of a compact cluster's triangles is one and the same.
+struct ClusterInSetUp {
+  explicit ClusterInSetUp(const ScreenVertices& all) : vertices(all) {}
 
   const ScreenVertices& vertices;
-  std::int32_t position[kClusterVertices + ScreenVertices::kPadding];  // x | y << 16
-  int origin_x, origin_y;
-  geometry::Rect clip;  // pixels that are wanted
-  int tiles_x;
+  std::int32_t position[kClusterVertices + ScreenVertices::kPadding];  // if compact: x | y << 16
+  int origin_x = 0, origin_y = 0;                                      // if compact
+  geometry::Rect wanted;                                               // pixels of the frame
+  int centre_x = 0, centre_y = 0, tiles_x = 0;                         // the screen's
 };
 
-// Triangles drawn pixel by pixel: positions of the corners, and their numbers a | b << 8 | c << 16
-// | place << 24. Corners run clockwise on the screen.
+// Small triangles: positions x | y << 16 of the corners seen from the origin, and their numbers a |
+// b << 8 | c << 16 | place << 24. Corners run clockwise on the screen.
 struct SmallTriangles {
-  std::int32_t a[kClusterTriangles + kMostLanes], b[kClusterTriangles + kMostLanes],
-      c[kClusterTriangles + kMostLanes], corners[kClusterTriangles + kMostLanes];
+  static constexpr std::size_t kSize = kClusterTriangles + kMostLanes;
+  std::int32_t a[kSize], b[kSize], c[kSize], corners[kSize], origin_x[kSize], origin_y[kSize];
   std::size_t size = 0;
 };
 
@@ -58,6 +61,40 @@ inline void append_triangle(const Screen& screen, const geometry::Rect& wanted,
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x)
       entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
+}
+
+inline void append_blended(const Screen& screen, const geometry::Rect& wanted,
+                           const ScreenTriangle& triangle, const geometry::Rect& box,
+                           SetUpResult& result) {
+  const geometry::Rect pixels = geometry::intersection(box, wanted);
+  if (pixels.empty()) return;
+  const auto entry = static_cast<std::uint32_t>(result.blended_triangles.size());
+  result.blended_triangles.push_back(triangle);
+  for (int y = pixels.y0 / kTileSize; y <= (pixels.y1 - 1) / kTileSize; ++y)
+    for (int x = pixels.x0 / kTileSize; x <= (pixels.x1 - 1) / kTileSize; ++x)
+      result.blended_entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
+}
+
+// One triangle, whatever it is.
+inline void set_up_place(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                         const Cluster& cluster, const ScreenVertices& vertices,
+                         std::uint32_t place, std::uint32_t first_number,
+                         const geometry::Rect& wanted, SetUpResult& result) {
+  const MeshCluster& mesh_cluster = block.clusters[cluster.part];
+  bool handed = false;
+  const auto emit = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
+    if (draw.blended)
+      append_blended(screen, wanted, triangle, pixels, result);
+    else
+      append_triangle(screen, wanted, triangle, pixels, draw.masked, result);
+    handed |= !geometry::intersection(pixels, wanted).empty();
+  };
+  const Fate fate = set_up(screen, draw, vertices, corners_at(block, mesh_cluster, place),
+                           cluster.first + place, first_number + place, emit);
+  ++result.counts.in;
+  result.counts.culled += fate == Fate::culled;
+  result.counts.clipped += fate == Fate::clipped;
+  result.counts.rasterized += handed;
 }
 
 }  // namespace delray::raster
@@ -87,11 +124,17 @@ HWY_INLINE void append(V v, hn::Mask<hn::DFromV<V>> mask, hn::TFromD<hn::DFromV<
   hn::StoreU(hn::Compress(v, mask), hn::DFromV<V>(), to);
 }
 
-// The pixels, seen from the cluster's origin, whose centres lie in the box of a triangle.
+// Where triangles are seen from: a pixel of the frame.
+struct Origins {
+  I x, y;
+};
+
+// The pixels, seen from the origin, whose centres lie in the box of a triangle.
 struct Boxes {
   I x0, y0, x1, y1;  // all inclusive
 };
-HWY_INLINE Boxes boxes_of(const CompactCluster& cluster, I ax, I ay, I bx, I by, I cx, I cy) {
+HWY_INLINE Boxes boxes_of(const geometry::Rect& wanted, const Origins& origin, I ax, I ay, I bx,
+                          I by, I cx, I cy) {
   const Ints d;
   const auto first = [&](I a, I b, I c) {
     return hn::ShiftRight<kSubpixelBits>(
@@ -101,10 +144,10 @@ HWY_INLINE Boxes boxes_of(const CompactCluster& cluster, I ax, I ay, I bx, I by,
     return hn::ShiftRight<kSubpixelBits>(
         hn::Sub(hn::Max(hn::Max(a, b), c), hn::Set(d, kHalfPixel)));
   };
-  return {hn::Max(first(ax, bx, cx), hn::Set(d, cluster.clip.x0)),
-          hn::Max(first(ay, by, cy), hn::Set(d, cluster.clip.y0)),
-          hn::Min(last(ax, bx, cx), hn::Set(d, cluster.clip.x1 - 1)),
-          hn::Min(last(ay, by, cy), hn::Set(d, cluster.clip.y1 - 1))};
+  return {hn::Max(first(ax, bx, cx), hn::Sub(hn::Set(d, wanted.x0), origin.x)),
+          hn::Max(first(ay, by, cy), hn::Sub(hn::Set(d, wanted.y0), origin.y)),
+          hn::Min(last(ax, bx, cx), hn::Sub(hn::Set(d, wanted.x1 - 1), origin.x)),
+          hn::Min(last(ay, by, cy), hn::Sub(hn::Set(d, wanted.y1 - 1), origin.y))};
 }
 
 // An edge function at the first pixel of each triangle's box, less 1 where the edge is neither top
@@ -161,9 +204,21 @@ HWY_INLINE Slopes slopes_of(I x1_, I y1_, I x2_, I y2_, F d0_, F d1_, F d2_) {
   return {hn::Load(df, slopes[0]), hn::Load(df, slopes[1])};
 }
 
-// One vector of small triangles from `first` on, at most `count` of them, pixel by pixel.
-void draw_small(const CompactCluster& cluster, const SmallTriangles& triangles, std::size_t first,
-                std::size_t count, std::uint32_t first_number, SetUpResult& result) {
+// What is computed of a vector of small triangles; lanes without a triangle have no rows.
+struct SmallSetUp {
+  Origins origin;
+  Boxes box;
+  I columns, rows;  // less 1
+  Edges e0, e1, e2;
+  Slopes slope;
+  F depth, nearest, farthest;
+  F from_x, from_y;  // of the box's first pixel centre from the first vertex, in pixels
+  hn::VFromD<hn::RebindToUnsigned<Ints>> number;
+};
+
+HWY_INLINE SmallSetUp set_up_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles,
+                                   std::size_t first, std::size_t count,
+                                   std::uint32_t first_number) {
   const Ints d;
   const Floats df;
   const hn::RebindToUnsigned<Ints> du;
@@ -174,39 +229,93 @@ void draw_small(const CompactCluster& cluster, const SmallTriangles& triangles, 
   const I ax = low_half(a), ay = high_half(a);
   const I bx = low_half(b), by = high_half(b);
   const I cx = low_half(c), cy = high_half(c);
-  const Boxes box = boxes_of(cluster, ax, ay, bx, by, cx, cy);
-  // Columns and rows less 1; lanes without a triangle have none.
+  SmallSetUp s;
+  s.origin = {hn::LoadU(d, triangles.origin_x + first), hn::LoadU(d, triangles.origin_y + first)};
+  s.box = boxes_of(cluster.wanted, s.origin, ax, ay, bx, by, cx, cy);
   const Mask used = hn::FirstN(d, count);
   const I none = hn::Set(d, -1);
-  const I columns = hn::IfThenElse(used, hn::Sub(box.x1, box.x0), none);
-  const I rows = hn::IfThenElse(used, hn::Sub(box.y1, box.y0), none);
-  const int most_columns = hn::GetLane(hn::MaxOfLanes(d, columns));
-  const int most_rows = hn::GetLane(hn::MaxOfLanes(d, rows));
+  s.columns = hn::IfThenElse(used, hn::Sub(s.box.x1, s.box.x0), none);
+  s.rows = hn::IfThenElse(used, hn::Sub(s.box.y1, s.box.y0), none);
 
   const I half = hn::Set(d, kHalfPixel);
-  const I x = hn::Add(hn::ShiftLeft<kSubpixelBits>(box.x0), half);
-  const I y = hn::Add(hn::ShiftLeft<kSubpixelBits>(box.y0), half);
-  const Edges e0 = edges_of(ax, ay, bx, by, x, y);
-  const Edges e1 = edges_of(bx, by, cx, cy, x, y);
-  const Edges e2 = edges_of(cx, cy, ax, ay, x, y);
+  const I x = hn::Add(hn::ShiftLeft<kSubpixelBits>(s.box.x0), half);
+  const I y = hn::Add(hn::ShiftLeft<kSubpixelBits>(s.box.y0), half);
+  s.e0 = edges_of(ax, ay, bx, by, x, y);
+  s.e1 = edges_of(bx, by, cx, cy, x, y);
+  s.e2 = edges_of(cx, cy, ax, ay, x, y);
 
   const I byte = hn::Set(d, 0xFF);
   const float* depths = cluster.vertices.depth;
   const F depth0 = hn::GatherIndex(df, depths, hn::And(corners, byte));
   const F depth1 = hn::GatherIndex(df, depths, hn::And(hn::ShiftRight<8>(corners), byte));
   const F depth2 = hn::GatherIndex(df, depths, hn::And(hn::ShiftRight<16>(corners), byte));
-  const Slopes slope = slopes_of(hn::Sub(bx, ax), hn::Sub(by, ay), hn::Sub(cx, ax), hn::Sub(cy, ay),
-                                 depth0, depth1, depth2);
-  const F nearest = hn::Min(hn::Min(depth0, depth1), depth2);
-  const F farthest = hn::Max(hn::Max(depth0, depth1), depth2);
+  s.slope = slopes_of(hn::Sub(bx, ax), hn::Sub(by, ay), hn::Sub(cx, ax), hn::Sub(cy, ay), depth0,
+                      depth1, depth2);
+  s.depth = depth0;
+  s.nearest = hn::Min(hn::Min(depth0, depth1), depth2);
+  s.farthest = hn::Max(hn::Max(depth0, depth1), depth2);
   // Whole numbers of subpixels below 2^24: exact.
   const F per_subpixel = hn::Set(df, 1.0F / kSubpixels);
-  const F from_x = hn::Mul(hn::ConvertTo(df, hn::Sub(x, ax)), per_subpixel);
-  const F from_y = hn::Mul(hn::ConvertTo(df, hn::Sub(y, ay)), per_subpixel);
-  const auto number =
-      hn::Add(hn::Set(du, first_number), hn::ShiftRight<24>(hn::BitCast(du, corners)));
-  const I pixel_x = hn::Add(box.x0, hn::Set(d, cluster.origin_x));
-  const I pixel_y = hn::Add(box.y0, hn::Set(d, cluster.origin_y));
+  s.from_x = hn::Mul(hn::ConvertTo(df, hn::Sub(x, ax)), per_subpixel);
+  s.from_y = hn::Mul(hn::ConvertTo(df, hn::Sub(y, ay)), per_subpixel);
+  s.number = hn::Add(hn::Set(du, first_number), hn::ShiftRight<24>(hn::BitCast(du, corners)));
+  return s;
+}
+
+// Four vectors, lane after lane; elements past the last lane may be overwritten.
+template <class V>
+HWY_INLINE void store4(V a, V b, V c, V d, void* to) {
+  hn::StoreInterleaved4(a, b, c, d, hn::DFromV<V>(), static_cast<hn::TFromV<V>*>(to));
+}
+
+// One vector of triangles from `first` on, at most `count` of them, as windows.
+void set_up_windows(const ClusterInSetUp& cluster, const SmallTriangles& triangles,
+                    std::size_t first, std::size_t count, std::uint32_t first_number,
+                    WindowTriangles& windows) {
+  const Ints d;
+  const Floats df;
+  const SmallSetUp s = set_up_small(cluster, triangles, first, count, first_number);
+  // Windows start at multiples of their width: what one triangle has stored is soon loaded again
+  // for the next, which is slow unless both are the same vectors.
+  static_assert(WindowTriangles::kWindowWidth == 8);
+  const I pixel_x = hn::Add(s.box.x0, s.origin.x), pixel_y = hn::Add(s.box.y0, s.origin.y);
+  const I in_tile = hn::Set(d, kTileSize - 1);
+  const I x = hn::And(pixel_x, in_tile), y = hn::And(pixel_y, in_tile);
+  const I before = hn::And(x, hn::Set(d, 7));
+  const I start = hn::Sub(x, before);
+  const I parts = hn::Add(hn::ShiftRight<3>(hn::Add(before, s.columns)), hn::Set(d, 1));
+  const auto at_start = [&](const Edges& e) { return hn::Sub(e.value, hn::Mul(e.step_x, before)); };
+  const F from_x = hn::Sub(s.from_x, hn::ConvertTo(df, before));
+  const I rows = hn::Add(s.rows, hn::Set(d, 1));
+  const I window = hn::Or(hn::Or(start, hn::ShiftLeft<6>(y)),
+                          hn::Or(hn::ShiftLeft<12>(rows), hn::ShiftLeft<20>(parts)));
+  const std::size_t n = windows.size;
+  const I zero = hn::Zero(d);
+  store4(at_start(s.e0), at_start(s.e1), at_start(s.e2), window, windows.edges.data() + n);
+  store4(s.e0.step_x, s.e1.step_x, s.e2.step_x, hn::BitCast(d, s.number),
+         windows.columns.data() + n);
+  store4(s.e0.step_y, s.e1.step_y, s.e2.step_y, zero, windows.rows.data() + n);
+  store4(s.slope.x, s.slope.y, from_x, s.from_y, windows.planes.data() + n);
+  store4(s.depth, s.nearest, s.farthest, hn::Zero(df), windows.depths.data() + n);
+  const I tile = hn::Add(hn::Mul(hn::ShiftRight<6>(pixel_y), hn::Set(d, cluster.tiles_x)),
+                         hn::ShiftRight<6>(pixel_x));
+  hn::StoreU(tile, d, reinterpret_cast<std::int32_t*>(windows.tile.data() + n));
+  windows.size += count;
+}
+
+// One vector of small triangles from `first` on, at most `count` of them, pixel by pixel.
+void draw_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles, std::size_t first,
+                std::size_t count, std::uint32_t first_number, SetUpResult& result) {
+  const Ints d;
+  const Floats df;
+  const hn::RebindToUnsigned<Ints> du;
+  const SmallSetUp s = set_up_small(cluster, triangles, first, count, first_number);
+  const auto& [origin, box, columns, rows, e0, e1, e2, slope, depth0, nearest, farthest, from_x,
+               from_y, number] = s;
+  const I none = hn::Set(d, -1);
+  const int most_columns = hn::GetLane(hn::MaxOfLanes(d, columns));
+  const int most_rows = hn::GetLane(hn::MaxOfLanes(d, rows));
+  const I pixel_x = hn::Add(box.x0, origin.x), pixel_y = hn::Add(box.y0, origin.y);
 
   I row0 = e0.value, row1 = e1.value, row2 = e2.value;
   for (int j = 0; j <= most_rows; ++j) {
@@ -244,32 +353,74 @@ void draw_small(const CompactCluster& cluster, const SmallTriangles& triangles, 
 }
 static_assert(kTileSize == 1 << 6 && kTilePixels == 1 << 12);
 
-void set_up_compact(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                    const MeshCluster& mesh_cluster, const Cluster& places,
-                    const CompactCluster& cluster, std::uint32_t first_number,
-                    const geometry::Rect& wanted, SetUpResult& result) {
+enum class Extent : bool { compact, wide };
+
+template <Extent extent>
+void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                    const Cluster& places, const ClusterInSetUp& cluster,
+                    std::uint32_t first_number, SetUpResult& result) {
+  const MeshCluster& mesh_cluster = block.clusters[places.part];
+  const geometry::Rect& wanted = cluster.wanted;
   const Ints d;
   const Bytes db;
   const std::size_t lanes = hn::Lanes(d);
   const std::uint8_t* corners = block.corners.data() + mesh_cluster.first_corner;
   const std::size_t stride = mesh_cluster.corner_stride();
-  SmallTriangles small;
+  SmallTriangles small, medium;
+  const Mask windows_wanted = hn::FirstN(d, result.fragments_only ? 0 : lanes);
   const I zero = hn::Zero(d);
   const I small_side = hn::Set(d, kSmallSide);
-  std::size_t kept = 0;
+  std::size_t kept = 0, set_up_alone = 0;
   for (std::size_t place = places.begin / lanes * lanes; place < places.end; place += lanes) {
     // Of a constant; counted from a variable, lanes are filled one by one.
     const I places_here = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(place)));
     const I a = hn::PromoteTo(d, hn::LoadU(db, corners + place));
     const I b = hn::PromoteTo(d, hn::LoadU(db, corners + stride + place));
     const I c = hn::PromoteTo(d, hn::LoadU(db, corners + 2 * stride + place));
-    const I pa = hn::GatherIndex(d, cluster.position, a);
-    const I pb = hn::GatherIndex(d, cluster.position, b);
-    const I pc = hn::GatherIndex(d, cluster.position, c);
-    const I ax = low_half(pa), ay = high_half(pa);
-    const I bx = low_half(pb), by = high_half(pb);
-    const I cx = low_half(pc), cy = high_half(pc);
-    const Boxes box = boxes_of(cluster, ax, ay, bx, by, cx, cy);
+    Mask in_range = hn::And(hn::Gt(places_here, hn::Set(d, places.begin - 1)),
+                            hn::Lt(places_here, hn::Set(d, places.end)));
+    I pa, pb, pc, ax, ay, bx, by, cx, cy;
+    Origins origin;
+    if constexpr (extent == Extent::compact) {
+      origin = {hn::Set(d, cluster.origin_x), hn::Set(d, cluster.origin_y)};
+      pa = hn::GatherIndex(d, cluster.position, a);
+      pb = hn::GatherIndex(d, cluster.position, b);
+      pc = hn::GatherIndex(d, cluster.position, c);
+      ax = low_half(pa), ay = high_half(pa);
+      bx = low_half(pb), by = high_half(pb);
+      cx = low_half(pc), cy = high_half(pc);
+    } else {
+      ax = hn::GatherIndex(d, cluster.vertices.x, a),
+      ay = hn::GatherIndex(d, cluster.vertices.y, a);
+      bx = hn::GatherIndex(d, cluster.vertices.x, b),
+      by = hn::GatherIndex(d, cluster.vertices.y, b);
+      cx = hn::GatherIndex(d, cluster.vertices.x, c),
+      cy = hn::GatherIndex(d, cluster.vertices.y, c);
+      const I low_x = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(ax, bx), cx));
+      const I low_y = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(ay, by), cy));
+      const I first_x = hn::ShiftLeft<kSubpixelBits>(low_x);
+      const I first_y = hn::ShiftLeft<kSubpixelBits>(low_y);
+      origin = {hn::Add(low_x, hn::Set(d, cluster.centre_x)),
+                hn::Add(low_y, hn::Set(d, cluster.centre_y))};
+      ax = hn::Sub(ax, first_x), bx = hn::Sub(bx, first_x), cx = hn::Sub(cx, first_x);
+      ay = hn::Sub(ay, first_y), by = hn::Sub(by, first_y), cy = hn::Sub(cy, first_y);
+      const I farthest = hn::Max(hn::Max(hn::Max(ax, ay), hn::Max(bx, by)), hn::Max(cx, cy));
+      const Mask alone = hn::And(in_range, hn::Gt(farthest, hn::Set(d, kCompact - 1)));
+      if (!hn::AllFalse(d, alone)) {
+        HWY_ALIGN std::int32_t which[kMostLanes];
+        append(places_here, alone, which);
+        const std::size_t count = hn::CountTrue(d, alone);
+        for (std::size_t k = 0; k < count; ++k)
+          set_up_place(screen, draw, block, places, cluster.vertices,
+                       static_cast<std::uint32_t>(which[k]), first_number, wanted, result);
+        set_up_alone += count;
+        in_range = hn::AndNot(alone, in_range);
+      }
+      pa = hn::Or(ax, hn::ShiftLeft<16>(ay));
+      pb = hn::Or(bx, hn::ShiftLeft<16>(by));
+      pc = hn::Or(cx, hn::ShiftLeft<16>(cy));
+    }
+    const Boxes box = boxes_of(wanted, origin, ax, ay, bx, by, cx, cy);
     const I columns = hn::Sub(box.x1, box.x0), rows = hn::Sub(box.y1, box.y0);
     const I area = hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)),
                            hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
@@ -277,24 +428,39 @@ void set_up_compact(const Screen& screen, const PreparedDraw& draw, const Cluste
     const Mask shown = draw.hidden_side == 0  ? hn::Or(clockwise, counter)
                        : draw.hidden_side > 0 ? counter
                                               : clockwise;
-    const Mask in_range = hn::And(hn::Gt(places_here, hn::Set(d, places.begin - 1)),
-                                  hn::Lt(places_here, hn::Set(d, places.end)));
     const Mask keep =
         hn::And(hn::And(hn::Gt(hn::Or(columns, rows), hn::Set(d, -1)), shown), in_range);
     if (hn::AllFalse(d, keep)) continue;
     kept += hn::CountTrue(d, keep);
-    const Mask is_small =
-        hn::And(keep, hn::And(hn::Lt(columns, small_side), hn::Lt(rows, small_side)));
+    // Triangles of a few pixels are drawn pixel by pixel, those that are wider window by window if
+    // they lie in one tile.
+    const I pixel_x0 = hn::Add(box.x0, origin.x), pixel_y0 = hn::Add(box.y0, origin.y);
+    const I border = hn::Or(hn::Xor(pixel_x0, hn::Add(pixel_x0, columns)),
+                            hn::Xor(pixel_y0, hn::Add(pixel_y0, rows)));
+    const Mask tiny = hn::Lt(hn::Add(hn::Mul(columns, rows), hn::Add(columns, rows)),
+                             hn::Set(d, kTinyBox));  // (columns + 1) * (rows + 1) - 1
+    const Mask fits = hn::And(hn::And(hn::Lt(columns, hn::Set(d, WindowTriangles::kMostColumns)),
+                                      hn::Lt(rows, hn::Set(d, WindowTriangles::kMostRows))),
+                              hn::Lt(border, hn::Set(d, kTileSize)));
+    const Mask is_medium = hn::And(hn::AndNot(tiny, hn::And(keep, fits)), windows_wanted);
+    const Mask is_small = hn::AndNot(
+        is_medium, hn::And(keep, hn::And(hn::Lt(columns, small_side), hn::Lt(rows, small_side))));
     const I turned_b = hn::IfThenElse(counter, c, b), turned_c = hn::IfThenElse(counter, b, c);
     const I names = hn::Or(hn::Or(a, hn::ShiftLeft<8>(turned_b)),
                            hn::Or(hn::ShiftLeft<16>(turned_c), hn::ShiftLeft<24>(places_here)));
-    append(pa, is_small, small.a + small.size);
-    append(hn::IfThenElse(counter, pc, pb), is_small, small.b + small.size);
-    append(hn::IfThenElse(counter, pb, pc), is_small, small.c + small.size);
-    append(names, is_small, small.corners + small.size);
-    small.size += hn::CountTrue(d, is_small);
+    const auto append_to = [&](Mask mask, SmallTriangles& triangles) {
+      append(pa, mask, triangles.a + triangles.size);
+      append(hn::IfThenElse(counter, pc, pb), mask, triangles.b + triangles.size);
+      append(hn::IfThenElse(counter, pb, pc), mask, triangles.c + triangles.size);
+      append(names, mask, triangles.corners + triangles.size);
+      append(origin.x, mask, triangles.origin_x + triangles.size);
+      append(origin.y, mask, triangles.origin_y + triangles.size);
+      triangles.size += hn::CountTrue(d, mask);
+    };
+    append_to(is_small, small);
+    if (!hn::AllFalse(d, is_medium)) append_to(is_medium, medium);
 
-    const Mask is_other = hn::AndNot(is_small, keep);
+    const Mask is_other = hn::AndNot(hn::Or(is_small, is_medium), keep);
     if (hn::AllFalse(d, is_other)) continue;
     HWY_ALIGN std::int32_t others[kMostLanes];
     append(names, is_other, others);
@@ -307,7 +473,7 @@ void set_up_compact(const Screen& screen, const PreparedDraw& draw, const Cluste
                       centres_in_box(v[0], v[1], v[2], screen), false, result);
     }
   }
-  const std::uint64_t in = places.end - places.begin;
+  const std::uint64_t in = places.end - places.begin - set_up_alone;
   result.counts.in += in;
   result.counts.culled += in - kept;
   result.counts.rasterized += kept;
@@ -319,8 +485,23 @@ void set_up_compact(const Screen& screen, const PreparedDraw& draw, const Cluste
     result.code.resize(2 * most);
     result.number.resize(2 * most);
   }
+  result.windows.reserve(result.windows.size + medium.size + kMostLanes);
+  for (std::size_t i = 0; i < medium.size; i += lanes)
+    set_up_windows(cluster, medium, i, std::min(lanes, medium.size - i), first_number,
+                   result.windows);
   for (std::size_t i = 0; i < small.size; i += lanes)
     draw_small(cluster, small, i, std::min(lanes, small.size - i), first_number, result);
+}
+
+void set_up_compact(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                    const Cluster& places, const ClusterInSetUp& cluster,
+                    std::uint32_t first_number, SetUpResult& result) {
+  set_up_vectors<Extent::compact>(screen, draw, block, places, cluster, first_number, result);
+}
+void set_up_wide(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                 const Cluster& places, const ClusterInSetUp& cluster, std::uint32_t first_number,
+                 SetUpResult& result) {
+  set_up_vectors<Extent::wide>(screen, draw, block, places, cluster, first_number, result);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -331,42 +512,16 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raster {
 
 HWY_EXPORT(set_up_compact);
+HWY_EXPORT(set_up_wide);
 
 namespace {
 
-void append_blended(const Screen& screen, const geometry::Rect& wanted,
-                    const ScreenTriangle& triangle, const geometry::Rect& box,
-                    SetUpResult& result) {
-  const geometry::Rect pixels = geometry::intersection(box, wanted);
-  if (pixels.empty()) return;
-  const auto entry = static_cast<std::uint32_t>(result.blended_triangles.size());
-  result.blended_triangles.push_back(triangle);
-  for (int y = pixels.y0 / kTileSize; y <= (pixels.y1 - 1) / kTileSize; ++y)
-    for (int x = pixels.x0 / kTileSize; x <= (pixels.x1 - 1) / kTileSize; ++x)
-      result.blended_entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
-}
-
-// One triangle after the other: clusters that are clipped, masked, blended or large on the screen.
+// Clusters that are clipped, masked or blended.
 void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                  const Cluster& cluster, const ScreenVertices& vertices, std::uint32_t first_number,
                  const geometry::Rect& wanted, SetUpResult& result) {
-  const MeshCluster& mesh_cluster = block.clusters[cluster.part];
-  for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-    bool handed = false;
-    const auto emit = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
-      if (draw.blended)
-        append_blended(screen, wanted, triangle, pixels, result);
-      else
-        append_triangle(screen, wanted, triangle, pixels, draw.masked, result);
-      handed |= !geometry::intersection(pixels, wanted).empty();
-    };
-    const Fate fate = set_up(screen, draw, vertices, corners_at(block, mesh_cluster, place),
-                             cluster.first + place, first_number + place, emit);
-    ++result.counts.in;
-    result.counts.culled += fate == Fate::culled;
-    result.counts.clipped += fate == Fate::clipped;
-    result.counts.rasterized += handed;
-  }
+  for (std::uint32_t place = cluster.begin; place < cluster.end; ++place)
+    set_up_place(screen, draw, block, cluster, vertices, place, first_number, wanted, result);
 }
 
 }  // namespace
@@ -374,25 +529,29 @@ void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBl
 void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                     const Cluster& cluster, const ScreenVertices& vertices,
                     std::uint32_t first_number, const geometry::Rect& wanted, SetUpResult& result) {
-  // Whole pixels, so that pixel centres are where they are in the frame.
-  const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;
-  const int origin_x = low_x * kSubpixels, origin_y = low_y * kSubpixels;
-  if (draw.masked || draw.blended || vertices.any_outside ||
-      vertices.high_x - origin_x >= kCompact || vertices.high_y - origin_y >= kCompact) {
+  if (draw.masked || draw.blended || vertices.any_outside) {
     set_up_each(screen, draw, block, cluster, vertices, first_number, wanted, result);
     return;
   }
-  const MeshCluster& mesh_cluster = block.clusters[cluster.part];
-  CompactCluster compact(vertices);
-  compact.origin_x = low_x + screen.centre_x;
-  compact.origin_y = low_y + screen.centre_y;
-  compact.tiles_x = screen.tiles_x;
-  compact.clip = {wanted.x0 - compact.origin_x, wanted.y0 - compact.origin_y,
-                  wanted.x1 - compact.origin_x, wanted.y1 - compact.origin_y};
-  for (std::size_t i = 0; i < mesh_cluster.vertices; ++i)
-    compact.position[i] = (vertices.x[i] - origin_x) | (vertices.y[i] - origin_y) << 16;
+  ClusterInSetUp in_set_up(vertices);
+  in_set_up.wanted = wanted;
+  in_set_up.centre_x = screen.centre_x;
+  in_set_up.centre_y = screen.centre_y;
+  in_set_up.tiles_x = screen.tiles_x;
+  // Whole pixels, so that pixel centres are where they are in the frame.
+  const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;
+  const int origin_x = low_x * kSubpixels, origin_y = low_y * kSubpixels;
+  if (vertices.high_x - origin_x >= kCompact || vertices.high_y - origin_y >= kCompact) {
+    HWY_DYNAMIC_DISPATCH(set_up_wide)
+    (screen, draw, block, cluster, in_set_up, first_number, result);
+    return;
+  }
+  in_set_up.origin_x = low_x + screen.centre_x;
+  in_set_up.origin_y = low_y + screen.centre_y;
+  for (std::size_t i = 0; i < block.clusters[cluster.part].vertices; ++i)
+    in_set_up.position[i] = (vertices.x[i] - origin_x) | (vertices.y[i] - origin_y) << 16;
   HWY_DYNAMIC_DISPATCH(set_up_compact)
-  (screen, draw, block, mesh_cluster, cluster, compact, first_number, wanted, result);
+  (screen, draw, block, cluster, in_set_up, first_number, result);
 }
 
 }  // namespace delray::raster

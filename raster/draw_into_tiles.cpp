@@ -66,7 +66,7 @@ class TouchedTiles {
   std::size_t find(std::uint32_t tile) {
     std::uint32_t& number = worker_.touched_number[tile];
     if (number == 0) {
-      worker_.touched.push_back({tile, 0, 0, 0, 0});
+      worker_.touched.push_back({tile, 0, 0, 0, 0, 0, 0});
       number = static_cast<std::uint32_t>(worker_.touched.size());
     }
     return number - 1;
@@ -85,11 +85,15 @@ void sort_by_tile(Worker& worker) {
   for (std::size_t i = 0; i < result.fragments; ++i)
     ++tiles[result.address[i] / kTilePixels].last_fragment;
   for (const SetUpResult::Entry& entry : result.entries) ++tiles[entry.tile].last_entry;
-  std::uint32_t fragments = 0, entries = 0;
+  const std::span window_tiles(result.windows.tile.data(), result.windows.size);
+  for (const std::uint32_t tile : window_tiles) ++tiles[tile].last_window;
+  std::uint32_t fragments = 0, entries = 0, windows = 0;
   for (Worker::TouchedTile& tile : worker.touched) {
     const std::uint32_t here = tile.last_fragment, entries_here = tile.last_entry;
     tile.first_fragment = tile.last_fragment = fragments;
     tile.first_entry = tile.last_entry = entries;
+    windows += std::exchange(tile.last_window, windows);
+    tile.first_window = tile.last_window;
     fragments += here;
     entries += entries_here;
   }
@@ -104,6 +108,9 @@ void sort_by_tile(Worker& worker) {
   }
   for (const SetUpResult::Entry& entry : result.entries)
     worker.entries[tiles[entry.tile].last_entry++] = entry.entry;
+  if (worker.windows.size() < windows) worker.windows.resize(windows);
+  for (std::uint32_t k = 0; k < window_tiles.size(); ++k)
+    worker.windows[tiles[window_tiles[k]].last_window++] = k;
   for (const Worker::TouchedTile& tile : worker.touched) worker.touched_number[tile.tile] = 0;
 }
 
@@ -123,6 +130,10 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
                                     task.shade_now, tile);
     return;
   }
+  rasterize_windows(worker.result.windows,
+                    std::span(worker.windows)
+                        .subspan(touched.first_window, touched.last_window - touched.first_window),
+                    tile);
   rasterize_fragments(fragments, tile);
   if (entries.empty()) return;
   rasterize(task.screen, rect, worker.result.triangles, entries, tile);
@@ -147,27 +158,51 @@ void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) 
   }
 }
 
+// The entries of one triangle, which lie together.
+struct Run {
+  float nearest;
+  std::uint32_t worker, first, last;
+};
+float nearest_depth(const ScreenTriangle& triangle) {
+  const ScreenVertex* v = triangle.vertex;
+  return std::min({v[0].depth, v[1].depth, v[2].depth});
+}
+
+// The entries of a tile are those of near triangles first.
 void bin(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
          std::vector<ScreenTriangle> SetUpResult::*triangles,
          std::vector<SetUpResult::Entry> SetUpResult::*entries, BinnedTriangles& bins) {
   bins.triangles.clear();
   bins.first.clear();
   bins.entries.clear();
+  std::vector<Run> runs;
+  std::vector<std::uint32_t> offset;
   std::size_t count = 0;
-  for (const auto& worker : workers) count += (worker->result.*entries).size();
+  for (std::uint32_t k = 0; k < workers.size(); ++k) {
+    const std::vector<ScreenTriangle>& from = workers[k]->result.*triangles;
+    const std::vector<SetUpResult::Entry>& all = workers[k]->result.*entries;
+    offset.push_back(static_cast<std::uint32_t>(bins.triangles.size()));
+    bins.triangles.insert(bins.triangles.end(), from.begin(), from.end());
+    count += all.size();
+    for (std::uint32_t i = 0; i < all.size(); ++i) {
+      if (i == 0 || all[i].entry != all[i - 1].entry)
+        runs.push_back({nearest_depth(from[all[i].entry & kIndex]), k, i, i});
+      runs.back().last = i + 1;
+    }
+  }
   if (count == 0) return;
+  std::stable_sort(runs.begin(), runs.end(),
+                   [](const Run& a, const Run& b) { return a.nearest < b.nearest; });
   bins.first.assign(static_cast<std::size_t>(screen.tiles()) + 1, 0);
   for (const auto& worker : workers)
     for (const SetUpResult::Entry& entry : worker->result.*entries) ++bins.first[entry.tile + 1];
   std::partial_sum(bins.first.begin(), bins.first.end(), bins.first.begin());
   std::vector<std::uint32_t> next(bins.first.begin(), bins.first.end() - 1);
   bins.entries.resize(count);
-  for (const auto& worker : workers) {
-    const auto offset = static_cast<std::uint32_t>(bins.triangles.size());
-    const std::vector<ScreenTriangle>& from = worker->result.*triangles;
-    bins.triangles.insert(bins.triangles.end(), from.begin(), from.end());
-    for (const SetUpResult::Entry& entry : worker->result.*entries)
-      bins.entries[next[entry.tile]++] = entry.entry + offset;
+  for (const Run& run : runs) {
+    const std::vector<SetUpResult::Entry>& all = workers[run.worker]->result.*entries;
+    for (std::uint32_t i = run.first; i < run.last; ++i)
+      bins.entries[next[all[i].tile]++] = all[i].entry + offset[run.worker];
   }
 }
 
@@ -234,6 +269,7 @@ void draw_clusters(const DrawIntoTiles& task, std::span<const std::uint32_t> clu
       const std::size_t begin = next.fetch_add(batch, std::memory_order_relaxed);
       if (begin >= clusters.size()) break;
       worker.result.clear();
+      worker.result.fragments_only = task.shade_now != nullptr;
       for (std::size_t i = begin; i < std::min(begin + batch, clusters.size()); ++i)
         set_up_one(task, clusters[i], tiles, worker);
       clock.finish(0);
@@ -274,22 +310,15 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
 }
 
 std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
-                         FrameTiles& tiles) {
-  const std::span<std::uint32_t> entries = large.of_tile(tile);
+                         const geometry::Rect& rect, VisibilityTile& visibility) {
+  const std::span<const std::uint32_t> entries = large.of_tile(tile);
   if (entries.empty()) return 0;
-  const auto nearest = [&](std::uint32_t entry) {
-    const ScreenVertex* v = large.triangles[entry & kIndex].vertex;
-    return std::min({v[0].depth, v[1].depth, v[2].depth});
-  };
-  std::sort(entries.begin(), entries.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return nearest(a) < nearest(b); });
-  VisibilityTile& opened = tiles.open(tile);
   if (task.shade_now) {
-    return draw_and_shade(task.screen, tiles.rect(tile), large.triangles, entries, task.solid,
-                          task.shade_now, opened);
+    return draw_and_shade(task.screen, rect, large.triangles, entries, task.solid, task.shade_now,
+                          visibility);
   }
-  rasterize(task.screen, tiles.rect(tile), large.triangles, entries, opened);
-  rasterize_masked(task.screen, tiles.rect(tile), large.triangles, entries, task.solid, opened);
+  rasterize(task.screen, rect, large.triangles, entries, visibility);
+  rasterize_masked(task.screen, rect, large.triangles, entries, task.solid, visibility);
   return 0;
 }
 

@@ -67,9 +67,21 @@ void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
 template <class Colour>
 void Rank::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
   const Window<Colour> window = window_of(image);
+  // Tiles that were left clear in the same memory before need not be cleared again.
+  const bool whole = ranks() == 1 && options.supersampling == 1;
+  std::vector<std::uint8_t>& clear = scratch.clear_tiles;
+  const auto tiles = static_cast<std::size_t>(screen.tiles());
+  if (scratch.taken != image.colour.data() || clear.size() != tiles) clear.assign(tiles, 0);
+  scratch.taken = nullptr;
   end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    const geometry::Rect& first = rects.front();
+    const auto index =
+        static_cast<std::size_t>(first.y0 / kTileSize * screen.tiles_x + first.x0 / kTileSize);
+    if (whole && tile.empty() && clear[index] != 0) return;
+    if (whole) clear[index] = static_cast<std::uint8_t>(tile.empty());
     store_pixels(rects, tile, options.supersampling, window);
   });
+  if (whole) scratch.clear_in = image.colour.data();
 }
 
 template <class Colour>
@@ -103,9 +115,12 @@ image::BasicImage<Colour> Rank::render_samples(const DrawList& list) {
 
 template <class Colour>
 image::BasicImage<Colour> Rank::take_image(int width, int height) {
+  // Whoever changes the image without saying what is clear leaves nothing known of it.
+  scratch.taken = std::exchange(scratch.clear_in, nullptr);
   if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
       spare != nullptr && spare->width == width && spare->height == height)
     return std::exchange(*spare, {});
+  scratch.taken = nullptr;
   return image::BasicImage<Colour>(width, height);
 }
 

@@ -130,9 +130,17 @@ RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
       if (k >= tiles_.jobs.size()) break;
       const int index = tiles_.jobs[k].tile;
-      shaded_here += draw_large(into_tiles_, index, scratch_.later.large, scratch_.tiles);
-      const VisibilityTile* const tile =
-          scratch_.tiles.is_drawn_in(index) ? &scratch_.tiles.open(index) : nullptr;
+      VisibilityTile* tile = nullptr;
+      if (scratch_.tiles.is_drawn_in(index)) {
+        tile = &scratch_.tiles.open(index);
+      } else if (!scratch_.later.large.of_tile(index).empty()) {
+        // In memory that stays in the cache.
+        tile = &mine.visibility;
+        tile->clear(scratch_.tiles.rect(index));
+      }
+      if (tile != nullptr)
+        shaded_here +=
+            draw_large(into_tiles_, index, scratch_.later.large, scratch_.tiles.rect(index), *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.later.blended.triangles,
                    scratch_.later.blended.of_tile(index), tile, mine.blended);
       clock.finish(0);

@@ -164,6 +164,9 @@ class Renderer {
 
   // Gives the memory of a picture that is no longer needed to the next frame: fresh memory takes
   // longer to write to than a simple scene takes to draw.
+  //
+  // REQUIRES: it is as render returned it, or somebody else's: what it shows nothing in is taken
+  // for clear.
   void recycle(Picture&& picture);
 
  private:

@@ -166,33 +166,34 @@ void GouraudTile::collect(const FrameShading& frame, const Group& group, Members
   const std::uint8_t* const corners = group.block->corners.data() + group.part->first_corner;
   const std::size_t stride = group.part->corner_stride();
   members.triangle_count = 0;
-  std::size_t count = 0;
   for (std::uint16_t t = group.head; t != kNone; t = next_[t]) {
     Member& member = members.triangles[members.triangle_count++];
     member.triangle = t;
     member.place = static_cast<std::uint8_t>(numbers_[t] & (kClusterTriangles - 1));
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint8_t vertex = corners[k * stride + member.place];
-      const std::uint8_t number = members.number[vertex];
-      // Without a branch, which would often be guessed wrong.
-      const bool is_new = number >= count || members.used[number] != vertex;
-      members.used[count] = vertex;
-      member.corner[k] = is_new ? static_cast<std::uint8_t>(count) : number;
-      members.number[vertex] = member.corner[k];
-      count += static_cast<std::size_t>(is_new);
+      member.corner[k] = corners[k * stride + member.place];
+      members.used[member.corner[k]] = 1;
+    }
+  }
+  const scenes::Mesh& mesh = *frame.list.draws[frame.list.clusters[group.cluster].draw].mesh;
+  const bool coloured = !mesh.colours.empty(), has_normals = !mesh.normals.empty();
+  const std::uint32_t* const vertices = group.block->vertices.data() + group.part->first_vertex;
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < group.part->vertices; first += 8) {
+    std::uint64_t used = 0;
+    std::memcpy(&used, members.used + first, sizeof used);
+    std::memset(members.used + first, 0, sizeof used);
+    for (; used != 0; used &= used - 1) {
+      const std::size_t v = first + static_cast<std::size_t>(std::countr_zero(used)) / 8;
+      const std::uint32_t vertex = vertices[v];
+      members.number[v] = static_cast<std::uint8_t>(count);
+      members.mesh_vertices[count++] = vertex;
+      hwy::Prefetch(&mesh.positions[vertex]);
+      if (has_normals) hwy::Prefetch(&mesh.normals[vertex]);
+      if (coloured) hwy::Prefetch(&mesh.colours[vertex]);
     }
   }
   members.used_count = count;
-  const scenes::Mesh& mesh = *frame.list.draws[frame.list.clusters[group.cluster].draw].mesh;
-  const bool coloured = !mesh.colours.empty();
-  const std::uint32_t* const vertices = group.block->vertices.data() + group.part->first_vertex;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t vertex = vertices[members.used[i]];
-    members.mesh_vertices[i] = vertex;
-    hwy::Prefetch(&mesh.positions[vertex]);
-    if (!mesh.normals.empty()) hwy::Prefetch(&mesh.normals[vertex]);
-    if (coloured) hwy::Prefetch(&mesh.colours[vertex]);
-  }
 }
 
 // The number of a used vertex with its normal turned, among those of the group.
@@ -206,13 +207,14 @@ std::uint32_t GouraudTile::turned(std::uint32_t used, std::size_t used_count) {
 }
 
 void GouraudTile::set_up_member(const FrameShading& frame, const Cluster& cluster,
-                                const MeshCluster& part, const Member& member,
-                                std::uint32_t first_vertex, std::size_t used_count) {
+                                const MeshCluster& part, const Members& members,
+                                const Member& member, std::uint32_t first_vertex) {
+  const glm::uvec3 number(members.number[member.corner[0]], members.number[member.corner[1]],
+                          members.number[member.corner[2]]);
   const Draw& draw = frame.list.draws[cluster.draw];
   const ShadedDraw& shaded = frame.draws[cluster.draw];
-  const std::array<ScreenVertex, 3> v = {screen_vertices_[member.corner[0]],
-                                         screen_vertices_[member.corner[1]],
-                                         screen_vertices_[member.corner[2]]};
+  const std::array<ScreenVertex, 3> v = {screen_vertices_[number.x], screen_vertices_[number.y],
+                                         screen_vertices_[number.z]};
   const bool inside = !screen_vertices_.any_outside ||
                       (v[0].x != kOutside && v[1].x != kOutside && v[2].x != kOutside);
   PixelTriangle& triangle = triangles_[member.triangle];
@@ -237,13 +239,13 @@ void GouraudTile::set_up_member(const FrameShading& frame, const Cluster& cluste
 
   const bool front = counter_clockwise == (shaded.handedness > 0);
   glm::uvec3& corners = corners_[member.triangle];
-  corners = first_vertex + glm::uvec3(member.corner[0], member.corner[1], member.corner[2]);
+  corners = first_vertex + number;
   if ((front && part.normals_agree) || draw.transformed != nullptr) return;
   const glm::uvec3& mesh_corners = draw.mesh->triangles[part.first + member.place];
   const glm::vec3 edges = cross_of_edges(*draw.mesh, mesh_corners);
   for (int k = 0; k < 3; ++k)
     if (normal_agrees(*draw.mesh, mesh_corners[k], edges) != front)
-      corners[k] = first_vertex + turned(member.corner[k], used_count);
+      corners[k] = first_vertex + turned(number[k], members.used_count);
 }
 
 void GouraudTile::set_up_group(const FrameShading& frame, const Group& group,
@@ -256,7 +258,7 @@ void GouraudTile::set_up_group(const FrameShading& frame, const Group& group,
   const auto first_vertex = static_cast<std::uint32_t>(radiances_.size());
   turned_count_ = 0;
   for (const Member& member : std::span(members.triangles, members.triangle_count))
-    set_up_member(frame, cluster, *group.part, member, first_vertex, members.used_count);
+    set_up_member(frame, cluster, *group.part, members, member, first_vertex);
   if (draw.transformed != nullptr) {
     for (const std::uint32_t vertex : which)
       radiances_.emplace_back(draw.transformed->radiances[vertex], 1.0F);

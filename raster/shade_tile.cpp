@@ -1,5 +1,6 @@
 #include "raster/internal/shade_tile.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "composite/fragment.h"

@@ -153,10 +153,17 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   const int lanes = static_cast<int>(hn::Lanes(Floats()));
+  // Of the whole tile, an upper bound: depths only come nearer.
+  const auto farthest_of_all = [&] {
+    return *std::max_element(tile.farthest, tile.farthest + VisibilityTile::kBlocks);
+  };
+  std::int32_t farthest = farthest_of_all();
   for (const std::uint32_t entry : entries) {
     if (entry & kMasked) continue;
     const ScreenTriangle& triangle = triangles[entry];
     const ScreenVertex* v = triangle.vertex;
+    const std::int32_t nearest = code_of_depth(std::min({v[0].depth, v[1].depth, v[2].depth}));
+    if (nearest > farthest) continue;
     const geometry::Rect pixels =
         geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
     if (pixels.empty()) continue;
@@ -165,7 +172,6 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
     const int bx0 = i0 / kBlockWidth, bx1 = (i1 - 1) / kBlockWidth;
     const int by0 = j0 / kBlockHeight, by1 = (j1 - 1) / kBlockHeight;
 
-    const std::int32_t nearest = code_of_depth(std::min({v[0].depth, v[1].depth, v[2].depth}));
     std::uint32_t touched = 0;
     bool hidden = true;
     for (int by = by0; by <= by1; ++by)
@@ -179,6 +185,7 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
     if (!make_tile_triangle(triangle, screen, tile_x, tile_y, t)) continue;
     if (bx1 - bx0 > 1 || by1 - by0 > 1) {
       draw_blocks(t, triangle.number, bx0, bx1, by0, by1, tile);
+      farthest = farthest_of_all();
       continue;
     }
     draw<Inside::tested>(t, triangle.number, i0 / lanes * lanes, (i1 + lanes - 1) / lanes * lanes,
@@ -203,6 +210,85 @@ void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& ti
   refresh_if_due(tile);
 }
 
+// Blocks that pixels [i0, i1) x [j0, j1) of the tile touch, a bit each.
+HWY_INLINE std::uint32_t blocks_touched(int i0, int i1, int j0, int j1) {
+  const int bx0 = i0 / VisibilityTile::kBlockWidth, bx1 = (i1 - 1) / VisibilityTile::kBlockWidth;
+  const int by0 = j0 / VisibilityTile::kBlockHeight, by1 = (j1 - 1) / VisibilityTile::kBlockHeight;
+  const std::uint32_t row = (2U << bx1) - (1U << bx0);
+  // At most three rows of blocks; not a loop, which would be unrolled for many.
+  const int by = (by0 + by1) / 2;
+  const std::uint32_t touched = row << (by0 * VisibilityTile::kBlocksX) |
+                                row << (by * VisibilityTile::kBlocksX) |
+                                row << (by1 * VisibilityTile::kBlocksX);
+  return touched;
+}
+static_assert(WindowTriangles::kMostRows <= 2 * VisibilityTile::kBlockHeight);
+
+void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
+                       VisibilityTile& tile) {
+  using Window = HWY_CAPPED(std::int64_t, WindowTriangles::kWindowWidth);
+  const Window dk;
+  const hn::RebindToUnsigned<Window> duk;
+  const hn::Rebind<std::int32_t, Window> di;
+  const hn::Rebind<std::uint32_t, Window> du;
+  const hn::Rebind<float, Window> d;
+  const int lanes = static_cast<int>(hn::Lanes(dk));
+  const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
+  for (const std::uint32_t k : which) {
+    const WindowTriangles::Edges& edges = triangles.edges[k];
+    const WindowTriangles::Columns& columns = triangles.columns[k];
+    const WindowTriangles::Rows& rows = triangles.rows[k];
+    const WindowTriangles::Plane& plane = triangles.planes[k];
+    const WindowTriangles::Depths& depths = triangles.depths[k];
+    const int i0 = static_cast<int>(edges.window & 63),
+              j0 = static_cast<int>(edges.window >> 6 & 63);
+    const int j1 = j0 + static_cast<int>(edges.window >> 12 & 255);
+    const int width = static_cast<int>(edges.window >> 20) * WindowTriangles::kWindowWidth;
+    const std::uint32_t touched = blocks_touched(i0, i0 + width, j0, j1);
+    const std::int32_t nearest_code = code_of_depth(depths.nearest);
+    bool hidden = true;
+    for (std::uint32_t rest = touched; rest != 0; rest &= rest - 1)
+      hidden &= nearest_code > tile.farthest[std::countr_zero(rest)];
+    if (hidden) continue;
+
+    const auto slope_x = hn::Set(d, plane.slope_x);
+    const auto depth = hn::Set(d, depths.depth);
+    const auto nearest = hn::Set(d, depths.nearest), farthest = hn::Set(d, depths.farthest);
+    const auto number = hn::Set(dk, std::int64_t{columns.number});
+    const auto down0 = hn::Set(di, rows.step[0]), down1 = hn::Set(di, rows.step[1]),
+               down2 = hn::Set(di, rows.step[2]);
+    for (int i = 0; i < width; i += lanes) {
+      const auto column = hn::Add(hn::Iota(di, 0), hn::Set(di, i));
+      auto value0 =
+          hn::Add(hn::Set(di, edges.value[0]), hn::Mul(hn::Set(di, columns.step[0]), column));
+      auto value1 =
+          hn::Add(hn::Set(di, edges.value[1]), hn::Mul(hn::Set(di, columns.step[1]), column));
+      auto value2 =
+          hn::Add(hn::Set(di, edges.value[2]), hn::Mul(hn::Set(di, columns.step[2]), column));
+      const auto x = hn::Mul(slope_x, hn::Add(hn::Set(d, plane.x), hn::ConvertTo(d, column)));
+      std::int64_t* keys = tile.key + j0 * kTileSize + i0 + i;
+      float row = plane.y;
+      for (int j = j0; j < j1; ++j) {
+        const auto y = hn::Set(d, plane.slope_y * row);
+        const auto z = hn::Min(hn::Max(hn::Add(hn::Add(x, y), depth), nearest), farthest);
+        const auto covered = hn::Gt(hn::Or(hn::Or(value0, value1), value2), hn::Set(di, -1));
+        const auto code =
+            hn::IfThenElse(hn::RebindMask(du, covered), hn::Not(hn::BitCast(du, z)), behind_all);
+        const auto upper = hn::BitCast(dk, hn::ShiftLeft<32>(hn::PromoteTo(duk, code)));
+        hn::Store(hn::Min(hn::Load(dk, keys), hn::Or(upper, number)), dk, keys);
+        value0 = hn::Add(value0, down0);
+        value1 = hn::Add(value1, down1);
+        value2 = hn::Add(value2, down2);
+        row += 1.0F;  // exact
+        keys += kTileSize;
+      }
+    }
+    tile.stale |= touched;
+    ++tile.since_refresh;
+    refresh_if_due(tile);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raster
 HWY_AFTER_NAMESPACE();
@@ -212,13 +298,18 @@ namespace delray::raster {
 
 HWY_EXPORT(rasterize);
 HWY_EXPORT(rasterize_fragments);
+HWY_EXPORT(rasterize_windows);
 
 void VisibilityTile::clear(const geometry::Rect& rect) {
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
   const int i1 = i0 + rect.width(), j1 = j0 + rect.height();
-  std::fill_n(key, kTilePixels, std::int64_t{0});
-  for (int j = j0; j < j1; ++j)
-    std::fill(key + j * kTileSize + i0, key + j * kTileSize + i1, kEmptyKey);
+  if (rect.area() == kTilePixels) {
+    std::fill_n(key, kTilePixels, kEmptyKey);
+  } else {
+    std::fill_n(key, kTilePixels, std::int64_t{0});
+    for (int j = j0; j < j1; ++j)
+      std::fill(key + j * kTileSize + i0, key + j * kTileSize + i1, kEmptyKey);
+  }
   for (int block = 0; block < kBlocks; ++block) set_farthest(block, kEmptyCode);
   stale = 0;
   since_refresh = 0;
@@ -232,6 +323,11 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
 
 void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile) {
   HWY_DYNAMIC_DISPATCH(rasterize_fragments)(fragments, tile);
+}
+
+void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
+                       VisibilityTile& tile) {
+  HWY_DYNAMIC_DISPATCH(rasterize_windows)(triangles, which, tile);
 }
 
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,

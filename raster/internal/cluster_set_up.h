@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "raster/internal/set_up.h"
+#include "raster/internal/visibility.h"
 
 namespace delray::raster {
 
@@ -14,6 +15,9 @@ struct SetUpResult {
   // address[i] / kTilePixels, and its key is code[i] << 32 | number[i].
   std::vector<std::uint32_t> address, code, number;
   std::size_t fragments = 0;  // elements of the three that count
+
+  WindowTriangles windows;
+  bool fragments_only = false;  // instead of windows
 
   // Triangles that touch few tiles, and their entries; and those that touch many.
   struct Entry {
@@ -29,6 +33,7 @@ struct SetUpResult {
 
   void clear() {
     fragments = 0;
+    windows.size = 0;
     triangles.clear();
     entries.clear();
   }

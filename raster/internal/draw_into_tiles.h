@@ -18,6 +18,7 @@ struct Worker {
   struct TouchedTile {
     std::uint32_t tile;
     std::uint32_t first_fragment, last_fragment, first_entry, last_entry;
+    std::uint32_t first_window, last_window;
   };
 
   ScreenVertices vertices;
@@ -26,6 +27,7 @@ struct Worker {
   std::vector<TouchedTile> touched;
   std::vector<Fragment> fragments;     // by tile
   std::vector<std::uint32_t> entries;  // by tile
+  std::vector<std::uint32_t> windows;  // by tile
   std::uint64_t shaded = 0;            // pixels, as they were drawn
 };
 
@@ -89,6 +91,11 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
 // Draws the large triangles of a tile, nearest first. The tile is the caller's alone. Returns how
 // often a pixel was shaded.
 std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
-                         FrameTiles& tiles);
+                         const geometry::Rect& rect, VisibilityTile& visibility);
+inline std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
+                                FrameTiles& tiles) {
+  if (large.of_tile(tile).empty()) return 0;
+  return draw_large(task, tile, large, tiles.rect(tile), tiles.open(tile));
+}
 
 }  // namespace delray::raster

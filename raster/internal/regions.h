@@ -14,6 +14,11 @@ namespace delray::raster {
 // Memory that one frame leaves to the next.
 struct Scratch {
   Picture spare;  // nobody's any more
+  // By tile: whether it is clear in the picture whose colours are at `clear_in`, or `taken` when it
+  // was taken for the frame at hand.
+  std::vector<std::uint8_t> clear_tiles;
+  const void* clear_in = nullptr;
+  const void* taken = nullptr;
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
   LaterTriangles later;

@@ -76,21 +76,20 @@ class GouraudTile {
     const ClusterBlock* block = nullptr;
     const MeshCluster* part = nullptr;
   };
-  // A triangle of the group at hand, with its corners among the vertices that the group uses.
+  // A triangle of the group at hand, with its corners in the cluster.
   struct Member {
     std::uint16_t triangle;
     std::uint8_t place;
     std::uint8_t corner[3];
   };
-  // What a group uses. Sets are sparse ones (Briggs & Torczon 1993): element v is in it if
-  // used[number[v]] == v, so that none of them needs to be cleared.
+  // What a group uses.
   struct Members {
     Member triangles[kClusterTriangles];
     std::size_t triangle_count = 0;
-    std::uint8_t number[kClusterVertices] = {};     // of a vertex of the cluster, among those used
-    std::uint32_t used[kClusterVertices + 1] = {};  // vertices of the cluster
+    std::uint8_t used[kClusterVertices] = {};    // by vertex of the cluster: 1, 0 between groups
+    std::uint8_t number[kClusterVertices] = {};  // of those used
+    std::uint32_t mesh_vertices[kClusterVertices] = {};  // by number
     std::size_t used_count = 0;
-    std::uint32_t mesh_vertices[kClusterVertices] = {};  // of those used
   };
   // Vertices of one material that wait to be lit together.
   struct VertexBlock {
@@ -110,7 +109,7 @@ class GouraudTile {
   void collect(const FrameShading& frame, const Group& group, Members& members);
   void set_up_group(const FrameShading& frame, const Group& group, const Members& members);
   void set_up_member(const FrameShading& frame, const Cluster& cluster, const MeshCluster& part,
-                     const Member& member, std::uint32_t first_vertex, std::size_t used_count);
+                     const Members& members, const Member& member, std::uint32_t first_vertex);
   std::uint32_t turned(std::uint32_t used, std::size_t used_count);
   void add_vertices(const FrameShading& frame, const scenes::Mesh& mesh, const Members& members,
                     std::uint32_t first_vertex);
@@ -139,7 +138,8 @@ class GouraudTile {
   std::size_t last_group_ = 0;
 
   Members members_[2];  // of a group and the next
-  // Of the group at hand: used vertices whose normals are turned, another sparse set.
+  // Of the group at hand: used vertices whose normals are turned, a sparse set (Briggs & Torczon
+  // 1993): v is in it if turned_[turned_number_[v]] == v, so that it needs no clearing.
   std::uint8_t turned_number_[kClusterVertices];
   std::uint32_t turned_[kClusterVertices + 1];
   std::size_t turned_count_ = 0;

@@ -14,6 +14,7 @@ namespace delray::raster {
 struct TileMemory {
   SeenTriangles seen;
   GouraudTile gouraud;
+  VisibilityTile visibility;  // of a tile in which there are large triangles only
   std::vector<BlendedFragment> blended;
   std::vector<composite::Fragment> fragments;
   std::vector<std::int64_t> keys;

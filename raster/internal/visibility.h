@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "image/image.h"
 #include "raster/internal/tile_triangle.h"
@@ -69,6 +70,53 @@ struct VisibilityTile {
   }
 };
 
+// Triangles of a few pixels that lie in one tile, ready to be drawn: everything that
+// internal/tile_triangle.h computes, for the window of pixels from (x, y) of the tile on, x a
+// multiple of kWindowWidth. Four by four, so that vectors of them may be loaded. Grows only.
+struct WindowTriangles {
+  // Edge functions at the window's first pixel, and what they grow by per column and row.
+  struct Edges {
+    std::int32_t value[3];
+    std::uint32_t window;  // x | y << 6 | rows << 12 | parts << 20, the parts kWindowWidth wide
+  };
+  struct Columns {
+    std::int32_t step[3];
+    std::uint32_t number;
+  };
+  struct Rows {
+    std::int32_t step[3];
+    std::int32_t unused;
+  };
+  // Depth as in TileTriangle.
+  struct Plane {
+    float slope_x, slope_y, x, y;
+  };
+  struct Depths {
+    float depth, nearest, farthest, unused;
+  };
+  static constexpr int kWindowWidth = 8;
+  static constexpr int kMostRows = 16, kMostColumns = 16;
+
+  std::vector<Edges> edges;
+  std::vector<Columns> columns;
+  std::vector<Rows> rows;
+  std::vector<Plane> planes;
+  std::vector<Depths> depths;
+  std::vector<std::uint32_t> tile;  // of the frame
+  std::size_t size = 0;             // elements that count
+
+  void reserve(std::size_t count) {
+    if (edges.size() >= count) return;
+    const std::size_t more = 2 * count;
+    edges.resize(more);
+    columns.resize(more);
+    rows.resize(more);
+    planes.resize(more);
+    depths.resize(more);
+    tile.resize(more);
+  }
+};
+
 // An entry of a tile is the index of a triangle, with kMasked where it has holes in it.
 inline constexpr std::uint32_t kMasked = 0x80000000U;
 inline constexpr std::uint32_t kIndex = 0x7FFFFFFFU;
@@ -82,6 +130,10 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
 
 // The same for fragments.
 void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile);
+
+// The same for those that `which` names; all of them lie in the tile.
+void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
+                       VisibilityTile& tile);
 
 // Calls f(i, j, key) for every pixel of `rect`, at (i, j) of its tile, whose centre the triangle
 // covers.

@@ -71,6 +71,55 @@ TEST(Interpolate, DerivativesMatchDifferences) {
     }
 }
 
+TEST(Interpolate, ScreenPlanesHoldEveryPixelThatIsCovered) {
+  const Screen screen = make_screen(plain_view(320, 200));
+  std::mt19937 random(2);
+  int checked = 0;
+  for (int round = 0; round < 3000; ++round) {
+    // From slivers to triangles larger than the frame.
+    const int reach = 1 << (random() % 18);
+    const int x = static_cast<int>(random() % 80000) - 40000;
+    const int y = static_cast<int>(random() % 50000) - 25000;
+    const auto near = [&](int centre) {
+      return centre + static_cast<int>(random() % (2U * static_cast<unsigned>(reach))) - reach;
+    };
+    std::array<ScreenVertex, 3> v;
+    for (ScreenVertex& p : v) p = {near(x), near(y), -1.0F / static_cast<float>(1 + random() % 50)};
+    const std::int64_t area = doubled_area(v[0], v[1], v[2]);
+    if (area == 0) continue;
+    const Barycentrics t = make_barycentrics(screen, v);
+    EXPECT_EQ(t.counter_clockwise, area < 0);
+    ScreenTriangle triangle{{v[0], v[1], v[2]}, 0};
+    if (area < 0) std::swap(triangle.vertex[1], triangle.vertex[2]);
+    const geometry::Rect box = centres_in_box(v[0], v[1], v[2], screen);
+    for (int i = 0; i < 60 && !box.empty(); ++i) {
+      const int px = box.x0 + static_cast<int>(random() % static_cast<unsigned>(box.width()));
+      const int py = box.y0 + static_cast<int>(random() % static_cast<unsigned>(box.height()));
+      if (!covered_by_definition(triangle, screen, px, py)) continue;
+      const double cx = (px - screen.centre_x) * kSubpixels + kHalfPixel;
+      const double cy = (py - screen.centre_y) * kSubpixels + kHalfPixel;
+      double exact[3], sum = 0, largest = 0;
+      for (int k = 0; k < 3; ++k) {
+        const ScreenVertex &p = v[(k + 1) % 3], &q = v[(k + 2) % 3];
+        const double edge = (q.x - p.x) * (cy - p.y) - (q.y - p.y) * (cx - p.x);
+        exact[k] = edge * v[k].depth * (area < 0 ? 1 : -1);
+        ASSERT_GE(exact[k], 0);
+        sum += exact[k];
+        const double terms = std::abs((q.x - p.x) * (cy - t.y)) + std::abs((q.y - p.y) * cx);
+        largest = std::max(largest,
+                           std::abs(double{v[k].depth}) * (terms + double{kSubpixels} * kSubpixels +
+                                                           std::abs(double(t.c[k] / v[k].depth))));
+      }
+      const Weights w = quick_weights_at(t, px, py);
+      // Planes are rounded; the sum of a sliver is small beside their terms.
+      const double tolerance = 1e-6 + 1e-6 * largest / sum;
+      for (int k = 0; k < 3; ++k) ASSERT_NEAR(w.of[k], exact[k] / sum, tolerance) << round;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 5000);
+}
+
 TEST(Interpolate, DegenerateTrianglesGiveFiniteWeights) {
   const Screen screen = make_screen(plain_view(320, 200));
   const std::array<glm::vec3, 3> cases[] = {
