@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "comm/communicator.h"
 #include "loadbalance/partition.h"
 
 namespace delray::loadbalance {
@@ -19,6 +20,11 @@ class KeptPartition {
   // The partition for a frame with these costs: the last one, or a new one where the last would not
   // do or was for another frame. The reference stays valid until the next call. O(loads) when kept.
   const Partition& next(const Costs& costs);
+  // The same for all ranks together: rank 0 cuts and tells the others, so that ranks that share a
+  // machine do not all do the same work on it. Collective: nothing is sent when the last one is
+  // kept, else a broadcast of the regions.
+  // REQUIRES: all ranks pass the same costs in the same frames.
+  const Partition& next(const Costs& costs, comm::Communicator& communicator);
 
   // What next returned last: to scale costs to what it took with. Without regions before that.
   const Partition& last() const { return partition_; }
@@ -26,6 +32,10 @@ class KeptPartition {
   std::uint64_t recomputed() const { return recomputed_; }
 
  private:
+  // Counts the frame.
+  bool keeps(const Costs& costs);
+  Partition cut(const Costs& costs) const;
+
   const Partitioner* partitioner_;
   int ranks_;
   double factor_;

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <random>
+#include <utility>
+
+#include "comm/threads.h"
 #include "loadbalance/cost_model.h"
 
 namespace delray::loadbalance {
@@ -59,6 +64,46 @@ TEST(KeptPartition, AssignsMoreRegionsThanRanks) {
   EXPECT_EQ(partition.regions.size(), 4U);
   EXPECT_EQ(loads(costs_over({0, 0, 4, 1}, {4, 1, 2, 3}), partition, 2),
             (std::vector<double>{5, 5}));
+}
+
+std::atomic<int> cuts;
+
+Partition counted_mahd(const Costs& costs, Rect frame, int parts) {
+  ++cuts;
+  return find_partitioner("mahd")->partition(costs, frame, parts);
+}
+
+TEST(KeptPartition, IsTheSameOnAllRanksAndCutOnOne) {
+  constexpr int kRanks = 5, kFrames = 8;
+  constexpr Partitioner kCounted{"counted", "", counted_mahd};
+  std::vector<Costs> frames;
+  for (unsigned seed = 0; seed < kFrames; ++seed) {
+    std::mt19937 random(seed / 2);  // every other frame is like the last
+    std::vector<double> cells(40);
+    for (double& cost : cells) cost = std::uniform_real_distribution<double>(0, 1)(random);
+    frames.push_back(costs_over({0, 0, 40, 2}, std::move(cells)));
+  }
+  KeptPartition alone(*find_partitioner("mahd"), kRanks, 1.3, 2);
+  std::vector<Partition> expected;
+  for (const Costs& costs : frames) expected.push_back(alone.next(costs));
+  cuts = 0;
+  comm::run_threads(kRanks, 1, [&](comm::Communicator& communicator) {
+    KeptPartition kept(kCounted, kRanks, 1.3, 2);
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const Partition& partition = kept.next(frames[frame], communicator);
+      EXPECT_EQ(partition.frame, expected[frame].frame);
+      ASSERT_EQ(partition.regions.size(), expected[frame].regions.size());
+      for (std::size_t k = 0; k < partition.regions.size(); ++k) {
+        EXPECT_EQ(partition.regions[k].rect, expected[frame].regions[k].rect);
+        EXPECT_EQ(partition.regions[k].owner, expected[frame].regions[k].owner);
+      }
+    }
+    EXPECT_EQ(kept.recomputed(), alone.recomputed());
+    EXPECT_EQ(kept.frames(), alone.frames());
+  });
+  EXPECT_EQ(static_cast<std::uint64_t>(cuts), alone.recomputed());
+  EXPECT_GT(cuts, 1);
+  EXPECT_LT(cuts, kFrames);
 }
 
 }  // namespace
