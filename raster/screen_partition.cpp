@@ -130,7 +130,7 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   }
   const std::uint64_t cuts = kept_->recomputed();
   const double before = rank.communicator.seconds();
-  const loadbalance::Partition& partition = kept_->next(costs);
+  const loadbalance::Partition& partition = kept_->next(costs, rank.communicator);
   statistics_.reset();
   if (!options.report_partition || rank.number() != 0) return partition;
   statistics_.emplace();
