@@ -67,12 +67,13 @@ void Coverage::add(const geometry::Rect& box, double samples, bool blended) {
   for_each_square(box, [&](std::size_t i) { squares_[i].opaque += each; });
 }
 
-void Coverage::add_large(const ScreenTriangle& triangle, bool blended) {
+double Coverage::add_large(const ScreenTriangle& triangle, bool blended) {
   const ScreenVertex* v = triangle.vertex;
   const geometry::Rect squares =
       squares_of(pixels_of(centres_in_box(v[0], v[1], v[2], screen_), n_));
   const std::int64_t side = std::int64_t{kSide} * n_ * kSubpixels;
   const double most = static_cast<double>(kSide * kSide) * n_ * n_;
+  double all = 0;
   for (int j = squares.y0; j < squares.y1; ++j)
     for (int i = squares.x0; i < squares.x1; ++i) {
       const double samples =
@@ -82,7 +83,9 @@ void Coverage::add_large(const ScreenTriangle& triangle, bool blended) {
                                 static_cast<std::size_t>(i)];
       if (!blended) square.opaque += samples;
       (blended ? square.large_blended : square.large_opaque) += samples;
+      all += samples;
     }
+  return all;
 }
 
 void Coverage::sum_over_ranks(comm::Communicator& communicator) {

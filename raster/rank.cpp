@@ -3,17 +3,6 @@
 #include "raster/internal/samples.h"
 
 namespace delray::raster {
-namespace {
-
-// The samples of a tile, row by row. One per thread.
-template <class Colour>
-Window<Colour> tile_window(const geometry::Rect& rect) {
-  static thread_local image::BasicImage<Colour> of_thread(kTileSize, kTileSize);
-  return {of_thread.colour.data(), of_thread.depth.data(), rect.x0 / kTileSize * kTileSize,
-          rect.y0 / kTileSize * kTileSize, kTileSize};
-}
-
-}  // namespace
 
 std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives(int holders) const {
   const std::uint64_t all = first_primitives.back();
@@ -51,17 +40,7 @@ void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
 template <class Colour>
 void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
                   const Window<Colour>& window) {
-  for (const geometry::Rect& rect : rects) {
-    if (n == 1) {
-      tile.shade(rect, window);
-    } else if (tile.empty()) {
-      clear_pixels(pixels_of(rect, n), window);
-    } else {
-      const Window<Colour> samples = tile_window<Colour>(rect);
-      tile.shade(rect, samples);
-      resolve(samples, n, pixels_of(rect, n), window);
-    }
-  }
+  for (const geometry::Rect& rect : rects) tile.shade_pixels(rect, n, window);
 }
 
 template <class Colour>

@@ -23,7 +23,7 @@ struct Report {
   RankStatistics rank;
   Phases phases;
   TriangleCounts triangles;
-  std::uint64_t fragments, shaded, triangles_travelled;
+  std::uint64_t fragments, shaded, triangles_travelled, fragments_travelled;
 };
 
 void check(const RenderOptions& options, int ranks) {
@@ -96,6 +96,7 @@ Report make_report(const Rank& rank, std::span<const comm::Event> events) {
   report.fragments = rank.counts.fragments;
   report.shaded = rank.counts.shaded;
   report.triangles_travelled = rank.triangles_travelled;
+  report.fragments_travelled = rank.fragments_travelled;
   return report;
 }
 
@@ -115,6 +116,7 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
     statistics.triangles_hidden += report.triangles.hidden;
     statistics.clusters_hidden += report.triangles.hidden_clusters;
     statistics.triangles_travelled += report.triangles_travelled;
+    statistics.fragments_travelled += report.fragments_travelled;
     statistics.fragments += report.fragments;
     statistics.shaded += report.shaded;
   }

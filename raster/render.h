@@ -77,7 +77,7 @@ struct RenderOptions {
   std::string schedule;
   int block = 64;                    // pixels, the side of a block that is handed out
   bool report_partition = false;     // costs time of about that of cutting
-  Travel travel = Travel::geometry;  // sort-first
+  Travel travel = Travel::geometry;  // sort-first, hybrid
   Groups groups = Groups::one;       // sort-middle; a single rank does both
   // Of two groups: ranks 0 .. geometry_ranks - 1 have the primitives, the others draw. 0: half.
   int geometry_ranks = 0;
@@ -124,6 +124,7 @@ struct Statistics {
   // that depends on which of them was faster.
   std::uint64_t triangles_hidden = 0, clusters_hidden = 0;
   std::uint64_t triangles_travelled = 0;  // sent from one rank to another, once per receiver
+  std::uint64_t fragments_travelled = 0;  // surfaces at samples that another rank owns; hybrid
   // Before ranks are composited: surfaces seen at samples, and how often one was shaded.
   std::uint64_t fragments = 0, shaded = 0;
   std::optional<PartitionStatistics> partition;  // if asked for, and the screen was cut

@@ -42,7 +42,8 @@ std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int part
 }
 
 std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
-                                                                std::span<const Piece> groups) {
+                                                                std::span<const Piece> groups,
+                                                                SeenSamples* seen_samples) {
   loadbalance::RasterCostModel model = cost_model(rank.options.lighting);
   samples_.clear();
   if (rank.options.costs == CostSource::measured && rank.ranks() > 1) {
@@ -63,7 +64,7 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
     draw_of[i] = draw;
   }
   std::vector<loadbalance::WeightedBox> boxes(groups.size());
-  std::vector<double> samples(groups.size());
+  std::vector<double> samples(groups.size()), large_samples(groups.size());
   Coverage coverage(rank.screen, rank.options.supersampling);
   constexpr std::size_t kGrain = 1024;  // triangles
   const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
@@ -86,17 +87,24 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
         samples[i] = static_cast<double>(e.pixels);
         if (large.empty()) continue;
         const std::lock_guard lock(adds_large);
-        for (const ScreenTriangle& triangle : large) coverage.add_large(triangle, blended(i));
+        for (const ScreenTriangle& triangle : large)
+          large_samples[i] += coverage.add_large(triangle, blended(i));
       }
     });
   });
   for (std::size_t i = 0; i < groups.size(); ++i)
     coverage.add(boxes[i].box, samples[i], blended(i));
   if (rank.ranks() > 1) coverage.sum_over_ranks(rank.communicator);
+  if (seen_samples != nullptr)
+    *seen_samples = {model.per_pixel, std::vector<double>(groups.size()),
+                     std::vector<double>(groups.size())};
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (boxes[i].box.empty()) continue;
     const double seen = blended(i) ? 1 : coverage.seen(boxes[i].box);
     boxes[i].cost += model.per_pixel * samples[i] * (seen + kDrawn);
+    if (seen_samples == nullptr) continue;
+    seen_samples->all[i] = seen * (samples[i] + large_samples[i]);
+    seen_samples->large[i] = seen * large_samples[i];
   }
   large_.clear();
   if (rank.number() == 0)

@@ -14,6 +14,9 @@ constexpr std::array kStrategies = {
              sort_first},
     Strategy{"sort-middle", "transformed triangles go to the ranks whose regions they touch",
              sort_middle},
+    Strategy{"hybrid",
+             "each primitive goes to one rank; pixels go from where they are drawn to their owners",
+             hybrid},
 };
 
 }  // namespace

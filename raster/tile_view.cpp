@@ -1,5 +1,7 @@
 #include "raster/internal/tile_view.h"
 
+#include "raster/internal/samples.h"
+
 namespace delray::raster {
 image::RgbaF TileView::colour(std::uint32_t number, int x, int y) {
   if (shaded_ != nullptr && tile_ != nullptr) {
@@ -71,7 +73,22 @@ void TileView::shade(const geometry::Rect& rect, const Window<Colour>& window) {
   blend(rect, window);
 }
 
+template <class Colour>
+void TileView::shade_pixels(const geometry::Rect& rect, int n, const Window<Colour>& window) {
+  if (n == 1) {
+    shade(rect, window);
+  } else if (empty()) {
+    clear_pixels(pixels_of(rect, n), window);
+  } else {
+    const Window<Colour> samples = tile_window<Colour>(rect);
+    shade(rect, samples);
+    resolve(samples, n, pixels_of(rect, n), window);
+  }
+}
+
 template void TileView::shade(const geometry::Rect&, const Window<image::Rgba8>&);
 template void TileView::shade(const geometry::Rect&, const Window<image::RgbaF>&);
+template void TileView::shade_pixels(const geometry::Rect&, int, const Window<image::Rgba8>&);
+template void TileView::shade_pixels(const geometry::Rect&, int, const Window<image::RgbaF>&);
 
 }  // namespace delray::raster

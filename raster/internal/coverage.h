@@ -18,8 +18,8 @@ class Coverage {
 
   // So many samples, anywhere in a box of pixels.
   void add(const geometry::Rect& box, double samples, bool blended);
-  // A triangle, square by square. O(squares in its box).
-  void add_large(const ScreenTriangle& triangle, bool blended);
+  // A triangle, square by square. Returns its samples. O(squares in its box).
+  double add_large(const ScreenTriangle& triangle, bool blended);
   void sum_over_ranks(comm::Communicator& communicator);
 
   // The part of what opaque surfaces cover in a box that is seen, if they lie at random. Blended

@@ -27,7 +27,7 @@ struct Rank {
   Scratch& scratch;
   FrameMemory& memory;
   RegionCounts counts = {};
-  std::uint64_t triangles_travelled = 0;
+  std::uint64_t triangles_travelled = 0, fragments_travelled = 0;
   loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
 
   int number() const { return communicator.rank(); }
@@ -84,5 +84,6 @@ Picture sort_first(Rank& rank);
 Picture sort_first_scheduled(Rank& rank);
 Picture sort_middle(Rank& rank);
 Picture sort_last(Rank& rank);
+Picture hybrid(Rank& rank);
 
 }  // namespace delray::raster

@@ -19,6 +19,13 @@ struct Rank;
 // each other.
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles);
 
+// What boxes_of expects to be seen of each group, in samples, and what one costs: where a group is
+// drawn by one rank as a whole, its large triangles belong to its cost.
+struct SeenSamples {
+  double price = 1;  // in the unit of the boxes' costs
+  std::vector<double> all, large;
+};
+
 // Cuts the screen frame after frame, by what the frames before have taught. One per rank.
 class ScreenPartition {
  public:
@@ -30,7 +37,8 @@ class ScreenPartition {
   // those of large triangles, more exactly than by a box. Empty boxes cost nothing. Collective: a
   // grid of 16 x 16 pixels is summed over ranks and, where costs are measured, every rank says what
   // it did.
-  std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups);
+  std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups,
+                                                 SeenSamples* seen_samples = nullptr);
 
   // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
   // boxes, or as it was cut for the last frame. Collective. Valid until the next call. Owner k is

@@ -39,6 +39,16 @@ class TileView {
   // Colour and depth of the pixels of `rect`, within the tile, into the window.
   template <class Colour>
   void shade(const geometry::Rect& rect, const Window<Colour>& window);
+  // The same averaged over pixels of n x n samples, for a window of pixels; `rect` is in samples.
+  //
+  // REQUIRES: rect is of whole pixels.
+  template <class Colour>
+  void shade_pixels(const geometry::Rect& rect, int n, const Window<Colour>& window);
+  // The opaque triangle that is seen at a pixel, behind whatever is blended; kNothing if none is.
+  std::uint32_t opaque_number(int x, int y) const {
+    return number_of(
+        opaque_key(static_cast<std::uint32_t>(y % kTileSize * kTileSize + x % kTileSize)));
+  }
 
   // Calls f(x, y, keys) for every pixel of `rect` at which anything is seen, row by row, with the
   // keys of what is seen there, front to back.

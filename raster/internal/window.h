@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "image/image.h"
+#include "raster/internal/screen.h"
 
 namespace delray::raster {
 
@@ -25,6 +26,14 @@ struct Window {
 template <class Colour>
 Window<Colour> window_of(image::BasicImage<Colour>& image) {
   return {image.colour.data(), image.depth.data(), 0, 0, image.width};
+}
+
+// Memory of this thread for the tile that `rect` lies in, row by row; of any content.
+template <class Colour>
+Window<Colour> tile_window(const geometry::Rect& rect) {
+  static thread_local image::BasicImage<Colour> of_thread(kTileSize, kTileSize);
+  return {of_thread.colour.data(), of_thread.depth.data(), rect.x0 / kTileSize * kTileSize,
+          rect.y0 / kTileSize * kTileSize, kTileSize};
 }
 
 }  // namespace delray::raster

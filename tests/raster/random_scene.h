@@ -64,8 +64,8 @@ inline scenes::Scene random_scene(unsigned seed, int triangles_per_mesh = 40) {
 }
 
 // The same with glass of its own colour, of a texture's and of the vertices' alpha.
-inline scenes::Scene transparent_scene(unsigned seed) {
-  scenes::Scene scene = random_scene(seed);
+inline scenes::Scene transparent_scene(unsigned seed, int triangles_per_mesh = 40) {
+  scenes::Scene scene = random_scene(seed, triangles_per_mesh);
   for (const std::size_t i : {0U, 1U}) scene.materials[i].alpha = scenes::Material::Alpha::blend;
   scene.materials[0].base_colour.w = 0.4F;
   for (glm::vec4& colour : scene.meshes[0].colours) colour.w = colour.x < 0.1F ? 0.0F : colour.y;
