@@ -93,28 +93,14 @@ int primitives_per_box(std::uint64_t primitives, int parts) {
   return static_cast<int>(std::clamp<std::uint64_t>(primitives / pieces, 1, 256));
 }
 
-void sum_over_ranks(Costs& costs, comm::Communicator& communicator) {
-  const std::size_t size = costs.cells.size();
-  std::vector<double> values;
-  values.reserve(3 * size);
-  for (const auto* plane : {&costs.cells, &costs.cross_right, &costs.cross_down}) {
-    assert(plane->size() == size);
-    values.insert(values.end(), plane->begin(), plane->end());
+std::vector<WeightedBox> gather_boxes(std::span<const WeightedBox> boxes,
+                                      comm::Communicator& communicator) {
+  std::vector<WeightedBox> all;
+  for (const comm::Buffer& from : comm::gather(communicator, 0, comm::Buffer::of(boxes))) {
+    const auto some = from.as<WeightedBox>();
+    all.insert(all.end(), some.begin(), some.end());
   }
-  comm::all_reduce(communicator, std::span<double>(values), std::plus<>());
-  auto from = values.begin();
-  for (auto* plane : {&costs.cells, &costs.cross_right, &costs.cross_down}) {
-    std::copy_n(from, size, plane->begin());
-    from += static_cast<std::ptrdiff_t>(size);
-  }
-
-  const auto all =
-      comm::all_gather(communicator, comm::Buffer::of(std::span<const WeightedBox>(costs.boxes)));
-  costs.boxes.clear();
-  for (const comm::Buffer& buffer : all) {
-    const auto boxes = buffer.as<WeightedBox>();
-    costs.boxes.insert(costs.boxes.end(), boxes.begin(), boxes.end());
-  }
+  return all;
 }
 
 }  // namespace delray::loadbalance

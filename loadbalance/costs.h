@@ -52,9 +52,9 @@ int cost_cell_side(geometry::Rect frame, int parts);
 // REQUIRES: parts >= 1.
 int primitives_per_box(std::uint64_t primitives, int parts);
 
-// Adds up the costs that the ranks know of and strings their boxes together by rank; every rank
-// gets the same, bit by bit. Collective: two rounds of messages, cells once and boxes once.
-// REQUIRES: all ranks have the same frame, columns and rows.
-void sum_over_ranks(Costs& costs, comm::Communicator& communicator);
+// All ranks' boxes strung together by rank, on rank 0; none elsewhere. Collective: every box
+// travels once, which costs less than sums of grids over many ranks would.
+std::vector<WeightedBox> gather_boxes(std::span<const WeightedBox> boxes,
+                                      comm::Communicator& communicator);
 
 }  // namespace delray::loadbalance

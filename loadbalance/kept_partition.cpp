@@ -17,12 +17,9 @@ KeptPartition::KeptPartition(const Partitioner& partitioner, int ranks, double f
   assert(ranks >= 1 && regions_per_rank >= 1 && factor >= 1);
 }
 
-bool KeptPartition::keeps(const Costs& costs) {
-  const bool keeps = frames_ > 0 && partition_.frame == costs.frame &&
-                     imbalance(loads(costs, partition_, ranks_)) <= factor_;
-  ++frames_;
-  if (!keeps) ++recomputed_;
-  return keeps;
+bool KeptPartition::may_keep(const Costs& costs) const {
+  return frames_ > 0 && partition_.frame == costs.frame &&
+         imbalance(loads(costs, partition_, ranks_)) <= factor_;
 }
 
 Partition KeptPartition::cut(const Costs& costs) const {
@@ -30,20 +27,31 @@ Partition KeptPartition::cut(const Costs& costs) const {
 }
 
 const Partition& KeptPartition::next(const Costs& costs) {
-  if (!keeps(costs)) partition_ = cut(costs);
+  if (!may_keep(costs)) {
+    partition_ = cut(costs);
+    ++recomputed_;
+  }
+  ++frames_;
   return partition_;
 }
 
+// Rank 0 tells the others all of it, kept or not: they may be others than in the last frame.
 const Partition& KeptPartition::next(const Costs& costs, comm::Communicator& communicator) {
-  if (keeps(costs)) return partition_;
-  comm::Buffer regions;
+  comm::Buffer news;
   if (communicator.rank() == 0) {
-    partition_ = cut(costs);
-    regions = comm::Buffer::of(std::span<const Region>(partition_.regions));
+    const std::uint64_t before = recomputed_;
+    next(costs);
+    const int is_new = recomputed_ > before ? 1 : 0;
+    std::vector<Region> regions = {{partition_.frame, is_new}};
+    regions.insert(regions.end(), partition_.regions.begin(), partition_.regions.end());
+    news = comm::Buffer::of(std::span<const Region>(regions));
   }
-  regions = comm::broadcast(communicator, 0, std::move(regions));
-  const auto all = regions.as<Region>();
-  partition_ = {costs.frame, {all.begin(), all.end()}};
+  news = comm::broadcast(communicator, 0, std::move(news));
+  if (communicator.rank() == 0) return partition_;
+  const auto regions = news.as<Region>();
+  ++frames_;
+  if (regions[0].owner == 1) ++recomputed_;
+  partition_ = {regions[0].rect, {regions.begin() + 1, regions.end()}};
   return partition_;
 }
 

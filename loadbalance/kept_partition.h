@@ -9,8 +9,8 @@
 namespace delray::loadbalance {
 
 // Keeps its partition for as long as nobody would have to do more than `factor` times an equal
-// share of the frame's work (as sort-first systems over animations do; Mueller 1995). One per rank:
-// ranks that pass the same costs, as sum_over_ranks leaves them, decide alike.
+// share of the frame's work (as sort-first systems over animations do; Mueller 1995). One per
+// rank.
 class KeptPartition {
  public:
   // With a factor of 1 it is cut anew for every frame that is not perfectly balanced.
@@ -20,10 +20,8 @@ class KeptPartition {
   // The partition for a frame with these costs: the last one, or a new one where the last would not
   // do or was for another frame. The reference stays valid until the next call. O(loads) when kept.
   const Partition& next(const Costs& costs);
-  // The same for all ranks together: rank 0 cuts and tells the others, so that ranks that share a
-  // machine do not all do the same work on it. Collective: nothing is sent when the last one is
-  // kept, else a broadcast of the regions.
-  // REQUIRES: all ranks pass the same costs in the same frames.
+  // The same for all ranks together: rank 0, whose costs alone count, decides and cuts, and tells
+  // the others. Collective: a broadcast of the regions, kept or not.
   const Partition& next(const Costs& costs, comm::Communicator& communicator);
 
   // What next returned last: to scale costs to what it took with. Without regions before that.
@@ -32,8 +30,7 @@ class KeptPartition {
   std::uint64_t recomputed() const { return recomputed_; }
 
  private:
-  // Counts the frame.
-  bool keeps(const Costs& costs);
+  bool may_keep(const Costs& costs) const;
   Partition cut(const Costs& costs) const;
 
   const Partitioner* partitioner_;

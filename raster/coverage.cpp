@@ -89,12 +89,15 @@ double Coverage::add_large(const ScreenTriangle& triangle, bool blended) {
 }
 
 void Coverage::sum_over_ranks(comm::Communicator& communicator) {
-  std::vector<double> values;
-  for (const Square& s : squares_)
-    values.insert(values.end(), {s.opaque, s.large_opaque, s.large_blended});
-  comm::all_reduce(communicator, std::span<double>(values), std::plus<>());
+  std::vector<double> opaque, large;
+  for (const Square& s : squares_) {
+    opaque.push_back(s.opaque);
+    large.insert(large.end(), {s.large_opaque, s.large_blended});
+  }
+  comm::all_reduce(communicator, std::span<double>(opaque), std::plus<>());
+  comm::reduce(communicator, 0, std::span<double>(large), std::plus<>());
   for (std::size_t i = 0; i < squares_.size(); ++i)
-    squares_[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+    squares_[i] = {opaque[i], large[2 * i], large[2 * i + 1]};
 }
 
 double Coverage::seen(const geometry::Rect& box) const {

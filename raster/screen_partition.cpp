@@ -126,23 +126,25 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
 
   const geometry::Rect frame = rank.frame();
   const int side = loadbalance::cost_cell_side(frame, parts * options.regions_per_rank);
-  std::vector<loadbalance::WeightedBox> all(boxes.begin(), boxes.end());
+  std::vector<loadbalance::WeightedBox> all = loadbalance::gather_boxes(boxes, rank.communicator);
   all.insert(all.end(), large_.begin(), large_.end());
-  loadbalance::Costs costs = loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
-                                                     (frame.height() + side - 1) / side, all);
-  loadbalance::sum_over_ranks(costs, rank.communicator);
-  if (!samples_.empty() && kept_->last().frame == frame) {
+  const bool cuts_here = rank.number() == 0;
+  loadbalance::Costs costs;
+  if (cuts_here)
+    costs = loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
+                                    (frame.height() + side - 1) / side, all);
+  if (cuts_here && !samples_.empty() && kept_->last().frame == frame) {
     std::vector<double> seconds;
     for (int k = 0; k < parts; ++k) seconds.push_back(samples_[first_rank + k].seconds);
     loadbalance::scale_to_measured(costs, kept_->last(), seconds);
   }
-  const std::uint64_t cuts = kept_->recomputed();
+  const std::uint64_t recomputed = kept_->recomputed();
   const double before = rank.communicator.seconds();
   const loadbalance::Partition& partition = kept_->next(costs, rank.communicator);
   statistics_.reset();
-  if (!options.report_partition || rank.number() != 0) return partition;
+  if (!options.report_partition || !cuts_here) return partition;
   statistics_.emplace();
-  statistics_->kept = kept_->recomputed() == cuts;
+  statistics_->kept = kept_->recomputed() == recomputed;
   if (!statistics_->kept) statistics_->seconds = rank.communicator.seconds() - before;
   statistics_->predicted = loadbalance::imbalance(loadbalance::loads(costs, partition, parts));
   const loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);

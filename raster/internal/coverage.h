@@ -20,6 +20,7 @@ class Coverage {
   void add(const geometry::Rect& box, double samples, bool blended);
   // A triangle, square by square. Returns its samples. O(squares in its box).
   double add_large(const ScreenTriangle& triangle, bool blended);
+  // Large triangles for rank 0 only.
   void sum_over_ranks(comm::Communicator& communicator);
 
   // The part of what opaque surfaces cover in a box that is seen, if they lie at random. Blended
