@@ -31,6 +31,17 @@ if(DELRAY_SANITIZE)
   endif()
 endif()
 
+# What most sources include, parsed once for all libraries; nothing that brings in <string>, of which
+# GCC 12 warns where it does not come straight from a system header.
+set(DELRAY_COMMON_HEADERS <algorithm> <array> <cstdint> <cstring> <functional> <optional> <span>
+                          <vector> <glm/glm.hpp>)
+if(NOT TARGET delray_headers)
+  add_library(delray_headers STATIC ${CMAKE_CURRENT_LIST_DIR}/common_headers.cpp)
+  target_compile_options(delray_headers PRIVATE -ffp-contract=off)
+  target_link_libraries(delray_headers PRIVATE delray_warnings)
+  target_precompile_headers(delray_headers PRIVATE ${DELRAY_COMMON_HEADERS})
+endif()
+
 function(delray_library folder)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -40,6 +51,7 @@ function(delray_library folder)
     target_link_libraries(${target} PUBLIC ${ARG_DEPENDS})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:delray_warnings>
                                             ${ARG_PRIVATE_DEPENDS})
+    target_precompile_headers(${target} REUSE_FROM delray_headers)
     set(scope PUBLIC)
   else()
     add_library(${target} INTERFACE)
