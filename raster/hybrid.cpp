@@ -10,7 +10,6 @@
 #include "comm/collectives.h"
 #include "loadbalance/region_index.h"
 #include "parallel/parallel_for.h"
-#include "raster/internal/gather_regions.h"
 #include "raster/internal/hybrid_shares.h"
 #include "raster/internal/samples.h"
 #include "raster/internal/tile_fragments.h"
@@ -185,12 +184,8 @@ Picture render(Rank& rank) {
   const double drawn = communicator.seconds();
   drawing.compose();
   const double composed = communicator.seconds();
-  communicator.mark(comm::Phase::gather, 0);
-  gather_regions(communicator, shares.partition.regions, image);
   rank.counts.phases.compose += composed - drawn;
-  rank.counts.phases.gather += communicator.seconds() - composed;
-  if (rank.number() != 0) return image::BasicImage<Colour>();
-  return image;
+  return rank.gather(shares.partition.regions, std::move(image));
 }
 
 template <class Colour>

@@ -1,5 +1,6 @@
 #include "raster/internal/rank.h"
 
+#include "raster/internal/gather_regions.h"
 #include "raster/internal/samples.h"
 
 namespace delray::raster {
@@ -93,6 +94,16 @@ image::BasicImage<Colour> Rank::render_samples(const DrawList& list) {
 }
 
 template <class Colour>
+Picture Rank::gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image) {
+  communicator.mark(comm::Phase::gather, 0);
+  const double before = communicator.seconds();
+  gather_regions(communicator, partition, image);
+  counts.phases.gather += communicator.seconds() - before;
+  if (number() != 0) return image::BasicImage<Colour>();
+  return std::move(image);
+}
+
+template <class Colour>
 image::BasicImage<Colour> Rank::take_image(int width, int height) {
   // Whoever changes the image without saying what is clear leaves nothing known of it.
   scratch.taken = std::exchange(scratch.clear_in, nullptr);
@@ -109,6 +120,8 @@ template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rec
 template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
 template image::Image8 Rank::render_samples(const DrawList&);
 template image::ImageF Rank::render_samples(const DrawList&);
+template Picture Rank::gather(const loadbalance::Partition&, image::Image8&&);
+template Picture Rank::gather(const loadbalance::Partition&, image::ImageF&&);
 template image::Image8 Rank::take_image(int, int);
 template image::ImageF Rank::take_image(int, int);
 

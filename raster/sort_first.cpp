@@ -4,7 +4,6 @@
 // where they have been sent.
 #include "loadbalance/region_index.h"
 #include "raster/internal/frame_memory.h"
-#include "raster/internal/gather_regions.h"
 #include "raster/internal/rank.h"
 
 namespace delray::raster {
@@ -41,12 +40,7 @@ Picture render(Rank& rank) {
   rank.render_pixels(list, regions, image);
   screen.measure(rank);
 
-  communicator.mark(comm::Phase::gather, 0);
-  const double before = communicator.seconds();
-  gather_regions(communicator, partition, image);
-  rank.counts.phases.gather += communicator.seconds() - before;
-  if (rank.number() != 0) return image::BasicImage<Colour>();
-  return image;
+  return rank.gather(partition, std::move(image));
 }
 
 }  // namespace

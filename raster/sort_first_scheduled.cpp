@@ -10,7 +10,6 @@
 #include "parallel/parallel_for.h"
 #include "raster/internal/cull.h"
 #include "raster/internal/frame_memory.h"
-#include "raster/internal/gather_regions.h"
 #include "raster/internal/rank.h"
 #include "raster/internal/samples.h"
 
@@ -170,11 +169,7 @@ Picture render(Rank& rank) {
   }
 
   communicator.mark(comm::Phase::gather, 0);
-  const double before = communicator.seconds();
-  gather_regions(communicator, rendered(rank, blocks, hands), image);
-  rank.counts.phases.gather += communicator.seconds() - before;
-  if (rank.number() != 0) return image::BasicImage<Colour>();
-  return image;
+  return rank.gather(rendered(rank, blocks, hands), std::move(image));
 }
 
 }  // namespace

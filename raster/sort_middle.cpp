@@ -13,7 +13,6 @@
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
 #include "raster/internal/frame_memory.h"
-#include "raster/internal/gather_regions.h"
 #include "raster/internal/processor_seconds.h"
 #include "raster/internal/transformed_clusters.h"
 #include "raster/internal/triangle_sorter.h"
@@ -261,12 +260,7 @@ Picture render(Rank& rank) {
   screen.measure(rank);
   redistributor.count_geometry();
 
-  communicator.mark(comm::Phase::gather, 0);
-  const double before = communicator.seconds();
-  gather_regions(communicator, partition, image);
-  rank.counts.phases.gather += communicator.seconds() - before;
-  if (rank.number() != 0) return image::BasicImage<Colour>();
-  return image;
+  return rank.gather(partition, std::move(image));
 }
 
 }  // namespace

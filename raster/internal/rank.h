@@ -60,6 +60,9 @@ struct Rank {
   // The same for the whole frame, with the samples of a pixel together: see internal/samples.h.
   template <class Colour>
   image::BasicImage<Colour> render_samples(const DrawList& list);
+  // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Collective.
+  template <class Colour>
+  Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);
   // An image of any content; the spare one if that fits.
   template <class Colour>
   image::BasicImage<Colour> take_image(int width, int height);
