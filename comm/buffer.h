@@ -17,13 +17,25 @@ class Buffer {
  public:
   Buffer() = default;
   Buffer(Buffer&& other) noexcept
-      : bytes_(std::move(other.bytes_)), size_(std::exchange(other.size_, 0)) {}
+      : bytes_(std::move(other.bytes_)),
+        size_(std::exchange(other.size_, 0)),
+        counted_(std::exchange(other.counted_, 0)) {}
   Buffer& operator=(Buffer&& other) noexcept {
     bytes_ = std::move(other.bytes_);
     size_ = std::exchange(other.size_, 0);
+    counted_ = std::exchange(other.counted_, 0);
     return *this;
   }
-  explicit Buffer(std::size_t size) : bytes_(new std::byte[size]), size_(size) {}
+  explicit Buffer(std::size_t size) : bytes_(new std::byte[size]), size_(size), counted_(size) {}
+
+  // Stands for a message of `bytes` bytes of which `content` is all that anybody looks at: runs on
+  // hollow data send these, in one process only. Ledgers and the simulated machine take them for
+  // what they stand for.
+  static Buffer standing_for(std::size_t bytes, Buffer&& content) {
+    Buffer buffer = std::move(content);
+    buffer.counted_ = bytes;
+    return buffer;
+  }
 
   // A copy of `values`.
   template <class T>
@@ -38,11 +50,15 @@ class Buffer {
     return of(std::span<const T>(&value, 1));
   }
 
-  Buffer copy() const { return of(std::span<const std::byte>(bytes_.get(), size_)); }
+  Buffer copy() const {
+    return standing_for(counted_, of(std::span<const std::byte>(bytes_.get(), size_)));
+  }
 
   std::byte* data() { return bytes_.get(); }
   const std::byte* data() const { return bytes_.get(); }
   std::size_t size() const { return size_; }
+  // size() unless it stands for another message.
+  std::size_t counted_bytes() const { return counted_; }
   bool empty() const { return size_ == 0; }
 
   // The bytes as values of T. REQUIRES: size() is a multiple of sizeof(T).
@@ -61,7 +77,7 @@ class Buffer {
 
  private:
   std::unique_ptr<std::byte[]> bytes_;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, counted_ = 0;
 };
 
 }  // namespace delray::comm

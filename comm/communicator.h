@@ -53,6 +53,7 @@ enum class Phase : std::uint8_t {
   gather,
   collective,
 };
+inline constexpr int kPhases = static_cast<int>(Phase::collective) + 1;
 const char* name(Phase phase);
 
 // What `work` counts; the simulated machine turns an amount into time.

@@ -6,25 +6,40 @@
 #include "comm/collectives.h"
 
 namespace delray::comm {
+namespace {
+
+// Whether `event` is a message that crosses the network, added to `sum`; its round is the caller's.
+bool add_message(const Event& event, int self, Totals& sum) {
+  if (event.kind == Event::Kind::mark) return false;
+  if (event.kind == Event::Kind::work) {
+    sum.work[static_cast<std::size_t>(event.work)] += event.amount;
+    return false;
+  }
+  if (event.peer == self) return false;
+  const bool sent = event.kind == Event::Kind::send;
+  (sent ? sum.bytes_sent : sum.bytes_received) += event.amount;
+  (sent ? sum.messages_sent : sum.messages_received) += 1;
+  return true;
+}
+
+}  // namespace
+
+void Tally::add(const Event& event) {
+  const auto phase = static_cast<std::size_t>(event.phase);
+  Totals& sum = phases_[phase];
+  if (!add_message(event, self_, sum)) return;
+  if (sum.rounds == 0 || event.round != last_round_[phase]) ++sum.rounds;
+  last_round_[phase] = event.round;
+}
 
 Totals totals(std::span<const Event> events, int self, std::optional<Phase> phase) {
   Totals sum;
-  bool counted_round = false;
   std::pair last_round(Phase::other, 0);
   for (const Event& event : events) {
     if (phase && event.phase != *phase) continue;
+    if (!add_message(event, self, sum)) continue;
     const std::pair round(event.phase, event.round);
-    if (event.kind == Event::Kind::mark) continue;
-    if (event.kind == Event::Kind::work) {
-      sum.work[static_cast<std::size_t>(event.work)] += event.amount;
-      continue;
-    }
-    if (event.peer == self) continue;
-    const bool sent = event.kind == Event::Kind::send;
-    (sent ? sum.bytes_sent : sum.bytes_received) += event.amount;
-    (sent ? sum.messages_sent : sum.messages_received) += 1;
-    if (!counted_round || round != last_round) ++sum.rounds;
-    counted_round = true;
+    if (sum.rounds == 0 || round != last_round) ++sum.rounds;
     last_round = round;
   }
   return sum;

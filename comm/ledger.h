@@ -38,6 +38,21 @@ struct Totals {
   std::array<std::uint64_t, kWorkKinds> work{};  // indexed by Work
 };
 
+// Adds up the events of one rank, for runs of so many messages that nobody can keep them all.
+class Tally {
+ public:
+  // `self` is the rank's world rank.
+  explicit Tally(int self) : self_(self) {}
+
+  void add(const Event& event);
+  const Totals& totals(Phase phase) const { return phases_[static_cast<std::size_t>(phase)]; }
+
+ private:
+  int self_;
+  std::array<Totals, kPhases> phases_{};
+  std::array<std::int32_t, kPhases> last_round_{};
+};
+
 // Of one rank's events: `self` is its world rank. With a phase, of that phase only. O(events).
 Totals totals(std::span<const Event> events, int self, std::optional<Phase> phase = std::nullopt);
 

@@ -6,29 +6,38 @@
 namespace delray::comm {
 
 Recording::Recording(Communicator& inner, std::vector<Event>& events)
-    : inner_(inner), journal_(new Journal{events}) {}
+    : inner_(inner), journal_(new Journal{&events, nullptr}) {}
+
+Recording::Recording(Communicator& inner, Tally& tally)
+    : inner_(inner), journal_(new Journal{nullptr, &tally}) {}
 
 Recording::Recording(std::unique_ptr<Communicator> inner, std::shared_ptr<Journal> journal)
     : owned_(std::move(inner)), inner_(*owned_), journal_(std::move(journal)) {}
 
-Event& Recording::append(Event::Kind kind, double begin) {
+Event Recording::event(Event::Kind kind, double begin) const {
   Event event;
   event.kind = kind;
   event.phase = journal_->phase;
   event.round = journal_->round;
   event.begin = begin;
   event.end = inner_.seconds();
-  return journal_->events.emplace_back(event);
+  return event;
+}
+
+void Recording::write(const Event& event) {
+  if (journal_->events) journal_->events->push_back(event);
+  if (journal_->tally) journal_->tally->add(event);
 }
 
 void Recording::send(int to, Tag tag, Buffer&& message) {
-  const std::uint64_t bytes = message.size();
+  const std::uint64_t bytes = message.counted_bytes();
   const double begin = inner_.seconds();
   inner_.send(to, tag, std::move(message));
-  Event& event = append(Event::Kind::send, begin);
-  event.peer = inner_.world_rank(to);
-  event.tag = tag;
-  event.amount = bytes;
+  Event sent = event(Event::Kind::send, begin);
+  sent.peer = inner_.world_rank(to);
+  sent.tag = tag;
+  sent.amount = bytes;
+  write(sent);
 }
 
 Buffer Recording::receive(int from_or_any, Tag tag_or_any) {
@@ -42,10 +51,11 @@ Buffer Recording::receive(int from_or_any, Tag tag_or_any) {
     tag = envelope->tag;
   }
   Buffer message = inner_.receive(from, tag);
-  Event& event = append(Event::Kind::receive, begin);
-  event.peer = inner_.world_rank(from);
-  event.tag = tag;
-  event.amount = message.size();
+  Event received = event(Event::Kind::receive, begin);
+  received.peer = inner_.world_rank(from);
+  received.tag = tag;
+  received.amount = message.counted_bytes();
+  write(received);
   return message;
 }
 
@@ -61,15 +71,16 @@ void Recording::mark(Phase phase, int round) {
   inner_.mark(phase, round);
   journal_->phase = phase;
   journal_->round = round;
-  append(Event::Kind::mark, inner_.seconds());
+  write(event(Event::Kind::mark, inner_.seconds()));
 }
 
 void Recording::work(Work kind, std::uint64_t amount) {
   const double begin = inner_.seconds();
   inner_.work(kind, amount);
-  Event& event = append(Event::Kind::work, begin);
-  event.work = kind;
-  event.amount = amount;
+  Event worked = event(Event::Kind::work, begin);
+  worked.work = kind;
+  worked.amount = amount;
+  write(worked);
 }
 
 void Recording::abort(std::string why) {

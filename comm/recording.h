@@ -11,10 +11,13 @@ namespace delray::comm {
 
 // Appends this rank's messages, work and marks to `events`. Communicators that come from it by
 // split write to the same events, peers as world ranks; splitting itself is not recorded. Costs one
-// entry per call. REQUIRES: `inner` and `events` outlive the recording and what is split from it.
+// entry per call. REQUIRES: `inner` and `events` or `tally` outlive the recording and what is split
+// from it.
 class Recording final : public Communicator {
  public:
   Recording(Communicator& inner, std::vector<Event>& events);
+  // Only adds up.
+  Recording(Communicator& inner, Tally& tally);
 
   int rank() const override { return inner_.rank(); }
   int size() const override { return inner_.size(); }
@@ -30,14 +33,16 @@ class Recording final : public Communicator {
   [[noreturn]] void abort(std::string why) override;
 
  private:
-  // The phase and round that were marked last, on whichever communicator.
+  // Where to write, and the phase and round that were marked last, on whichever communicator.
   struct Journal {
-    std::vector<Event>& events;
+    std::vector<Event>* events;
+    Tally* tally;
     Phase phase = Phase::other;
     int round = 0;
   };
   Recording(std::unique_ptr<Communicator> inner, std::shared_ptr<Journal> journal);
-  Event& append(Event::Kind kind, double begin);
+  Event event(Event::Kind kind, double begin) const;
+  void write(const Event& event);
 
   std::unique_ptr<Communicator> owned_;  // null when the caller owns the inner one
   Communicator& inner_;

@@ -48,7 +48,10 @@ struct Rank {
 class Machine {
  public:
   Machine(int count, const Network& given, std::uint64_t seed, const SimulationOptions& options)
-      : network(given), ranks(count), random_(seed) {
+      : network(given),
+        ranks(count),
+        random_(seed),
+        core_free_(static_cast<std::size_t>(given.shared_cores)) {
     for (std::size_t i = 0; i < ranks.size() && i < options.slowness.size(); ++i) {
       ranks[i].slowness = options.slowness[i];
     }
@@ -86,14 +89,34 @@ class Machine {
     }
   }
 
+  bool takes_turns() const { return network.is_bus || network.shared_cores > 0; }
+
+  // The rank's processor is busy for so long, once it gets a core.
+  // REQUIRES: where cores are shared, nobody is left who could want one earlier.
+  void occupy(Rank& rank, double seconds) {
+    seconds *= rank.slowness;
+    if (core_free_.empty()) {
+      rank.clock += seconds;
+      return;
+    }
+    const auto core = std::min_element(core_free_.begin(), core_free_.end());
+    *core = rank.clock = std::max(rank.clock, *core) + seconds;
+  }
+
+  // Of the processor, on either side of a message.
+  double handling_seconds(std::size_t bytes) const {
+    return network.overhead + network.copy_seconds_per_byte * static_cast<double>(bytes);
+  }
+
   // When the last byte of a message that is sent now arrives at a link that is free.
+  // REQUIRES: as occupy; the sender's processor has handled it.
   double arrival(int from, int to, std::size_t bytes) {
     Rank& sender = ranks[from];
     if (from == to) return sender.clock;
-    sender.clock += network.overhead * sender.slowness;
-    const double start = std::max(sender.clock, sender.outgoing_free);
-    sender.outgoing_free = start + network.seconds_per_byte * static_cast<double>(bytes);
-    double time = sender.outgoing_free + network.latency;
+    double& link_free = network.is_bus ? bus_free_ : sender.outgoing_free;
+    link_free =
+        std::max(sender.clock, link_free) + network.seconds_per_byte * static_cast<double>(bytes);
+    double time = link_free + network.latency;
     if (network.jitter > 0) {
       time += jitter();
       double& last =
@@ -104,13 +127,13 @@ class Machine {
   }
 
   // REQUIRES: the message has arrived at the receiver's clock.
-  void charge_receive(int from, int to, const Message& message) {
-    if (from == to) return;
+  void carry_in(int to, const Message& message) {
     Rank& receiver = ranks[to];
-    const double seconds = network.seconds_per_byte * static_cast<double>(message.payload.size());
+    if (network.is_bus) return;
+    const double seconds =
+        network.seconds_per_byte * static_cast<double>(message.payload.counted_bytes());
     receiver.incoming_free = std::max(message.arrival - seconds, receiver.incoming_free) + seconds;
-    receiver.clock =
-        std::max(receiver.clock, receiver.incoming_free) + network.overhead * receiver.slowness;
+    receiver.clock = std::max(receiver.clock, receiver.incoming_free);
   }
 
  private:
@@ -142,6 +165,8 @@ class Machine {
   std::mt19937_64 random_;
   std::set<std::tuple<double, std::uint64_t, int>> ready_;
   std::unordered_map<std::uint64_t, double> last_arrival_;
+  double bus_free_ = 0;            // when the bus has carried all so far
+  std::vector<double> core_free_;  // when each of the shared cores has done all so far
 };
 
 class SimulatedCommunicator final : public Communicator {
@@ -161,7 +186,11 @@ class SimulatedCommunicator final : public Communicator {
     assert(0 <= to && to < size() && tag >= 0);
     if (machine_.failure.happened()) throw RunEnded{};
     const int receiver = world_rank(to);
-    const double arrival = machine_.arrival(world_rank(rank_), receiver, message.size());
+    if (to != rank_) {
+      occupy(machine_.handling_seconds(message.counted_bytes()));
+      wait_for_turn();
+    }
+    const double arrival = machine_.arrival(world_rank(rank_), receiver, message.counted_bytes());
     group_->queues[to].push(rank_, tag, arrival, std::move(message));
     const Rank& r = machine_.ranks[receiver];
     if (r.group != group_.get() || !internal::matches(rank_, tag, r.from, r.tag)) return;
@@ -171,7 +200,10 @@ class SimulatedCommunicator final : public Communicator {
 
   Buffer receive(int from_or_any, Tag tag_or_any) override {
     Message* message = wait(from_or_any, tag_or_any, kNever);
-    machine_.charge_receive(world_rank(message->source), world_rank(rank_), *message);
+    if (message->source != rank_) {
+      machine_.carry_in(world_rank(rank_), *message);
+      occupy(machine_.handling_seconds(message->payload.counted_bytes()));
+    }
     return group_->queues[rank_].take(message);
   }
 
@@ -180,7 +212,7 @@ class SimulatedCommunicator final : public Communicator {
                                ? kNever
                                : std::chrono::duration<double>(deadline.wait).count();
     const Message* message = wait(from_or_any, tag_or_any, own_.clock + std::max(longest, 0.0));
-    if (message) return Envelope{message->source, message->tag, message->payload.size()};
+    if (message) return Envelope{message->source, message->tag, message->payload.counted_bytes()};
     if (longest < kLeastProbe) {
       own_.clock += std::max(kLeastProbe, machine_.network.overhead) * own_.slowness;
     }
@@ -196,8 +228,8 @@ class SimulatedCommunicator final : public Communicator {
 
   void mark(Phase phase, int) override { own_.phase = phase; }
   void work(Work kind, std::uint64_t amount) override {
-    own_.clock += machine_.network.seconds_per_work[static_cast<std::size_t>(kind)] *
-                  static_cast<double>(amount) * own_.slowness;
+    occupy(machine_.network.seconds_per_work[static_cast<std::size_t>(kind)] *
+           static_cast<double>(amount));
   }
 
   void abort(std::string why) override {
@@ -206,6 +238,20 @@ class SimulatedCommunicator final : public Communicator {
   }
 
  private:
+  // Lets all ranks go on that are not as far in time, where ranks compete for something.
+  void wait_for_turn() {
+    if (!machine_.takes_turns() || machine_.is_settled(own_.clock)) return;
+    machine_.schedule(world_rank(rank_), own_.clock);
+    own_.fiber->suspend();
+    if (machine_.failure.happened()) throw RunEnded{};
+  }
+
+  void occupy(double seconds) {
+    if (seconds <= 0) return;
+    if (machine_.network.shared_cores > 0) wait_for_turn();
+    machine_.occupy(own_, seconds);
+  }
+
   // The message that receive would take, the clock moved on to its arrival; null and the clock at
   // `limit` when there is none by then.
   Message* wait(int from, Tag tag, double limit) {

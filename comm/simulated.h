@@ -2,28 +2,15 @@
 // clock.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "comm/communicator.h"
 #include "comm/failure.h"
+#include "comm/network.h"
 
 namespace delray::comm {
-
-// What messages and work cost, in seconds: LogGP (Alexandrov, Ionescu, Schauser and Scheiman 1995),
-// the gap per byte charged on the sender's and on the receiver's link. The links carry one message
-// at a time, the network between them any number. Messages of a rank to itself are free.
-struct Network {
-  double latency = 20e-6;
-  double overhead = 1e-6;  // of the processor, for each send and each receive
-  double seconds_per_byte = 1 / 1.25e9;
-  // Indexed by Work. The caller calibrates all but the first, which is the unit itself.
-  std::array<double, kWorkKinds> seconds_per_work = {1e-9, 1e-9, 50e-9, 2e-9, 200e-9, 1e-6};
-  // Each message is late by a random time of up to this, of any order of magnitude.
-  double jitter = 0;
-};
 
 // For tests: nothing costs time but the way of a message, which is random. Over the seeds every
 // order of arrival occurs that MPI allows: first in, first out between two ranks, else any.

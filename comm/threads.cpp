@@ -164,7 +164,7 @@ class ThreadCommunicator final : public Communicator {
   // The first message that matches, once there is one; null when the deadline passes before.
   Message* wait(std::unique_lock<std::mutex>& lock, int from, Tag tag, Deadline deadline) {
     constexpr auto kNever = std::chrono::nanoseconds::max();
-    const auto& queue = group_->queues[rank_];
+    auto& queue = group_->queues[rank_];
     const bool forever = deadline.wait == kNever;
     const auto longest = std::min(deadline.wait, world_.timeout);
     Clock::time_point end{};

@@ -2,18 +2,24 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <memory>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "comm/communicator.h"
 
 namespace delray::comm::internal {
 
-// The messages of one rank in one communicator. Every call costs O(log messages). Payload is what
-// stands for the bytes: a Buffer, or one that is still being filled.
+// Whether a message that came matches what somebody waits for.
+inline bool matches(int source, Tag tag, int from_or_any, Tag tag_or_any) {
+  return (from_or_any == kAnyRank || from_or_any == source) &&
+         (tag_or_any == kAnyTag ? tag < kReservedTags : tag_or_any == tag);
+}
+
+// The messages of one rank in one communicator. A call costs O(1), or O(log messages) from the
+// first time on that somebody asks for any source or any tag. Payload is what stands for the bytes:
+// a Buffer, or one that is still being filled.
 template <class Payload>
 class MessageQueue {
  public:
@@ -23,78 +29,97 @@ class MessageQueue {
     double arrival = 0;
     std::uint64_t sequence = 0;
     Payload payload;
+    Message* next = nullptr;  // of the same source and tag
   };
+
+  MessageQueue() = default;
+  ~MessageQueue() {
+    while (Message* message = any()) take(message);
+  }
+  MessageQueue(const MessageQueue&) = delete;
+  MessageQueue& operator=(const MessageQueue&) = delete;
 
   // Messages are ordered by arrival, then by the order of these calls.
   // REQUIRES: messages of one source come in with ascending arrivals.
   Message& push(int source, Tag tag, double arrival, Payload&& payload) {
-    auto owned = std::make_unique<Message>(
-        Message{source, tag, arrival, next_sequence_++, std::move(payload)});
-    Message& message = *owned;
-    const Order order{arrival, message.sequence};
-    by_source_and_tag_.emplace(std::tuple{source, tag, order}, std::move(owned));
-    by_tag_.emplace(std::tuple{tag, order}, &message);
-    if (tag < kReservedTags) {
-      by_source_.emplace(std::tuple{source, order}, &message);
-      all_.emplace(order, &message);
-    }
-    return message;
+    auto* const message =
+        new Message{source, tag, arrival, next_sequence_++, std::move(payload), nullptr};
+    List& list = lists_[key(source, tag)];
+    (list.last ? list.last->next : list.first) = message;
+    list.last = message;
+    for_each_index(*message, [&](Index& index) { index.emplace(order(*message), message); });
+    return *message;
   }
 
   // The first message that matches, or null.
-  Message* find(int from_or_any, Tag tag_or_any) const {
+  Message* find(int from_or_any, Tag tag_or_any) {
     if (from_or_any != kAnyRank && tag_or_any != kAnyTag) {
-      const auto i = by_source_and_tag_.lower_bound({from_or_any, tag_or_any, kFirst});
-      if (i == by_source_and_tag_.end() || i->second->source != from_or_any ||
-          i->second->tag != tag_or_any) {
-        return nullptr;
-      }
-      return i->second.get();
+      const auto i = lists_.find(key(from_or_any, tag_or_any));
+      return i == lists_.end() ? nullptr : i->second.first;
     }
-    if (from_or_any != kAnyRank) {
-      const auto i = by_source_.lower_bound({from_or_any, kFirst});
-      return i == by_source_.end() || i->second->source != from_or_any ? nullptr : i->second;
-    }
-    if (tag_or_any != kAnyTag) {
-      const auto i = by_tag_.lower_bound({tag_or_any, kFirst});
-      return i == by_tag_.end() || i->second->tag != tag_or_any ? nullptr : i->second;
-    }
-    return all_.empty() ? nullptr : all_.begin()->second;
+    const Index& index = index_of({from_or_any, tag_or_any});
+    return index.empty() ? nullptr : index.begin()->second;
   }
 
-  // REQUIRES: `message` is in the queue.
+  // REQUIRES: find or any has returned `message`, and nobody has taken it since.
   Payload take(Message* message) {
-    const Order order{message->arrival, message->sequence};
-    if (message->tag < kReservedTags) {
-      by_source_.erase({message->source, order});
-      all_.erase(order);
-    }
-    by_tag_.erase({message->tag, order});
-    const auto i = by_source_and_tag_.find({message->source, message->tag, order});
-    Payload payload = std::move(message->payload);
-    by_source_and_tag_.erase(i);
-    return payload;
+    for_each_index(*message, [&](Index& index) { index.erase(order(*message)); });
+    const auto i = lists_.find(key(message->source, message->tag));
+    i->second.first = message->next;
+    if (!message->next) lists_.erase(i);
+    const std::unique_ptr<Message> owned(message);
+    return std::move(message->payload);
   }
 
   // Some message, collectives' included; null when there is none.
-  Message* any() const { return by_tag_.empty() ? nullptr : by_tag_.begin()->second; }
+  Message* any() const { return lists_.empty() ? nullptr : lists_.begin()->second.first; }
 
  private:
+  // First in, first out; never empty.
+  struct List {
+    Message* first = nullptr;
+    Message* last = nullptr;
+  };
   using Order = std::pair<double, std::uint64_t>;
-  static constexpr Order kFirst{-std::numeric_limits<double>::infinity(), 0};
+  using Index = std::map<Order, Message*>;
+  using Pattern = std::pair<int, Tag>;
+
+  static std::uint64_t key(int source, Tag tag) {
+    return static_cast<std::uint64_t>(source) << 32 | static_cast<std::uint32_t>(tag);
+  }
+  static Order order(const Message& message) { return {message.arrival, message.sequence}; }
+
+  // The messages that a pattern with kAnyRank or kAnyTag matches; kept up from the first call on.
+  Index& index_of(Pattern pattern) {
+    const auto [i, is_new] = indexes_.try_emplace(pattern);
+    if (is_new) {
+      for (const auto& [unused, list] : lists_) {
+        for (Message* message = list.first; message; message = message->next) {
+          if (matches(message->source, message->tag, pattern.first, pattern.second)) {
+            i->second.emplace(order(*message), message);
+          }
+        }
+      }
+    }
+    return i->second;
+  }
+
+  template <class F>
+  void for_each_index(const Message& message, F&& f) {
+    if (indexes_.empty()) return;
+    const auto visit = [&](Pattern pattern) {
+      if (const auto i = indexes_.find(pattern); i != indexes_.end()) f(i->second);
+    };
+    visit({kAnyRank, message.tag});
+    // Tags of collectives never match kAnyTag.
+    if (message.tag >= kReservedTags) return;
+    visit({message.source, kAnyTag});
+    visit({kAnyRank, kAnyTag});
+  }
 
   std::uint64_t next_sequence_ = 0;
-  std::map<std::tuple<int, Tag, Order>, std::unique_ptr<Message>> by_source_and_tag_;
-  std::map<std::tuple<Tag, Order>, Message*> by_tag_;
-  // Tags of collectives never match kAnyTag, so these two do not hold them.
-  std::map<std::tuple<int, Order>, Message*> by_source_;
-  std::map<Order, Message*> all_;
+  std::unordered_map<std::uint64_t, List> lists_;  // by source and tag
+  std::map<Pattern, Index> indexes_;
 };
-
-// Whether a message that came matches what somebody waits for.
-inline bool matches(int source, Tag tag, int from_or_any, Tag tag_or_any) {
-  return (from_or_any == kAnyRank || from_or_any == source) &&
-         (tag_or_any == kAnyTag ? tag < kReservedTags : tag_or_any == tag);
-}
 
 }  // namespace delray::comm::internal

@@ -97,6 +97,40 @@ TEST_P(RecordingTest, WritesMessagesInProgramOrder) {
   EXPECT_EQ(totals(ledger, Phase::trace).messages_sent, 0u);
 }
 
+TEST_P(RecordingTest, ATallyAddsUpLikeTheEvents) {
+  const auto body = [](Communicator& c) {
+    const int n = c.size(), next = (c.rank() + 1) % n, last = (c.rank() + n - 1) % n;
+    for (int round = 0; round < 5; ++round) {
+      c.mark(round % 2 == 0 ? Phase::compose : Phase::gather, round / 3);
+      c.send(next, 1, Buffer(static_cast<std::size_t>(10 * round + c.rank())));
+      c.receive(last, 1);
+      c.work(Work::pixels_composited, 3);
+    }
+  };
+  const Ledger ledger = record(GetParam(), 3, body);
+  for (int rank = 0; rank < 3; ++rank) {
+    Tally tally(rank);
+    for (const Event& event : ledger.ranks[static_cast<std::size_t>(rank)]) tally.add(event);
+    for (const Phase phase : {Phase::compose, Phase::gather, Phase::trace}) {
+      const Totals sum = totals(ledger.ranks[static_cast<std::size_t>(rank)], rank, phase);
+      const Totals& tallied = tally.totals(phase);
+      EXPECT_EQ(tallied.bytes_sent, sum.bytes_sent);
+      EXPECT_EQ(tallied.bytes_received, sum.bytes_received);
+      EXPECT_EQ(tallied.messages_sent, sum.messages_sent);
+      EXPECT_EQ(tallied.messages_received, sum.messages_received);
+      EXPECT_EQ(tallied.rounds, sum.rounds);
+      EXPECT_EQ(tallied.work, sum.work);
+    }
+    EXPECT_EQ(tally.totals(Phase::compose).rounds, 2U);
+  }
+  run_threads(3, 1, [&](Communicator& c) {
+    Tally tally(c.rank());
+    Recording recording(c, tally);
+    body(recording);
+    EXPECT_EQ(tally.totals(Phase::compose).messages_sent, 3U);
+  });
+}
+
 TEST_P(RecordingTest, TranslatesPeersOfSplitCommunicators) {
   const Ledger ledger = record(GetParam(), 6, [](Communicator& c) {
     const auto odd_even = c.split(c.rank() % 2, -c.rank());

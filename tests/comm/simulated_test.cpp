@@ -57,6 +57,93 @@ TEST(Simulated, LinksCarryOneMessageAtATime) {
   EXPECT_NEAR(fan_in[0], 0.01 + 1.0 + 3 * 5.0 + 0.01, 1e-12);
 }
 
+TEST(Simulated, ABusCarriesOneMessageAtATimeFirstComeFirstServed) {
+  Network n = simple();
+  n.is_bus = true;
+  // Rank 2 - k sends after k seconds: what is simulated first is not what comes first.
+  const auto finished = run_simulated(4, n, 0, [](Communicator& c) {
+    if (c.rank() == 3) {
+      for (int from = 0; from < 3; ++from) c.receive(from, 1);
+      return;
+    }
+    c.work(Work::seconds_e9, static_cast<std::uint64_t>(2 - c.rank()) * 1'000'000'000);
+    c.send(3, 1, Buffer(50));
+    EXPECT_NEAR(c.seconds(), 2 - c.rank() + 0.01, 1e-12);
+  });
+  // Rank 2's message is on the bus from 0.01 to 5.01, rank 1's until 10.01, rank 0's until 15.01.
+  EXPECT_NEAR(finished[3], 15.01 + 1.0 + 3 * 0.01, 1e-12);
+
+  // Two pairs that do not meet anywhere but on the bus.
+  const auto pairs = run_simulated(4, n, 0, [](Communicator& c) {
+    if (c.rank() < 2) {
+      c.send(c.rank() + 2, 1, Buffer(50));
+    } else {
+      c.receive(c.rank() - 2, 1);
+    }
+  });
+  EXPECT_NEAR(std::max(pairs[2], pairs[3]), 0.01 + 10 + 1 + 0.01, 1e-12);
+  EXPECT_NEAR(std::min(pairs[2], pairs[3]), 0.01 + 5 + 1 + 0.01, 1e-12);
+}
+
+TEST(Simulated, RanksTakeTurnsOnSharedCores) {
+  Network n;
+  n.shared_cores = 2;
+  const auto work = [](Communicator& c) { c.work(Work::seconds_e9, 1'000'000'000); };
+  for (const int ranks : {1, 2, 3, 4, 7}) {
+    const auto finished = run_simulated(ranks, n, 0, work);
+    EXPECT_DOUBLE_EQ(*std::max_element(finished.begin(), finished.end()), (ranks + 1) / 2);
+  }
+  // A rank that waits for a message takes no core.
+  n.latency = 10;
+  n.overhead = 0;
+  n.seconds_per_byte = 0;
+  const auto finished = run_simulated(4, n, 0, [&](Communicator& c) {
+    if (c.rank() == 0) c.send(1, 1, Buffer(8));
+    if (c.rank() == 1) c.receive(0, 1);
+    work(c);
+  });
+  EXPECT_DOUBLE_EQ(finished[1], 11);
+  EXPECT_DOUBLE_EQ(std::max({finished[0], finished[2], finished[3]}), 2);
+}
+
+TEST(Simulated, CopyingTakesTheProcessorOnBothSides) {
+  Network n = simple();
+  n.copy_seconds_per_byte = 0.5;
+  const auto finished = run_simulated(2, n, 0, [](Communicator& c) {
+    if (c.rank() == 0) c.send(1, 1, Buffer(10));
+    if (c.rank() == 1) c.receive(0, 1);
+    c.send(c.rank(), 1, Buffer(1000));  // to itself: free
+    c.receive(c.rank(), 1);
+  });
+  EXPECT_DOUBLE_EQ(finished[0], 0.01 + 5);
+  EXPECT_DOUBLE_EQ(finished[1], 0.01 + 5 + 1 + 1 + 0.01 + 5);
+}
+
+TEST(Simulated, MessagesCostWhatTheyStandFor) {
+  const Network n = simple();
+  const auto finished = run_simulated(2, n, 0, [](Communicator& c) {
+    if (c.rank() == 0) {
+      c.send(1, 1, Buffer::standing_for(std::size_t{1} << 40, Buffer::of_value(7)));
+      return;
+    }
+    EXPECT_EQ(c.probe(0, 1, Deadline::never())->bytes, std::size_t{1} << 40);
+    const Buffer message = c.receive(0, 1);
+    EXPECT_EQ(message.counted_bytes(), std::size_t{1} << 40);
+    EXPECT_EQ(message.copy().counted_bytes(), std::size_t{1} << 40);
+    EXPECT_EQ(message.as<int>()[0], 7);
+  });
+  EXPECT_NEAR(finished[1], 0x1p40 * 0.1 + 1.02, 1e-3);
+}
+
+TEST(Networks, AreFoundByNameAndCostSomething) {
+  for (const NamedNetwork& network : networks()) {
+    EXPECT_EQ(find_network(network.name), &network);
+    EXPECT_GT(network.network.latency, 0);
+    EXPECT_GT(network.network.seconds_per_byte, 0);
+  }
+  EXPECT_EQ(find_network("nonsense"), nullptr);
+}
+
 TEST(Simulated, WorkTakesTimeByKindAndSlowness) {
   Network n;
   n.seconds_per_work[static_cast<std::size_t>(Work::rays)] = 0.5;
