@@ -31,6 +31,9 @@ class Layer {
   virtual std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) = 0;
   // Replaces `range` by what cut(range) gave on another rank.
   virtual void replace(PixelRange range, const comm::Buffer& pixels) = 0;
+  // Forgets pixels of `range` that are certainly hidden by what cut(range) gave on a lower rank.
+  // Returns the number of pixels compared.
+  virtual std::uint64_t prune(PixelRange /*range*/, const comm::Buffer& /*pixels*/) { return 0; }
   // Nothing in it: the rank may stay out of the exchange.
   virtual bool empty() const = 0;
 };

@@ -1,0 +1,153 @@
+#include "composite/hollow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace delray::composite {
+namespace {
+
+class HollowLayer : public Layer {
+ public:
+  HollowLayer(std::size_t pixel_bytes, const LayerClock& clock)
+      : pixel_bytes_(pixel_bytes), clock_(clock) {}
+
+ protected:
+  std::size_t pixel_bytes() const { return pixel_bytes_; }
+
+  void charge_cut(PixelRange range, std::size_t bytes) const {
+    charge(clock_.costs.cut + clock_.costs.cut_pixel * static_cast<double>(range.size()) +
+           clock_.costs.cut_byte * static_cast<double>(bytes));
+  }
+  void charge_merge(PixelRange range) const {
+    charge(clock_.costs.merge + clock_.costs.merge_pixel * static_cast<double>(range.size()));
+  }
+  // Bytes are written once more, into the image.
+  void charge_replace(const comm::Buffer& pixels) const {
+    charge(clock_.costs.merge +
+           clock_.costs.cut_byte * static_cast<double>(pixels.counted_bytes()));
+  }
+
+ private:
+  void charge(double seconds) const {
+    if (!clock_.communicator || seconds <= 0) return;
+    clock_.communicator->work(comm::Work::seconds_e9,
+                              static_cast<std::uint64_t>(std::llround(seconds * 1e9)));
+  }
+
+  std::size_t pixel_bytes_;
+  LayerClock clock_;
+};
+
+class HollowDenseLayer final : public HollowLayer {
+ public:
+  HollowDenseLayer(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
+                   const LayerClock& clock)
+      : HollowLayer(pixel_bytes, clock), pixels_(pixels), empty_(empty) {}
+
+  std::uint64_t pixels() const override { return pixels_; }
+  comm::Buffer cut(PixelRange range) override {
+    const std::size_t bytes = range.size() * pixel_bytes();
+    charge_cut(range, bytes);
+    return comm::Buffer::standing_for(bytes, {});
+  }
+  std::uint64_t merge(PixelRange range, const comm::Buffer&, Side) override {
+    charge_merge(range);
+    return range.size();
+  }
+  void replace(PixelRange, const comm::Buffer& pixels) override { charge_replace(pixels); }
+  std::uint64_t prune(PixelRange range, const comm::Buffer&) override {
+    charge_merge(range);
+    return range.size();
+  }
+  bool empty() const override { return empty_; }
+
+ private:
+  std::uint64_t pixels_;
+  bool empty_;
+};
+
+// A message holds the coverage alone.
+class HollowActiveLayer final : public HollowLayer {
+ public:
+  HollowActiveLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
+      : HollowLayer(pixel_bytes, clock), image_(std::move(image)) {}
+
+  std::uint64_t pixels() const override { return image_.covered.pixels(); }
+  comm::Buffer cut(PixelRange range) override {
+    const Coverage coverage(
+        range.size(), [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+          return image_.covered.read(range.begin + begin, range.begin + end, mask);
+        });
+    comm::Buffer content(coverage.encoded_bytes());
+    coverage.encode(content.data());
+    const std::size_t bytes = content.size() + coverage.covered() * pixel_bytes();
+    charge_cut(range, bytes);
+    return comm::Buffer::standing_for(bytes, std::move(content));
+  }
+  std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side) override {
+    charge_merge(range);
+    return for_each_group(range, pixels, [&](std::uint64_t begin, const GroupMask& mask) {
+      image_.covered.add(begin, mask);
+    });
+  }
+  void replace(PixelRange range, const comm::Buffer& pixels) override {
+    charge_replace(pixels);
+    image_.covered.remove(range);
+    for_each_group(range, pixels, [&](std::uint64_t begin, const GroupMask& mask) {
+      image_.covered.add(begin, mask);
+    });
+  }
+  // Takes away what any lower rank hides where this one has something: by the time that the rank
+  // sends what is left, whoever hides it has come.
+  std::uint64_t prune(PixelRange range, const comm::Buffer& pixels) override {
+    charge_merge(range);
+    return for_each_group(range, pixels, [&](std::uint64_t begin, GroupMask& mask) {
+      const std::uint64_t end = std::min(begin + kGroupPixels, range.end);
+      GroupMask unhidden{};
+      image_.unhidden.read(begin, end, unhidden);
+      for (std::size_t i = 0; i < mask.size(); ++i) mask[i] &= ~unhidden[i];
+      image_.covered.remove(begin, mask);
+    });
+  }
+  bool empty() const override { return image_.covered.empty(); }
+
+ private:
+  // Calls f(first pixel, mask) for the groups that a message covers; returns the covered pixels.
+  template <class F>
+  std::uint64_t for_each_group(PixelRange range, const comm::Buffer& pixels, F&& f) {
+    const Coverage coverage(range.size(), pixels.data());
+    for (std::size_t i = 0; i < coverage.groups(); ++i) {
+      const Coverage::Group at = coverage.group(i);
+      if (at.covered == 0) continue;
+      GroupMask mask = at.is_full() ? first_bits(at.end - at.begin) : coverage.mask(i);
+      f(range.begin + at.begin, mask);
+    }
+    return coverage.covered();
+  }
+
+  static GroupMask first_bits(std::uint64_t count) {
+    GroupMask mask{};
+    for (std::uint64_t i = 0; i * 64 < count; ++i) {
+      mask[i] =
+          count - i * 64 >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (count - i * 64)) - 1;
+    }
+    return mask;
+  }
+
+  ImageMasks image_;
+};
+
+}  // namespace
+
+std::unique_ptr<Layer> make_hollow_dense(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
+                                         const LayerClock& clock) {
+  return std::make_unique<HollowDenseLayer>(pixels, pixel_bytes, empty, clock);
+}
+
+std::unique_ptr<Layer> make_hollow_active(ImageMasks&& image, std::size_t pixel_bytes,
+                                          const LayerClock& clock) {
+  return std::make_unique<HollowActiveLayer>(std::move(image), pixel_bytes, clock);
+}
+
+}  // namespace delray::composite

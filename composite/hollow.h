@@ -1,0 +1,37 @@
+// Layers without pixels: schemes run on them as on any other, and what they send and composite is
+// what real layers would, to the last byte, in a small part of the time and memory.
+//
+// Their messages stand for those of real layers (comm::Buffer::standing_for): they go between ranks
+// of one process only, in practice those of the simulated machine.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "comm/communicator.h"
+#include "composite/layer.h"
+#include "composite/layer_costs.h"
+#include "composite/mask.h"
+
+namespace delray::composite {
+
+// Bytes of a pixel that travels: its colour and its depth.
+inline constexpr std::size_t kPixelBytes8 = 8, kPixelBytesF = 20;
+
+// Charges what a layer does to a rank as work, so that it takes time on the simulated machine.
+// Pixels composited are not charged: schemes tell of them themselves.
+struct LayerClock {
+  comm::Communicator* communicator = nullptr;  // null: nothing takes time
+  LayerCosts costs;
+};
+
+// Stands for a layer of codec "dense": nothing but its size is known.
+std::unique_ptr<Layer> make_hollow_dense(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
+                                         const LayerClock& clock = {});
+
+// Stands for a layer of codec "active": the pixels that it covers are known, and those of them that
+// are left when all lower ranks have had it pruned.
+std::unique_ptr<Layer> make_hollow_active(ImageMasks&& image, std::size_t pixel_bytes,
+                                          const LayerClock& clock = {});
+
+}  // namespace delray::composite
