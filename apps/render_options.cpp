@@ -47,7 +47,9 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
   refuse(command, {"--integrator", "--spp", "--depth", "--data"}, "--engine raster");
   find_entry(raster::strategies(), request.strategy, "--strategy");
   find_entry(loadbalance::partitioners(), request.partition, "--partition");
-  find_entry(composite::schemes(), request.scheme, "--compose");
+  if (composite::find_scheme(request.scheme) == nullptr) {  // which knows radix-k:4,2 too
+    find_entry(composite::schemes(), request.scheme, "--compose");
+  }
   find_entry(composite::codecs(), request.codec, "--codec");
   if (request.strategy == "sort-last") {
     refuse(command, {"--partition", "--travel", "--costs", "--regions", "--keep"},

@@ -1,6 +1,6 @@
 #include "comm/ledger.h"
 
-#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "comm/collectives.h"
@@ -47,15 +47,21 @@ Totals totals(std::span<const Event> events, int self, std::optional<Phase> phas
 
 Totals totals(const Ledger& ledger, std::optional<Phase> phase) {
   Totals sum;
+  std::set<std::pair<Phase, int>> rounds;
   for (std::size_t rank = 0; rank < ledger.ranks.size(); ++rank) {
     const Totals one = totals(ledger.ranks[rank], static_cast<int>(rank), phase);
     sum.bytes_sent += one.bytes_sent;
     sum.bytes_received += one.bytes_received;
     sum.messages_sent += one.messages_sent;
     sum.messages_received += one.messages_received;
-    sum.rounds = std::max(sum.rounds, one.rounds);
     for (std::size_t i = 0; i < sum.work.size(); ++i) sum.work[i] += one.work[i];
+    for (const Event& event : ledger.ranks[rank]) {
+      if (phase && event.phase != *phase) continue;
+      if (event.kind != Event::Kind::send && event.kind != Event::Kind::receive) continue;
+      if (event.peer != static_cast<int>(rank)) rounds.emplace(event.phase, event.round);
+    }
   }
+  sum.rounds = rounds.size();
   return sum;
 }
 

@@ -56,7 +56,8 @@ class Tally {
 // Of one rank's events: `self` is its world rank. With a phase, of that phase only. O(events).
 Totals totals(std::span<const Event> events, int self, std::optional<Phase> phase = std::nullopt);
 
-// Over all ranks: sums, and the largest number of rounds.
+// Over all ranks: sums, and how many rounds there were: pairs of phase and round, whoever had a
+// message in them.
 Totals totals(const Ledger& ledger, std::optional<Phase> phase = std::nullopt);
 
 // Collective: every rank's events on rank 0, nothing elsewhere. Call it on the communicator that

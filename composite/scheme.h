@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "comm/communicator.h"
 #include "composite/layer.h"
@@ -12,22 +13,42 @@ namespace delray::composite {
 
 struct ComposeOptions {
   int samples_per_pixel = 1;  // ranges are cut at multiples of it
+  // What a scheme that takes_radices goes by, each >= 1: radix-k the sizes of its groups, round by
+  // round, mesh its columns. Where the number of ranks does not allow them it takes what is near;
+  // without any it chooses.
+  std::vector<int> radices = {};
+  // compose() only: which pixels lie beside each other in an encoded range. See interlaced.h.
+  bool interlace = false;
 };
 
 // A scheme takes each rank's layer (all of the same size) and leaves every pixel final on exactly
-// one rank. Collective over `communicator`; any number of ranks.
+// one rank. Collective over `communicator`; any number of ranks. What each costs is told in
+// docs/compositing.md.
 struct Scheme {
   const char* name;
   const char* description;
   Part (*compose)(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
                   const ComposeOptions& options);
+  bool takes_radices = false;
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.
 std::span<const Scheme> schemes();
 
-// nullptr when there is no such scheme.
+// As users name it: "tree", and with radices "radix-k:4,2" or "mesh:4x2".
+struct SchemeChoice {
+  const Scheme* scheme = nullptr;  // null when there is no such scheme
+  std::vector<int> radices;
+};
+SchemeChoice choose_scheme(std::string_view name);
+// That of choose_scheme.
 const Scheme* find_scheme(std::string_view name);
+
+// The scheme of that name, among those ranks alone that have something: an empty layer's rank owns
+// nothing in the end, unless all are empty. Beyond what the scheme costs, an all-reduce of a bit
+// per rank. Collective. REQUIRES: there is such a scheme.
+Part compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+             std::string_view scheme, ComposeOptions options = {});
 
 // Brings all parts to rank `root`; there the result owns all pixels, elsewhere none. Collective.
 Part gather(comm::Communicator& communicator, Part&& part, int root);

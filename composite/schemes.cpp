@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "composite/internal/schemes.h"
 #include "composite/scheme.h"
@@ -8,19 +9,63 @@ namespace delray::composite {
 namespace {
 
 constexpr std::array kSchemes = {
-    Scheme{"binary-swap", "partners exchange halves, log2 n rounds (hypercube)",
-           &internal::binary_swap},
+    Scheme{"binary-swap", "partners exchange halves (hypercube); surplus ranks fold in first",
+           &internal::binary_swap_folded},
+    Scheme{"binary-swap:remainder", "binary swap; of an odd number the last splits its image",
+           &internal::binary_swap_remainder},
+    Scheme{"binary-swap:telescoping", "binary swap in groups of 2^k, the smaller join the larger",
+           &internal::binary_swap_telescoping},
+    Scheme{"binary-swap:234", "binary swap after a first round in groups of two, three or four",
+           &internal::binary_swap_234},
+    Scheme{"2-3-swap", "a tree of groups, two or three joined at a time",
+           &internal::two_three_swap},
+    Scheme{"radix-k", "direct-send in groups of k, round by round; radix-k:8,4", &internal::radix_k,
+           true},
+    Scheme{"direct-send", "each rank owns a piece that all others send it", &internal::direct_send},
+    Scheme{"mesh", "exchange along columns, then rows; mesh:COLUMNSxROWS", &internal::mesh, true},
+    Scheme{"tree", "half of the ranks send their image to the other half, log2 n rounds",
+           &internal::tree},
+    Scheme{"pipeline", "each rank merges and hands on to the one before", &internal::pipeline},
+    Scheme{"bus", "ranks broadcast in turn, the later ones forget what is hidden", &internal::bus},
+    Scheme{"tiles", "tiles go to their owners at once, merged as they come", &internal::tiles},
     Scheme{"centralized", "rank 0 receives and merges all images", &internal::centralized},
 };
+
+// "4,2" or "4x2"; nothing where that is not what it says.
+std::vector<int> parse_radices(std::string_view text) {
+  std::vector<int> result;
+  const char *at = text.data(), *const end = at + text.size();
+  for (;;) {
+    int value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || value < 1) return {};
+    result.push_back(value);
+    if (next == end) return result;
+    if (*next != ',' && *next != 'x') return {};
+    at = next + 1;
+  }
+}
 
 }  // namespace
 
 std::span<const Scheme> schemes() { return kSchemes; }
 
-const Scheme* find_scheme(std::string_view name) {
-  const auto at = std::find_if(kSchemes.begin(), kSchemes.end(),
-                               [name](const Scheme& scheme) { return scheme.name == name; });
-  return at == kSchemes.end() ? nullptr : &*at;
+SchemeChoice choose_scheme(std::string_view name) {
+  if (name == "binary-swap:folded") name = "binary-swap";
+  const auto find = [](std::string_view exact) {
+    const auto at = std::find_if(kSchemes.begin(), kSchemes.end(),
+                                 [&](const Scheme& scheme) { return scheme.name == exact; });
+    return at == kSchemes.end() ? nullptr : &*at;
+  };
+  if (const Scheme* const scheme = find(name)) return {scheme, {}};
+  const std::size_t colon = name.find(':');
+  if (colon == name.npos) return {};
+  const Scheme* const scheme = find(name.substr(0, colon));
+  std::vector<int> radices = parse_radices(name.substr(colon + 1));
+  if (scheme == nullptr || !scheme->takes_radices || radices.empty()) return {};
+  return {scheme, std::move(radices)};
 }
+
+const Scheme* find_scheme(std::string_view name) { return choose_scheme(name).scheme; }
 
 }  // namespace delray::composite

@@ -17,9 +17,8 @@ namespace {
 
 composite::Part compose(Rank& rank, std::unique_ptr<composite::Layer> layer) {
   return timed(rank.communicator, rank.counts.phases.compose, [&] {
-    return composite::find_scheme(rank.options.scheme)
-        ->compose(rank.communicator, std::move(layer),
-                  {.samples_per_pixel = rank.samples_per_pixel()});
+    return composite::compose(rank.communicator, std::move(layer), rank.options.scheme,
+                              {.samples_per_pixel = rank.samples_per_pixel()});
   });
 }
 

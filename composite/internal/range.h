@@ -1,6 +1,7 @@
 // Cutting ranges of pixels, and the tags of compositing's messages.
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 
 #include "comm/communicator.h"
@@ -12,14 +13,27 @@ namespace delray::composite::internal {
 inline constexpr comm::Tag kTagCompose = 64;
 inline constexpr comm::Tag kTagGatherRanges = 65;
 inline constexpr comm::Tag kTagGatherPixels = 66;
+inline constexpr comm::Tag kTagTile = 67;  // its number, followed by
+inline constexpr comm::Tag kTagTilePixels = 68;
 
-// Half `half` (0 or 1) of a range, cut between whole pixels; the second is the larger by one where
-// they cannot be equal. REQUIRES: range.size() is a multiple of samples_per_pixel.
-inline PixelRange half_of(PixelRange range, int half, int samples_per_pixel) {
+// Piece i of `count` pieces of a range, as equal as they can be, cut between whole pixels. Empty
+// where there are fewer pixels than pieces. REQUIRES: range.size() is a multiple of
+// samples_per_pixel.
+inline PixelRange piece_of(PixelRange range, int i, int count, int samples_per_pixel) {
   const auto samples = static_cast<std::uint64_t>(samples_per_pixel);
-  assert(range.size() % samples == 0);
-  const std::uint64_t middle = range.begin + range.size() / samples / 2 * samples;
-  return half == 0 ? PixelRange{range.begin, middle} : PixelRange{middle, range.end};
+  assert(0 <= i && i < count && range.size() % samples == 0);
+  const std::uint64_t units = range.size() / samples, pieces = static_cast<std::uint64_t>(count);
+  const auto cut = [&](std::uint64_t k) { return range.begin + units * k / pieces * samples; };
+  return {cut(static_cast<std::uint64_t>(i)), cut(static_cast<std::uint64_t>(i) + 1)};
+}
+
+inline PixelRange half_of(PixelRange range, int half, int samples_per_pixel) {
+  return piece_of(range, half, 2, samples_per_pixel);
+}
+
+inline PixelRange overlap(PixelRange a, PixelRange b) {
+  const std::uint64_t begin = std::max(a.begin, b.begin);
+  return {begin, std::max(begin, std::min(a.end, b.end))};
 }
 
 }  // namespace delray::composite::internal

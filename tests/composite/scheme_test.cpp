@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <random>
@@ -175,50 +176,74 @@ std::vector<Kind> kinds() {
   return result;
 }
 
-void expect_reference(const Scheme& scheme, const Kind& kind, const Runner& runner, int ranks,
-                      Size size, int root) {
-  runner.run(ranks, [&](comm::Communicator& communicator) {
-    Part part = scheme.compose(communicator, kind.make(communicator.rank(), size), {});
-    part = gather(communicator, std::move(part), root);
-    if (communicator.rank() != root) {
-      EXPECT_TRUE(part.ranges.empty());
-      return;
-    }
-    const std::uint64_t pixels = part.layer->pixels();
-    ASSERT_EQ(part.ranges.size(), pixels > 0 ? 1U : 0U);
-    if (pixels > 0) {
-      EXPECT_EQ(part.ranges[0], (PixelRange{0, pixels}));
-    }
-    EXPECT_TRUE(kind.equals_reference(std::move(part), ranks, size));
-  });
+void expect_reference(comm::Communicator& communicator, const char* scheme, const Kind& kind,
+                      Size size, int root, const ComposeOptions& options = {}) {
+  SCOPED_TRACE(std::string(scheme) + ", " + kind.name + ", " + std::to_string(communicator.size()) +
+               " ranks, " + std::to_string(size.width) + " x " + std::to_string(size.height));
+  Part part = compose(communicator, kind.make(communicator.rank(), size), scheme, options);
+  part = gather(communicator, std::move(part), root);
+  if (communicator.rank() != root) {
+    EXPECT_TRUE(part.ranges.empty());
+    return;
+  }
+  const std::uint64_t pixels = part.layer->pixels();
+  ASSERT_EQ(part.ranges.size(), pixels > 0 ? 1U : 0U);
+  if (pixels > 0) {
+    EXPECT_EQ(part.ranges[0], (PixelRange{0, pixels}));
+  }
+  EXPECT_TRUE(kind.equals_reference(std::move(part), communicator.size(), size));
 }
 
+bool full() { return std::getenv("DELRAY_FULL_TESTS") != nullptr; }
+
 TEST(Schemes, EqualTheSequentialReferenceAfterGathering) {
-  for (const Scheme& scheme : schemes()) {
-    for (const Kind& kind : kinds()) {
-      for (const Runner& runner : runners()) {
-        for (const int ranks : rank_counts()) {
-          for (const Size size : kSizes) {
-            SCOPED_TRACE(std::string(scheme.name) + ", " + kind.name + ", over " + runner.name +
-                         ", " + std::to_string(ranks) + " ranks, " + std::to_string(size.width) +
-                         " x " + std::to_string(size.height));
-            expect_reference(scheme, kind, runner, ranks, size, size.width % ranks);
+  const std::vector<Kind> all = kinds();
+  const std::size_t step = full() ? 1 : 11;
+  std::size_t offset = 0;
+  for (const Runner& runner : runners()) {
+    for (const int ranks : rank_counts()) {
+      SCOPED_TRACE(std::string("over ") + runner.name);
+      ++offset;
+      runner.run(ranks, [&](comm::Communicator& communicator) {
+        std::size_t turn = offset;
+        for (const Scheme& scheme : schemes()) {
+          for (const Kind& kind : all) {
+            for (const Size size : kSizes) {
+              if (++turn % step != 0) continue;
+              expect_reference(communicator, scheme.name, kind, size, size.width % ranks,
+                               {.interlace = turn / step % 3 == 0});
+            }
           }
         }
-      }
+      });
     }
   }
 }
 
 // Messages of several groups of pixels, merged by several threads.
 TEST(Schemes, EqualTheReferenceOnLargerImages) {
-  const Runner runner{"threads",
-                      [](int ranks, const auto& body) { comm::run_threads(ranks, 2, body); }};
-  for (const Scheme& scheme : schemes()) {
-    for (const Kind& kind : kinds()) {
-      SCOPED_TRACE(std::string(scheme.name) + ", " + kind.name);
-      expect_reference(scheme, kind, runner, 3, {239, 101}, 1);
-    }
+  const std::vector<Kind> all = kinds();
+  const Size size = full() ? Size{1919, 1079} : Size{239, 101};
+  for (const int ranks : full() ? std::vector{1, 2, 3, 6, 8, 13} : std::vector{3}) {
+    comm::run_threads(ranks, 2, [&](comm::Communicator& communicator) {
+      for (const Scheme& scheme : schemes()) {
+        for (const Kind& kind : all) {
+          expect_reference(communicator, scheme.name, kind, size, ranks / 2);
+        }
+      }
+    });
+  }
+}
+
+TEST(Schemes, TakeRadices) {
+  const Kind kind = opaque<Rgba8>(*find_codec("dense"), "of 8 bits");
+  for (const int ranks : {1, 2, 6, 7, 12, 16}) {
+    comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+      for (const char* scheme : {"radix-k:1", "radix-k:4", "radix-k:2,3", "radix-k:100", "mesh:1",
+                                 "mesh:3x4", "mesh:100x2"}) {
+        expect_reference(communicator, scheme, kind, {67, 41}, 0);
+      }
+    });
   }
 }
 
@@ -274,7 +299,14 @@ TEST(Schemes, AreFoundByName) {
   for (const Scheme& scheme : schemes()) EXPECT_EQ(find_scheme(scheme.name), &scheme);
   EXPECT_NE(find_scheme("binary-swap"), nullptr);
   EXPECT_NE(find_scheme("centralized"), nullptr);
-  EXPECT_EQ(find_scheme("nonsense"), nullptr);
+  EXPECT_EQ(find_scheme("binary-swap:folded"), find_scheme("binary-swap"));
+  EXPECT_EQ(choose_scheme("radix-k:4,2").scheme, find_scheme("radix-k"));
+  EXPECT_EQ(choose_scheme("radix-k:4,2").radices, (std::vector{4, 2}));
+  EXPECT_EQ(choose_scheme("mesh:3x5").radices, (std::vector{3, 5}));
+  for (const char* wrong : {"", "nonsense", "tree:2", "radix-k:", "radix-k:0", "radix-k:4,",
+                            "radix-k:4;2", "radix-k:-1", "binary-swap:235", ":"}) {
+    EXPECT_EQ(find_scheme(wrong), nullptr) << wrong;
+  }
 }
 
 // What each rank sent and composited.

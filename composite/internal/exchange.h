@@ -1,0 +1,51 @@
+// What schemes are made of: sending a range, merging one, and the direct exchange in a group.
+#pragma once
+
+#include <cassert>
+
+#include "comm/communicator.h"
+#include "composite/internal/range.h"
+#include "composite/layer.h"
+
+namespace delray::composite::internal {
+
+// An empty range is neither sent nor waited for.
+void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to);
+void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from);
+
+// Calls f(i) for all i of [0, count) but `me`, from `me` outwards: me - 1, me + 1, me - 2 ... A
+// rank that merges in this order always has merged an interval of ranks.
+template <class F>
+void for_each_outwards(int me, int count, F&& f) {
+  for (int distance = 1; distance < count; ++distance) {
+    if (me - distance >= 0) f(me - distance);
+    if (me + distance < count) f(me + distance);
+  }
+}
+
+// Ranks first, first + stride, ...: each stands for an interval of ranks, one after the other.
+struct Group {
+  int first = 0, stride = 1, count = 1;
+  int rank_of(int member) const { return first + member * stride; }
+  int member_of(int rank) const {
+    assert((rank - first) % stride == 0);
+    return (rank - first) / stride;
+  }
+};
+
+// Every member sends every other its piece of `range`, which all of them hold, and merges its own,
+// which is returned. One round.
+PixelRange exchange(comm::Communicator& communicator, Layer& layer, PixelRange range,
+                    const Group& group, int samples_per_pixel);
+
+// The group's range is in as many hands as there are members of a communicator, a power of two:
+// binary swap. Marks the rounds from `round` on, which is left at the next; returns the piece of
+// the range that this rank owns, which is swapped_piece of it.
+PixelRange swap(comm::Communicator& members, Layer& layer, PixelRange range, int samples_per_pixel,
+                int& round);
+PixelRange swapped_piece(PixelRange range, int member, int members, int samples_per_pixel);
+
+// A part that consists of one range, or of none if that is empty.
+Part part_of(PixelRange range, std::unique_ptr<Layer> layer);
+
+}  // namespace delray::composite::internal

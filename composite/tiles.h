@@ -1,0 +1,61 @@
+// A distributed framebuffer: tiles are composited while others are still being drawn.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "comm/communicator.h"
+#include "composite/layer.h"
+#include "composite/scheme.h"
+
+namespace delray::composite {
+
+// Tiles are pieces of the image, dealt out to ranks in turn (OSPRay's: Usher, Wald, Amstutz et al.
+// 2019). A rank draws them in any order, each into its own layer; the tile goes to its owner at
+// once, who merges what has come for it, in one fixed order, so that the result depends on nobody's
+// speed. All ranks make one, of layers of the same size, draw every tile once, and finish.
+//
+//   TileCompositor compositor(communicator, std::move(layer), options);
+//   for (int tile = 0; tile < compositor.tiles(); ++tile) {
+//     ... draw compositor.range(tile) into compositor.layer() ...
+//     compositor.drawn(tile);
+//   }
+//   Part part = compositor.finish();
+class TileCompositor {
+ public:
+  TileCompositor(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                 const ComposeOptions& options);
+
+  int tiles() const { return tiles_; }  // a multiple of the number of ranks
+  PixelRange range(int tile) const;     // may be empty
+  int owner(int tile) const { return tile % communicator_.size(); }
+  Layer& layer() { return *layer_; }
+
+  // Sends the tile to its owner and merges what has come for own tiles that are drawn. REQUIRES:
+  // nobody draws into the layer meanwhile; it was not called for this tile before.
+  void drawn(int tile);
+  // Waits for the tiles of the others.
+  Part finish();
+
+ private:
+  // Of a tile of this rank's own.
+  struct Own {
+    bool drawn = false;
+    std::size_t merged = 0;                 // ranks of order_
+    std::map<int, comm::Buffer> not_yet{};  // that have come before their turn
+  };
+  void take_one(int from);
+  void merge_what_came(int tile);
+
+  comm::Communicator& communicator_;
+  std::unique_ptr<Layer> layer_;
+  int samples_per_pixel_;
+  int tiles_ = 0;
+  std::vector<int> order_;   // in which the images of other ranks are merged
+  std::vector<Own> own_;     // of tile rank + i * ranks
+  std::size_t missing_ = 0;  // messages
+};
+
+}  // namespace delray::composite
