@@ -12,6 +12,8 @@
 // Highway's own header comes after it.
 #include <hwy/highway.h>
 
+#include "raster/internal/transpose.h"
+
 #ifndef DELRAY_RASTER_SHADE_ROW
 #define DELRAY_RASTER_SHADE_ROW
 namespace delray::raster {
@@ -68,87 +70,37 @@ struct Colours {
   F red, green, blue;
 };
 
-// What pixels look up of their triangles, before anything is divided.
-struct Corners {
-  F u[3];
-  F colour[3][3];  // [corner][channel]
-};
-
-// The shares of a triangle's corners at pixels (x, y): the arithmetic of quick_weights_at.
-HWY_INLINE void shares(const PixelTriangle& t, F x, float y, F (&u)[3]) {
+// The planes of a triangle at pixels (x, y): the arithmetic of value_at.
+HWY_INLINE FourVectors<F> sums_of(const PixelTriangle& t, F x, float y) {
   const Floats d;
   const F dx = hn::Sub(x, hn::Set(d, t.x));
   const float dy = y - t.y;
-  for (int k = 0; k < 3; ++k)
-    u[k] = hn::Add(hn::Add(hn::Mul(hn::Set(d, t.a[k]), dx), hn::Set(d, t.b[k] * dy)),
-                   hn::Set(d, t.c[k]));
+  FourVectors<F> sums;
+  for (int k = 0; k < 4; ++k)
+    sums.v[k] = hn::Add(hn::Mul(hn::Set(d, t.a[k]), dx), hn::Set(d, t.b[k] * dy + t.c[k]));
+  return sums;
 }
 
-HWY_INLINE Corners corners_of(const PixelTriangle& t, F x, float y) {
+HWY_INLINE Colours divided(const FourVectors<F>& sums) {
+  const F share = hn::Div(hn::Set(Floats(), 1.0F), sums.v[3]);
+  return {hn::Mul(sums.v[0], share), hn::Mul(sums.v[1], share), hn::Mul(sums.v[2], share)};
+}
+
+// The same, lane i of triangles[which[i]].
+HWY_INLINE FourVectors<F> sums_of_each(const PixelTriangle* triangles, const std::uint16_t* which,
+                                       int x, float y) {
   const Floats d;
-  Corners corners;
-  shares(t, x, y, corners.u);
-  for (int k = 0; k < 3; ++k)
-    for (int channel = 0; channel < 3; ++channel)
-      corners.colour[k][channel] = hn::Set(d, t.colour[k][channel]);
-  return corners;
-}
-
-// The same where `lanes` are set; the other pixels stay as they are.
-HWY_INLINE void set_corners(hn::Mask<Floats> lanes, const PixelTriangle& t, F x, float y,
-                            Corners& corners) {
-  const Floats d;
-  F u[3];
-  shares(t, x, y, u);
-  for (int k = 0; k < 3; ++k) {
-    corners.u[k] = hn::IfThenElse(lanes, u[k], corners.u[k]);
-    for (int channel = 0; channel < 3; ++channel)
-      corners.colour[k][channel] =
-          hn::IfThenElse(lanes, hn::Set(d, t.colour[k][channel]), corners.colour[k][channel]);
-  }
-}
-
-// The arithmetic of quick_weights_at and interpolate.
-HWY_INLINE Colours interpolated(const Corners& corners) {
-  const Floats d;
-  const F zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-  F u[3];
-  for (int k = 0; k < 3; ++k) u[k] = hn::IfThenElseZero(hn::Gt(corners.u[k], zero), corners.u[k]);
-  const F sum = hn::Add(hn::Add(u[0], u[1]), u[2]);
-  const auto some = hn::Ge(sum, hn::Set(d, kLeastSum));
-  const F share = hn::Div(one, sum);
-  const F w0 = hn::IfThenElse(some, hn::Mul(u[0], share), one);
-  const F w1 = hn::IfThenElseZero(some, hn::Mul(u[1], share));
-  const F w2 = hn::IfThenElseZero(some, hn::Mul(u[2], share));
-  const auto channel = [&](int k) {
-    return hn::Add(hn::Add(hn::Mul(corners.colour[0][k], w0), hn::Mul(corners.colour[1][k], w1)),
-                   hn::Mul(corners.colour[2][k], w2));
-  };
-  return {channel(0), channel(1), channel(2)};
-}
-
-// The same of one pixel, to colour[0 .. 3]: quicker than to gather from sixteen triangles.
-HWY_INLINE void interpolate_one(const PixelTriangle& t, float x, float y, float* colour) {
 #if HWY_TARGET == HWY_SCALAR
-  const Colours colours = interpolated(corners_of(t, hn::Set(Floats(), x), y));
-  colour[0] = hn::GetLane(colours.red);
-  colour[1] = hn::GetLane(colours.green);
-  colour[2] = hn::GetLane(colours.blue);
+  return sums_of(triangles[which[0]], hn::Set(d, static_cast<float>(x)), y);
 #else
-  const HWY_CAPPED(float, 4) d;
-  const auto zero = hn::Zero(d);
-  const auto plane = hn::Add(hn::Add(hn::Mul(hn::LoadU(d, t.a), hn::Set(d, x - t.x)),
-                                     hn::Mul(hn::LoadU(d, t.b), hn::Set(d, y - t.y))),
-                             hn::LoadU(d, t.c));
-  const auto u = hn::IfThenElseZero(hn::Gt(plane, zero), plane);
-  const auto sum = hn::Add(hn::Add(hn::Broadcast<0>(u), hn::Broadcast<1>(u)), hn::Broadcast<2>(u));
-  const auto one = hn::Set(d, 1.0F);
-  const auto w = hn::IfThenElse(hn::Ge(sum, hn::Set(d, kLeastSum)), hn::Mul(u, hn::Div(one, sum)),
-                                hn::IfThenElseZero(hn::FirstN(d, 1), one));
-  hn::Store(hn::Add(hn::Add(hn::Mul(hn::LoadU(d, t.colour[0]), hn::Broadcast<0>(w)),
-                            hn::Mul(hn::LoadU(d, t.colour[1]), hn::Broadcast<1>(w))),
-                    hn::Mul(hn::LoadU(d, t.colour[2]), hn::Broadcast<2>(w))),
-            d, colour);
+  const HWY_CAPPED(float, 4) four;
+  return transposed_rows(d, [&](std::size_t i) HWY_ATTR {
+    const PixelTriangle& t = triangles[which[i]];
+    const auto dx = hn::Set(four, static_cast<float>(x + static_cast<int>(i)) - t.x);
+    const auto dy = hn::Set(four, y - t.y);
+    return hn::Add(hn::Mul(hn::Load(four, t.a), dx),
+                   hn::Add(hn::Mul(hn::Load(four, t.b), dy), hn::Load(four, t.c)));
+  });
 #endif
 }
 
@@ -238,70 +190,73 @@ HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::RgbaF
       reinterpret_cast<float*>(pixels));
 }
 
-// Bit k: lane k + 1 has another triangle than lane k; whatever the last lane has.
-HWY_INLINE std::uint32_t changes_of(hn::Mask<Ints> changes) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Ints(), changes, bytes);
-  const std::uint32_t bits = bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
-  return bits & ((1U << (hn::Lanes(Ints()) - 1)) - 1);
+HWY_INLINE hn::Mask<Ints> mask_of(std::uint32_t bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                 static_cast<std::uint8_t>(bits >> 8)};
+  return hn::LoadMaskBits(Ints(), bytes);
 }
 
 template <class Colour>
-HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const std::uint16_t* index, int x,
-                             int y, int count, Colour* pixels) {
+HWY_INLINE void shade_pixels(const PixelTriangle* triangles, std::uint64_t starts,
+                             const std::uint16_t* runs, int x, int y, int count, Colour* pixels) {
   const Floats d;
   const Ints di;
-  const hn::Rebind<std::uint16_t, Ints> d16;
   const int lanes = static_cast<int>(hn::Lanes(d));
+  const std::uint32_t all = (std::uint32_t{1} << lanes) - 1;
   // A constant; counted from a variable, lanes are filled one by one.
   const I lane_numbers = hn::Iota(di, 0);
   const auto row = static_cast<float>(y);
   // No triangle is any triangle whose colour is not shown: without a branch, which would often be
   // guessed wrong.
-  const auto triangle_at = [&](int i) -> const PixelTriangle& {
-    return triangles[index[i] == kNoTriangle ? std::uint16_t{0} : index[i]];
-  };
-  for (int i = 0; i < count; i += lanes) {
-    const I triangle = hn::PromoteTo(di, hn::LoadU(d16, index + i));
-    const I columns = hn::Add(hn::Set(di, x + i), lane_numbers);
-    const F column = hn::ConvertTo(d, columns);
-    if (hn::AllTrue(di, hn::Eq(triangle, hn::Set(di, index[i])))) {
-      if (index[i] == kNoTriangle)
+  const auto drawn = [](std::uint16_t index) { return index == kNoTriangle ? 0U : index; };
+  const std::uint16_t* run = runs;
+  starts &= ~std::uint64_t{1};  // the first run has begun
+  for (int i = 0; i < count; i += lanes, starts >>= lanes) {
+    const F column = hn::ConvertTo(d, hn::Add(hn::Set(di, x + i), lane_numbers));
+    run += starts & 1;
+    std::uint32_t changes = static_cast<std::uint32_t>(starts) & all & ~1U;
+    if (changes == 0) {
+      if (*run == kNoTriangle)
         std::fill_n(pixels + i, lanes, Colour());
       else
-        store(interpolated(corners_of(triangles[index[i]], column, row)),
-              hn::Eq(triangle, triangle), pixels + i);
+        store(divided(sums_of(triangles[*run], column, row)), mask_of(all), pixels + i);
       continue;
     }
-    const auto shown = hn::Ne(triangle, hn::Set(di, kNoTriangle));
-    const I next = hn::PromoteTo(di, hn::LoadU(d16, index + i + 1));
-    std::uint32_t changes = changes_of(hn::Ne(triangle, next));
+    std::uint32_t shown = *run == kNoTriangle ? 0 : all;
+    const auto show = [&](std::uint32_t rest) {
+      shown = *run == kNoTriangle ? shown & ~rest : shown | rest;
+    };
+    FourVectors<F> sums;
     if (std::popcount(changes) <= kMostChanges) {
-      Corners corners = corners_of(triangle_at(i), column, row);
+      sums = sums_of(triangles[drawn(*run)], column, row);
       for (; changes != 0; changes &= changes - 1) {
-        const int k = std::countr_zero(changes) + 1;
-        const auto rest = hn::Gt(columns, hn::Set(di, x + i + k - 1));
-        set_corners(hn::RebindMask(d, rest), triangle_at(i + k), column, row, corners);
+        ++run;
+        const std::uint32_t rest = all & ~((changes & (0 - changes)) - 1);
+        show(rest);
+        const auto mask = hn::RebindMask(d, mask_of(rest));
+        const FourVectors<F> others = sums_of(triangles[drawn(*run)], column, row);
+        for (int v = 0; v < 4; ++v) sums.v[v] = hn::IfThenElse(mask, others.v[v], sums.v[v]);
       }
-      store(interpolated(corners), shown, pixels + i);
-      continue;
+    } else {
+      std::uint16_t which[kBlockSize];
+      for (int k = 0; k < lanes; ++k) {
+        run += changes >> k & 1;
+        show(all << k & all);
+        which[k] = static_cast<std::uint16_t>(drawn(*run));
+      }
+      sums = sums_of_each(triangles, which, x + i, row);
     }
-    HWY_ALIGN float colours[4 * kBlockSize];
-    for (int k = 0; k < lanes; ++k)
-      interpolate_one(triangle_at(i + k), static_cast<float>(x + i + k), row, colours + 4 * k);
-    F red, green, blue, unused;
-    hn::LoadInterleaved4(d, colours, red, green, blue, unused);
-    store({red, green, blue}, shown, pixels + i);
+    store(divided(sums), mask_of(shown), pixels + i);
   }
 }
 
-void shade_row8(const PixelTriangle* triangles, const std::uint16_t* index, int x, int y, int count,
-                image::Rgba8* pixels) {
-  shade_pixels(triangles, index, x, y, count, pixels);
+void shade_row8(const PixelTriangle* triangles, std::uint64_t starts, const std::uint16_t* runs,
+                int x, int y, int count, image::Rgba8* pixels) {
+  shade_pixels(triangles, starts, runs, x, y, count, pixels);
 }
-void shade_row_float(const PixelTriangle* triangles, const std::uint16_t* index, int x, int y,
-                     int count, image::RgbaF* pixels) {
-  shade_pixels(triangles, index, x, y, count, pixels);
+void shade_row_float(const PixelTriangle* triangles, std::uint64_t starts,
+                     const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels) {
+  shade_pixels(triangles, starts, runs, x, y, count, pixels);
 }
 
 // The upper halves of a vector's worth of keys.
@@ -344,13 +299,15 @@ HWY_EXPORT(shade_row8);
 HWY_EXPORT(shade_row_float);
 HWY_EXPORT(store_depths);
 
-void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
-               int count, image::Rgba8* pixels) {
-  HWY_DYNAMIC_DISPATCH(shade_row8)(triangles.data(), index, x, y, count, pixels);
+void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
+               const std::uint16_t* runs, int x, int y, int count, image::Rgba8* pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_row8)
+  (triangles.data(), starts, runs, x, y, count, pixels);
 }
-void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
-               int count, image::RgbaF* pixels) {
-  HWY_DYNAMIC_DISPATCH(shade_row_float)(triangles.data(), index, x, y, count, pixels);
+void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
+               const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_row_float)
+  (triangles.data(), starts, runs, x, y, count, pixels);
 }
 
 void store_depths(const std::int64_t* keys, int count, float near, float* depths) {

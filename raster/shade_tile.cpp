@@ -32,14 +32,15 @@ glm::vec3 radiance(const FrameShading& frame, const scenes::Material& material,
 }
 
 glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x, int y) {
-  const Weights w = quick_weights_at(triangle.screen_barycentrics, x, y);
-  const glm::vec3 lit = interpolate(w, triangle.radiance);
+  const Barycentrics& planes = triangle.screen_barycentrics;
   const std::uint32_t texture = triangle.material->base_colour_texture;
+  if (planes.proper && texture == scenes::kNone) return value_at(triangle.radiance_planes, x, y);
+  const Weights w = weights_at(planes, x, y);
+  const glm::vec3 lit = interpolate(w, triangle.radiance);
   if (texture == scenes::kNone) return lit;
   const glm::vec2 uv = interpolate(w, triangle.uv);
-  const shading::Footprint footprint{
-      derivative(w, triangle.screen_barycentrics.a, triangle.uv, uv),
-      derivative(w, triangle.screen_barycentrics.b, triangle.uv, uv)};
+  const shading::Footprint footprint{derivative(w, planes.a, triangle.uv, uv),
+                                     derivative(w, planes.b, triangle.uv, uv)};
   return lit * glm::vec3(shading::sample(frame.shader.textures[texture], uv, footprint));
 }
 
@@ -95,8 +96,10 @@ const SeenTriangle& SeenTriangles::get(const FrameShading& frame, std::uint32_t 
   const std::uint32_t t = frame.list.triangle_of(number);
   triangle =
       make_seen_triangle(frame.screen, frame.shader, frame.list.draws[draw], frame.draws[draw], t);
-  if (frame.lighting == Lighting::gouraud)
+  if (frame.lighting == Lighting::gouraud) {
     light_vertices(frame, draw, frame.list.draws[draw].mesh->triangles[t], triangle);
+    triangle.radiance_planes = make_colour_planes(triangle.screen_barycentrics, triangle.radiance);
+  }
   return triangle;
 }
 

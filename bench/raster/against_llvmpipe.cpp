@@ -1,14 +1,16 @@
 // Delray's rasterizer beside Mesa's llvmpipe, same triangles, camera and picture size, lit at the
 // vertices (Gouraud), everything warm:
 //
-//   raster_against_llvmpipe [--width W] [--height H] [--turns N] [--threads N,N...] [SCENE...]
+//   raster_against_llvmpipe [--width W] [--height H] [--turns N] [--threads N,N...] [--alone]
+//                           [SCENE...]
 //
 // SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], or layers:back or layers:front, 32 full-screen
 // layers drawn from back to front or from front to back; without any, those of the README. Both
 // must cover the same pixels, but for a few on edges. For each number of threads llvmpipe with
 // one and with two threads of its own (the faster median counts) and Delray take turns; the table
 // has medians in milliseconds, Delray's over llvmpipe's, and over Delray's with the first number of
-// threads, without culling and with it: of faces that look away and of hidden clusters.
+// threads, without culling and with it: of faces that look away and of hidden clusters. With
+// --alone, for profiles, llvmpipe stays away and medians of Delray's phases are shown.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -34,6 +36,7 @@ using namespace delray;
 struct Arguments {
   int width = 1920, height = 1080, turns = 9;
   std::vector<int> threads = {1, 2};
+  bool alone = false;
   std::vector<std::string> scenes = {"gen:terrain:1000000", "gen:terrain:10000000",
                                      "gen:field:13000000", "layers:back", "layers:front"};
 };
@@ -96,15 +99,18 @@ class Frames {
       result = render(cull);
       return 0;
     });
+    phases_ = result.statistics.phases;
     renderer_.recycle(std::move(result.picture));
     return seconds;
   }
+  const raster::Phases& phases() const { return phases_; }
 
  private:
   comm::Communicator& communicator_;
   raster::Renderer renderer_;
   scenes::Camera camera_;
   raster::RenderOptions options_;
+  raster::Phases phases_;  // of the frame that was timed last
 };
 
 // How many pixels only one of both covers.
@@ -135,6 +141,26 @@ Medians take_turns(Frames& frames, std::array<std::unique_ptr<bench::Llvmpipe>, 
           {bench::median(ours[0]), bench::median(ours[1])}};
 }
 
+constexpr double kMilli = 1e3;
+
+void show_phases(Frames& frames, const std::string& name, int threads, int turns) {
+  for (const bool cull : {false, true}) {
+    std::array<std::vector<double>, 5> times;
+    frames.seconds(cull);
+    for (int turn = 0; turn < turns; ++turn) {
+      times[0].push_back(frames.seconds(cull));
+      const raster::Phases& phases = frames.phases();
+      times[1].push_back(phases.transform);
+      times[2].push_back(phases.bin);
+      times[3].push_back(phases.rasterize);
+      times[4].push_back(phases.shade);
+    }
+    std::printf("%-24s %7d %5s", name.c_str(), threads, cull ? "yes" : "no");
+    for (const auto& time : times) std::printf(" %10.2f", bench::median(time) * kMilli);
+    std::printf("\n");
+  }
+}
+
 bool compare(const std::string& path, const Arguments& arguments) {
   const std::string name = path.substr(path.rfind('/') + 1);
   scenes::Camera camera;
@@ -143,6 +169,15 @@ bool compare(const std::string& path, const Arguments& arguments) {
   complete(scene, camera);
   // Culling is to be compared too, so no face may need both of its sides.
   for (scenes::Material& material : scene.materials) material.double_sided = false;
+  if (arguments.alone) {
+    for (const int threads : arguments.threads) {
+      comm::run_threads(1, threads, [&](comm::Communicator& communicator) {
+        Frames frames(communicator, scene, camera, arguments);
+        show_phases(frames, name, threads, arguments.turns);
+      });
+    }
+    return true;
+  }
   const scenes::View view = scenes::make_view(camera, arguments.width, arguments.height);
 
   std::array<std::unique_ptr<bench::Llvmpipe>, 2> peers;
@@ -168,7 +203,6 @@ bool compare(const std::string& path, const Arguments& arguments) {
   for (const bool cull : {false, true}) {
     for (std::size_t i = 0; i < medians.size(); ++i) {
       const double seconds = medians[i].ours[cull];
-      constexpr double kMilli = 1e3;
       std::printf("%-24s %10zu %7d %5s %10.2f %10.2f %8.3f %10.3f\n", name.c_str(),
                   static_cast<std::size_t>(scenes::triangle_count(scene)), arguments.threads[i],
                   cull ? "yes" : "no", medians[i].peer * kMilli, seconds * kMilli,
@@ -188,11 +222,16 @@ int main(int count, char** words) {
   app.add_option("--height", arguments.height)->check(CLI::PositiveNumber);
   app.add_option("--turns", arguments.turns)->check(CLI::PositiveNumber);
   app.add_option("--threads", arguments.threads)->delimiter(',')->check(CLI::PositiveNumber);
+  app.add_flag("--alone", arguments.alone);
   app.add_option("scenes", arguments.scenes);
   CLI11_PARSE(app, count, words);
   try {
-    std::printf("%-24s %10s %7s %5s %10s %10s %8s %10s\n", "scene", "triangles", "threads", "cull",
-                "llvmpipe", "delray ms", "ratio", "over first");
+    if (arguments.alone)
+      std::printf("%-24s %7s %5s %10s %10s %10s %10s %10s\n", "scene", "threads", "cull",
+                  "frame ms", "transform", "bin", "rasterize", "shade");
+    else
+      std::printf("%-24s %10s %7s %5s %10s %10s %8s %10s\n", "scene", "triangles", "threads",
+                  "cull", "llvmpipe", "delray ms", "ratio", "over first");
     bool good = true;
     for (const std::string& scene : arguments.scenes) good &= compare(scene, arguments);
     return good ? EXIT_SUCCESS : EXIT_FAILURE;

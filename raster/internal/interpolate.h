@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/glm.hpp>
-#include <limits>
 
 #include "raster/internal/screen_triangle.h"
 
@@ -25,49 +25,62 @@ struct Barycentrics {
   float a[3], b[3], c[3];
   int x, y;
   bool counter_clockwise;  // as seen on the screen; false without area
+  // Nowhere that the triangle covers is a share off by more than 1/64 of the whole, so that they
+  // need not be bounded. Not so for slivers, and surfaces seen edge-on.
+  bool proper;
 };
+
+// The length of a triangle times how much nearer its nearest vertex is than its farthest, over its
+// height, beyond which the rounding of its planes shows.
+inline constexpr float kMostStretched = 8192;
+
+// Whether planes of a triangle on the screen are proper. All vertices are within `reach` of the
+// origin in x and in y, `area` is twice its own (both in subpixels); depths are negated.
+inline bool are_proper(float nearest, float farthest, float reach, float area) {
+  return nearest * (reach * reach) < farthest * area * kMostStretched;
+}
 
 // From the vertices on the screen: u_k is the edge function opposite of vertex k over the distance
 // of the vertex. Exact but for the rounding of the planes, so that no pixel that is covered lies
-// outside. Returns whether the vertices run counter-clockwise; false without area.
+// outside.
 // REQUIRES: no vertex is kOutside.
-inline bool screen_planes(const Screen& screen, const std::array<ScreenVertex, 3>& vertices,
-                          float* a, float* b, float* c, int& origin_x, int& origin_y) {
+inline Barycentrics make_barycentrics(const Screen& screen,
+                                      const std::array<ScreenVertex, 3>& vertices) {
   const auto& [p, q, r] = vertices;
+  Barycentrics result;
   // The origin is a pixel of the frame amid the triangle: planes lose the least precision there.
   const auto amid = [](int low, int high, int centre, int size) {
     return std::clamp(((low + high) >> (kSubpixelBits + 1)) + centre, 0, size - 1);
   };
-  origin_x =
+  result.x =
       amid(std::min({p.x, q.x, r.x}), std::max({p.x, q.x, r.x}), screen.centre_x, screen.width);
-  origin_y =
+  result.y =
       amid(std::min({p.y, q.y, r.y}), std::max({p.y, q.y, r.y}), screen.centre_y, screen.height);
-  const int from_x = (origin_x - screen.centre_x) * kSubpixels + kHalfPixel;
-  const int from_y = (origin_y - screen.centre_y) * kSubpixels + kHalfPixel;
+  const int from_x = (result.x - screen.centre_x) * kSubpixels + kHalfPixel;
+  const int from_y = (result.y - screen.centre_y) * kSubpixels + kHalfPixel;
   // Whole numbers below 2^50: exact.
   const double x0 = p.x - from_x, x1 = q.x - from_x, x2 = r.x - from_x;
   const double y0 = p.y - from_y, y1 = q.y - from_y, y2 = r.y - from_y;
   const double c0 = x1 * y2 - x2 * y1, c1 = x2 * y0 - x0 * y2, c2 = x0 * y1 - x1 * y0;
-  const bool counter_clockwise = (c0 + c1) + c2 < 0;
-  const double sign = counter_clockwise ? 1 : -1;  // depths are negative
+  const double area = (c0 + c1) + c2;
+  result.counter_clockwise = area < 0;
+  const double sign = result.counter_clockwise ? 1 : -1;  // depths are negative
   const double near0 = sign * p.depth, near1 = sign * q.depth, near2 = sign * r.depth;
   const double step0 = near0 * kSubpixels, step1 = near1 * kSubpixels, step2 = near2 * kSubpixels;
-  a[0] = static_cast<float>((y1 - y2) * step0);
-  a[1] = static_cast<float>((y2 - y0) * step1);
-  a[2] = static_cast<float>((y0 - y1) * step2);
-  b[0] = static_cast<float>((x2 - x1) * step0);
-  b[1] = static_cast<float>((x0 - x2) * step1);
-  b[2] = static_cast<float>((x1 - x0) * step2);
-  c[0] = static_cast<float>(c0 * near0);
-  c[1] = static_cast<float>(c1 * near1);
-  c[2] = static_cast<float>(c2 * near2);
-  return counter_clockwise;
-}
-inline Barycentrics make_barycentrics(const Screen& screen,
-                                      const std::array<ScreenVertex, 3>& vertices) {
-  Barycentrics result;
-  result.counter_clockwise =
-      screen_planes(screen, vertices, result.a, result.b, result.c, result.x, result.y);
+  result.a[0] = static_cast<float>((y1 - y2) * step0);
+  result.a[1] = static_cast<float>((y2 - y0) * step1);
+  result.a[2] = static_cast<float>((y0 - y1) * step2);
+  result.b[0] = static_cast<float>((x2 - x1) * step0);
+  result.b[1] = static_cast<float>((x0 - x2) * step1);
+  result.b[2] = static_cast<float>((x1 - x0) * step2);
+  result.c[0] = static_cast<float>(c0 * near0);
+  result.c[1] = static_cast<float>(c1 * near1);
+  result.c[2] = static_cast<float>(c2 * near2);
+  const double reach = std::max(
+      {std::abs(x0), std::abs(x1), std::abs(x2), std::abs(y0), std::abs(y1), std::abs(y2)});
+  result.proper =
+      are_proper(-std::min({p.depth, q.depth, r.depth}), -std::max({p.depth, q.depth, r.depth}),
+                 static_cast<float>(reach), static_cast<float>(std::abs(area)));
   return result;
 }
 
@@ -113,10 +126,20 @@ inline Barycentrics make_barycentrics(const Screen& screen,
     for (const double coefficient : plane[k]) largest = std::max(largest, std::abs(coefficient));
   }
   const double scale = largest > 0 ? 1 / largest : 0;
+  // Their sum is least where the triangle is farthest. Snapping moves a point by less than 1/256
+  // of a pixel; rounding is a matter of all terms.
+  const double least_sum =
+      std::abs(volume) * scale / std::max({v[0].z, v[1].z, v[2].z, double{view.near}});
+  result.proper = true;
   for (int k = 0; k < 3; ++k) {
-    result.a[k] = static_cast<float>(plane[k][0] * scale);
-    result.b[k] = static_cast<float>(plane[k][1] * scale);
-    result.c[k] = static_cast<float>(plane[k][2] * scale);
+    const double a = plane[k][0] * scale, b = plane[k][1] * scale, c = plane[k][2] * scale;
+    result.a[k] = static_cast<float>(a);
+    result.b[k] = static_cast<float>(b);
+    result.c[k] = static_cast<float>(c);
+    const double moved = (std::abs(a) + std::abs(b)) / kSubpixels;
+    const double rounded =
+        (std::abs(a) * screen.width + std::abs(b) * screen.height + std::abs(c)) * 0x1p-22;
+    result.proper = result.proper && (moved + rounded) * 64 < least_sum;
   }
   return result;
 }
@@ -133,21 +156,6 @@ inline Weights weights_at(const Barycentrics& t, int x, int y) {
   return {{u[0] / sum, u[1] / sum, u[2] / sum}, sum};
 }
 
-// Sums from here on have a finite reciprocal.
-inline constexpr float kLeastSum = std::numeric_limits<float>::min();
-
-// The same with one division, for Gouraud shading, which has little else to do at a pixel.
-inline Weights quick_weights_at(const Barycentrics& t, int x, int y) {
-  const auto dx = static_cast<float>(x - t.x);
-  const auto dy = static_cast<float>(y - t.y);
-  float u[3];
-  for (int k = 0; k < 3; ++k) u[k] = std::max((t.a[k] * dx + t.b[k] * dy) + t.c[k], 0.0F);
-  const float sum = (u[0] + u[1]) + u[2];
-  if (!(sum >= kLeastSum)) return {{1, 0, 0}, 0};
-  const float share = 1 / sum;
-  return {{u[0] * share, u[1] * share, u[2] * share}, sum};
-}
-
 template <class Value>
 Value interpolate(const Weights& w, const Value (&value)[3]) {
   return (value[0] * w.of[0] + value[1] * w.of[1]) + value[2] * w.of[2];
@@ -161,6 +169,38 @@ Value derivative(const Weights& w, const float (&slopes)[3], const Value (&value
   const Value change = ((value[0] - here) * slopes[0] + (value[1] - here) * slopes[1]) +
                        (value[2] - here) * slopes[2];
   return change / w.sum;
+}
+
+// Three values of a triangle's vertices as planes over the screen, by Barycentrics: at a pixel
+// value k is (a[k]*dx + (b[k]*dy + c[k])) over what the same gives for k = 3.
+struct ColourPlanes {
+  float a[4], b[4], c[4];
+  int x, y;
+};
+
+inline ColourPlanes make_colour_planes(const Barycentrics& t, const glm::vec3 (&values)[3]) {
+  ColourPlanes planes;
+  const auto weighted = [&](const float(&share)[3], float(&sums)[4]) {
+    for (int k = 0; k < 3; ++k)
+      sums[k] = (share[0] * values[0][k] + share[1] * values[1][k]) + share[2] * values[2][k];
+    sums[3] = (share[0] + share[1]) + share[2];
+  };
+  weighted(t.a, planes.a);
+  weighted(t.b, planes.b);
+  weighted(t.c, planes.c);
+  planes.x = t.x;
+  planes.y = t.y;
+  return planes;
+}
+
+// REQUIRES: the planes are of proper Barycentrics; the triangle covers the pixel.
+inline glm::vec3 value_at(const ColourPlanes& t, int x, int y) {
+  const auto dx = static_cast<float>(x - t.x);
+  const auto dy = static_cast<float>(y - t.y);
+  float sums[4];
+  for (int k = 0; k < 4; ++k) sums[k] = t.a[k] * dx + (t.b[k] * dy + t.c[k]);
+  const float share = 1 / sums[3];
+  return {sums[0] * share, sums[1] * share, sums[2] * share};
 }
 
 }  // namespace delray::raster

@@ -37,7 +37,9 @@ struct SeenTriangle {
   glm::vec3 position[3], normal[3];
   glm::vec4 tangent[3], colour[3];
   glm::vec2 uv[3];
-  glm::vec3 radiance[3];  // of the vertices, for Gouraud shading
+  // For Gouraud shading: of the vertices, and between them where the barycentrics are proper.
+  glm::vec3 radiance[3];
+  ColourPlanes radiance_planes;
 };
 
 // Of a triangle of a mesh, from its vertices on the screen if all of them are inside.
@@ -45,7 +47,7 @@ Barycentrics make_screen_barycentrics(const Screen& screen, const ToView& to_vie
                                       std::span<const glm::vec3> positions,
                                       const glm::uvec3& corners);
 
-// Everything but `radiance`. `t` is a triangle of the draw's mesh.
+// Everything but `radiance` and its planes. `t` is a triangle of the draw's mesh.
 SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
                                 const Draw& draw, const ShadedDraw& shaded, std::uint32_t t);
 

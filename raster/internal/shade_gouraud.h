@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "image/image.h"
+#include "raster/internal/pixel_triangles.h"
 #include "raster/internal/shade_tile.h"
+#include "raster/internal/tile_groups.h"
 #include "raster/internal/tile_runs.h"
 #include "raster/internal/world_vertices.h"
 
@@ -16,26 +18,15 @@ namespace delray::raster {
 
 inline constexpr int kBlockSize = 16;
 
-// What the pixels of a triangle look up: barycentrics, and the colour of corner k as red, green,
-// blue. Vectors of four are loaded from each of them; a, b and c are padded with 0.
-struct alignas(32) PixelTriangle {
-  float a[4], b[4], c[4];
-  float x, y;
-  float colour[3][3];
-  float padding;
-};
-static_assert(sizeof(PixelTriangle) == 96);
-
-// Index of a pixel that shows no triangle, or none that is shaded here.
-inline constexpr std::uint16_t kNoTriangle = 0xFFFFU;
-
-// Stores the colours of pixels x .. x + count - 1 of row y, pixel x + i of which shows triangle
-// index[i], or transparent black where that is kNoTriangle. `pixels` may be changed up to the next
-// multiple of kBlockSize, and `index` read one further.
-void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
-               int count, image::Rgba8* pixels);
-void shade_row(std::span<const PixelTriangle> triangles, const std::uint16_t* index, int x, int y,
-               int count, image::RgbaF* pixels);
+// Stores the colours of pixels x .. x + count - 1 of row y. Where a run of pixels starts there is a
+// bit of `starts`, the first one for the first pixel; run i shows triangle runs[i], or transparent
+// black where that is kNoTriangle. `pixels` may be changed up to the next multiple of kBlockSize.
+//
+// REQUIRES: count <= kTileSize; no run starts after the last pixel.
+void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
+               const std::uint16_t* runs, int x, int y, int count, image::Rgba8* pixels);
+void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
+               const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels);
 
 // The depths of `count` keys, or the distances that they stand for if `near` is not 0, infinity
 // where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
@@ -47,10 +38,8 @@ void store_depths(const std::int64_t* keys, int count, float near, float* depths
 // there, are transformed together, and lit together with those of other clusters.
 class GouraudTile {
  public:
-  GouraudTile();
-
-  // As shade_tile does it, without asking `seen` but for triangles with a texture, or with a vertex
-  // that has no normal.
+  // As shade_tile does it, without asking `seen` but for triangles with a texture, with a vertex
+  // that has no normal, or whose barycentrics are not proper.
   template <class Colour>
   std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                       const geometry::Rect& rect, const Window<Colour>& window);
@@ -65,31 +54,17 @@ class GouraudTile {
   LitCorners light_corners(const FrameShading& frame, std::span<const std::uint32_t> numbers);
 
  private:
-  static constexpr std::uint32_t kSlots = 2 * kTilePixels;
-  static constexpr std::uint16_t kNone = 0xFFFFU;
+  using Group = TileGroups::Group;
 
-  // The triangles of a cluster that are seen: a list through next_. What they refer to is scattered
-  // in memory: it is asked for some time before it is needed.
-  struct Group {
-    std::uint32_t cluster;
-    std::uint16_t head;
-    const ClusterBlock* block = nullptr;
-    const MeshCluster* part = nullptr;
-  };
-  // A triangle of the group at hand, with its corners in the cluster.
-  struct Member {
-    std::uint16_t triangle;
-    std::uint8_t place;
-    std::uint8_t corner[3];
-  };
   // What a group uses.
   struct Members {
-    Member triangles[kClusterTriangles];
-    std::size_t triangle_count = 0;
+    const Group* group = nullptr;
+    CornerNumbers corners;                    // of its triangles, numbers of `vertices`
+    std::span<const std::uint32_t> vertices;  // of the mesh
+    // For groups that use but a part of the cluster's vertices.
+    std::uint32_t chosen_vertices[kClusterVertices] = {};
     std::uint8_t used[kClusterVertices] = {};    // by vertex of the cluster: 1, 0 between groups
     std::uint8_t number[kClusterVertices] = {};  // of those used
-    std::uint32_t mesh_vertices[kClusterVertices] = {};  // by number
-    std::size_t used_count = 0;
   };
   // Vertices of one material that wait to be lit together.
   struct VertexBlock {
@@ -98,44 +73,37 @@ class GouraudTile {
     std::uint32_t vertices[kBlockSize];
   };
 
-  void begin();
-  std::uint64_t find_triangles(const VisibilityTile& tile, const geometry::Rect& rect);
-  std::uint16_t index_of(std::uint32_t number);
-  std::uint16_t add_triangle(std::uint32_t number);
-  std::size_t group_of(std::uint32_t cluster);
   void set_up_triangles(const FrameShading& frame);
-  void set_up_groups(const FrameShading& frame);
-  void look_up(const FrameShading& frame, Group& group);
+  bool shaded_here(const FrameShading& frame, const Group& group) const;
+  void ask_for(const FrameShading& frame);
+  static void number_vertices(std::span<const std::uint32_t> vertices, Members& members);
   void collect(const FrameShading& frame, const Group& group, Members& members);
-  void set_up_group(const FrameShading& frame, const Group& group, const Members& members);
-  void set_up_member(const FrameShading& frame, const Cluster& cluster, const MeshCluster& part,
-                     const Members& members, const Member& member, std::uint32_t first_vertex);
+  void set_up_group(const FrameShading& frame, Members& members);
+  void set_up_clipped(const FrameShading& frame, const Group& group, std::size_t member,
+                      ClusterFacing& facing);
+  void turn_normals(const Draw& draw, const Members& members, std::size_t member,
+                    std::uint32_t triangle, bool front, std::uint32_t first_vertex);
   std::uint32_t turned(std::uint32_t used, std::size_t used_count);
   void add_vertices(const FrameShading& frame, const scenes::Mesh& mesh, const Members& members,
                     std::uint32_t first_vertex);
+  VertexBlock& block_of(std::size_t number, bool coloured);
   void light(const FrameShading& frame, std::size_t block);
+  void leave_triangles_without_normals();
   void set_colours();
-  void shade_one_by_one(std::uint16_t triangle) {
+  void shade_one_by_one(std::size_t triangle) {
     one_by_one_[triangle] = 1;
     any_one_by_one_ = true;
   }
 
   TileRuns runs_;
-  std::uint16_t index_[kTilePixels + 2 * kBlockSize];  // by pixel of the tile
+  TileGroups groups_;
+  RunTriangles run_triangles_;
   // By triangle that is seen.
-  std::vector<std::uint32_t> numbers_;
-  std::vector<std::uint16_t> next_;
+  TrianglePlanes planes_;  // corners: into radiances_
   std::vector<PixelTriangle> triangles_;
-  std::vector<glm::uvec3> corners_;  // into radiances_
   std::vector<std::uint8_t> one_by_one_;
   bool any_one_by_one_ = false;
   bool without_textures_ = false;
-
-  // Hash tables of indices into numbers_ and groups_, kNone where free.
-  std::uint16_t triangle_slots_[kSlots], group_slots_[kSlots];
-  std::vector<Group> groups_;
-  std::uint32_t last_cluster_ = kNothing;  // that a triangle was found of
-  std::size_t last_group_ = 0;
 
   Members members_[2];  // of a group and the next
   // Of the group at hand: used vertices whose normals are turned, a sparse set (Briggs & Torczon
@@ -146,13 +114,15 @@ class GouraudTile {
   ScreenVertices screen_vertices_;
   WorldVertices world_vertices_;
 
-  // By vertex: linear light, and 1, or 0 where it has no normal.
+  // By vertex: linear light, and 1, or 0 where it has no normal. The first is nobody's.
   std::vector<glm::vec4> radiances_;
+  bool all_have_normals_ = true;
   // By material, without and with colours of vertices; null where none was needed.
   std::vector<std::unique_ptr<VertexBlock>> blocks_;
   std::vector<std::size_t> open_blocks_;  // all with vertices in them, and others
 
   // For light_corners.
+  std::vector<std::uint16_t> groups_of_lit_;
   std::unique_ptr<SeenTriangles> seen_;
   std::vector<std::uint32_t> lit_of_vertex_;
   std::vector<glm::uvec3> lit_corners_;

@@ -110,7 +110,7 @@ TEST(Interpolate, ScreenPlanesHoldEveryPixelThatIsCovered) {
                            std::abs(double{v[k].depth}) * (terms + double{kSubpixels} * kSubpixels +
                                                            std::abs(double(t.c[k] / v[k].depth))));
       }
-      const Weights w = quick_weights_at(t, px, py);
+      const Weights w = weights_at(t, px, py);
       // Planes are rounded; the sum of a sliver is small beside their terms.
       const double tolerance = 1e-6 + 1e-6 * largest / sum;
       for (int k = 0; k < 3; ++k) ASSERT_NEAR(w.of[k], exact[k] / sum, tolerance) << round;
@@ -143,6 +143,36 @@ TEST(Interpolate, DegenerateTrianglesGiveFiniteWeights) {
         EXPECT_NEAR(sum, 1.0F, 1e-5F);
       }
   }
+}
+
+TEST(Interpolate, ProperPlanesGiveTheColoursOfBoundedShares) {
+  const Screen screen = make_screen(plain_view(320, 200));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> side(-4, 4), depth(-3, 12), unit(0, 1);
+  int checked = 0, improper = 0;
+  for (int round = 0; round < 3000; ++round) {
+    // Every other one flat, some slivers.
+    std::array<glm::vec3, 3> v;
+    for (glm::vec3& p : v) p = {side(random), side(random), depth(random)};
+    if (round % 5 == 0) v[2] = (v[0] + v[1]) * 0.5F + glm::vec3(0, unit(random) * 1e-5F, 0);
+    const Barycentrics t = make_barycentrics(screen, v);
+    improper += !t.proper;
+    if (!t.proper) continue;
+    glm::vec3 colours[3];
+    for (glm::vec3& colour : colours) colour = {unit(random), unit(random), unit(random)};
+    const ColourPlanes planes = make_colour_planes(t, colours);
+    for (int i = 0; i < 40; ++i) {
+      const int x = static_cast<int>(random() % 320), y = static_cast<int>(random() % 200);
+      double exact[3];
+      if (!exact_weights(screen.view, v, x, y, exact)) continue;
+      const glm::vec3 bounded = interpolate(weights_at(t, x, y), colours);
+      const glm::vec3 value = value_at(planes, x, y);
+      for (int k = 0; k < 3; ++k) ASSERT_NEAR(value[k], bounded[k], 1.0F / 32) << round;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 5000);
+  EXPECT_GT(improper, 50);
 }
 
 }  // namespace

@@ -109,11 +109,11 @@ TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
   for_each_target([&] {
     for (const float colour : colours) {
       PixelTriangle flat{};
-      flat.c[0] = 1;
-      flat.colour[0][0] = flat.colour[0][2] = colour;
-      const std::uint16_t index[kBlockSize + 1] = {0, kNoTriangle, 0};
+      flat.c[0] = flat.c[2] = colour;
+      flat.c[3] = 1;
+      const std::uint16_t runs[] = {0, kNoTriangle, 0};
       image::Rgba8 pixels[kBlockSize];
-      shade_row({&flat, 1}, index, 5, 7, 3, pixels);
+      shade_row({&flat, 1}, 7, runs, 5, 7, 3, pixels);
       const std::uint8_t code = image::encode_srgb(colour);
       ASSERT_EQ(pixels[0], (image::Rgba8{code, 0, code, 255})) << colour;
       ASSERT_EQ(pixels[1], image::Rgba8());

@@ -37,5 +37,50 @@ TEST(TileRuns, ChangesAreWhereNeighboursDiffer) {
   });
 }
 
+TEST(TileRuns, RunsHaveTheTrianglesOfTheirPixels) {
+  const auto tile = std::make_unique<VisibilityTile>();
+  const auto runs = std::make_unique<TileRuns>();
+  const auto groups = std::make_unique<TileGroups>();
+  const auto result = std::make_unique<RunTriangles>();
+  for_each_target([&] {
+    std::mt19937 random(2);
+    for (int round = 0; round < 30; ++round) {
+      const int i0 = static_cast<int>(random() % 20) * (round % 2), j0 = round % 3 * 7;
+      const int i1 = kTileSize - static_cast<int>(random() % 20) * (round % 2);
+      const int j1 = kTileSize - static_cast<int>(random() % 20) * (round % 3);
+      const std::uint32_t side = 1 + static_cast<std::uint32_t>(random()) % 9;
+      for (int pixel = 0; pixel < kTilePixels; ++pixel) {
+        const auto i = static_cast<std::uint32_t>(pixel % kTileSize);
+        const auto j = static_cast<std::uint32_t>(pixel / kTileSize);
+        const std::uint32_t square = j / side * 1000 + i / side;
+        const std::uint32_t number = square % 7 == 0 ? kNothing : square;
+        tile->key[pixel] = static_cast<std::int64_t>(std::uint64_t{random()} << 32 | number);
+      }
+      find_runs(*tile, j0, j1, *runs);
+      const std::uint64_t shown = number_runs(*runs, i0, j0, i1, j1, *groups, *result);
+      std::uint64_t expected_shown = 0;
+      for (int j = j0; j < j1; ++j) {
+        const std::uint16_t* run = result->of_row(j).data() - 1;
+        for (int i = i0; i < i1; ++i) {
+          run += result->starts[j] >> i & 1;
+          const std::uint32_t number = runs->numbers()[j * kTileSize + i];
+          if (number == kNothing) {
+            ASSERT_EQ(*run, kNoTriangle);
+            continue;
+          }
+          ++expected_shown;
+          ASSERT_EQ(groups->places()[*run], number % kClusterTriangles);
+          bool in_group = false;
+          for (const TileGroups::Group& group : groups->groups())
+            if (group.cluster == number >> kClusterBits)
+              in_group = *run >= group.first && *run < group.first + group.count;
+          ASSERT_TRUE(in_group);
+        }
+      }
+      ASSERT_EQ(shown, expected_shown);
+    }
+  });
+}
+
 }  // namespace
 }  // namespace delray::raster
