@@ -12,45 +12,6 @@ namespace {
 
 constexpr std::size_t kGrain = 4;  // groups of 4096 pixels; some ten microseconds
 
-// What cut() wrote.
-template <class Colour>
-struct Encoded {
-  Coverage coverage;
-  const Colour* colour;
-  const float* depth;
-
-  Encoded(PixelRange range, const comm::Buffer& message)
-      : coverage(range.size(), message.data()),
-        colour(reinterpret_cast<const Colour*>(message.data() + coverage.encoded_bytes())),
-        depth(reinterpret_cast<const float*>(colour + coverage.covered())) {
-    assert(reinterpret_cast<const std::byte*>(depth + coverage.covered()) ==
-           message.data() + message.size());
-  }
-  // From a group's first one on.
-  internal::ActivePixels<Colour> pixels(const Coverage::Group& at) const {
-    return {colour + at.covered_before, depth + at.covered_before,
-            coverage.covered() - at.covered_before};
-  }
-};
-
-// z-merge of what arrived for one group of the range.
-template <class Colour>
-void merge_group(image::BasicImage<Colour>& image, PixelRange range, const Encoded<Colour>& other,
-                 std::size_t group, image::Tie tie) {
-  const Coverage::Group at = other.coverage.group(group);
-  if (at.covered == 0) return;
-  const std::size_t first = range.begin + at.begin, size = at.end - at.begin;
-  const auto pixels = other.pixels(at);
-  if (at.is_full()) {
-    image::z_merge(image.colour.span().subspan(first, size),
-                   image.depth.span().subspan(first, size), std::span(pixels.colour, size),
-                   std::span(pixels.depth, size), tie);
-  } else {
-    internal::z_merge(image.colour.data() + first, image.depth.data() + first,
-                      other.coverage.mask(group), pixels, tie);
-  }
-}
-
 }  // namespace
 
 template <class Colour>
@@ -60,65 +21,63 @@ comm::Buffer ActiveLayer<Colour>::cut(PixelRange range) {
   const float* const depth = this->image().depth.data() + range.begin;
   const Coverage coverage(range.size(),
                           [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
-                            return internal::find_covered({depth + begin, end - begin}, mask);
+                            return this->find_covered(range.begin + begin, range.begin + end, mask);
                           });
   const std::uint64_t covered = coverage.covered();
-  comm::Buffer buffer(coverage.encoded_bytes() + covered * (sizeof(Colour) + sizeof(float)));
+  comm::Buffer buffer(coverage.encoded_bytes() + covered * this->bytes_per_pixel());
   auto* const colours = reinterpret_cast<Colour*>(coverage.encode(buffer.data()));
   auto* const depths = reinterpret_cast<float*>(colours + covered);
   parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
     const Coverage::Group at = coverage.group(i);
-    const std::span to_colours(colours + at.covered_before, at.covered);
-    const std::span to_depths(depths + at.covered_before, at.covered);
-    if (at.is_full()) {
-      std::copy_n(colour + at.begin, at.covered, to_colours.begin());
-      std::copy_n(depth + at.begin, at.covered, to_depths.begin());
-    } else if (at.covered > 0) {
-      internal::compress(colour + at.begin, coverage.mask(i), to_colours);
-      internal::compress(depth + at.begin, coverage.mask(i), to_depths);
-    }
+    const auto copy = [&]<class T>(const T* from, T* to) {
+      if (at.is_full()) {
+        std::copy_n(from + at.begin, at.covered, to + at.covered_before);
+      } else if (at.covered > 0) {
+        internal::compress(from + at.begin, coverage.mask(i),
+                           std::span(to + at.covered_before, at.covered));
+      }
+    };
+    copy(colour, colours);
+    if (this->has_depth()) copy(depth, depths);
   });
   return buffer;
 }
 
 template <class Colour>
-std::uint64_t ActiveLayer<Colour>::merge(PixelRange range, const comm::Buffer& pixels, Side from) {
+std::uint64_t ActiveLayer<Colour>::apply(PixelRange range, const comm::Buffer& pixels,
+                                         Action action) {
   assert(range.begin <= range.end && range.end <= this->pixels());
-  const Encoded<Colour> other(range, pixels);
-  parallel::parallel_for(0, other.coverage.groups(), kGrain, [&](std::size_t i) {
-    merge_group(this->image(), range, other, i, this->tie_of(from));
-  });
-  return other.coverage.covered();
-}
-
-template <class Colour>
-void ActiveLayer<Colour>::replace(PixelRange range, const comm::Buffer& pixels) {
-  assert(range.begin <= range.end && range.end <= this->pixels());
-  image::BasicImage<Colour>& image = this->image();
-  const Encoded<Colour> other(range, pixels);
-  parallel::parallel_for(0, other.coverage.groups(), kGrain, [&](std::size_t i) {
-    const Coverage::Group at = other.coverage.group(i);
+  const Coverage coverage(range.size(), pixels.data());
+  const std::uint64_t covered = coverage.covered();
+  const auto* colour = reinterpret_cast<const Colour*>(pixels.data() + coverage.encoded_bytes());
+  const auto* depth = reinterpret_cast<const float*>(colour + covered);
+  assert(pixels.size() == coverage.encoded_bytes() + covered * this->bytes_per_pixel());
+  parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
+    const Coverage::Group at = coverage.group(i);
     const std::size_t first = range.begin + at.begin, size = at.end - at.begin;
-    if (at.is_full()) {
-      std::copy_n(other.pixels(at).colour, size, image.colour.data() + first);
-      std::copy_n(other.pixels(at).depth, size, image.depth.data() + first);
-      return;
+    const typename ImageLayer<Colour>::Pixels arrived{
+        colour + at.covered_before, this->has_depth() ? depth + at.covered_before : nullptr,
+        covered - at.covered_before};
+    if (at.covered == 0) {
+      this->apply_to_none(action, first, size);
+    } else if (at.is_full()) {
+      this->apply_to_all(action, first, size, arrived);
+    } else {
+      this->apply_to_covered(action, first, size, coverage.mask(i), arrived);
     }
-    std::fill_n(image.colour.data() + first, size, Colour{});
-    std::fill_n(image.depth.data() + first, size, image::kEmptyDepth);
-    merge_group(image, range, other, i, image::Tie::other);
   });
+  return covered;
 }
 
 template class ActiveLayer<image::Rgba8>;
 template class ActiveLayer<image::RgbaF>;
 
-std::unique_ptr<Layer> make_active(image::Image8&& image) {
-  return std::make_unique<ActiveLayer<image::Rgba8>>(std::move(image));
+std::unique_ptr<Layer> make_active(image::Image8&& image, Operator how) {
+  return std::make_unique<ActiveLayer<image::Rgba8>>(std::move(image), how);
 }
 
-std::unique_ptr<Layer> make_active(image::ImageF&& image) {
-  return std::make_unique<ActiveLayer<image::RgbaF>>(std::move(image));
+std::unique_ptr<Layer> make_active(image::ImageF&& image, Operator how) {
+  return std::make_unique<ActiveLayer<image::RgbaF>>(std::move(image), how);
 }
 
 }  // namespace delray::composite

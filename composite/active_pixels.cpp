@@ -46,28 +46,38 @@ using Depths = hn::CappedTag<float, kMostLanes>;
 using Codes = hn::RebindToUnsigned<Depths>;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-std::uint64_t find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask) {
-  const Depths d;
+// Pixels whose value is not `nothing`.
+template <class D, class T>
+std::uint64_t find_loop(D d, const T* values, T nothing, std::size_t size, std::uint64_t* mask) {
   const std::size_t lanes = hn::Lanes(d);
-  const auto empty = hn::Set(d, image::kEmptyDepth);
+  const auto empty = hn::Set(d, nothing);
   std::uint64_t covered = 0;
   std::size_t i = 0;
   for (; i + 64 <= size; i += 64) {
     std::uint64_t bits = 0;
     for (std::size_t j = 0; j < 64; j += lanes) {
       std::uint8_t some[8] = {};
-      hn::StoreMaskBits(d, hn::Ne(hn::LoadU(d, depth + i + j), empty), some);
+      hn::StoreMaskBits(d, hn::Ne(hn::LoadU(d, values + i + j), empty), some);
       bits |= std::uint64_t{some[0]} << j;
     }
     mask[i / 64] = bits;
     covered += static_cast<std::uint64_t>(std::popcount(bits));
   }
   for (; i < size; ++i) {
-    const std::uint64_t bit = depth[i] != image::kEmptyDepth ? 1 : 0;
+    const std::uint64_t bit = values[i] != nothing ? 1 : 0;
     mask[i / 64] |= bit << i % 64;
     covered += bit;
   }
   return covered;
+}
+
+std::uint64_t find_covered_loop(const float* depth, std::size_t size, std::uint64_t* mask) {
+  return find_loop(Depths(), depth, image::kEmptyDepth, size, mask);
+}
+
+std::uint64_t find_coloured_loop(const std::uint32_t* colour, std::size_t size,
+                                 std::uint64_t* mask) {
+  return find_loop(Codes(), colour, std::uint32_t{0}, size, mask);
 }
 
 void compress_loop(const std::uint32_t* values, const std::uint64_t* mask, std::uint32_t* to,
@@ -174,6 +184,37 @@ void z_merge_loop(std::uint32_t* HWY_RESTRICT colour, float* HWY_RESTRICT depth,
   }
 }
 
+// The inverse of compress: of pixels that are not covered, 0.
+void expand_loop(const std::uint32_t* values, std::size_t readable, const std::uint64_t* mask,
+                 std::size_t elements, std::uint32_t* HWY_RESTRICT to) {
+  const Codes d;
+  const hn::RebindToSigned<Depths> di;
+  const hn::Rebind<std::uint8_t, Depths> d8;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::uint64_t lane_bits = (std::uint64_t{1} << lanes) - 1;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < elements; ++i, to += 64) {
+    if (mask[i] == kAll) {
+      std::memcpy(to, values + next, 64 * sizeof *to);
+      next += 64;
+      continue;
+    }
+    std::uint64_t rest = mask[i];
+    for (std::size_t j = 0; j < 64; j += lanes, rest >>= lanes) {
+      const auto some = static_cast<std::uint8_t>(rest & lane_bits);
+      const auto count = static_cast<std::size_t>(std::popcount(some));
+      auto code = load_some(d, values + next, next + lanes > readable, count);
+      if (lanes > 1) {
+        code = hn::TableLookupLanes(
+            code, hn::IndicesFromVec(d, hn::PromoteTo(di, hn::LoadU(d8, kExpand[some].data()))));
+      }
+      std::uint8_t loaded[8] = {some};
+      hn::StoreU(hn::IfThenElseZero(hn::LoadMaskBits(d, loaded), code), d, to + j);
+      next += count;
+    }
+  }
+}
+
 void z_merge_any(std::uint32_t* colour, float* depth, const std::uint64_t* mask,
                  std::size_t elements, const std::uint32_t* other_colour, const float* other_depth,
                  std::size_t readable, image::Tie tie) {
@@ -193,12 +234,30 @@ HWY_AFTER_NAMESPACE();
 namespace delray::composite::internal {
 
 HWY_EXPORT(find_covered_loop);
+HWY_EXPORT(find_coloured_loop);
+HWY_EXPORT(expand_loop);
 HWY_EXPORT(compress_loop);
 HWY_EXPORT(z_merge_any);
 
 std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask) {
   assert(depth.size() <= kGroupPixels);
   return HWY_DYNAMIC_DISPATCH(find_covered_loop)(depth.data(), depth.size(), mask.data());
+}
+
+std::uint64_t find_coloured(std::span<const image::Rgba8> colour, GroupMask& mask) {
+  assert(colour.size() <= kGroupPixels);
+  return HWY_DYNAMIC_DISPATCH(find_coloured_loop)(
+      reinterpret_cast<const std::uint32_t*>(colour.data()), colour.size(), mask.data());
+}
+
+std::uint64_t find_coloured(std::span<const image::RgbaF> colour, GroupMask& mask) {
+  std::uint64_t covered = 0;
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const std::uint64_t bit = colour[i] == image::RgbaF{} ? 0 : 1;
+    mask[i / 64] |= bit << i % 64;
+    covered += bit;
+  }
+  return covered;
 }
 
 void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to) {
@@ -249,6 +308,33 @@ void z_merge(image::RgbaF* colour, float* depth, const GroupMask& mask,
         depth[at] = other.depth[k];
       }
     }
+  }
+}
+
+void blend(image::Rgba8* colour, std::size_t size, const GroupMask& mask,
+           const ActivePixels<image::Rgba8>& other, bool front) {
+  // Pixels that are not covered have no effect as {}.
+  std::array<image::Rgba8, kGroupPixels> expanded;
+  HWY_DYNAMIC_DISPATCH(expand_loop)
+  (reinterpret_cast<const std::uint32_t*>(other.colour), other.readable, mask.data(),
+   (size + 63) / 64, reinterpret_cast<std::uint32_t*>(expanded.data()));
+  const std::span<const image::Rgba8> layer(expanded.data(), size);
+  front ? image::blend_front({colour, size}, layer) : image::blend_back({colour, size}, layer);
+}
+
+void blend(image::RgbaF* colour, std::size_t size, const GroupMask& mask,
+           const ActivePixels<image::RgbaF>& other, bool front) {
+  std::size_t k = 0;
+  for (std::size_t i = 0; i * 64 < size; ++i) {
+    std::array<image::RgbaF, 64> expanded{};
+    if (mask[i] == 0) continue;
+    for (std::uint64_t bits = mask[i]; bits != 0; bits &= bits - 1) {
+      expanded[static_cast<std::size_t>(std::countr_zero(bits))] = other.colour[k++];
+    }
+    const std::size_t count = std::min<std::size_t>(64, size - i * 64);
+    const std::span<const image::RgbaF> layer(expanded.data(), count);
+    const std::span target(colour + i * 64, count);
+    front ? image::blend_front(target, layer) : image::blend_back(target, layer);
   }
 }
 

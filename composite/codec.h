@@ -1,4 +1,4 @@
-// Codecs: how the partial images of opaque scenes travel, whatever the scheme.
+// Codecs: how partial images travel, whatever the scheme.
 #pragma once
 
 #include <memory>
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "composite/layer.h"
+#include "composite/image_layer.h"
 #include "image/image.h"
 
 namespace delray::composite {
@@ -16,11 +16,15 @@ namespace delray::composite {
 struct Codec {
   const char* name;
   const char* description;
-  std::unique_ptr<Layer> (*make_8)(image::Image8&& image);
-  std::unique_ptr<Layer> (*make_f)(image::ImageF&& image);
+  std::unique_ptr<Layer> (*make_8)(image::Image8&& image, Operator how);
+  std::unique_ptr<Layer> (*make_f)(image::ImageF&& image, Operator how);
 
-  std::unique_ptr<Layer> make(image::Image8&& image) const { return make_8(std::move(image)); }
-  std::unique_ptr<Layer> make(image::ImageF&& image) const { return make_f(std::move(image)); }
+  std::unique_ptr<Layer> make(image::Image8&& image, Operator how = Operator::nearest) const {
+    return make_8(std::move(image), how);
+  }
+  std::unique_ptr<Layer> make(image::ImageF&& image, Operator how = Operator::nearest) const {
+    return make_f(std::move(image), how);
+  }
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

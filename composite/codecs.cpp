@@ -2,8 +2,10 @@
 #include <array>
 
 #include "composite/active.h"
+#include "composite/bounds.h"
 #include "composite/codec.h"
 #include "composite/dense.h"
+#include "composite/lz4.h"
 
 namespace delray::composite {
 namespace {
@@ -11,6 +13,9 @@ namespace {
 constexpr std::array kCodecs = {
     Codec{"active", "covered pixels, and a bit mask in two levels that tells which", &make_active,
           &make_active},
+    Codec{"bounds", "every pixel of the rectangle around those covered", &make_bounds,
+          &make_bounds},
+    Codec{"lz4", "active, compressed by LZ4: for slow networks", &make_lz4, &make_lz4},
     Codec{"dense", "every pixel, covered or not", &make_dense, &make_dense},
 };
 

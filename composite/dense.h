@@ -5,8 +5,8 @@
 
 namespace delray::composite {
 
-// A message is the range's colours, then its depths: 8 bytes per pixel of Rgba8, 20 of RgbaF. Every
-// pixel of a merged range counts as composited.
+// A message is the range's colours, then its depths, where there are any: of Rgba8 8 bytes per
+// pixel, or 4 without depth, of RgbaF 20 or 16. Every pixel of a merged range counts as composited.
 //
 // merge and cut run in the caller's arena.
 template <class Colour>
@@ -15,14 +15,16 @@ class DenseLayer final : public ImageLayer<Colour> {
   using ImageLayer<Colour>::ImageLayer;
 
   comm::Buffer cut(PixelRange range) override;
-  std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override;
-  void replace(PixelRange range, const comm::Buffer& pixels) override;
+
+ private:
+  using typename ImageLayer<Colour>::Action;
+  std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) override;
 };
 
 extern template class DenseLayer<image::Rgba8>;
 extern template class DenseLayer<image::RgbaF>;
 
-std::unique_ptr<Layer> make_dense(image::Image8&& image);
-std::unique_ptr<Layer> make_dense(image::ImageF&& image);
+std::unique_ptr<Layer> make_dense(image::Image8&& image, Operator how = Operator::nearest);
+std::unique_ptr<Layer> make_dense(image::ImageF&& image, Operator how = Operator::nearest);
 
 }  // namespace delray::composite

@@ -1,36 +1,78 @@
-// Layers of opaque images, merged by z-test: how one travels is its codec's affair.
+// Layers of images: what happens to pixels where two meet. How they travel is the codec's affair.
 #pragma once
 
 #include <memory>
 #include <utility>
 
+#include "composite/coverage.h"
 #include "composite/layer.h"
 #include "image/image.h"
 #include "image/operators.h"
 
 namespace delray::composite {
 
-// Owns the image. A codec derives from it, for cut, merge and replace. The nearer pixel wins, the
-// lower interval of ranks on equal depths. A pixel that nothing covers has kEmptyDepth and the
-// colour {}, so that every codec leaves the same bytes.
+// What merging does to a pixel.
+enum class Operator : std::uint8_t {
+  // The nearer one wins, the lower interval of ranks on equal depths. A pixel that nothing covers
+  // has kEmptyDepth and the colour {}, so that every codec leaves the same bytes.
+  nearest,
+  // The lower interval of ranks lies over the higher (Porter and Duff 1984): ordered blending of
+  // layers that were blended before. Depths are neither read nor written and do not travel; a pixel
+  // that nothing covers has the colour {}. Rounded after every merge, so that the result depends on
+  // the scheme and the number of ranks, by no more than docs/compositing.md says.
+  over,
+};
+
+// Owns the image. A codec derives from it, for cut and apply.
 template <class Colour>
 class ImageLayer : public Layer {
  public:
-  explicit ImageLayer(image::BasicImage<Colour>&& image) : image_(std::move(image)) {}
+  explicit ImageLayer(image::BasicImage<Colour>&& image, Operator how = Operator::nearest)
+      : image_(std::move(image)), operator_(how) {}
 
   image::BasicImage<Colour>& image() { return image_; }
   const image::BasicImage<Colour>& image() const { return image_; }
 
   std::uint64_t pixels() const final { return image_.pixels(); }
   bool empty() const final;
+  std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) final {
+    return apply(range, pixels, from == Side::lower ? Action::merge_lower : Action::merge_higher);
+  }
+  void replace(PixelRange range, const comm::Buffer& pixels) final {
+    apply(range, pixels, Action::replace);
+  }
+  std::uint64_t prune(PixelRange range, const comm::Buffer& pixels) final {
+    return apply(range, pixels, Action::prune);
+  }
 
  protected:
-  static image::Tie tie_of(Side from) {
-    return from == Side::lower ? image::Tie::other : image::Tie::target;
-  }
+  enum class Action : std::uint8_t { merge_lower, merge_higher, replace, prune };
+  // What arrived of consecutive pixels, or of the covered ones among them; `depth` may be anything
+  // where has_depth() is false.
+  struct Pixels {
+    const Colour* colour = nullptr;
+    const float* depth = nullptr;
+    std::size_t readable = 0;  // values that both pointers may be read at
+  };
+
+  // Does `action` with what cut(range) gave elsewhere; returns the pixels that it looked at.
+  virtual std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) = 0;
+
+  bool has_depth() const { return operator_ == Operator::nearest; }
+  std::size_t bytes_per_pixel() const { return sizeof(Colour) + (has_depth() ? sizeof(float) : 0); }
+  // Sets the bits of covered pixels of a group and returns how many. REQUIRES: mask is zero.
+  std::uint64_t find_covered(std::size_t begin, std::size_t end, GroupMask& mask) const;
+
+  // To pixels [first, first + size) of the image: all of them, the covered ones of a group, or
+  // none, which matters to replace only.
+  void apply_to_all(Action action, std::size_t first, std::size_t size, const Pixels& pixels);
+  void apply_to_covered(Action action, std::size_t first, std::size_t size, const GroupMask& mask,
+                        const Pixels& covered);
+  void apply_to_none(Action action, std::size_t first, std::size_t size);
 
  private:
   image::BasicImage<Colour> image_;
+  Operator operator_;
 };
 
 extern template class ImageLayer<image::Rgba8>;

@@ -40,10 +40,11 @@ class InterlacedLayer final : public Layer {
 
   comm::Buffer cut(PixelRange range) override {
     std::vector<comm::Buffer> messages;
-    std::size_t bytes = 0;
+    std::size_t bytes = 0, counted = 0;
     for_each_piece(range, [&](PixelRange real) {
       messages.push_back(layer_->cut(real));
       bytes += sizeof(std::uint64_t) + padded(messages.back().size());
+      counted += sizeof(std::uint64_t) + padded(messages.back().counted_bytes());
     });
     comm::Buffer result(bytes);
     std::byte* to = result.data();
@@ -51,11 +52,11 @@ class InterlacedLayer final : public Layer {
       const std::uint64_t size = message.size();
       std::memcpy(to, &size, sizeof size);
       to += sizeof size;
-      std::memcpy(to, message.data(), size);
+      if (size > 0) std::memcpy(to, message.data(), size);
       std::memset(to + size, 0, padded(size) - size);
       to += padded(size);
     }
-    return result;
+    return comm::Buffer::standing_for(counted, std::move(result));
   }
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override {
     std::uint64_t composited = 0;

@@ -16,6 +16,10 @@ namespace delray::composite::internal {
 // not smaller.
 std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask);
 
+// The same of those that have a colour other than {}.
+std::uint64_t find_coloured(std::span<const image::Rgba8> colour, GroupMask& mask);
+std::uint64_t find_coloured(std::span<const image::RgbaF> colour, GroupMask& mask);
+
 // Copies the values of covered pixels to `to`, one after the other. `values` are those of all
 // pixels of the group; size(to) of them are covered.
 void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std::uint32_t> to);
@@ -36,5 +40,11 @@ void z_merge(image::Rgba8* colour, float* depth, const GroupMask& mask,
              const ActivePixels<image::Rgba8>& other, image::Tie tie);
 void z_merge(image::RgbaF* colour, float* depth, const GroupMask& mask,
              const ActivePixels<image::RgbaF>& other, image::Tie tie);
+
+// image::blend_front of covered pixels into the pixels of a group of `size`, or blend_back.
+void blend(image::Rgba8* colour, std::size_t size, const GroupMask& mask,
+           const ActivePixels<image::Rgba8>& other, bool front);
+void blend(image::RgbaF* colour, std::size_t size, const GroupMask& mask,
+           const ActivePixels<image::RgbaF>& other, bool front);
 
 }  // namespace delray::composite::internal

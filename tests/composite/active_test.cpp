@@ -9,7 +9,6 @@
 #include <functional>
 #include <random>
 
-#include "composite/codec.h"
 #include "composite/dense.h"
 
 namespace delray::composite {
@@ -158,13 +157,6 @@ TYPED_TEST(ActiveLayers, AreEmptyWhenNothingIsCovered) {
   layer.image().depth[9999] = 1e30F;
   EXPECT_FALSE(layer.empty());
   EXPECT_TRUE(ActiveLayer<TypeParam>(BasicImage<TypeParam>(0, 7)).empty());
-}
-
-TEST(Codecs, AreFoundByName) {
-  for (const Codec& codec : codecs()) EXPECT_EQ(find_codec(codec.name), &codec);
-  EXPECT_NE(find_codec("dense"), nullptr);
-  EXPECT_NE(find_codec("active"), nullptr);
-  EXPECT_EQ(find_codec("nonsense"), nullptr);
 }
 
 }  // namespace

@@ -1,0 +1,117 @@
+#include "composite/bounds.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <vector>
+
+#include "composite/internal/range.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::composite {
+namespace {
+
+constexpr std::size_t kGrain = 16;  // rows; some ten microseconds
+
+struct Bounds {
+  std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+// The pixels of `range` that lie in `bounds` on one of its rows.
+PixelRange run_of(const Bounds& bounds, std::uint32_t y, std::uint64_t width, PixelRange range) {
+  return internal::overlap({y * width + bounds.x0, y * width + bounds.x1}, range);
+}
+
+// Runs of all rows, and how many pixels lie in those before each; one element more.
+struct Runs {
+  std::vector<PixelRange> ranges;
+  std::vector<std::uint64_t> before{0};
+
+  Runs(const Bounds& bounds, std::uint64_t width, PixelRange range) {
+    for (std::uint32_t y = bounds.y0; y < bounds.y1; ++y) {
+      ranges.push_back(run_of(bounds, y, width, range));
+      before.push_back(before.back() + ranges.back().size());
+    }
+  }
+};
+
+}  // namespace
+
+template <class Colour>
+comm::Buffer BoundsLayer<Colour>::cut(PixelRange range) {
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  const image::BasicImage<Colour>& image = this->image();
+  const auto width = static_cast<std::uint64_t>(image.width);
+  Bounds bounds{~std::uint32_t{0}, ~std::uint32_t{0}, 0, 0};
+  const auto include = [&](std::uint64_t first, std::uint64_t last) {
+    bounds.y0 = std::min(bounds.y0, static_cast<std::uint32_t>(first / width));
+    bounds.y1 = std::max(bounds.y1, static_cast<std::uint32_t>(last / width + 1));
+    const bool one_row = first / width == last / width;
+    const auto x0 = one_row ? first % width : 0, x1 = one_row ? last % width + 1 : width;
+    bounds.x0 = std::min(bounds.x0, static_cast<std::uint32_t>(x0));
+    bounds.x1 = std::max(bounds.x1, static_cast<std::uint32_t>(x1));
+  };
+  for (std::uint64_t begin = range.begin; begin < range.end;) {
+    // Groups end with rows, so that the first and last covered pixels of one tell its columns.
+    const std::uint64_t end =
+        std::min({begin + kGroupPixels, range.end, (begin / width + 1) * width});
+    GroupMask mask{};
+    if (this->find_covered(begin, end, mask) > 0) {
+      std::size_t first = 0, last = mask.size() - 1;
+      while (mask[first] == 0) ++first;
+      while (mask[last] == 0) --last;
+      include(begin + first * 64 + static_cast<std::uint64_t>(std::countr_zero(mask[first])),
+              begin + last * 64 + 63 - static_cast<std::uint64_t>(std::countl_zero(mask[last])));
+    }
+    begin = end;
+  }
+  if (bounds.y1 == 0) bounds = {};
+  const Runs runs(bounds, width, range);
+  comm::Buffer buffer(sizeof bounds + runs.before.back() * this->bytes_per_pixel());
+  std::memcpy(buffer.data(), &bounds, sizeof bounds);
+  auto* const colour = reinterpret_cast<Colour*>(buffer.data() + sizeof bounds);
+  auto* const depth = reinterpret_cast<float*>(colour + runs.before.back());
+  parallel::parallel_for(0, runs.ranges.size(), kGrain, [&](std::size_t i) {
+    const PixelRange run = runs.ranges[i];
+    std::copy_n(image.colour.data() + run.begin, run.size(), colour + runs.before[i]);
+    if (this->has_depth()) {
+      std::copy_n(image.depth.data() + run.begin, run.size(), depth + runs.before[i]);
+    }
+  });
+  return buffer;
+}
+
+template <class Colour>
+std::uint64_t BoundsLayer<Colour>::apply(PixelRange range, const comm::Buffer& pixels,
+                                         Action action) {
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  Bounds bounds;
+  std::memcpy(&bounds, pixels.data(), sizeof bounds);
+  const Runs runs(bounds, static_cast<std::uint64_t>(this->image().width), range);
+  const std::uint64_t all = runs.before.back();
+  assert(pixels.size() == sizeof bounds + all * this->bytes_per_pixel());
+  const auto* const colour = reinterpret_cast<const Colour*>(pixels.data() + sizeof bounds);
+  const auto* const depth = reinterpret_cast<const float*>(colour + all);
+  if (all < range.size()) this->apply_to_none(action, range.begin, range.size());
+  parallel::parallel_for(0, runs.ranges.size(), kGrain, [&](std::size_t i) {
+    const PixelRange run = runs.ranges[i];
+    const std::uint64_t at = runs.before[i];
+    this->apply_to_all(action, run.begin, run.size(),
+                       {colour + at, this->has_depth() ? depth + at : nullptr, all - at});
+  });
+  return all;
+}
+
+template class BoundsLayer<image::Rgba8>;
+template class BoundsLayer<image::RgbaF>;
+
+std::unique_ptr<Layer> make_bounds(image::Image8&& image, Operator how) {
+  return std::make_unique<BoundsLayer<image::Rgba8>>(std::move(image), how);
+}
+
+std::unique_ptr<Layer> make_bounds(image::ImageF&& image, Operator how) {
+  return std::make_unique<BoundsLayer<image::RgbaF>>(std::move(image), how);
+}
+
+}  // namespace delray::composite
