@@ -2,78 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/statistics.h"
 #include "apps/write_picture.h"
-#include "comm/agree_on_failure.h"
+#include "comm/agreed_pipeline.h"
+#include "parallel/arena.h"
 #include "scenes/camera_path.h"
 
 namespace delray::apps {
 namespace {
 
-// Frames that are worked on at the same time: one in every stage, and one that waits.
-constexpr std::size_t kSlots = 4;
+// Frames in the making at the same time: one for every stage, and a file more for every thread that
+// the others do not need, as far as memory for pictures is not worth more.
+std::size_t default_slots() {
+  return static_cast<std::size_t>(std::clamp(parallel::arena_threads() + 2, 4, 8));
+}
 
 // What becomes of one frame on its way.
 struct Slot {
-  Frame frame;
-  std::string hash;
+  std::unique_ptr<raster::FrameInSteps> steps;
+  Picture picture;
+  double seconds = 0;  // in the stages so far
 };
-
-Animation render_in_pipeline(comm::Communicator& communicator, const Prepared& prepared,
-                             const RenderRequest& request, const Session& session,
-                             parallel::Progress* progress) {
-  const std::vector<scenes::Camera>& cameras = prepared.cameras;
-  FrameRenderer renderer(prepared, request, progress);
-  std::vector<Slot> slots(kSlots);
-  Animation animation;
-  const std::vector<std::string> names = animation_stages();
-  const std::vector<parallel::PipelineStage> stages = {
-      {names[0], true,
-       [&](std::size_t i, std::size_t slot) {
-         Stopwatch watch;
-         slots[slot].frame = renderer.render(communicator, cameras[i]);
-         animation.frames.seconds.push_back(watch.lap());
-       }},
-      {names[1], false,
-       [&](std::size_t i, std::size_t slot) {
-         slots[slot].hash = write_picture(request, session, prepared, cameras[i],
-                                          frame_path(request.output, i), slots[slot].frame.picture);
-       }},
-      {names[2], true, [&](std::size_t, std::size_t slot) {
-         animation.frames.statistics = std::move(slots[slot].frame.statistics);
-         animation.hash = std::move(slots[slot].hash);
-       }}};
-  animation.times = parallel::run_pipeline(cameras.size(), kSlots, stages);
-  return animation;
-}
-
-Animation render_one_by_one(comm::Communicator& communicator, const Prepared& prepared,
-                            const RenderRequest& request, const Session& session,
-                            parallel::Progress* progress) {
-  const std::vector<scenes::Camera>& cameras = prepared.cameras;
-  FrameRenderer renderer(prepared, request, progress);
-  Animation animation;
-  animation.times.stages.resize(animation_stages().size());
-  Stopwatch all;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Stopwatch watch;
-    Frame frame = renderer.render(communicator, cameras[i]);
-    animation.frames.seconds.push_back(watch.lap());
-    animation.times.stages[0] += animation.frames.seconds.back();
-    comm::all_or_none(communicator, comm::Phase::other, [&] {
-      if (communicator.rank() == 0) {
-        animation.hash = write_picture(request, session, prepared, cameras[i],
-                                       frame_path(request.output, i), frame.picture);
-      }
-    });
-    animation.times.stages[1] += watch.lap();
-    animation.frames.statistics = std::move(frame.statistics);
-  }
-  animation.times.seconds = all.lap();
-  return animation;
-}
 
 }  // namespace
 
@@ -94,14 +46,90 @@ std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
   return {};
 }
 
-std::vector<std::string> animation_stages() { return {"render", "write", "report"}; }
-
 Animation render_animation(comm::Communicator& communicator, const Prepared& prepared,
                            const RenderRequest& request, const Session& session,
                            parallel::Progress* progress) {
-  return communicator.size() == 1
-             ? render_in_pipeline(communicator, prepared, request, session, progress)
-             : render_one_by_one(communicator, prepared, request, session, progress);
+  const std::vector<scenes::Camera>& cameras = prepared.cameras;
+  const bool first_rank = communicator.rank() == 0;
+  FrameRenderer renderer(prepared, request, progress);
+  Animation animation;
+  animation.slots = request.frames_at_once > 0 ? static_cast<std::size_t>(request.frames_at_once)
+                                               : default_slots();
+  animation.frames.seconds.resize(cameras.size());
+  std::vector<Slot> slots(animation.slots);
+  std::vector<parallel::PipelineStage> stages;
+  std::size_t done = 0;  // frames that are not the pipeline's at hand
+  const auto add = [&](std::string name, bool in_order, auto run) {
+    stages.push_back({std::move(name), in_order, [&, run](std::size_t item, std::size_t slot) {
+                        Stopwatch watch;
+                        run(done + item, slots[slot]);
+                        slots[slot].seconds += watch.lap();
+                      }});
+  };
+  const auto finish = [&](std::size_t i, Slot& slot, Picture&& picture,
+                          EngineStatistics&& statistics) {
+    slot.picture = std::move(picture);
+    if (first_rank) put_background_behind(request, prepared, cameras[i], slot.picture);
+    animation.frames.statistics = std::move(statistics);
+  };
+  if (renderer.has_steps(communicator.size())) {
+    add("transform", true, [&](std::size_t i, Slot& slot) {
+      slot.seconds = 0;
+      slot.steps = renderer.begin(communicator, cameras[i]);
+      slot.steps->transform();
+    });
+    add("rasterize", true, [](std::size_t, Slot& slot) { slot.steps->rasterize(); });
+    add("compose", true, [&](std::size_t i, Slot& slot) {
+      raster::Result result = slot.steps->compose();
+      slot.steps.reset();
+      finish(i, slot, std::move(result.picture), std::move(result.statistics));
+    });
+  } else {
+    add("render", true, [&](std::size_t i, Slot& slot) {
+      slot.seconds = 0;
+      Frame frame = renderer.render(communicator, cameras[i]);
+      finish(i, slot, std::move(frame.picture), std::move(frame.statistics));
+    });
+  }
+  const std::size_t collective = stages.size() - 1;
+  add("encode", false, [&](std::size_t i, Slot& slot) {
+    animation.frames.seconds[i] = slot.seconds;
+    if (!first_rank) return;
+    std::string hash = write_picture(session, frame_path(request.output, i), slot.picture);
+    if (i + 1 == cameras.size()) animation.hash = std::move(hash);
+  });
+  for (const parallel::PipelineStage& stage : stages) animation.stages.push_back(stage.name);
+  animation.all.stages.resize(stages.size());
+  const auto pass = [&](std::size_t frames) {
+    parallel::PipelineTimes times =
+        comm::run_agreed_pipeline(communicator, frames, animation.slots, stages, collective);
+    done += frames;
+    for (std::size_t i = 0; i < stages.size(); ++i) animation.all.stages[i] += times.stages[i];
+    animation.all.seconds += times.seconds;
+    return times;
+  };
+  while (done < std::min<std::size_t>(2, cameras.size())) animation.alone = pass(1);
+  animation.overlapped = cameras.size() - done;
+  animation.overlapped_seconds = pass(animation.overlapped).seconds;
+  return animation;
+}
+
+double Animation::sequential_seconds() const {
+  return parallel::sequential_seconds(alone) * static_cast<double>(overlapped);
+}
+
+double Animation::predicted_seconds() const {
+  parallel::PipelineTimes times = alone;
+  for (double& stage : times.stages) stage *= static_cast<double>(overlapped);
+  return parallel::predicted_seconds(times, overlapped);
+}
+
+double Animation::speed_up() const {
+  return overlapped == 0 ? 1 : sequential_seconds() / overlapped_seconds;
+}
+
+double Animation::predicted_speed_up() const {
+  return overlapped == 0 ? 1 : sequential_seconds() / predicted_seconds();
 }
 
 }  // namespace delray::apps

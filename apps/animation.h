@@ -19,17 +19,31 @@ std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
                                               const scenes::Scene& scene,
                                               const scenes::Camera& camera);
 
-// What the frames took, on rank 0. With one rank the stages of a pipeline; with several, whose
-// messages only their own threads may send, one frame after the other.
+// What the frames took on rank 0, in a pipeline over the stages below. The first two pass alone,
+// since stages that share processors take longer than what formulas about them ask for.
 struct Animation {
-  Frames frames;  // the picture is the last one, already written
+  Frames frames;  // the statistics are the last one's; the picture has gone to its file
   std::string hash;
-  parallel::PipelineTimes times;
-};
-std::vector<std::string> animation_stages();
+  std::vector<std::string> stages;
+  std::size_t slots = 0;          // frames in the making at the same time
+  parallel::PipelineTimes all;    // frames
+  parallel::PipelineTimes alone;  // the second frame, or the only one
+  std::size_t overlapped = 0;     // frames that others were in the making beside
+  double overlapped_seconds = 0;
 
-// Collective. Every frame is written as it is finished; `progress` is that of the frame in the
-// making.
+  // What the overlapped frames take if each is alone (Kohout 2004, 2.1), and with a processor for
+  // every stage (2.2).
+  double sequential_seconds() const;
+  double predicted_seconds() const;
+  // 1 where none overlapped.
+  double speed_up() const;
+  double predicted_speed_up() const;
+};
+
+// Collective. Every frame is written as it is finished. Stages (Kohout 2004, 3.1.1) are transform,
+// rasterize, compose (over ranks, and with the background) and encode, which also writes the file.
+// Where a frame has no steps, since ranks exchange messages before they draw or learn from the last
+// frame, what comes before encode is one stage, render.
 Animation render_animation(comm::Communicator& communicator, const Prepared& prepared,
                            const RenderRequest& request, const Session& session,
                            parallel::Progress* progress);

@@ -40,8 +40,8 @@ int print_lists() {
 void finish(const RenderRequest& request, const Session& session, const Prepared& prepared,
             Frames& frames) {
   Stopwatch watch;
-  const std::string hash =
-      write_picture(request, session, prepared, prepared.camera, request.output, frames.picture);
+  put_background_behind(request, prepared, prepared.camera, frames.picture);
+  const std::string hash = write_picture(session, request.output, frames.picture);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
   spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", request.output, request.width,
@@ -53,12 +53,18 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
 void finish(const RenderRequest& request, const Prepared& prepared, const Animation& animation) {
   const std::size_t frames = prepared.cameras.size();
   Json statistics = render_statistics(request, prepared, animation.frames, animation.hash,
-                                      animation.times.stages[1]);
-  statistics["animation"] = animation_statistics(animation, frames);
+                                      animation.all.stages.back());
+  statistics["animation"] = animation_statistics(animation);
   write_statistics(request.statistics, statistics);
   spdlog::info("{} .. {}: {} frames, {:.3f} s a frame", frame_path(request.output, 0),
                frame_path(request.output, frames - 1), frames,
-               animation.times.seconds / static_cast<double>(frames));
+               animation.all.seconds / static_cast<double>(frames));
+  std::string stages;
+  for (std::size_t i = 0; i < animation.stages.size(); ++i)
+    stages += fmt::format("{}{} {:.3f} s", i == 0 ? "" : ", ", animation.stages[i],
+                          animation.alone.stages[i]);
+  spdlog::info("a frame alone: {}; up to {} at once: {:.2f} times as fast, predicted {:.2f}",
+               stages, animation.slots, animation.speed_up(), animation.predicted_speed_up());
 }
 
 int run(Session& session, const CLI::App& command, RenderRequest request) {

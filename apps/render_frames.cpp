@@ -113,6 +113,15 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
   return frame;
 }
 
+bool FrameRenderer::has_steps(int ranks) const {
+  return raster_ && raster::Renderer::has_steps(raster_options(request_), ranks);
+}
+
+std::unique_ptr<raster::FrameInSteps> FrameRenderer::begin(comm::Communicator& communicator,
+                                                           const scenes::Camera& camera) {
+  return raster_->begin(communicator, camera, raster_options(request_), progress_);
+}
+
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
                      const RenderRequest& request, parallel::Progress* progress) {
   FrameRenderer renderer(prepared, request, progress);

@@ -46,6 +46,10 @@ class FrameRenderer {
                 parallel::Progress* progress);
   // Collective.
   Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
+  // The same in steps (raster::Renderer::begin), where engine and strategy have them.
+  bool has_steps(int ranks) const;
+  std::unique_ptr<raster::FrameInSteps> begin(comm::Communicator& communicator,
+                                              const scenes::Camera& camera);
 
  private:
   const Prepared& prepared_;

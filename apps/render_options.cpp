@@ -123,6 +123,11 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->excludes("--turntable")
       ->excludes("--camera")
       ->excludes("--view");
+  command
+      .add_option("--frames-at-once", request.frames_at_once,
+                  "of an animation that are in the making at the same time (default: threads + 2, "
+                  "from 4 to 8); 1: one after the other")
+      ->check(CLI::Range(1, 64));
   add_launch_options(command, request.launch);
   const std::string raster = "Rasterizer";
   command.add_option("--strategy", request.strategy, "how ranks share the work")->group(raster);
@@ -215,6 +220,8 @@ void check(const CLI::App& command, RenderRequest& request) {
   parse_size(request);
   request.behind = parse_background(request.background);
   request.kind = request.engine == "raster" ? Engine::raster : Engine::raytrace;
+  if (request.turntable == 0 && request.camera_path.empty())
+    refuse(command, {"--frames-at-once"}, "a single picture");
   if (request.kind == Engine::raster) {
     check_raster(command, request);
   } else {

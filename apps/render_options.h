@@ -21,7 +21,7 @@ struct RenderRequest {
   std::string output, statistics;
   std::string size = "1280x720", engine = "raster", background = "auto";
   std::string camera_path;
-  int frames = 1, turntable = 0;
+  int frames = 1, turntable = 0, frames_at_once = 0;  // 0: by the threads
   bool list = false;
   // raster
   std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",

@@ -171,21 +171,23 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
       frames.statistics);
 }
 
-Json animation_statistics(const Animation& animation, std::size_t frames) {
+Json animation_statistics(const Animation& animation) {
   Json stages = Json::array();
-  const std::vector<std::string> names = animation_stages();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    stages.push_back({{"name", names[i]}, {"seconds", animation.times.stages[i]}});
+  for (std::size_t i = 0; i < animation.stages.size(); ++i) {
+    stages.push_back({{"name", animation.stages[i]},
+                      {"seconds", animation.all.stages[i]},
+                      {"seconds_alone", animation.alone.stages[i]}});
   }
-  const double sequential = parallel::sequential_seconds(animation.times);
-  const double predicted = parallel::predicted_seconds(animation.times, frames);
-  return {{"frames", frames},
-          {"stages", stages},
-          {"seconds", animation.times.seconds},
-          {"sequential_seconds", sequential},
-          {"predicted_seconds", predicted},
-          {"speed_up", sequential / animation.times.seconds},
-          {"predicted_speed_up", sequential / predicted}};
+  return {
+      {"frames", animation.frames.seconds.size()},
+      {"frames_at_once", animation.slots},
+      {"stages", stages},
+      {"seconds", animation.all.seconds},
+      {"overlapped", {{"frames", animation.overlapped}, {"seconds", animation.overlapped_seconds}}},
+      {"sequential_seconds", animation.sequential_seconds()},
+      {"predicted_seconds", animation.predicted_seconds()},
+      {"speed_up", animation.speed_up()},
+      {"predicted_speed_up", animation.predicted_speed_up()}};
 }
 
 }  // namespace delray::apps

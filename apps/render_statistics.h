@@ -12,8 +12,9 @@ namespace delray::apps {
 Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
                        const std::string& hash, double write_seconds);
 
-// How the stages of an animation overlapped: the speed-up over one stage after the other, and the
-// one that a processor for each stage would give (Kohout 2004, 2.2).
-Json animation_statistics(const Animation& animation, std::size_t frames);
+// How the stages of an animation overlapped: per stage the seconds of all frames, and of one that
+// was alone; the speed-up measured over frames that are alone (Kohout 2004, 2.1), and the one
+// predicted for a processor for each stage (2.2).
+Json animation_statistics(const Animation& animation);
 
 }  // namespace delray::apps

@@ -15,17 +15,21 @@ const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& conver
 
 }  // namespace
 
-std::string write_picture(const RenderRequest& request, const Session& session,
-                          const Prepared& prepared, const scenes::Camera& camera,
-                          const std::string& path, Picture& picture) {
+void put_background_behind(const RenderRequest& request, const Prepared& prepared,
+                           const scenes::Camera& camera, Picture& picture) {
   const scenes::View view = scenes::make_view(camera, request.width, request.height);
+  std::visit(
+      [&](auto& pixels) { put_behind(pixels, prepared.background, prepared.shading(), view); },
+      picture);
+}
+
+std::string write_picture(const Session& session, const std::string& path, const Picture& picture) {
   const std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION},
                                                     {"CommandLine", session.command_line}};
   image::WriteOptions options;
   options.attributes = attributes;
   return std::visit(
-      [&](auto& pixels) {
-        put_behind(pixels, prepared.background, prepared.shading(), view);
+      [&](const auto& pixels) {
         image::Image8 converted;
         const image::Image8& codes = as_8bit(pixels, converted);
         if (path.ends_with(".exr") || path.ends_with(".EXR")) {

@@ -8,10 +8,12 @@
 
 namespace delray::apps {
 
-// Puts the background behind the picture, in place, and writes it to `path`, whole or not at all.
-// Returns the hash of its 8-bit pixels. Throws files::FileError.
-std::string write_picture(const RenderRequest& request, const Session& session,
-                          const Prepared& prepared, const scenes::Camera& camera,
-                          const std::string& path, Picture& picture);
+// In place.
+void put_background_behind(const RenderRequest& request, const Prepared& prepared,
+                           const scenes::Camera& camera, Picture& picture);
+
+// Writes the picture to `path`, whole or not at all. Returns the hash of its 8-bit pixels. Throws
+// files::FileError.
+std::string write_picture(const Session& session, const std::string& path, const Picture& picture);
 
 }  // namespace delray::apps

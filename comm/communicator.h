@@ -1,9 +1,10 @@
 // Ranks and their messages: the only way that data gets from one rank to another.
 //
-// A Communicator belongs to one rank, and only that rank's own thread uses it
-// (MPI_THREAD_FUNNELED). Collectives (comm/collectives.h) are free functions over it, so that every
-// message is seen, counted and simulated. Implementations: comm/threads.h, comm/mpi.h,
-// comm/simulated.h; comm/recording.h wraps any of them.
+// A Communicator belongs to one rank, and one thread at a time uses it: the rank's own, or those
+// that take turns at a stage of a pipeline (MPI_THREAD_SERIALIZED). Collectives
+// (comm/collectives.h) are free functions over it, so that every message is seen, counted and
+// simulated. Implementations: comm/threads.h, comm/mpi.h, comm/simulated.h; comm/recording.h wraps
+// any of them.
 #pragma once
 
 #include <chrono>

@@ -22,7 +22,7 @@ struct MpiOptions {
 bool launched_by_mpi();
 int launched_rank();
 
-// Runs body(communicator) over MPI_COMM_WORLD. Initialises MPI (MPI_THREAD_FUNNELED) unless
+// Runs body(communicator) over MPI_COMM_WORLD. Initialises MPI (MPI_THREAD_SERIALIZED) unless
 // somebody has, and finalises it if so; at most once in a process.
 //
 // An exception in one rank ends all: a line on stderr with rank, phase and reason, then MPI_Abort

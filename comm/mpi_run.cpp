@@ -146,7 +146,9 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
   if (!initialized) {
     avoid_forbidden_copies();
     int provided = 0;
-    MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+    MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided);
+    if (provided < MPI_THREAD_SERIALIZED)
+      throw std::runtime_error("this MPI does not let threads take turns (MPI_THREAD_SERIALIZED)");
   }
   std::exception_ptr failure;
   {

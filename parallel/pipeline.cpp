@@ -2,16 +2,75 @@
 
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <numeric>
+#include <thread>
+
+#include "parallel/internal/plain_threads.h"
 
 namespace delray::parallel {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// In a context of its own: the pipeline's is cancelled by an exception, and loops within would then
+// return with half of their work undone.
+void run_whole(const PipelineStage& stage, std::size_t item, std::size_t slot) {
+#ifdef DELRAY_PLAIN_THREADS
+  stage.run(item, slot);
+#else
+  tbb::task_group_context own(tbb::task_group_context::isolated);
+  tbb::task_group group(own);
+  tbb::this_task_arena::isolate([&] { group.run_and_wait([&] { stage.run(item, slot); }); });
+#endif
+}
+
+#ifdef DELRAY_PLAIN_THREADS
+// A thread for each slot takes every slots-th item through all stages.
+template <class RunStage>
+void run_on_threads(std::size_t items, std::size_t slots, std::span<const PipelineStage> stages,
+                    RunStage&& run_stage) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::size_t> turn(stages.size());  // which item an in-order stage takes next
+  std::exception_ptr error;
+  const auto pass = [&](std::size_t item) {
+    for (std::size_t stage = 0; stage < stages.size(); ++stage) {
+      if (stages[stage].in_order) {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return error || turn[stage] == item; });
+        if (error) return;
+      }
+      run_stage(stage, item);
+      const std::lock_guard lock(mutex);
+      if (stages[stage].in_order) ++turn[stage];
+      changed.notify_all();
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::size_t slot = 0; slot < std::min(slots, items); ++slot)
+    threads.emplace_back([&, slot] {
+      for (std::size_t item = slot; item < items; item += slots) {
+        try {
+          pass(item);
+        } catch (...) {
+          const std::lock_guard lock(mutex);
+          if (!error) error = std::current_exception();
+          changed.notify_all();
+        }
+        const std::lock_guard lock(mutex);
+        if (error) return;
+      }
+    });
+  threads.clear();
+  if (error) std::rethrow_exception(error);
+}
+#endif
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -24,19 +83,17 @@ PipelineTimes run_pipeline(std::size_t items, std::size_t slots,
   PipelineTimes times;
   times.stages.resize(stages.size());
   std::mutex adding;
-  // Items leave the last stage in order, so item i + slots enters after item i has left.
+  // Items leave the pipeline in order, so item i + slots enters after item i has left.
   const auto run_stage = [&](std::size_t stage, std::size_t item) {
     const Clock::time_point start = Clock::now();
-    tbb::this_task_arena::isolate([&] { stages[stage].run(item, item % slots); });
+    run_whole(stages[stage], item, item % slots);
     const double seconds = since(start);
     const std::lock_guard guard(adding);
     times.stages[stage] += seconds;
   };
   const Clock::time_point start = Clock::now();
 #ifdef DELRAY_PLAIN_THREADS
-  for (std::size_t item = 0; item < items; ++item) {
-    for (std::size_t stage = 0; stage < stages.size(); ++stage) run_stage(stage, item);
-  }
+  run_on_threads(items, slots, stages, run_stage);
 #else
   std::size_t next = 0;
   tbb::filter<void, std::size_t> chain = tbb::make_filter<void, std::size_t>(

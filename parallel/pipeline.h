@@ -24,10 +24,11 @@ struct PipelineTimes {
   double seconds = 0;          // from the first item's start to the last one's end
 };
 
-// Passes the items 0 .. items - 1 through all stages, at most `slots` of them at once. What a stage
-// throws ends the pipeline and is thrown here. In the arena that the caller is in.
+// Passes the items 0 .. items - 1 through all stages, at most `slots` of them at once: with one
+// slot one after the other. What a stage throws ends the pipeline, once the stages under way are
+// done, and is thrown here. In the arena that the caller is in.
 //
-// REQUIRES: slots >= 1; there are stages, the first and the last in order.
+// REQUIRES: slots >= 1; there are stages.
 PipelineTimes run_pipeline(std::size_t items, std::size_t slots,
                            std::span<const PipelineStage> stages);
 

@@ -23,10 +23,14 @@ RegionDrawing Rank::begin(const DrawList& list, std::span<const geometry::Rect> 
       {screen, list, shader, options, in_samples, depths_are_distances(), progress}, scratch);
 }
 
-void Rank::end(RegionDrawing& drawing, FinishTile finish_tile) {
-  const RegionCounts done = drawing.finish(finish_tile);
+void Rank::tell_work(const RegionCounts& done) const {
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
+}
+
+void Rank::end(RegionDrawing& drawing, FinishTile finish_tile) {
+  const RegionCounts done = drawing.finish(finish_tile);
+  if (!in_steps) tell_work(done);
   counts += done;
 }
 
@@ -74,12 +78,11 @@ void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> r
 }
 
 template <class Colour>
-image::BasicImage<Colour> Rank::render_samples(const DrawList& list) {
+image::BasicImage<Colour> Rank::end_samples(RegionDrawing& drawing) {
   const int n = options.supersampling;
   image::BasicImage<Colour> image =
       take_image<Colour>(options.width * samples_per_pixel(), options.height);
-  const geometry::Rect all = frame();
-  render(list, {&all, 1}, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+  end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
     for (const geometry::Rect& rect : rects) {
       if (n == 1) {
         tile.shade(rect, window_of(image));
@@ -118,8 +121,8 @@ template void Rank::end_pixels(RegionDrawing&, image::Image8&);
 template void Rank::end_pixels(RegionDrawing&, image::ImageF&);
 template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::Image8&);
 template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
-template image::Image8 Rank::render_samples(const DrawList&);
-template image::ImageF Rank::render_samples(const DrawList&);
+template image::Image8 Rank::end_samples(RegionDrawing&);
+template image::ImageF Rank::end_samples(RegionDrawing&);
 template Picture Rank::gather(const loadbalance::Partition&, image::Image8&&);
 template Picture Rank::gather(const loadbalance::Partition&, image::ImageF&&);
 template image::Image8 Rank::take_image(int, int);

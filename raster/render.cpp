@@ -1,6 +1,7 @@
 #include "raster/render.h"
 
 #include <algorithm>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 
@@ -141,6 +142,30 @@ void Phases::operator+=(const Phases& other) {
   gather += other.gather;
 }
 
+namespace {
+
+// The scratch memory of frames in steps.
+class ScratchPool {
+ public:
+  std::unique_ptr<Scratch> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Scratch>();
+    std::unique_ptr<Scratch> taken = std::move(free_.back());
+    free_.pop_back();
+    return taken;
+  }
+  void give_back(std::unique_ptr<Scratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Scratch>> free_;  // what was used last is taken first
+};
+
+}  // namespace
+
 struct Renderer::Memory {
   const scenes::Scene& scene;
   std::shared_ptr<const shading::Shader> shader;
@@ -149,6 +174,78 @@ struct Renderer::Memory {
   SceneClusters clusters;
   Scratch scratch = {};
   FrameMemory memory = {};
+  ScratchPool pool = {};
+};
+
+struct Renderer::Frame {
+  // `scratch` may be another frame's later.
+  Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
+        const scenes::Camera& camera, const RenderOptions& wanted, parallel::Progress* progress)
+      : options((check(wanted, communicator.size()), wanted)),
+        screen(make_screen(scenes::make_view(camera, options.width * options.supersampling,
+                                             options.height * options.supersampling))),
+        recording(communicator, events),
+        rank{recording,      memory.scene, memory.first_primitives,
+             *memory.shader, screen,       options,
+             memory.blended, progress,     memory.clusters,
+             scratch,        memory.memory} {}
+
+  const Strategy& strategy() const { return *find_strategy(options.strategy); }
+
+  // Collective.
+  Result finish(comm::Communicator& communicator, Picture&& picture) const {
+    Result result{std::move(picture), {}};
+    const std::vector<comm::Buffer> reports =
+        comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
+    if (communicator.rank() != 0) return result;
+    result.statistics = summarize(reports);
+    if (options.strategy != "sort-last")
+      result.statistics.partition = rank.memory.screen.statistics();
+    if (!rank.depths_are_distances())
+      std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
+                 result.picture);
+    return result;
+  }
+
+  const RenderOptions options;
+  const Screen screen;
+  std::vector<comm::Event> events;
+  comm::Recording recording;
+  Rank rank;
+};
+
+class Renderer::Steps final : public FrameInSteps {
+ public:
+  Steps(Memory& memory, comm::Communicator& communicator, const scenes::Camera& camera,
+        const RenderOptions& options, const parallel::Progress* whole)
+      : memory_(memory),
+        communicator_(communicator),
+        scratch_(memory.pool.take()),
+        progress_(whole),
+        frame_(memory, *scratch_, communicator, camera, options, &progress_),
+        steps_(frame_.strategy().steps(frame_.rank)) {
+    frame_.rank.in_steps = true;
+  }
+
+  void transform() override { steps_->transform(); }
+  void rasterize() override {
+    steps_->rasterize();
+    memory_.pool.give_back(std::move(scratch_));
+  }
+  Result compose() override {
+    comm::Communicator& recording = frame_.recording;
+    recording.mark(comm::Phase::rasterize, 0);
+    frame_.rank.tell_work(frame_.rank.counts);
+    return frame_.finish(communicator_, steps_->compose());
+  }
+
+ private:
+  Memory& memory_;
+  comm::Communicator& communicator_;
+  std::unique_ptr<Scratch> scratch_;  // until it is rasterized
+  parallel::Progress progress_;
+  Frame frame_;
+  std::unique_ptr<FrameSteps> steps_;
 };
 
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
@@ -166,28 +263,20 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
                         const RenderOptions& options, parallel::Progress* progress) {
-  check(options, communicator.size());
-  const Screen screen = make_screen(scenes::make_view(camera, options.width * options.supersampling,
-                                                      options.height * options.supersampling));
-  std::vector<comm::Event> events;
-  comm::Recording recording(communicator, events);
-  Rank rank{recording,        memory_->scene, memory_->first_primitives,
-            *memory_->shader, screen,         options,
-            memory_->blended, progress,       memory_->clusters,
-            memory_->scratch, memory_->memory};
-  Result result;
-  result.picture = find_strategy(options.strategy)->render(rank);
+  Frame frame(*memory_, memory_->scratch, communicator, camera, options, progress);
+  return frame.finish(communicator, frame.strategy().render(frame.rank));
+}
 
-  const std::vector<comm::Buffer> reports =
-      comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
-  if (communicator.rank() != 0) return result;
-  result.statistics = summarize(reports);
-  if (options.strategy != "sort-last")
-    result.statistics.partition = memory_->memory.screen.statistics();
-  if (!rank.depths_are_distances())
-    std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
-               result.picture);
-  return result;
+bool Renderer::has_steps(const RenderOptions& options, int ranks) {
+  check(options, ranks);
+  return find_strategy(options.strategy)->steps != nullptr;
+}
+
+std::unique_ptr<FrameInSteps> Renderer::begin(comm::Communicator& communicator,
+                                              const scenes::Camera& camera,
+                                              const RenderOptions& options,
+                                              const parallel::Progress* progress) {
+  return std::make_unique<Steps>(*memory_, communicator, camera, options, progress);
 }
 
 Result render(comm::Communicator& communicator, const scenes::Scene& scene,

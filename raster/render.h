@@ -139,6 +139,20 @@ struct Result {
   Statistics statistics;  // on rank 0; empty elsewhere
 };
 
+// One rank's part of a frame in the making, in steps that follow each other. Steps may be taken by
+// different threads, and frames of one Renderer may be in different steps at the same time: see
+// Renderer::begin.
+class FrameInSteps {
+ public:
+  virtual ~FrameInSteps() = default;
+  // Culls, transforms and sets up; draws small triangles as they come.
+  virtual void transform() = 0;
+  // Draws what is left, and shades.
+  virtual void rasterize() = 0;
+  // Collective: composites over ranks. As Renderer::render.
+  virtual Result compose() = 0;
+};
+
 // Renders frames of one scene, keeping the memory that a frame needs for the next one. One per
 // rank.
 class Renderer {
@@ -163,6 +177,21 @@ class Renderer {
   Result render(comm::Communicator& communicator, const scenes::Camera& camera,
                 const RenderOptions& options, parallel::Progress* progress = nullptr);
 
+  // Whether frames of this strategy may be in different steps at the same time. Others have ranks
+  // exchange messages before they draw, or learn from one frame for the next. Throws for options
+  // that render would not take from so many ranks.
+  static bool has_steps(const RenderOptions& options, int ranks);
+
+  // What render would give, in steps, none of which is taken yet. The frame refers to this, to the
+  // communicator and to the progress, which it only looks at to stop, and has memory of its own
+  // until it is rasterized, which later frames use again. It and its steps throw as render does.
+  //
+  // REQUIRES: has_steps. No two frames are in `transform` at the same time, nor two in
+  // `compose`, which all ranks take in the same order; nobody else uses the communicator meanwhile.
+  std::unique_ptr<FrameInSteps> begin(comm::Communicator& communicator,
+                                      const scenes::Camera& camera, const RenderOptions& options,
+                                      const parallel::Progress* progress = nullptr);
+
   // Gives the memory of a picture that is no longer needed to the next frame: fresh memory takes
   // longer to write to than a simple scene takes to draw.
   //
@@ -172,6 +201,8 @@ class Renderer {
 
  private:
   struct Memory;
+  struct Frame;
+  class Steps;
   std::unique_ptr<Memory> memory_;
 };
 

@@ -99,11 +99,6 @@ std::vector<loadbalance::TaskRange> blocks_of_regions(Rank& rank,
   return mine;
 }
 
-void tell_work(comm::Communicator& communicator, const RegionCounts& counts) {
-  communicator.work(comm::Work::primitives, counts.triangles.in);
-  communicator.work(comm::Work::fragments, counts.fragments);
-}
-
 // Who has rendered which block: all of it on rank 0, a rank's own elsewhere.
 loadbalance::Partition rendered(Rank& rank, const loadbalance::Blocks& blocks,
                                 std::span<const std::unique_ptr<Hand>> hands) {
@@ -157,7 +152,7 @@ Picture render(Rank& rank) {
       });
     });
     hand.counts += done;
-    if (thread == 0) tell_work(communicator, done);
+    if (thread == 0) rank.tell_work(done);
     hand.done.push_back(block);
     if (rank.progress != nullptr) rank.progress->advance();
   };
@@ -165,7 +160,7 @@ Picture render(Rank& rank) {
                       ->run(communicator, blocks.grid(), how, render_block);
   for (std::size_t i = 0; i < hands.size(); ++i) {
     rank.counts += hands[i]->counts;
-    if (i > 0) tell_work(communicator, hands[i]->counts);
+    if (i > 0) rank.tell_work(hands[i]->counts);
   }
 
   communicator.mark(comm::Phase::gather, 0);

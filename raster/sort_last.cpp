@@ -15,17 +15,11 @@
 namespace delray::raster {
 namespace {
 
-composite::Part compose(Rank& rank, std::unique_ptr<composite::Layer> layer) {
-  return timed(rank.communicator, rank.counts.phases.compose, [&] {
-    return composite::compose(rank.communicator, std::move(layer), rank.options.scheme,
-                              {.samples_per_pixel = rank.samples_per_pixel()});
-  });
-}
-
 // All surfaces seen at the samples, those of a pixel together. Of each payload_of(tile, number, x,
 // y) is kept unless it is nothing.
 template <class Payload, class F>
-composite::DeepImage<Payload> render_deep(Rank& rank, const DrawList& list, F&& payload_of) {
+composite::DeepImage<Payload> end_deep(Rank& rank, const DrawList& list, RegionDrawing& drawing,
+                                       F&& payload_of) {
   using composite::is_opaque;
   const int n = rank.options.supersampling;
   std::vector<composite::DeepTile<Payload>> tiles(static_cast<std::size_t>(rank.screen.tiles()));
@@ -36,8 +30,7 @@ composite::DeepImage<Payload> render_deep(Rank& rank, const DrawList& list, F&& 
     return pixel * static_cast<std::uint64_t>(n * n) +
            static_cast<std::uint64_t>(y % n * n + x % n);
   };
-  const geometry::Rect frame = rank.frame();
-  rank.render(list, {&frame, 1}, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+  rank.end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
     const geometry::Rect& rect = rects.front();
     composite::DeepTile<Payload>& deep =
         tiles[rect.y0 / kTileSize * rank.screen.tiles_x + rect.x0 / kTileSize];
@@ -92,69 +85,118 @@ composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
   return result;
 }
 
-template <class Colour>
-composite::Part compose_colours(Rank& rank, const DrawList& list) {
-  const composite::Codec* const codec = composite::find_codec(rank.options.codec);
-  return compose(rank, codec->make(rank.render_samples<Colour>(list)));
-}
-
 // Transparent surfaces have to be blended in one order over all ranks.
-template <class Colour>
-composite::Part compose_surfaces(Rank& rank, const DrawList& list) {
+std::unique_ptr<composite::Layer> draw_surfaces(Rank& rank, const DrawList& list,
+                                                RegionDrawing& drawing) {
   const auto colour_of = [](TileView& tile, std::uint32_t number, int x, int y) {
     const image::RgbaF colour = tile.colour(number, x, y);
     return colour.a > 0 ? std::optional(colour) : std::nullopt;
   };
-  return flatten<Colour, image::RgbaF>(
-      rank, compose(rank, composite::make_deep(render_deep<image::RgbaF>(rank, list, colour_of))),
-      [](const image::RgbaF& colour) { return colour; });
+  return composite::make_deep(end_deep<image::RgbaF>(rank, list, drawing, colour_of));
 }
 
 template <class Colour>
-composite::Part compose_then_shade(Rank& rank, const DrawList& list) {
+composite::Part blend_surfaces(Rank& rank, composite::Part&& part) {
+  return flatten<Colour, image::RgbaF>(rank, std::move(part),
+                                       [](const image::RgbaF& colour) { return colour; });
+}
+
+std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
+                                              RegionDrawing& drawing) {
   const auto point_of = [](TileView& tile, std::uint32_t number, int x, int y) {
     return std::optional(point_seen(tile.frame(), tile.seen(), number, x, y));
   };
-  composite::Part part =
-      compose(rank, composite::make_deep(render_deep<SeenPoint>(rank, list, point_of)));
+  return composite::make_deep(end_deep<SeenPoint>(rank, list, drawing, point_of));
+}
+
+template <class Colour>
+composite::Part shade_points(Rank& rank, composite::Part&& part) {
   const DrawList nothing;
   const FrameShading frame =
       make_frame_shading(rank.screen, rank.shader, nothing, rank.options.lighting, false);
   std::atomic<std::uint64_t> shaded{0};
-  part = flatten<Colour, SeenPoint>(rank, std::move(part), [&](const SeenPoint& point) {
-    shaded.fetch_add(1, std::memory_order_relaxed);
-    return shade(frame, point);
-  });
+  composite::Part result =
+      flatten<Colour, SeenPoint>(rank, std::move(part), [&](const SeenPoint& point) {
+        shaded.fetch_add(1, std::memory_order_relaxed);
+        return shade(frame, point);
+      });
   rank.counts.shaded += shaded;
-  return part;
+  return result;
 }
 
+// Triangles are drawn as soon as they are set up, so that none are kept and hidden clusters are
+// skipped: that belongs to the first step, large and blended triangles and shading to the second.
 template <class Colour>
-Picture render(Rank& rank) {
-  const auto [begin, end] = rank.own_primitives();
-  const DrawList list =
-      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
-  if (rank.ranks() == 1) {
-    auto image = rank.take_image<Colour>(rank.options.width, rank.options.height);
-    const geometry::Rect frame = rank.frame();
-    rank.render_pixels(list, {&frame, 1}, image);
-    return image;
+class Steps final : public FrameSteps {
+ public:
+  explicit Steps(Rank& rank) : rank_(rank) {}
+
+  void transform() override {
+    const auto [begin, end] = rank_.own_primitives();
+    list_ =
+        make_draw_list(pieces_of(rank_.scene, rank_.first_primitives, begin, end), &rank_.clusters);
+    const geometry::Rect frame = rank_.frame();
+    drawing_.reset(new RegionDrawing(rank_.begin(list_, {&frame, 1})));
+    drawing_->draw_all();
   }
-  const auto compose = rank.options.shade == Shade::composited ? compose_then_shade<Colour>
-                       : rank.transparent                      ? compose_surfaces<Colour>
-                                                               : compose_colours<Colour>;
-  composite::Part part = resolve<Colour>(compose(rank, list), rank.options.supersampling,
-                                         rank.options.width, rank.options.height);
-  part = timed(rank.communicator, rank.counts.phases.gather,
-               [&] { return composite::gather(rank.communicator, std::move(part), 0); });
-  if (rank.number() != 0) return image::BasicImage<Colour>();
-  return composite::take_image<Colour>(std::move(part));
-}
+
+  void rasterize() override {
+    if (rank_.ranks() == 1) {
+      image_ = rank_.take_image<Colour>(rank_.options.width, rank_.options.height);
+      rank_.end_pixels(*drawing_, image_);
+    } else if (shades_last()) {
+      layer_ = draw_points(rank_, list_, *drawing_);
+    } else if (rank_.transparent) {
+      layer_ = draw_surfaces(rank_, list_, *drawing_);
+    } else {
+      layer_ =
+          composite::find_codec(rank_.options.codec)->make(rank_.end_samples<Colour>(*drawing_));
+    }
+    drawing_.reset();
+    list_ = {};
+  }
+
+  Picture compose() override {
+    if (rank_.ranks() == 1) return std::move(image_);
+    composite::Part part = timed(rank_.communicator, rank_.counts.phases.compose, [&] {
+      return composite::compose(rank_.communicator, std::move(layer_), rank_.options.scheme,
+                                {.samples_per_pixel = rank_.samples_per_pixel()});
+    });
+    if (shades_last())
+      part = shade_points<Colour>(rank_, std::move(part));
+    else if (rank_.transparent)
+      part = blend_surfaces<Colour>(rank_, std::move(part));
+    part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
+                           rank_.options.height);
+    part = timed(rank_.communicator, rank_.counts.phases.gather,
+                 [&] { return composite::gather(rank_.communicator, std::move(part), 0); });
+    if (rank_.number() != 0) return image::BasicImage<Colour>();
+    return composite::take_image<Colour>(std::move(part));
+  }
+
+ private:
+  bool shades_last() const { return rank_.options.shade == Shade::composited; }
+
+  Rank& rank_;
+  DrawList list_;
+  std::unique_ptr<RegionDrawing> drawing_;
+  image::BasicImage<Colour> image_;          // a single rank's
+  std::unique_ptr<composite::Layer> layer_;  // of one among several
+};
 
 }  // namespace
 
+std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank) {
+  if (rank.options.float_pixels) return std::make_unique<Steps<image::RgbaF>>(rank);
+  return std::make_unique<Steps<image::Rgba8>>(rank);
+}
+
 Picture sort_last(Rank& rank) {
-  return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
+  rank.communicator.mark(comm::Phase::rasterize, 0);
+  const std::unique_ptr<FrameSteps> steps = sort_last_steps(rank);
+  steps->transform();
+  steps->rasterize();
+  return steps->compose();
 }
 
 }  // namespace delray::raster

@@ -9,7 +9,8 @@ namespace delray::raster {
 namespace {
 
 constexpr std::array kStrategies = {
-    Strategy{"sort-last", "each rank draws its primitives; the images are composited", sort_last},
+    Strategy{"sort-last", "each rank draws its primitives; the images are composited", sort_last,
+             sort_last_steps},
     Strategy{"sort-first", "primitives go to the ranks whose regions of the screen they touch",
              sort_first},
     Strategy{"sort-middle", "transformed triangles go to the ranks whose regions they touch",

@@ -1,6 +1,7 @@
 // How a scene is shared out among ranks (Molnar et al. 1994).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -10,11 +11,25 @@ namespace delray::raster {
 
 struct Rank;
 
+// What one rank does for a frame, in steps that follow each other. Frames may be in different steps
+// at the same time; only `compose` uses the communicator.
+class FrameSteps {
+ public:
+  virtual ~FrameSteps() = default;
+  virtual void transform() = 0;
+  virtual void rasterize() = 0;
+  // Collective. As Strategy::render.
+  virtual Picture compose() = 0;
+};
+
 struct Strategy {
   const char* name;
   const char* description;
   // Collective. The picture on rank 0, with depths as -near / distance; of size 0 elsewhere.
   Picture (*render)(Rank& rank);
+  // The same in steps; null where ranks exchange messages before they draw, or where what one frame
+  // took decides how the next is shared out.
+  std::unique_ptr<FrameSteps> (*steps)(Rank& rank) = nullptr;
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -9,6 +9,7 @@
 #include "loadbalance/schedule.h"
 #include "raster/internal/regions.h"
 #include "raster/render.h"
+#include "raster/strategies.h"
 
 namespace delray::raster {
 
@@ -29,6 +30,8 @@ struct Rank {
   RegionCounts counts = {};
   std::uint64_t triangles_travelled = 0, fragments_travelled = 0;
   loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
+  // In steps, of which only the last may use the communicator: work is told then.
+  bool in_steps = false;
 
   int number() const { return communicator.rank(); }
   int ranks() const { return communicator.size(); }
@@ -41,6 +44,8 @@ struct Rank {
   bool depths_are_distances() const { return ranks() == 1; }
   geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
   int samples_per_pixel() const { return options.supersampling * options.supersampling; }
+
+  void tell_work(const RegionCounts& done) const;
 
   // A drawing of `list`, or of what it is given later, into regions (in pixels).
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
@@ -57,9 +62,9 @@ struct Rank {
   template <class Colour>
   void render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
                      image::BasicImage<Colour>& image);
-  // The same for the whole frame, with the samples of a pixel together: see internal/samples.h.
+  // Ends a drawing of the whole frame with the samples of a pixel together: see internal/samples.h.
   template <class Colour>
-  image::BasicImage<Colour> render_samples(const DrawList& list);
+  image::BasicImage<Colour> end_samples(RegionDrawing& drawing);
   // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Collective.
   template <class Colour>
   Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);
@@ -87,6 +92,7 @@ Picture sort_first(Rank& rank);
 Picture sort_first_scheduled(Rank& rank);
 Picture sort_middle(Rank& rank);
 Picture sort_last(Rank& rank);
+std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank);
 Picture hybrid(Rank& rank);
 
 }  // namespace delray::raster

@@ -85,8 +85,8 @@ TEST(Program, RefusesOptionsWithoutEffect) {
         "gen:cornell --strategy sort-last --partition mahd",
         "gen:cornell --strategy sort-first --compose binary-swap", "gen:cornell --terrain-rgb",
         "gen:cornell --duplicates min", "gen:cornell --exaggeration 2", "p.xyz --cell-size 3",
-        "gen:cornell --color-by rgb", "p.xyz --color-by intensity",
-        "gen:cornell --view top --camera 0,0,5,0,0,0,0,1,0,40"}) {
+        "gen:cornell --frames-at-once 2", "gen:cornell --color-by rgb",
+        "p.xyz --color-by intensity", "gen:cornell --view top --camera 0,0,5,0,0,0,0,1,0,40"}) {
     const Ran ran = run("delray render " + arguments + " -o a.png --size 32x32", folder.path());
     EXPECT_EQ(ran.exit_code, 2) << arguments << "\n" << ran.err;
     EXPECT_EQ(folder.files().size(), 1U) << arguments;

@@ -1,9 +1,12 @@
 // delray render as a user runs it: one picture however the work is shared out.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/run_program.h"
 
@@ -59,19 +62,64 @@ TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
   for (const std::string options : {"--camera-path path.txt", "--turntable 4"}) {
     const json stats = statistics(base + options, folder);
     EXPECT_EQ(stats["animation"]["frames"], 4) << options;
-    EXPECT_EQ(stats["animation"]["stages"].size(), 3U);
+    EXPECT_EQ(stats["animation"]["stages"].size(), 4U);
     EXPECT_GT(stats["animation"]["predicted_speed_up"], 0);
     std::set<std::string> pictures;
     for (const char* name : {"a-0000.png", "a-0001.png", "a-0002.png", "a-0003.png"}) {
       EXPECT_TRUE(pictures.insert(folder.read(name)).second) << name;
     }
     const std::string hash = stats["image"]["hash"];
-    EXPECT_EQ(statistics(base + options + " --ranks 3", folder)["image"]["hash"], hash);
+    for (const std::string how : {"--ranks 3", "--ranks 2 --threads 2", "--frames-at-once 1",
+                                  "--threads 3 --frames-at-once 6"}) {
+      EXPECT_EQ(statistics(base + options + " " + how, folder)["image"]["hash"], hash) << how;
+    }
     EXPECT_EQ(statistics(kMpirun + base + options, folder)["image"]["hash"], hash);
   }
   // The last key is a single picture.
   EXPECT_EQ(statistics(base + "--camera-path path.txt", folder)["image"]["hash"],
             statistics(base + "--camera 1,1,3.5,0,1,0,0,1,0,45", folder)["image"]["hash"]);
+}
+
+TEST(RenderCommand, AnimationsTellTheirStages) {
+  const Folder folder;
+  const std::string base = "delray render gen:cornell -o a.png --size 48x32 --turntable 4 ";
+  using Names = std::vector<std::string>;
+  const Names in_steps = {"transform", "rasterize", "compose", "encode"};
+  const Names whole = {"render", "encode"};
+  for (const auto& [options, names] : {std::pair<std::string, Names>{"--ranks 2", in_steps},
+                                       {"--strategy sort-first --ranks 2", whole},
+                                       {"--engine raytrace", whole}}) {
+    const json animation = statistics(base + options, folder)["animation"];
+    Names found;
+    double alone = 0;
+    for (const json& stage : animation["stages"]) {
+      found.push_back(stage["name"]);
+      alone += stage["seconds_alone"].get<double>();
+      EXPECT_GE(stage["seconds"], stage["seconds_alone"]);
+    }
+    EXPECT_EQ(found, names) << options;
+    EXPECT_EQ(animation["overlapped"]["frames"], 2);
+    EXPECT_NEAR(animation["sequential_seconds"], 2 * alone, 1e-9);
+    EXPECT_GE(animation["predicted_speed_up"], 1.0);
+  }
+  // Nothing overlaps in a single frame.
+  const json one =
+      statistics("delray render gen:cornell -o a.png --size 48x32 --turntable 1", folder);
+  EXPECT_EQ(one["animation"]["speed_up"], 1);
+}
+
+TEST(RenderCommand, AnimationsEndWhenAFrameCannotBeWritten) {
+  const Folder folder;
+  // A folder where the third frame should go.
+  std::filesystem::create_directory(folder / "a-0002.png");
+  for (const std::string how :
+       {"", "--threads 3", "--ranks 3", "--strategy sort-first --ranks 2", "--engine raytrace"}) {
+    const Ran ran =
+        run("delray render gen:cornell -o a.png --size 48x32 --turntable 40 " + how, folder.path());
+    EXPECT_EQ(ran.exit_code, 1) << how << "\n" << ran.err;
+    EXPECT_NE(ran.err.find("a-0002.png"), std::string::npos) << how << "\n" << ran.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "a-0039.png")) << how;
+  }
 }
 
 TEST(RenderCommand, StatisticsHaveEveryKey) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "parallel/arena.h"
@@ -71,6 +73,47 @@ TEST_P(Pipeline, EndsWithWhatAStageThrows) {
       {"leave", true, [&](std::size_t, std::size_t) { ++after; }}};
   in_arena([&] { EXPECT_THROW(run_pipeline(100, 4, stages), std::runtime_error); });
   EXPECT_LE(after, 5);
+}
+
+// Gives up after a while, for where a second thread does not come.
+void wait_for(const std::atomic<bool>& flag) {
+  for (int i = 0; i < 200 && !flag; ++i)
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+}
+
+TEST_P(Pipeline, LoopsOfOtherStagesAreWholeThoughOneThrows) {
+  std::atomic<bool> looping = false, thrown = false;
+  const std::vector<PipelineStage> stages = {
+      {"loop", true,
+       [&](std::size_t item, std::size_t) {
+         std::atomic<int> steps = 0;
+         if (item > 0) {
+           looping = true;
+           wait_for(thrown);
+           std::this_thread::sleep_for(std::chrono::milliseconds(2));
+         }
+         parallel_for(0, 1000, 1, [&](std::size_t) { ++steps; });
+         EXPECT_EQ(steps, 1000);
+       }},
+      {"throw", false, [&](std::size_t, std::size_t) {
+         if (GetParam() > 1) wait_for(looping);
+         thrown = true;
+         throw std::runtime_error("at once");
+       }}};
+  in_arena([&] { EXPECT_THROW(run_pipeline(100, 4, stages), std::runtime_error); });
+}
+
+TEST(PipelineSlots, OneSlotPassesOneItemAfterTheOther) {
+  std::vector<int> order;
+  const auto stage = [&](int number) {
+    return PipelineStage{"", false, [&order, number](std::size_t item, std::size_t slot) {
+                           EXPECT_EQ(slot, 0U);
+                           order.push_back(static_cast<int>(item) * 2 + number);
+                         }};
+  };
+  const std::vector<PipelineStage> stages = {stage(0), stage(1)};
+  Arena(3).execute([&] { run_pipeline(10, 1, stages); });
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(order.at(static_cast<std::size_t>(i)), i);
 }
 
 TEST_P(Pipeline, NeedsNoItems) {
