@@ -184,16 +184,21 @@ void z_merge_loop(std::uint32_t* HWY_RESTRICT colour, float* HWY_RESTRICT depth,
   }
 }
 
-// The inverse of compress: of pixels that are not covered, 0.
+// The inverse of compress: pixels that are not covered get `nothing`.
 void expand_loop(const std::uint32_t* values, std::size_t readable, const std::uint64_t* mask,
-                 std::size_t elements, std::uint32_t* HWY_RESTRICT to) {
+                 std::size_t elements, std::uint32_t nothing, std::uint32_t* HWY_RESTRICT to) {
   const Codes d;
   const hn::RebindToSigned<Depths> di;
   const hn::Rebind<std::uint8_t, Depths> d8;
   const std::size_t lanes = hn::Lanes(d);
   const std::uint64_t lane_bits = (std::uint64_t{1} << lanes) - 1;
+  const auto empty = hn::Set(d, nothing);
   std::size_t next = 0;
   for (std::size_t i = 0; i < elements; ++i, to += 64) {
+    if (mask[i] == 0) {
+      std::fill_n(to, 64, nothing);
+      continue;
+    }
     if (mask[i] == kAll) {
       std::memcpy(to, values + next, 64 * sizeof *to);
       next += 64;
@@ -209,7 +214,7 @@ void expand_loop(const std::uint32_t* values, std::size_t readable, const std::u
             code, hn::IndicesFromVec(d, hn::PromoteTo(di, hn::LoadU(d8, kExpand[some].data()))));
       }
       std::uint8_t loaded[8] = {some};
-      hn::StoreU(hn::IfThenElseZero(hn::LoadMaskBits(d, loaded), code), d, to + j);
+      hn::StoreU(hn::IfThenElse(hn::LoadMaskBits(d, loaded), code, empty), d, to + j);
       next += count;
     }
   }
@@ -264,6 +269,44 @@ void compress(const std::uint32_t* values, const GroupMask& mask, std::span<std:
   HWY_DYNAMIC_DISPATCH(compress_loop)(values, mask.data(), to.data(), to.data() + to.size());
 }
 
+void expand(const std::uint32_t* values, std::size_t readable, const GroupMask& mask,
+            std::uint32_t nothing, std::span<std::uint32_t> to) {
+  const std::size_t elements = to.size() / 64, rest = to.size() % 64;
+  HWY_DYNAMIC_DISPATCH(expand_loop)
+  (values, readable, mask.data(), elements, nothing, to.data());
+  if (rest == 0) return;
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < elements; ++i) {
+    before += static_cast<std::size_t>(std::popcount(mask[i]));
+  }
+  std::array<std::uint32_t, 64> last;
+  HWY_DYNAMIC_DISPATCH(expand_loop)
+  (values + before, readable - before, mask.data() + elements, 1, nothing, last.data());
+  std::copy_n(last.begin(), rest, to.begin() + static_cast<std::ptrdiff_t>(elements * 64));
+}
+
+void expand(const image::Rgba8* values, std::size_t readable, const GroupMask& mask,
+            std::span<image::Rgba8> to) {
+  expand(reinterpret_cast<const std::uint32_t*>(values), readable, mask, 0,
+         {reinterpret_cast<std::uint32_t*>(to.data()), to.size()});
+}
+
+void expand(const float* values, std::size_t readable, const GroupMask& mask, std::span<float> to) {
+  expand(reinterpret_cast<const std::uint32_t*>(values), readable, mask,
+         std::bit_cast<std::uint32_t>(image::kEmptyDepth),
+         {reinterpret_cast<std::uint32_t*>(to.data()), to.size()});
+}
+
+void expand(const image::RgbaF* values, std::size_t /*readable*/, const GroupMask& mask,
+            std::span<image::RgbaF> to) {
+  std::fill(to.begin(), to.end(), image::RgbaF{});
+  for (std::size_t i = 0; i * 64 < to.size(); ++i) {
+    for (std::uint64_t bits = mask[i]; bits != 0; bits &= bits - 1) {
+      to[i * 64 + static_cast<std::size_t>(std::countr_zero(bits))] = *values++;
+    }
+  }
+}
+
 void compress(const image::Rgba8* values, const GroupMask& mask, std::span<image::Rgba8> to) {
   compress(reinterpret_cast<const std::uint32_t*>(values), mask,
            {reinterpret_cast<std::uint32_t*>(to.data()), to.size()});
@@ -315,9 +358,7 @@ void blend(image::Rgba8* colour, std::size_t size, const GroupMask& mask,
            const ActivePixels<image::Rgba8>& other, bool front) {
   // Pixels that are not covered have no effect as {}.
   std::array<image::Rgba8, kGroupPixels> expanded;
-  HWY_DYNAMIC_DISPATCH(expand_loop)
-  (reinterpret_cast<const std::uint32_t*>(other.colour), other.readable, mask.data(),
-   (size + 63) / 64, reinterpret_cast<std::uint32_t*>(expanded.data()));
+  expand(other.colour, other.readable, mask, std::span(expanded.data(), size));
   const std::span<const image::Rgba8> layer(expanded.data(), size);
   front ? image::blend_front({colour, size}, layer) : image::blend_back({colour, size}, layer);
 }

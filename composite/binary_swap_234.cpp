@@ -23,11 +23,13 @@ Part binary_swap_234(comm::Communicator& communicator, std::unique_ptr<Layer> la
   communicator.mark(comm::Phase::compose, round++);
   const auto half = [&](int i) { return half_of(all, i, options.samples_per_pixel); };
   for (const int owner : {0, 1}) {
-    if (owner != me) send(communicator, *layer, half(owner), first + owner);
+    if (owner != me)
+      send(communicator, *layer, half(owner), first + owner, options.samples_per_pixel);
   }
   if (me > 1) return {{}, std::move(layer)};
-  for_each_outwards(me, count,
-                    [&](int member) { merge(communicator, *layer, half(me), first + member); });
+  for_each_outwards(me, count, [&](int member) {
+    merge(communicator, *layer, half(me), first + member, options.samples_per_pixel);
+  });
 
   std::vector<int> ranks;
   for (int i = 0; i < groups; ++i) ranks.push_back(first_of(i) + me);

@@ -16,10 +16,10 @@ Part binary_swap_folded(comm::Communicator& communicator, std::unique_ptr<Layer>
   if (folded > 0) communicator.mark(comm::Phase::compose, round++);
   if (rank < 2 * folded) {
     if (rank % 2 == 1) {
-      send(communicator, *layer, all, rank - 1);
+      send(communicator, *layer, all, rank - 1, options.samples_per_pixel);
       return {{}, std::move(layer)};
     }
-    merge(communicator, *layer, all, rank + 1);
+    merge(communicator, *layer, all, rank + 1, options.samples_per_pixel);
   }
   std::vector<int> ranks;
   for (int i = 0; i < kept; ++i) ranks.push_back(i < folded ? 2 * i : i + folded);

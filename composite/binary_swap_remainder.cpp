@@ -18,15 +18,17 @@ Part binary_swap_remainder(comm::Communicator& communicator, std::unique_ptr<Lay
     const auto rank_of = [&](int member) { return ranks[static_cast<std::size_t>(member)]; };
     if (size % 2 == 1 && me == size - 1) {
       for (const int half : {0, 1}) {
-        send(communicator, *layer, half_of(range, half, samples), rank_of(size - 3 + half));
+        send(communicator, *layer, half_of(range, half, samples), rank_of(size - 3 + half),
+             samples);
       }
       return {{}, std::move(layer)};
     }
     const int kept = me % 2;
-    send(communicator, *layer, half_of(range, 1 - kept, samples), rank_of(me ^ 1));
+    send(communicator, *layer, half_of(range, 1 - kept, samples), rank_of(me ^ 1), samples);
     range = half_of(range, kept, samples);
-    merge(communicator, *layer, range, rank_of(me ^ 1));
-    if (size % 2 == 1 && me >= size - 3) merge(communicator, *layer, range, rank_of(size - 1));
+    merge(communicator, *layer, range, rank_of(me ^ 1), samples);
+    if (size % 2 == 1 && me >= size - 3)
+      merge(communicator, *layer, range, rank_of(size - 1), samples);
     for (int i = 0; i < size / 2; ++i) {
       ranks[static_cast<std::size_t>(i)] = rank_of(2 * i + kept);
     }

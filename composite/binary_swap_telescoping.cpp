@@ -44,12 +44,13 @@ Part binary_swap_telescoping(comm::Communicator& communicator, std::unique_ptr<L
   // lowest bits of a member's number decide first.
   if (after.count > 0) {
     communicator.mark(comm::Phase::compose, own.rounds());
-    merge(communicator, *layer, mine, after.first + members.rank() % after.count);
+    merge(communicator, *layer, mine, after.first + members.rank() % after.count, samples);
   }
   if (before.count == 0) return part_of(mine, std::move(layer));
   communicator.mark(comm::Phase::compose, before.rounds());
   for (int i = members.rank(); i < before.count; i += own.count) {
-    send(communicator, *layer, swapped_piece(all, i, before.count, samples), before.first + i);
+    send(communicator, *layer, swapped_piece(all, i, before.count, samples), before.first + i,
+         samples);
   }
   return {{}, std::move(layer)};
 }

@@ -5,15 +5,19 @@
 
 namespace delray::composite::internal {
 
-void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to) {
-  if (range.size() > 0) communicator.send(to, kTagCompose, layer.cut(range));
+void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to,
+          int samples_per_pixel) {
+  for_each_message(range, samples_per_pixel,
+                   [&](PixelRange piece) { communicator.send(to, kTagCompose, layer.cut(piece)); });
 }
 
-void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from) {
-  if (range.size() == 0) return;
-  const comm::Buffer pixels = communicator.receive(from, kTagCompose);
+void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from,
+           int samples_per_pixel) {
   const Side side = from < communicator.rank() ? Side::lower : Side::higher;
-  communicator.work(comm::Work::pixels_composited, layer.merge(range, pixels, side));
+  for_each_message(range, samples_per_pixel, [&](PixelRange piece) {
+    const comm::Buffer pixels = communicator.receive(from, kTagCompose);
+    communicator.work(comm::Work::pixels_composited, layer.merge(piece, pixels, side));
+  });
 }
 
 PixelRange exchange(comm::Communicator& communicator, Layer& layer, PixelRange range,
@@ -21,10 +25,10 @@ PixelRange exchange(comm::Communicator& communicator, Layer& layer, PixelRange r
   const int me = group.member_of(communicator.rank());
   const auto piece = [&](int i) { return piece_of(range, i, group.count, samples_per_pixel); };
   for_each_outwards(me, group.count, [&](int member) {
-    send(communicator, layer, piece(member), group.rank_of(member));
+    send(communicator, layer, piece(member), group.rank_of(member), samples_per_pixel);
   });
   for_each_outwards(me, group.count, [&](int member) {
-    merge(communicator, layer, piece(me), group.rank_of(member));
+    merge(communicator, layer, piece(me), group.rank_of(member), samples_per_pixel);
   });
   return piece(me);
 }
@@ -36,9 +40,10 @@ PixelRange swap(comm::Communicator& members, Layer& layer, PixelRange range, int
   for (int distance = 1; distance < members.size(); distance *= 2) {
     members.mark(comm::Phase::compose, round++);
     const int kept = me & distance ? 1 : 0;
-    send(members, layer, half_of(range, 1 - kept, samples_per_pixel), me ^ distance);
+    send(members, layer, half_of(range, 1 - kept, samples_per_pixel), me ^ distance,
+         samples_per_pixel);
     range = half_of(range, kept, samples_per_pixel);
-    merge(members, layer, range, me ^ distance);
+    merge(members, layer, range, me ^ distance, samples_per_pixel);
   }
   return range;
 }

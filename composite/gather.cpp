@@ -1,4 +1,4 @@
-#include "composite/internal/range.h"
+#include "composite/internal/exchange.h"
 #include "composite/scheme.h"
 
 namespace delray::composite {
@@ -10,7 +10,9 @@ Part gather(comm::Communicator& communicator, Part&& part, int root) {
     communicator.send(root, kTagGatherRanges,
                       comm::Buffer::of(std::span<const PixelRange>(part.ranges)));
     for (const PixelRange& range : part.ranges) {
-      communicator.send(root, kTagGatherPixels, part.layer->cut(range));
+      for_each_message(range, 1, [&](PixelRange piece) {
+        communicator.send(root, kTagGatherPixels, part.layer->cut(piece));
+      });
     }
     return {{}, std::move(part.layer)};
   }
@@ -18,7 +20,9 @@ Part gather(comm::Communicator& communicator, Part&& part, int root) {
     if (from == root) continue;
     const comm::Buffer ranges = communicator.receive(from, kTagGatherRanges);
     for (const PixelRange& range : ranges.as<PixelRange>()) {
-      part.layer->replace(range, communicator.receive(from, kTagGatherPixels));
+      for_each_message(range, 1, [&](PixelRange piece) {
+        part.layer->replace(piece, communicator.receive(from, kTagGatherPixels));
+      });
     }
   }
   const PixelRange all{0, part.layer->pixels()};

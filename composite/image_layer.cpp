@@ -83,8 +83,12 @@ void ImageLayer<Colour>::apply_to_covered(Action action, std::size_t first, std:
                                           const GroupMask& mask, const Pixels& covered) {
   Colour* const colour = image_.colour.data() + first;
   float* const depth = image_.depth.data() + first;
-  if (action == Action::replace) apply_to_none(action, first, size);
-  if (action == Action::prune) {
+  if (action == Action::replace) {
+    internal::expand(covered.colour, covered.readable, mask, std::span(colour, size));
+    if (has_depth()) {
+      internal::expand(covered.depth, covered.readable, mask, std::span(depth, size));
+    }
+  } else if (action == Action::prune) {
     for_each_bit(mask, [&](std::size_t i, std::size_t k) {
       if (has_depth()) {
         prune_hidden(colour + i, depth + i, covered.depth[k]);

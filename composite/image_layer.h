@@ -33,6 +33,9 @@ class ImageLayer : public Layer {
   image::BasicImage<Colour>& image() { return image_; }
   const image::BasicImage<Colour>& image() const { return image_; }
 
+  // From now on only colours travel, as with Operator::over.
+  void forget_depth() { operator_ = Operator::over; }
+
   std::uint64_t pixels() const final { return image_.pixels(); }
   bool empty() const final;
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) final {
@@ -84,6 +87,13 @@ extern template class ImageLayer<image::RgbaF>;
 template <class Colour>
 image::BasicImage<Colour> take_image(Part&& part) {
   return std::move(dynamic_cast<ImageLayer<Colour>&>(*part.layer).image());
+}
+
+// For a finished part whose colours are all that the rank it is gathered on needs; depths stay as
+// they are. On all ranks, as take_image.
+template <class Colour>
+void forget_depth(Part& part) {
+  dynamic_cast<ImageLayer<Colour>&>(*part.layer).forget_depth();
 }
 
 }  // namespace delray::composite

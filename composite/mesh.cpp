@@ -23,19 +23,28 @@ PixelRange exchange_in_rounds(comm::Communicator& communicator, Layer& layer, Pi
   const int me = group.member_of(communicator.rank()), count = group.count;
   const auto piece = [&](int i) { return piece_of(range, i, count, samples_per_pixel); };
   const PixelRange mine = piece(me);
-  std::vector<comm::Buffer> later;  // of members count - 1 and down, to be merged from me + 1 up
+  std::vector<std::vector<comm::Buffer>>
+      later;  // of members count - 1 and down, to be merged from me + 1 up
   for (int step = 1; step < count; ++step) {
     communicator.mark(comm::Phase::compose, round++);
     const int to = (me + step) % count, from = (me - step + count) % count;
-    send(communicator, layer, piece(to), group.rank_of(to));
+    send(communicator, layer, piece(to), group.rank_of(to), samples_per_pixel);
     if (from < me) {
-      merge(communicator, layer, mine, group.rank_of(from));
-    } else if (mine.size() > 0) {
-      later.push_back(communicator.receive(group.rank_of(from), kTagCompose));
+      merge(communicator, layer, mine, group.rank_of(from), samples_per_pixel);
+    } else {
+      later.emplace_back();
+      for_each_message(mine, samples_per_pixel, [&](PixelRange) {
+        later.back().push_back(communicator.receive(group.rank_of(from), kTagCompose));
+      });
     }
   }
   for (; !later.empty(); later.pop_back()) {
-    communicator.work(comm::Work::pixels_composited, layer.merge(mine, later.back(), Side::higher));
+    std::size_t next = 0;
+    for_each_message(mine, samples_per_pixel, [&](PixelRange range_of_message) {
+      const comm::Buffer& pixels = later.back()[next++];
+      communicator.work(comm::Work::pixels_composited,
+                        layer.merge(range_of_message, pixels, Side::higher));
+    });
   }
   return mine;
 }

@@ -21,11 +21,11 @@ Part pipeline(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
     const int round = i + last - 1 - rank;  // in which the piece comes here
     if (rank < last) {
       communicator.mark(comm::Phase::compose, round);
-      merge(communicator, *layer, piece, rank + 1);
+      merge(communicator, *layer, piece, rank + 1, options.samples_per_pixel);
     }
     if (rank > 0) {
       communicator.mark(comm::Phase::compose, round + 1);
-      send(communicator, *layer, piece, rank - 1);
+      send(communicator, *layer, piece, rank - 1, options.samples_per_pixel);
     }
   }
   return part_of(rank == 0 ? all : PixelRange{}, std::move(layer));

@@ -9,7 +9,7 @@ namespace delray::composite {
 namespace {
 
 // Enough to even out what is drawn where, and for merging to begin early.
-constexpr std::uint64_t kTilesOfRank = 8;
+constexpr std::uint64_t kTilesOfRank = 16;
 // Below it a message costs more than its pixels.
 constexpr std::uint64_t kFewestPixels = 4096;
 

@@ -70,7 +70,7 @@ void regroup(comm::Communicator& communicator, Layer& layer, const std::vector<O
   const PixelRange after = piece_of_rank(all, joined, me, samples);
   for (std::size_t i = 0; i < joined.size(); ++i) {
     if (joined[i] == me) continue;
-    send(communicator, layer, overlap(before, piece(all, joined, i, samples)), joined[i]);
+    send(communicator, layer, overlap(before, piece(all, joined, i, samples)), joined[i], samples);
   }
   const auto for_each_sender = [&](int child, auto&& f) {
     const Owners& owners = children[static_cast<std::size_t>(child)];
@@ -81,11 +81,14 @@ void regroup(comm::Communicator& communicator, Layer& layer, const std::vector<O
   };
   // What of the new piece others of the own group held is theirs alone so far.
   for_each_sender(mine, [&](int from, PixelRange range) {
-    layer.replace(range, communicator.receive(from, kTagCompose));
+    for_each_message(range, samples, [&](PixelRange message) {
+      layer.replace(message, communicator.receive(from, kTagCompose));
+    });
   });
   for_each_outwards(mine, static_cast<int>(children.size()), [&](int child) {
-    for_each_sender(child,
-                    [&](int from, PixelRange range) { merge(communicator, layer, range, from); });
+    for_each_sender(child, [&](int from, PixelRange range) {
+      merge(communicator, layer, range, from, samples);
+    });
   });
 }
 

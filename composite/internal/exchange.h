@@ -9,9 +9,27 @@
 
 namespace delray::composite::internal {
 
+// A range travels in pieces of so many pixels or a few more, each a message: they stay in the cache
+// from being cut until they are on their way, and the other end merges one while the next is cut.
+// (Measured between two MPI processes: half the time of one message.)
+inline constexpr std::uint64_t kPixelsOfMessage = std::uint64_t{1} << 16;
+
+template <class F>
+void for_each_message(PixelRange range, int samples_per_pixel, F&& f) {
+  if (range.size() == 0) return;
+  const int count = static_cast<int>(range.size() / kPixelsOfMessage) + 1;
+  for (int i = 0; i < count; ++i) {
+    if (const PixelRange piece = piece_of(range, i, count, samples_per_pixel); piece.size() > 0) {
+      f(piece);
+    }
+  }
+}
+
 // An empty range is neither sent nor waited for.
-void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to);
-void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from);
+void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to,
+          int samples_per_pixel);
+void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from,
+           int samples_per_pixel);
 
 // Calls f(i) for all i of [0, count) but `me`, from `me` outwards: me - 1, me + 1, me - 2 ... A
 // rank that merges in this order always has merged an interval of ranks.

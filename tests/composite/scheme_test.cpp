@@ -235,6 +235,24 @@ TEST(Schemes, EqualTheReferenceOnLargerImages) {
   }
 }
 
+TEST(Schemes, GatherColoursAlone) {
+  const Size size{67, 41};
+  for (const Codec& codec : codecs()) {
+    SCOPED_TRACE(codec.name);
+    comm::run_threads(5, 1, [&](comm::Communicator& communicator) {
+      auto layer = codec.make(partial_image<Rgba8>(communicator.rank(), size));
+      Part part = compose(communicator, std::move(layer), "direct-send");
+      forget_depth<Rgba8>(part);
+      part = gather(communicator, std::move(part), 3);
+      if (communicator.rank() != 3) return;
+      const Image8 result = take_image<Rgba8>(std::move(part)),
+                   expected = reference<Rgba8>(5, size);
+      EXPECT_TRUE(std::equal(result.colour.data(), result.colour.data() + result.pixels(),
+                             expected.colour.data()));
+    });
+  }
+}
+
 TEST(Schemes, TakeRadices) {
   const Kind kind = opaque<Rgba8>(*find_codec("dense"), "of 8 bits");
   for (const int ranks : {1, 2, 6, 7, 12, 16}) {
