@@ -219,9 +219,8 @@ void TrianglePlanes::set(std::size_t i, const Barycentrics& barycentrics) {
 }
 
 void set_up_planes(const Screen& screen, const ScreenVertices& vertices, std::size_t vertex_count,
-                   CornerNumbers& corners, std::size_t count, std::uint32_t first_vertex,
+                   const CornerNumbers& corners, std::size_t count, std::uint32_t first_vertex,
                    TrianglePlanes& planes, std::size_t first, ClusterFacing& facing) {
-  for (auto& row : corners.of) std::fill_n(row + count, CornerNumbers::kPadding, std::uint8_t{0});
   HWY_DYNAMIC_DISPATCH(set_up_planes)
   (screen, vertices, vertex_count, corners, count, first_vertex, planes, first, facing);
 }

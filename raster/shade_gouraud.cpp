@@ -1,21 +1,8 @@
 #include "raster/internal/shade_gouraud.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
-
-#include <hwy/cache_control.h>
 
 namespace delray::raster {
-namespace {
-
-const MeshCluster& part_of(const FrameShading& frame, std::uint32_t cluster) {
-  const Cluster& found = frame.list.clusters[cluster];
-  return frame.list.block_of(found).clusters[found.part];
-}
-
-}  // namespace
-
 void GouraudTile::light(const FrameShading& frame, std::size_t number) {
   VertexBlock& block = *blocks_[number];
   const scenes::View& view = frame.screen.view;
@@ -45,7 +32,7 @@ GouraudTile::VertexBlock& GouraudTile::block_of(std::size_t number, bool coloure
 // The vertices that the group uses, and those of them whose normal is to be turned, get the numbers
 // from first_vertex on.
 void GouraudTile::add_vertices(const FrameShading& frame, const scenes::Mesh& mesh,
-                               const Members& members, std::uint32_t first_vertex) {
+                               const ClusterMembers& members, std::uint32_t first_vertex) {
   const bool coloured = !mesh.colours.empty();
   const auto material = static_cast<std::size_t>(&shading::material(frame.shader, mesh.material) -
                                                  frame.shader.materials.data());
@@ -88,49 +75,6 @@ void GouraudTile::add_vertices(const FrameShading& frame, const scenes::Mesh& me
   }
 }
 
-// Vertices of the cluster that its triangles use get numbers.
-void GouraudTile::number_vertices(std::span<const std::uint32_t> vertices, Members& members) {
-  for (const auto& row : members.corners.of)
-    for (std::size_t i = 0; i < members.group->count; ++i) members.used[row[i]] = 1;
-  std::size_t count = 0;
-  for (std::size_t first = 0; first < vertices.size(); first += 8) {
-    std::uint64_t used = 0;
-    std::memcpy(&used, members.used + first, sizeof used);
-    std::memset(members.used + first, 0, sizeof used);
-    for (; used != 0; used &= used - 1) {
-      const std::size_t v = first + static_cast<std::size_t>(std::countr_zero(used)) / 8;
-      members.number[v] = static_cast<std::uint8_t>(count);
-      members.chosen_vertices[count++] = vertices[v];
-    }
-  }
-  for (auto& row : members.corners.of)
-    for (std::size_t i = 0; i < members.group->count; ++i) row[i] = members.number[row[i]];
-  members.vertices = std::span(members.chosen_vertices, count);
-}
-
-void GouraudTile::collect(const FrameShading& frame, const Group& group, Members& members) {
-  members.group = &group;
-  const Cluster& cluster = frame.list.clusters[group.cluster];
-  const ClusterBlock& block = frame.list.block_of(cluster);
-  const MeshCluster& part = block.clusters[cluster.part];
-  const std::uint8_t* corners = block.corners.data() + part.first_corner;
-  const std::uint8_t* const places = groups_.places().data() + group.first;
-  for (auto& row : members.corners.of) {
-    for (std::size_t i = 0; i < group.count; ++i) row[i] = corners[places[i]];
-    corners += part.corner_stride();
-  }
-  // Most triangles have nearly all vertices.
-  members.vertices = block.vertices_of(part);
-  if (group.count < part.count - part.count / 4) number_vertices(members.vertices, members);
-  const scenes::Mesh& mesh = *frame.list.draws[cluster.draw].mesh;
-  const bool coloured = !mesh.colours.empty(), has_normals = !mesh.normals.empty();
-  for (const std::uint32_t vertex : members.vertices) {
-    hwy::Prefetch(&mesh.positions[vertex]);
-    if (has_normals) hwy::Prefetch(&mesh.normals[vertex]);
-    if (coloured) hwy::Prefetch(&mesh.colours[vertex]);
-  }
-}
-
 // The number of a used vertex with its normal turned, among those of the group.
 std::uint32_t GouraudTile::turned(std::uint32_t used, std::size_t used_count) {
   std::uint8_t& number = turned_number_[used];
@@ -142,120 +86,60 @@ std::uint32_t GouraudTile::turned(std::uint32_t used, std::size_t used_count) {
 }
 
 // Of a triangle of the draw's mesh: its corners whose normals are on the side that is not seen.
-void GouraudTile::turn_normals(const Draw& draw, const Members& members, std::size_t member,
+void GouraudTile::turn_normals(const Draw& draw, const ClusterMembers& members, std::size_t member,
                                std::uint32_t triangle, bool front, std::uint32_t first_vertex) {
   const glm::uvec3& corners = draw.mesh->triangles[triangle];
   const glm::vec3 edges = cross_of_edges(*draw.mesh, corners);
   for (int k = 0; k < 3; ++k) {
     if (normal_agrees(*draw.mesh, corners[k], edges) == front) continue;
-    std::uint32_t& corner = planes_.corner[k][members.group->first + member];
+    std::uint32_t& corner = triangles_.planes().corner[k][members.group->first + member];
     corner = first_vertex + turned(corner - first_vertex, members.vertices.size());
   }
 }
 
-void GouraudTile::set_up_clipped(const FrameShading& frame, const Group& group, std::size_t member,
-                                 ClusterFacing& facing) {
-  const Cluster& cluster = frame.list.clusters[group.cluster];
-  const std::uint32_t t = cluster.first + groups_.places()[group.first + member];
-  const scenes::Mesh& mesh = *frame.list.draws[cluster.draw].mesh;
-  const Barycentrics planes = make_screen_barycentrics(
-      frame.screen, frame.draws[cluster.draw].to_view, mesh.positions, mesh.triangles[t]);
-  planes_.set(group.first + member, planes);
-  const auto set = [&](ClusterMask& mask, bool value) {
-    const std::uint64_t bit = std::uint64_t{1} << member % 64;
-    mask[member / 64] = value ? mask[member / 64] | bit : mask[member / 64] & ~bit;
-  };
-  set(facing.counter_clockwise, planes.counter_clockwise);
-  set(facing.proper, planes.proper);
-}
-
-void GouraudTile::set_up_group(const FrameShading& frame, Members& members) {
-  const Group& group = *members.group;
-  const Cluster& cluster = frame.list.clusters[group.cluster];
+void GouraudTile::set_up_group(const FrameShading& frame, const ClusterMembers& members) {
+  const Cluster& cluster = frame.list.clusters[members.group->cluster];
   const Draw& draw = frame.list.draws[cluster.draw];
   const ShadedDraw& shaded = frame.draws[cluster.draw];
-  const std::span which = members.vertices;
-  transform(shaded.to_view, frame.screen, draw.mesh->positions, which, screen_vertices_);
   const auto first_vertex = static_cast<std::uint32_t>(radiances_.size());
   ClusterFacing facing;
-  set_up_planes(frame.screen, screen_vertices_, which.size(), members.corners, group.count,
-                first_vertex, planes_, group.first, facing);
-  if (screen_vertices_.any_outside)
-    for (std::size_t i = 0; i < group.count; ++i)
-      if (is_in(facing.outside, i)) set_up_clipped(frame, group, i, facing);
-  for (std::size_t i = 0; i < group.count; ++i)
-    if (!is_in(facing.proper, i)) shade_one_by_one(group.first + i);
+  triangles_.set_up_planes(frame, members, first_vertex, facing);
   if (draw.transformed != nullptr) {
-    for (const std::uint32_t vertex : which)
+    for (const std::uint32_t vertex : members.vertices)
       radiances_.emplace_back(draw.transformed->radiances[vertex], 1.0F);
     return;
   }
 
-  const bool agree = part_of(frame, group.cluster).normals_agree;
+  const bool agree = frame.list.block_of(cluster).clusters[cluster.part].normals_agree;
   turned_count_ = 0;
-  for (std::size_t i = 0; i < group.count; ++i) {
+  for (std::size_t i = 0; i < members.group->count; ++i) {
     const bool front = is_in(facing.counter_clockwise, i) == (shaded.handedness > 0);
     if (!(front && agree))
-      turn_normals(draw, members, i, cluster.first + groups_.places()[group.first + i], front,
-                   first_vertex);
+      turn_normals(draw, members, i, triangles_.triangle(frame, members, i), front, first_vertex);
   }
-  to_world(draw, shaded, which, world_vertices_);
-  radiances_.resize(first_vertex + which.size() + turned_count_);
+  to_world(draw, shaded, members.vertices, world_vertices_);
+  radiances_.resize(first_vertex + members.vertices.size() + turned_count_);
   add_vertices(frame, *draw.mesh, members, first_vertex);
 }
 
-// Those with a texture, or without normals, are left to shade_pixel.
-bool GouraudTile::shaded_here(const FrameShading& frame, const Group& group) const {
-  const Draw& draw = frame.list.draws[frame.list.clusters[group.cluster].draw];
-  return (!draw.mesh->normals.empty() || draw.transformed != nullptr) &&
-         (without_textures_ ||
-          shading::material(frame.shader, draw.mesh->material).base_colour_texture ==
-              scenes::kNone);
-}
-
-// What the groups refer to is scattered in memory.
-void GouraudTile::ask_for(const FrameShading& frame) {
-  for (const Group& group : groups_.groups()) hwy::Prefetch(&part_of(frame, group.cluster));
-  for (const Group& group : groups_.groups()) {
-    const ClusterBlock& block = frame.list.block_of(frame.list.clusters[group.cluster]);
-    const MeshCluster& part = part_of(frame, group.cluster);
-    const std::size_t place = groups_.places()[group.first];
-    const std::uint8_t* corners = block.corners.data() + part.first_corner + place;
-    for (std::size_t k = 0; k < 3; ++k) hwy::Prefetch(corners + k * part.corner_stride());
-    hwy::Prefetch(block.vertices.data() + part.first_vertex + place / 2);
-  }
-}
-
 void GouraudTile::leave_triangles_without_normals() {
-  for (std::size_t t = 0; t < groups_.places().size(); ++t)
-    for (const auto& corner : planes_.corner)
-      if (radiances_[corner[t]].w == 0) shade_one_by_one(t);
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (const auto& corner : triangles_.planes().corner)
+      if (radiances_[corner[t]].w == 0) triangles_.leave_to_shade_pixel(t);
 }
 
-void GouraudTile::set_up_triangles(const FrameShading& frame) {
-  const std::size_t count = groups_.places().size();
-  one_by_one_.assign(count, 0);
-  any_one_by_one_ = false;
+// Those with a texture, or without normals, are left to shade_pixel.
+void GouraudTile::set_up_triangles(const FrameShading& frame, bool without_textures) {
   all_have_normals_ = true;
   radiances_.assign(1, glm::vec4(0, 0, 0, 1));
-  ask_for(frame);
-  int next = 0;
-  members_[1].group = nullptr;
-  for (const Group& group : groups_.groups()) {
-    if (!shaded_here(frame, group)) {
-      for (std::size_t t = group.first; t < std::size_t{group.first} + group.count; ++t) {
-        for (auto& corner : planes_.corner) corner[t] = 0;
-        shade_one_by_one(t);
-      }
-      continue;
-    }
-    collect(frame, group, members_[next]);
-    next = 1 - next;
-    if (members_[next].group != nullptr) set_up_group(frame, members_[next]);
-    members_[next].group = nullptr;
-  }
-  if (members_[1 - next].group != nullptr) set_up_group(frame, members_[1 - next]);
-  members_[1 - next].group = nullptr;
+  triangles_.for_each_group(
+      frame,
+      [&](const Draw& draw) {
+        const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
+        return (!draw.mesh->normals.empty() || draw.transformed != nullptr) &&
+               (without_textures || material.base_colour_texture == scenes::kNone);
+      },
+      [&](const ClusterMembers& members) { set_up_group(frame, members); });
   for (const std::size_t block : open_blocks_)
     if (blocks_[block]->count > 0) light(frame, block);
   open_blocks_.clear();
@@ -264,15 +148,9 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
 
 GouraudTile::LitCorners GouraudTile::light_corners(const FrameShading& frame,
                                                    std::span<const std::uint32_t> numbers) {
-  groups_.clear();
-  groups_of_lit_.resize(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i) groups_of_lit_[i] = groups_.add(numbers[i]);
-  groups_.number_triangles();
-  without_textures_ = true;
-  set_up_triangles(frame);
-  without_textures_ = false;
-
-  if (any_one_by_one_) {
+  const std::vector<std::uint16_t> indices = triangles_.set(numbers);
+  set_up_triangles(frame, true);
+  if (triangles_.any_left()) {
     if (seen_ == nullptr) seen_ = std::make_unique<SeenTriangles>();
     seen_->clear();
   }
@@ -280,8 +158,7 @@ GouraudTile::LitCorners GouraudTile::light_corners(const FrameShading& frame,
   lit_radiances_.clear();
   lit_of_vertex_.assign(radiances_.size(), kNothing);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const std::uint16_t t = groups_.index(groups_of_lit_[i], numbers[i]);
-    if (one_by_one_[t] != 0) {
+    if (triangles_.is_left(indices[i])) {
       const SeenTriangle& triangle = seen_->get(frame, numbers[i]);
       for (int k = 0; k < 3; ++k) {
         lit_corners_[i][k] = static_cast<std::uint32_t>(lit_radiances_.size());
@@ -290,10 +167,11 @@ GouraudTile::LitCorners GouraudTile::light_corners(const FrameShading& frame,
       continue;
     }
     for (int k = 0; k < 3; ++k) {
-      std::uint32_t& lit = lit_of_vertex_[planes_.corner[k][t]];
+      const std::uint32_t vertex = triangles_.planes().corner[k][indices[i]];
+      std::uint32_t& lit = lit_of_vertex_[vertex];
       if (lit == kNothing) {
         lit = static_cast<std::uint32_t>(lit_radiances_.size());
-        lit_radiances_.emplace_back(radiances_[planes_.corner[k][t]]);
+        lit_radiances_.emplace_back(radiances_[vertex]);
       }
       lit_corners_[i][k] = lit;
     }
@@ -301,57 +179,19 @@ GouraudTile::LitCorners GouraudTile::light_corners(const FrameShading& frame,
   return {lit_corners_, lit_radiances_};
 }
 
-void GouraudTile::set_colours() {
-  const std::size_t count = groups_.places().size();
-  const std::size_t end = (count + kBlockSize - 1) / kBlockSize * kBlockSize;
-  for (auto& corner : planes_.corner) std::fill(corner + count, corner + end, 0);
-  if (triangles_.size() < end) triangles_.resize(end);
-  set_up_colours(planes_, radiances_, count, triangles_.data());
-}
-
 template <class Colour>
 std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
                                  const VisibilityTile& tile, const geometry::Rect& rect,
                                  const Window<Colour>& window) {
-  const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
-  const int width = rect.width();
-  find_runs(tile, j0, j0 + rect.height(), runs_);
-  const std::uint64_t shown =
-      number_runs(runs_, i0, j0, i0 + width, j0 + rect.height(), groups_, run_triangles_);
-  set_up_triangles(frame);
-  set_colours();
-  alignas(64) Colour colours[kTileSize + kBlockSize];
-  alignas(64) float depths[kTileSize + kBlockSize];
-  std::uint16_t others[kTileSize];
-  // Rows of whole vectors go straight into the image, others might run over what is beside them.
-  const bool whole = width % kBlockSize == 0;
-  for (int j = j0; j < j0 + rect.height(); ++j) {
-    const int y = rect.y0 + (j - j0);
-    const std::size_t first = window.at(rect.x0, y);
-    Colour* const to = whole ? window.colour + first : colours;
-    const std::uint16_t* run = run_triangles_.of_row(j).data();
-    const std::uint64_t starts = run_triangles_.starts[j];
-    if (any_one_by_one_) {
-      const int runs = std::popcount(starts);
-      for (int i = 0; i < runs; ++i)
-        others[i] = run[i] != kNoTriangle && one_by_one_[run[i]] != 0 ? kNoTriangle : run[i];
-    }
-    shade_row(triangles_, starts >> i0, any_one_by_one_ ? others : run, rect.x0, y, width, to);
-    if (any_one_by_one_) {
-      const std::uint32_t* const numbers = runs_.numbers() + j * kTileSize + i0;
-      for (int i = 0; i < width; ++i) {
-        if (i > 0) run += starts >> (i0 + i) & 1;
-        if (*run != kNoTriangle && one_by_one_[*run] != 0)
-          shade_pixel(frame, seen, numbers[i], rect.x0 + i, y, to[i]);
-      }
-    }
-    float* const depths_to = whole ? window.depth + first : depths;
-    const std::int64_t* const keys = tile.key + j * kTileSize + i0;
-    store_depths(keys, width, frame.distances ? frame.screen.view.near : 0.0F, depths_to);
-    if (whole) continue;
-    std::copy(colours, colours + width, window.colour + first);
-    std::copy(depths, depths + width, window.depth + first);
-  }
+  const std::uint64_t shown = triangles_.find(tile, rect);
+  set_up_triangles(frame, false);
+  const std::size_t room = (triangles_.size() + kBlockSize - 1) / kBlockSize * kBlockSize;
+  if (colours_.size() < room) colours_.resize(room);
+  set_up_colours(triangles_.planes(), radiances_, triangles_.size(), colours_.data());
+  triangles_.write<Colour>(
+      frame, seen, tile, rect, window,
+      [&](std::uint64_t starts, const std::uint16_t* runs, int x, int y, int count,
+          Colour* pixels) { shade_row(colours_, starts, runs, x, y, count, pixels); });
   return shown;
 }
 

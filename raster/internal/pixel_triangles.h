@@ -1,6 +1,7 @@
 // The triangles of a tile as planes over the screen, set up many at a time.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -21,6 +22,11 @@ struct CornerNumbers {
   static constexpr std::size_t kPadding = 16;  // vectors may be read past the end
 
   alignas(64) std::uint8_t of[3][kClusterTriangles + kPadding] = {};
+
+  // For those that are read past the end, after `count` triangles are set.
+  void pad(std::size_t count) {
+    for (auto& row : of) std::fill_n(row + count, kPadding, std::uint8_t{0});
+  }
 };
 
 // A bit per triangle of a cluster.
@@ -47,9 +53,9 @@ struct ClusterFacing {
 // planes by make_barycentrics from the screen, and first_vertex added to the numbers of corners.
 //
 // REQUIRES: count <= kClusterTriangles; first + count <= kTilePixels; what `of` says is below
-// vertex_count.
+// vertex_count; corners are padded.
 void set_up_planes(const Screen& screen, const ScreenVertices& vertices, std::size_t vertex_count,
-                   CornerNumbers& corners, std::size_t count, std::uint32_t first_vertex,
+                   const CornerNumbers& corners, std::size_t count, std::uint32_t first_vertex,
                    TrianglePlanes& planes, std::size_t first, ClusterFacing& facing);
 
 // make_colour_planes of the first triangles, as many as there are, and perhaps of some more.

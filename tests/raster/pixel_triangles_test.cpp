@@ -38,6 +38,7 @@ TEST(PixelTriangles, PlanesAreThoseOfTrianglesAlone) {
       const std::size_t used = 3 + random() % (kClusterVertices - 2);
       for (auto& row : corners.of)
         for (std::size_t i = 0; i < count; ++i) row[i] = static_cast<std::uint8_t>(random() % used);
+      corners.pad(count);
       ClusterFacing facing;
       set_up_planes(screen, *vertices, used, corners, count, 1000, *planes, first, facing);
       for (std::size_t i = 0; i < count; ++i) {

@@ -1,0 +1,101 @@
+// The triangles that a tile shows, ready to be shaded by vectors.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "parallel/function_ref.h"
+#include "raster/internal/pixel_triangles.h"
+#include "raster/internal/shade_tile.h"
+#include "raster/internal/tile_groups.h"
+#include "raster/internal/tile_runs.h"
+
+namespace delray::raster {
+
+// Most vectors have so many lanes at most, and rows of pixels are stored so many at a time.
+inline constexpr int kBlockSize = 16;
+
+// The depths of `count` keys, or the distances that they stand for if `near` is not 0, infinity
+// where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
+void store_depths(const std::int64_t* keys, int count, float near, float* depths);
+
+// Triangles of a cluster that a tile shows, and what they use.
+struct ClusterMembers {
+  const TileGroups::Group* group = nullptr;
+  CornerNumbers corners;                    // of its triangles, numbers of `vertices`
+  std::span<const std::uint32_t> vertices;  // of the mesh
+  // For groups that use but a part of the cluster's vertices.
+  std::uint32_t chosen_vertices[kClusterVertices] = {};
+  std::uint8_t used[kClusterVertices] = {};    // by vertex of the cluster: 1, 0 between groups
+  std::uint8_t number[kClusterVertices] = {};  // of those used
+};
+
+// Memory for a tile. One per thread.
+//
+// Triangles are looked up cluster by cluster: their vertices have small numbers there, and are
+// transformed together.
+class TileTriangles {
+ public:
+  using Group = TileGroups::Group;
+
+  // What the pixels of `rect` (of the frame, within the tile) show. Returns how many of them show
+  // anything.
+  std::uint64_t find(const VisibilityTile& tile, const geometry::Rect& rect);
+  // Triangles without pixels, each once, instead: their indices.
+  std::vector<std::uint16_t> set(std::span<const std::uint32_t> numbers);
+
+  std::size_t size() const { return groups_.places().size(); }
+  TrianglePlanes& planes() { return planes_; }
+  const TrianglePlanes& planes() const { return planes_; }
+
+  // Calls wanted(group), and for those that are, some groups later, set_up(members). The triangles
+  // of the others are left to shade_pixel.
+  using Wanted = parallel::FunctionRef<bool(const Draw&)>;
+  using SetUp = parallel::FunctionRef<void(const ClusterMembers&)>;
+  void for_each_group(const FrameShading& frame, Wanted wanted, SetUp set_up);
+  // The triangles' planes; their vertices get numbers from first_vertex on. Those that are not
+  // proper are left to shade_pixel.
+  void set_up_planes(const FrameShading& frame, const ClusterMembers& members,
+                     std::uint32_t first_vertex, ClusterFacing& facing);
+  // Of the mesh.
+  std::uint32_t triangle(const FrameShading& frame, const ClusterMembers& members,
+                         std::size_t member) const {
+    return frame.list.clusters[members.group->cluster].first +
+           groups_.places()[members.group->first + member];
+  }
+
+  void leave_to_shade_pixel(std::size_t triangle) {
+    left_[triangle] = 1;
+    any_left_ = true;
+  }
+  bool any_left() const { return any_left_; }
+  bool is_left(std::size_t triangle) const { return left_[triangle] != 0; }
+
+  // Writes colours and depths of what was found to the window. shade_row(starts, runs, x, y, count,
+  // pixels) stores a row's colours, as in internal/shade_gouraud.h.
+  template <class Colour>
+  using ShadeRow =
+      parallel::FunctionRef<void(std::uint64_t, const std::uint16_t*, int, int, int, Colour*)>;
+  template <class Colour>
+  void write(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
+             const geometry::Rect& rect, const Window<Colour>& window, ShadeRow<Colour> shade_row);
+
+ private:
+  void ask_for(const FrameShading& frame);
+  static void number_vertices(std::span<const std::uint32_t> vertices, ClusterMembers& members);
+  void collect(const FrameShading& frame, const Group& group, ClusterMembers& members);
+  void set_up_clipped(const FrameShading& frame, const ClusterMembers& members, std::size_t member,
+                      ClusterFacing& facing);
+
+  TileRuns runs_;
+  TileGroups groups_;
+  RunTriangles run_triangles_;
+  TrianglePlanes planes_;
+  std::vector<std::uint8_t> left_;  // by triangle
+  bool any_left_ = false;
+  ClusterMembers members_[2];  // of a group and the next
+  ScreenVertices screen_vertices_;
+};
+
+}  // namespace delray::raster
