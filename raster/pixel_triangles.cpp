@@ -162,15 +162,13 @@ void set_up_planes(const Screen& screen, const ScreenVertices& vertices, std::si
   }
 }
 
-// What the corners' shares of a plane's coefficient come to: the numerators of the channels, and
-// the denominator.
+// What the corners' shares of a plane's coefficient come to.
 HWY_INLINE FourVectors<F> weighted(const F (&share)[3], const FourVectors<F> (&radiance)[3]) {
   FourVectors<F> sums;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 4; ++k)
     sums.v[k] =
         hn::Add(hn::Add(hn::Mul(share[0], radiance[0].v[k]), hn::Mul(share[1], radiance[1].v[k])),
                 hn::Mul(share[2], radiance[2].v[k]));
-  sums.v[3] = hn::Add(hn::Add(share[0], share[1]), share[2]);
   return sums;
 }
 

@@ -15,6 +15,67 @@ glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
   return has_direction(v) ? v * (1.0F / std::sqrt(glm::dot(v, v))) : otherwise;
 }
 
+void make_planes(SeenTriangle& triangle) {
+  const auto planes = [&](const glm::vec4& p, const glm::vec4& q, const glm::vec4& r) {
+    return make_value_planes(triangle.barycentrics, {p, q, r});
+  };
+  const auto of = [&](const glm::vec3(&v)[3], float last) {
+    return planes({v[0], last}, {v[1], last}, {v[2], last});
+  };
+  triangle.position_planes = of(triangle.position, 1);
+  triangle.normal_planes = of(triangle.normal, 0);
+  if (triangle.has_tangent) {
+    const auto& t = triangle.tangent;
+    triangle.tangent_planes = of({glm::vec3(t[0]), glm::vec3(t[1]), glm::vec3(t[2])}, 0);
+  }
+  if (triangle.has_colour)
+    triangle.colour_planes = planes(triangle.colour[0], triangle.colour[1], triangle.colour[2]);
+  if (triangle.has_uv) {
+    const auto& uv = triangle.uv;
+    triangle.uv_planes = planes({uv[0], 0, 0}, {uv[1], 0, 0}, {uv[2], 0, 0});
+  }
+}
+
+// Of a triangle whose shares have to be bounded.
+shading::Point bounded_point_at(const SeenTriangle& triangle, int x, int y) {
+  const Weights w = weights_at(triangle.barycentrics, x, y);
+  shading::Point point;
+  point.position = interpolate(w, triangle.position);
+  point.normal = interpolate(w, triangle.normal);
+  if (triangle.has_colour) point.colour = interpolate(w, triangle.colour);
+  if (triangle.has_uv) {
+    point.uv = interpolate(w, triangle.uv);
+    point.footprint.dx = derivative(w, triangle.barycentrics.a, triangle.uv, point.uv);
+    point.footprint.dy = derivative(w, triangle.barycentrics.b, triangle.uv, point.uv);
+  }
+  if (triangle.has_tangent) point.tangent = interpolate(w, triangle.tangent);
+  return point;
+}
+
+// internal/point_planes.h has the same for vectors.
+shading::Point plain_point_at(const SeenTriangle& triangle, int x, int y) {
+  const auto dx = static_cast<float>(x - triangle.barycentrics.x);
+  const auto dy = static_cast<float>(y - triangle.barycentrics.y);
+  shading::Point point;
+  const ValuePlanes& positions = triangle.position_planes;
+  const glm::vec4 position = sums_at(positions, dx, dy);
+  const float share = 1 / position.w;
+  point.position = glm::vec3(position) * share;
+  point.normal = glm::vec3(sums_at(triangle.normal_planes, dx, dy)) * share;
+  if (triangle.has_colour) point.colour = sums_at(triangle.colour_planes, dx, dy) * share;
+  if (triangle.has_uv) {
+    const ValuePlanes& uvs = triangle.uv_planes;
+    point.uv = glm::vec2(sums_at(uvs, dx, dy)) * share;
+    for (int k = 0; k < 2; ++k) {
+      point.footprint.dx[k] = (uvs.a[k] - point.uv[k] * positions.a[3]) * share;
+      point.footprint.dy[k] = (uvs.b[k] - point.uv[k] * positions.b[3]) * share;
+    }
+  }
+  if (triangle.has_tangent)
+    point.tangent = glm::vec4(glm::vec3(sums_at(triangle.tangent_planes, dx, dy)) * share, 0);
+  return point;
+}
+
 }  // namespace
 
 glm::vec3 position_in_world(const Draw& draw, std::uint32_t vertex) {
@@ -78,19 +139,16 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   result.has_uv = !mesh.uvs.empty();
   result.has_tangent = !mesh.tangents.empty();
   result.blended = shaded.blended;
-  std::array<glm::vec3, 3> view;
+  result.has_colour = !mesh.colours.empty();
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t i = corners[k];
-    view[k] = shaded.to_view(mesh.positions[i]);
     if (transformed == nullptr)
       result.position[k] = position_in_world(draw, i);
     else
       result.position[k] = transformed->world.empty() ? glm::vec3(0.0F) : transformed->world[i];
   }
-  result.barycentrics = make_barycentrics(screen, view);
-  result.screen_barycentrics =
-      make_screen_barycentrics(screen, shaded.to_view, mesh.positions, corners);
-  result.front = result.screen_barycentrics.counter_clockwise == (shaded.handedness > 0);
+  result.barycentrics = make_screen_barycentrics(screen, shaded.to_view, mesh.positions, corners);
+  result.front = result.barycentrics.counter_clockwise == (shaded.handedness > 0);
   const glm::vec3* p = result.position;
   result.geometric_normal =
       unit(glm::cross(p[1] - p[0], p[2] - p[0]) * shaded.handedness, {0, 0, 1});
@@ -112,25 +170,18 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
       result.tangent[k] =
           transformed == nullptr ? tangent_in_world(draw, shaded, i) : mesh.tangents[i];
   }
+  if (result.barycentrics.proper) make_planes(result);
   return result;
 }
 
 shading::Point point_at(const SeenTriangle& triangle, int x, int y) {
-  const Weights w = weights_at(triangle.barycentrics, x, y);
-  shading::Point point;
-  point.position = interpolate(w, triangle.position);
+  shading::Point point = triangle.barycentrics.proper ? plain_point_at(triangle, x, y)
+                                                      : bounded_point_at(triangle, x, y);
   point.geometric_normal = triangle.geometric_normal;
-  point.normal = unit(interpolate(w, triangle.normal), triangle.geometric_normal);
-  point.colour = interpolate(w, triangle.colour);
-  if (triangle.has_uv) {
-    point.uv = interpolate(w, triangle.uv);
-    point.footprint.dx = derivative(w, triangle.barycentrics.a, triangle.uv, point.uv);
-    point.footprint.dy = derivative(w, triangle.barycentrics.b, triangle.uv, point.uv);
-  }
+  point.normal = unit(point.normal, triangle.geometric_normal);
   if (triangle.has_tangent) {
-    const glm::vec4 tangent = interpolate(w, triangle.tangent);
-    const glm::vec3 along =
-        glm::vec3(tangent) - point.normal * glm::dot(point.normal, glm::vec3(tangent));
+    const glm::vec3 tangent(point.tangent);
+    const glm::vec3 along = tangent - point.normal * glm::dot(point.normal, tangent);
     point.tangent = glm::vec4(unit(along, glm::vec3(0.0F)), triangle.tangent[0].w);
     if (glm::vec3(point.tangent) == glm::vec3(0.0F)) point.tangent.w = 0;
   }

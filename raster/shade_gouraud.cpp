@@ -134,7 +134,8 @@ void GouraudTile::set_up_triangles(const FrameShading& frame, bool without_textu
   radiances_.assign(1, glm::vec4(0, 0, 0, 1));
   triangles_.for_each_group(
       frame,
-      [&](const Draw& draw) {
+      [&](std::uint32_t number) {
+        const Draw& draw = frame.list.draws[number];
         const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
         return (!draw.mesh->normals.empty() || draw.transformed != nullptr) &&
                (without_textures || material.base_colour_texture == scenes::kNone);

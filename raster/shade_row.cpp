@@ -1,10 +1,12 @@
+#include "raster/internal/shade_row.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 
 #include "image/srgb.h"
-#include "raster/internal/shade_gouraud.h"
+#include "raster/internal/tile_runs.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/shade_row.cpp"
@@ -259,6 +261,24 @@ void shade_row_float(const PixelTriangle* triangles, std::uint64_t starts,
   shade_pixels(triangles, starts, runs, x, y, count, pixels);
 }
 
+template <class Colour>
+HWY_INLINE void store_block(const shading::Vectors16& colours, std::uint32_t shown,
+                            Colour* pixels) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < kBlockSize; i += lanes)
+    store({hn::Load(d, colours.x.lane + i), hn::Load(d, colours.y.lane + i),
+           hn::Load(d, colours.z.lane + i)},
+          mask_of(shown >> i), pixels + i);
+}
+void store_colours8(const shading::Vectors16& colours, std::uint32_t shown, image::Rgba8* pixels) {
+  store_block(colours, shown, pixels);
+}
+void store_colours_float(const shading::Vectors16& colours, std::uint32_t shown,
+                         image::RgbaF* pixels) {
+  store_block(colours, shown, pixels);
+}
+
 // The upper halves of a vector's worth of keys.
 HWY_INLINE I codes_of(const std::int64_t* keys) {
   const Ints d;
@@ -297,6 +317,8 @@ namespace delray::raster {
 
 HWY_EXPORT(shade_row8);
 HWY_EXPORT(shade_row_float);
+HWY_EXPORT(store_colours8);
+HWY_EXPORT(store_colours_float);
 HWY_EXPORT(store_depths);
 
 void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
@@ -308,6 +330,15 @@ void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
                const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels) {
   HWY_DYNAMIC_DISPATCH(shade_row_float)
   (triangles.data(), starts, runs, x, y, count, pixels);
+}
+
+void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
+                   image::Rgba8* pixels) {
+  HWY_DYNAMIC_DISPATCH(store_colours8)(colours, shown, pixels);
+}
+void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
+                   image::RgbaF* pixels) {
+  HWY_DYNAMIC_DISPATCH(store_colours_float)(colours, shown, pixels);
 }
 
 void store_depths(const std::int64_t* keys, int count, float near, float* depths) {

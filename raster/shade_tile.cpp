@@ -32,9 +32,10 @@ glm::vec3 radiance(const FrameShading& frame, const scenes::Material& material,
 }
 
 glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x, int y) {
-  const Barycentrics& planes = triangle.screen_barycentrics;
+  const Barycentrics& planes = triangle.barycentrics;
   const std::uint32_t texture = triangle.material->base_colour_texture;
-  if (planes.proper && texture == scenes::kNone) return value_at(triangle.radiance_planes, x, y);
+  if (planes.proper && texture == scenes::kNone)
+    return value_at(triangle.radiance_planes, planes, x, y);
   const Weights w = weights_at(planes, x, y);
   const glm::vec3 lit = interpolate(w, triangle.radiance);
   if (texture == scenes::kNone) return lit;
@@ -59,8 +60,10 @@ float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances) {
-  FrameShading frame{screen, shader, list, {}, {}, {}, lighting, distances};
+  FrameShading frame{screen, shader, list,  {},    {},       {},
+                     {},     false,  false, false, lighting, distances};
   add_draws(frame);
+  if (lighting == Lighting::phong) frame.batch = shading::make_batch_shader(shader);
   if (lighting == Lighting::gouraud) {
     frame.untextured = shader.materials;
     for (scenes::Material& material : frame.untextured) {
@@ -79,6 +82,13 @@ void add_draws(FrameShading& frame) {
     const Draw& draw = frame.list.draws[i];
     frame.draws.push_back(make_shaded_draw(frame.screen.view, draw));
     frame.draws.back().blended = is_blended(frame.shader, *draw.mesh);
+    const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
+    frame.any_colours |= !draw.mesh->colours.empty();
+    frame.any_normal_maps |= material.normal_texture != scenes::kNone;
+    for (const std::uint32_t texture :
+         {material.base_colour_texture, material.metallic_roughness_texture,
+          material.normal_texture, material.emission_texture})
+      frame.any_textures |= texture != scenes::kNone;
   }
 }
 
@@ -98,7 +108,9 @@ const SeenTriangle& SeenTriangles::get(const FrameShading& frame, std::uint32_t 
       make_seen_triangle(frame.screen, frame.shader, frame.list.draws[draw], frame.draws[draw], t);
   if (frame.lighting == Lighting::gouraud) {
     light_vertices(frame, draw, frame.list.draws[draw].mesh->triangles[t], triangle);
-    triangle.radiance_planes = make_colour_planes(triangle.screen_barycentrics, triangle.radiance);
+    const auto& radiance = triangle.radiance;
+    triangle.radiance_planes = make_value_planes(
+        triangle.barycentrics, {{radiance[0], 1}, {radiance[1], 1}, {radiance[2], 1}});
   }
   return triangle;
 }

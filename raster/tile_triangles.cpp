@@ -6,6 +6,8 @@
 
 #include <hwy/cache_control.h>
 
+#include "raster/internal/shade_row.h"
+
 namespace delray::raster {
 namespace {
 
@@ -129,7 +131,7 @@ void TileTriangles::for_each_group(const FrameShading& frame, Wanted wanted, Set
   int next = 0;
   members_[0].group = members_[1].group = nullptr;
   for (const Group& group : groups_.groups()) {
-    if (!wanted(frame.list.draws[frame.list.clusters[group.cluster].draw])) {
+    if (!wanted(frame.list.clusters[group.cluster].draw)) {
       for (std::size_t t = group.first; t < std::size_t{group.first} + group.count; ++t) {
         for (auto& corner : planes_.corner) corner[t] = 0;
         leave_to_shade_pixel(t);

@@ -24,7 +24,7 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
     const std::uint64_t shown =
         frame_.lighting == Lighting::gouraud
             ? memory_.gouraud.shade(frame_, memory_.seen, *tile_, rect, window)
-            : shade_tile(frame_, memory_.seen, *tile_, rect, window);
+            : memory_.phong.shade(frame_, memory_.seen, *tile_, rect, window);
     shown_ += shown;
     shaded_now_ += shown;
     return;

@@ -46,7 +46,7 @@ void to_world(const glm::mat4x3& m, const glm::mat3& n, const glm::vec3* positio
       p[0][k] = position.x;
       p[1][k] = position.y;
       p[2][k] = position.z;
-      const glm::vec3& normal = normals[vertex];
+      const glm::vec3 normal = normals == nullptr ? glm::vec3(0.0F) : normals[vertex];
       q[0][k] = normal.x;
       q[1][k] = normal.y;
       q[2][k] = normal.z;
@@ -87,8 +87,9 @@ HWY_EXPORT(to_world);
 void to_world(const Draw& draw, const ShadedDraw& shaded, std::span<const std::uint32_t> which,
               WorldVertices& vertices) {
   HWY_DYNAMIC_DISPATCH(to_world)
-  (*draw.transform, shaded.normal_to_world, draw.mesh->positions.data(), draw.mesh->normals.data(),
-   which.data(), which.size(), vertices);
+  (*draw.transform, shaded.normal_to_world, draw.mesh->positions.data(),
+   draw.mesh->normals.empty() ? nullptr : draw.mesh->normals.data(), which.data(), which.size(),
+   vertices);
 }
 
 }  // namespace delray::raster

@@ -171,36 +171,35 @@ Value derivative(const Weights& w, const float (&slopes)[3], const Value (&value
   return change / w.sum;
 }
 
-// Three values of a triangle's vertices as planes over the screen, by Barycentrics: at a pixel
-// value k is (a[k]*dx + (b[k]*dy + c[k])) over what the same gives for k = 3.
-struct ColourPlanes {
+// Four values of a triangle's vertices as planes over the screen, by Barycentrics: value k at a
+// pixel is (a[k]*dx + (b[k]*dy + c[k])) over what the same gives for a value of 1.
+struct ValuePlanes {
   float a[4], b[4], c[4];
-  int x, y;
 };
 
-inline ColourPlanes make_colour_planes(const Barycentrics& t, const glm::vec3 (&values)[3]) {
-  ColourPlanes planes;
+inline ValuePlanes make_value_planes(const Barycentrics& t, const glm::vec4 (&values)[3]) {
+  ValuePlanes planes;
   const auto weighted = [&](const float(&share)[3], float(&sums)[4]) {
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 4; ++k)
       sums[k] = (share[0] * values[0][k] + share[1] * values[1][k]) + share[2] * values[2][k];
-    sums[3] = (share[0] + share[1]) + share[2];
   };
   weighted(t.a, planes.a);
   weighted(t.b, planes.b);
   weighted(t.c, planes.c);
-  planes.x = t.x;
-  planes.y = t.y;
   return planes;
 }
 
-// REQUIRES: the planes are of proper Barycentrics; the triangle covers the pixel.
-inline glm::vec3 value_at(const ColourPlanes& t, int x, int y) {
-  const auto dx = static_cast<float>(x - t.x);
-  const auto dy = static_cast<float>(y - t.y);
-  float sums[4];
-  for (int k = 0; k < 4; ++k) sums[k] = t.a[k] * dx + (t.b[k] * dy + t.c[k]);
-  const float share = 1 / sums[3];
-  return {sums[0] * share, sums[1] * share, sums[2] * share};
+// Before the division. dx and dy: as in Barycentrics.
+inline glm::vec4 sums_at(const ValuePlanes& planes, float dx, float dy) {
+  glm::vec4 sums;
+  for (int k = 0; k < 4; ++k) sums[k] = planes.a[k] * dx + (planes.b[k] * dy + planes.c[k]);
+  return sums;
+}
+
+// Of three values and 1. REQUIRES: the barycentrics are proper; the triangle covers the pixel.
+inline glm::vec3 value_at(const ValuePlanes& planes, const Barycentrics& t, int x, int y) {
+  const glm::vec4 sums = sums_at(planes, static_cast<float>(x - t.x), static_cast<float>(y - t.y));
+  return glm::vec3(sums) * (1 / sums.w);
 }
 
 }  // namespace delray::raster

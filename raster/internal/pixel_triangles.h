@@ -10,9 +10,8 @@
 
 namespace delray::raster {
 
-// ColourPlanes, in the way that vectors want them.
-struct alignas(64) PixelTriangle {
-  float a[4], b[4], c[4];
+// Four values, and the pixel that their planes are relative to.
+struct alignas(64) PixelTriangle : ValuePlanes {
   float x, y, unused[2];
 };
 static_assert(sizeof(PixelTriangle) == 64);
@@ -58,9 +57,10 @@ void set_up_planes(const Screen& screen, const ScreenVertices& vertices, std::si
                    const CornerNumbers& corners, std::size_t count, std::uint32_t first_vertex,
                    TrianglePlanes& planes, std::size_t first, ClusterFacing& facing);
 
-// make_colour_planes of the first triangles, as many as there are, and perhaps of some more.
+// make_value_planes of the first triangles, as many as there are, and perhaps of some more.
 //
-// REQUIRES: radiances has all corners; triangles has room up to the next multiple of 16.
+// REQUIRES: radiances has all corners; their fourth value is 1 where it matters; triangles has room
+// up to the next multiple of 16.
 void set_up_colours(const TrianglePlanes& planes, std::span<const glm::vec4> radiances,
                     std::size_t count, PixelTriangle* triangles);
 

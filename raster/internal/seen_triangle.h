@@ -27,19 +27,20 @@ glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint
 
 // A triangle with its vertices' attributes in the world.
 struct SeenTriangle {
-  Barycentrics barycentrics;         // from view coordinates
-  Barycentrics screen_barycentrics;  // from the screen where they can be; for Gouraud shading
+  Barycentrics barycentrics;  // from the screen where they can be
   const scenes::Material* material = nullptr;
-  bool has_uv = false, has_tangent = false, blended = false;
+  bool has_uv = false, has_tangent = false, has_colour = false, blended = false;
   bool front = false;                       // the viewer sees the mesh's counter-clockwise side
   bool own_normal[3] = {}, agrees[3] = {};  // of corner k: there is one; see normal_agrees()
   glm::vec3 geometric_normal{0, 0, 1};
   glm::vec3 position[3], normal[3];
   glm::vec4 tangent[3], colour[3];
   glm::vec2 uv[3];
-  // For Gouraud shading: of the vertices, and between them where the barycentrics are proper.
-  glm::vec3 radiance[3];
-  ColourPlanes radiance_planes;
+  glm::vec3 radiance[3];  // of the vertices, for Gouraud shading
+  // Where the barycentrics are proper: of these, with a fourth value of 1 for positions and
+  // radiances, else 0.
+  ValuePlanes position_planes, normal_planes, tangent_planes, colour_planes, uv_planes;
+  ValuePlanes radiance_planes;
 };
 
 // Of a triangle of a mesh, from its vertices on the screen if all of them are inside.

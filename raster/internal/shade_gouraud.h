@@ -8,20 +8,11 @@
 #include <vector>
 
 #include "image/image.h"
+#include "raster/internal/shade_row.h"
 #include "raster/internal/tile_triangles.h"
 #include "raster/internal/world_vertices.h"
 
 namespace delray::raster {
-
-// Stores the colours of pixels x .. x + count - 1 of row y. Where a run of pixels starts there is a
-// bit of `starts`, the first one for the first pixel; run i shows triangle runs[i], or transparent
-// black where that is kNoTriangle. `pixels` may be changed up to the next multiple of kBlockSize.
-//
-// REQUIRES: count <= kTileSize; no run starts after the last pixel.
-void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
-               const std::uint16_t* runs, int x, int y, int count, image::Rgba8* pixels);
-void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
-               const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels);
 
 // Memory for a tile. One per thread. Vertices are lit together with those of other clusters.
 class GouraudTile {

@@ -20,8 +20,11 @@ struct FrameShading {
   const shading::Shader& shader;
   const DrawList& list;
   std::vector<ShadedDraw> draws;             // of the list's draws
+  shading::BatchShader batch;                // the shader for many points at a time; for phong
   std::vector<scenes::Material> untextured;  // the shader's materials without textures; for gouraud
   shading::BatchShader untextured_batch;     // the same, for many vertices at a time
+  // Whether any draw so far has colours of vertices, a material with a texture, with a normal map.
+  bool any_colours = false, any_textures = false, any_normal_maps = false;
   Lighting lighting;
   // Images get distances along the view axis rather than -near / distance.
   bool distances;
@@ -82,8 +85,8 @@ void shade_pixel(const FrameShading& frame, SeenTriangles& seen, std::uint32_t n
                  Colour& pixel);
 
 // Writes colour and depth of the pixels of `rect` (of the frame, within the tile) to the window.
-// Returns how many of them show something. One by one: for gouraud, internal/shade_gouraud.h has a
-// faster way to the same colours.
+// Returns how many of them show something. One by one: internal/shade_gouraud.h and
+// internal/shade_phong.h have faster ways to the same colours.
 template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                          const geometry::Rect& rect, const Window<Colour>& window);

@@ -13,13 +13,6 @@
 
 namespace delray::raster {
 
-// Most vectors have so many lanes at most, and rows of pixels are stored so many at a time.
-inline constexpr int kBlockSize = 16;
-
-// The depths of `count` keys, or the distances that they stand for if `near` is not 0, infinity
-// where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
-void store_depths(const std::int64_t* keys, int count, float near, float* depths);
-
 // Triangles of a cluster that a tile shows, and what they use.
 struct ClusterMembers {
   const TileGroups::Group* group = nullptr;
@@ -49,9 +42,9 @@ class TileTriangles {
   TrianglePlanes& planes() { return planes_; }
   const TrianglePlanes& planes() const { return planes_; }
 
-  // Calls wanted(group), and for those that are, some groups later, set_up(members). The triangles
-  // of the others are left to shade_pixel.
-  using Wanted = parallel::FunctionRef<bool(const Draw&)>;
+  // Calls wanted(draw) of each group, and for those that are, some groups later, set_up(members).
+  // The triangles of the others are left to shade_pixel.
+  using Wanted = parallel::FunctionRef<bool(std::uint32_t)>;
   using SetUp = parallel::FunctionRef<void(const ClusterMembers&)>;
   void for_each_group(const FrameShading& frame, Wanted wanted, SetUp set_up);
   // The triangles' planes; their vertices get numbers from first_vertex on. Those that are not
@@ -73,7 +66,7 @@ class TileTriangles {
   bool is_left(std::size_t triangle) const { return left_[triangle] != 0; }
 
   // Writes colours and depths of what was found to the window. shade_row(starts, runs, x, y, count,
-  // pixels) stores a row's colours, as in internal/shade_gouraud.h.
+  // pixels) stores a row's colours, as in internal/shade_row.h.
   template <class Colour>
   using ShadeRow =
       parallel::FunctionRef<void(std::uint64_t, const std::uint16_t*, int, int, int, Colour*)>;

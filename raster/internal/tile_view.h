@@ -7,6 +7,7 @@
 #include "composite/deep.h"
 #include "raster/internal/blended.h"
 #include "raster/internal/shade_gouraud.h"
+#include "raster/internal/shade_phong.h"
 
 namespace delray::raster {
 
@@ -14,6 +15,7 @@ namespace delray::raster {
 struct TileMemory {
   SeenTriangles seen;
   GouraudTile gouraud;
+  PhongTile phong;
   VisibilityTile visibility;  // of a tile in which there are large triangles only
   std::vector<BlendedFragment> blended;
   std::vector<composite::Fragment> fragments;

@@ -19,7 +19,7 @@ struct WorldVertices {
 
 // Element i of the result is vertex which[i] of the draw's mesh. Runs in the calling thread.
 //
-// REQUIRES: 1 <= which.size() <= kClusterVertices; the mesh has normals.
+// REQUIRES: 1 <= which.size() <= kClusterVertices.
 void to_world(const Draw& draw, const ShadedDraw& shaded, std::span<const std::uint32_t> which,
               WorldVertices& vertices);
 

@@ -160,13 +160,14 @@ TEST(Interpolate, ProperPlanesGiveTheColoursOfBoundedShares) {
     if (!t.proper) continue;
     glm::vec3 colours[3];
     for (glm::vec3& colour : colours) colour = {unit(random), unit(random), unit(random)};
-    const ColourPlanes planes = make_colour_planes(t, colours);
+    const ValuePlanes planes =
+        make_value_planes(t, {{colours[0], 1}, {colours[1], 1}, {colours[2], 1}});
     for (int i = 0; i < 40; ++i) {
       const int x = static_cast<int>(random() % 320), y = static_cast<int>(random() % 200);
       double exact[3];
       if (!exact_weights(screen.view, v, x, y, exact)) continue;
       const glm::vec3 bounded = interpolate(weights_at(t, x, y), colours);
-      const glm::vec3 value = value_at(planes, x, y);
+      const glm::vec3 value = value_at(planes, t, x, y);
       for (int k = 0; k < 3; ++k) ASSERT_NEAR(value[k], bounded[k], 1.0F / 32) << round;
       ++checked;
     }

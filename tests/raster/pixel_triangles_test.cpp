@@ -95,16 +95,16 @@ TEST(PixelTriangles, ColoursAreThoseOfTrianglesAlone) {
       for (int k = 0; k < 3; ++k) planes->corner[k][i] = corners[i][k];
     set_up_colours(*planes, radiances, barycentrics.size(), triangles.data());
     for (std::size_t i = 0; i < barycentrics.size(); ++i) {
-      glm::vec3 colours[3];
-      for (int k = 0; k < 3; ++k) colours[k] = glm::vec3(radiances[corners[i][k]]);
-      const ColourPlanes expected = make_colour_planes(barycentrics[i], colours);
+      glm::vec4 colours[3];
+      for (int k = 0; k < 3; ++k) colours[k] = radiances[corners[i][k]];
+      const ValuePlanes expected = make_value_planes(barycentrics[i], colours);
       for (int k = 0; k < 4; ++k) {
         ASSERT_EQ(triangles[i].a[k], expected.a[k]);
         ASSERT_EQ(triangles[i].b[k], expected.b[k]);
         ASSERT_EQ(triangles[i].c[k], expected.c[k]);
       }
-      ASSERT_EQ(triangles[i].x, static_cast<float>(expected.x));
-      ASSERT_EQ(triangles[i].y, static_cast<float>(expected.y));
+      ASSERT_EQ(triangles[i].x, static_cast<float>(barycentrics[i].x));
+      ASSERT_EQ(triangles[i].y, static_cast<float>(barycentrics[i].y));
     }
   });
 }

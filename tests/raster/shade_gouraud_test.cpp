@@ -2,73 +2,21 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <random>
 
 #include "image/srgb.h"
-#include "raster/internal/draw_into_tiles.h"
 #include "scenes/generate.h"
 #include "tests/raster/random_scene.h"
-#include "tests/raster/targets.h"
+#include "tests/raster/shade_both_ways.h"
 
 namespace delray::raster {
 namespace {
 
 template <class Colour>
-void expect_same(const image::BasicImage<Colour>& a, const image::BasicImage<Colour>& b) {
-  EXPECT_EQ(std::memcmp(a.colour.data(), b.colour.data(), a.pixels() * sizeof(Colour)), 0);
-  EXPECT_EQ(std::memcmp(a.depth.data(), b.depth.data(), a.pixels() * sizeof(float)), 0);
-}
-
-// Shades a scene by vectors, on every target, and pixel by pixel.
-template <class Colour>
 void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& camera, int width,
                               int height) {
-  const Screen screen = make_screen(scenes::make_view(camera, width, height));
-  const shading::Shader shader = shading::make_shader(scene);
-  SceneClusters clusters(scene.meshes);
-  const std::vector<std::uint64_t> first = scenes::first_primitives(scene);
-  const DrawList list = make_draw_list(pieces_of(scene, first, 0, first.back()), &clusters);
-  const std::vector<PreparedDraw> draws = prepare_draws(screen, list, shader, false);
-  const geometry::Rect frame_rect = screen.frame();
-  const TileJobs jobs = make_tile_jobs(screen, {&frame_rect, 1});
-  const DrawIntoTiles task{
-      screen, list, draws, jobs.wanted, true, [](std::uint32_t, int, int) { return true; }, {}};
-  FrameTiles tiles;
-  std::vector<std::unique_ptr<Worker>> workers;
-  LaterTriangles later;
-  DrawCosts costs;
-  tiles.begin(screen, jobs);
-  draw_into_tiles(task, tiles, workers, later, costs);
-  for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, later.large, tiles);
-
-  const FrameShading frame =
-      make_frame_shading(screen, shader, list, Lighting::gouraud, width % 2 == 0);
-  SeenTriangles seen;
-  seen.clear();
-  GouraudTile gouraud;
-  image::BasicImage<Colour> expected(width, height), image(width, height);
-  std::uint64_t shown = 0;
-  for (const TileJob& job : jobs.jobs)
-    shown +=
-        shade_tile(frame, seen, tiles.open(job.tile), screen.tile(job.tile), window_of(expected));
-  for_each_target([&] {
-    image::clear(image);
-    std::uint64_t shown_by_vectors = 0;
-    for (const TileJob& job : jobs.jobs) {
-      // Whole, or in two parts of which the first ends within a vector.
-      const geometry::Rect r = screen.tile(job.tile);
-      const int x = job.tile % 2 == 0 ? r.x1 : std::min(r.x0 + 23, r.x1);
-      for (const geometry::Rect& part :
-           {geometry::Rect{r.x0, r.y0, x, r.y1}, geometry::Rect{x, r.y0, r.x1, r.y1}})
-        if (!part.empty())
-          shown_by_vectors +=
-              gouraud.shade(frame, seen, tiles.open(job.tile), part, window_of(image));
-    }
-    EXPECT_EQ(shown_by_vectors, shown);
-    expect_same(image, expected);
-  });
-  EXPECT_GT(shown, expected.pixels() / 4);
+  raster::expect_as_pixel_by_pixel<Colour, GouraudTile>(scene, camera, width, height,
+                                                        Lighting::gouraud);
 }
 
 TEST(ShadeGouraud, GivesWhatPixelByPixelGives) {

@@ -1,0 +1,41 @@
+// Phong shading of a tile's visible pixels: the material's model at every one, sixteen at a time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "raster/internal/point_planes.h"
+#include "raster/internal/tile_triangles.h"
+
+namespace delray::raster {
+
+// Memory for a tile. One per thread.
+class PhongTile {
+ public:
+  // As shade_tile does it, without asking `seen` but for triangles that something may be seen
+  // through, or whose barycentrics are not proper.
+  template <class Colour>
+  std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
+                      const geometry::Rect& rect, const Window<Colour>& window);
+
+ private:
+  void make_room(const FrameShading& frame);
+  void set_up_group(const FrameShading& frame, const ClusterMembers& members);
+  void set_up_world(const FrameShading& frame, const ClusterMembers& members);
+  template <class Row>
+  void set_up_values(const ClusterMembers& members, std::vector<ValuePlanes>& planes,
+                     const Row& row);
+  // Of triangles which[i] at the pixels from (x, y) on, where the bit of `shown` is set.
+  void shade_block(const FrameShading& frame, const std::uint16_t (&which)[shading::kBlockPoints],
+                   shading::LaneMask shown, int x, int y);
+
+  TileTriangles triangles_;
+  PointPlanes planes_;
+  std::vector<std::uint32_t> kinds_;  // of triangles: 2 * material, 1 more with colours of vertices
+  WorldVertices world_vertices_;
+  VertexRows rows_;
+  shading::Points points_;
+  shading::Shaded shaded_;
+};
+
+}  // namespace delray::raster

@@ -1,0 +1,37 @@
+// Rows of pixels, by vectors.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "image/image.h"
+#include "raster/internal/pixel_triangles.h"
+#include "shading/points.h"
+
+namespace delray::raster {
+
+// Rows are stored so many pixels at a time.
+inline constexpr int kBlockSize = shading::kBlockPoints;
+
+// Stores the colours of pixels x .. x + count - 1 of row y. Where a run of pixels starts there is a
+// bit of `starts`, the first one for the first pixel; run i shows triangle runs[i], or transparent
+// black where that is kNoTriangle. `pixels` may be changed up to the next multiple of kBlockSize.
+//
+// REQUIRES: count <= kTileSize; no run starts after the last pixel.
+void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
+               const std::uint16_t* runs, int x, int y, int count, image::Rgba8* pixels);
+void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
+               const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels);
+
+// Stores kBlockSize linear colours, opaque, or transparent black where the bit of `shown` is not
+// set.
+void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
+                   image::Rgba8* pixels);
+void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
+                   image::RgbaF* pixels);
+
+// The depths of `count` keys, or the distances that they stand for if `near` is not 0, infinity
+// where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
+void store_depths(const std::int64_t* keys, int count, float near, float* depths);
+
+}  // namespace delray::raster

@@ -1,0 +1,155 @@
+#include "raster/internal/shade_phong.h"
+
+#include <bit>
+
+#include "raster/internal/shade_row.h"
+
+namespace delray::raster {
+
+// Attributes that no draw has take no memory, and no time.
+void PhongTile::make_room(const FrameShading& frame) {
+  const std::size_t room = triangles_.size() + kBlockSize;
+  const auto make = [&](auto& planes, bool wanted) {
+    if (!wanted)
+      planes.clear();
+    else if (planes.size() < room)
+      planes.resize(room);
+  };
+  make(planes_.position, true);
+  make(planes_.normal, true);
+  make(planes_.geometric, true);
+  make(kinds_, true);
+  make(planes_.colour, frame.any_colours);
+  make(planes_.uv, frame.any_textures);
+  make(planes_.tangent, frame.any_normal_maps);
+}
+
+void PhongTile::set_up_world(const FrameShading& frame, const ClusterMembers& members) {
+  const std::uint32_t number = frame.list.clusters[members.group->cluster].draw;
+  const Draw& draw = frame.list.draws[number];
+  if (draw.transformed == nullptr) {
+    to_world(draw, frame.draws[number], members.vertices, world_vertices_);
+    return;
+  }
+  WorldVertices& to = world_vertices_;
+  for (std::size_t i = 0; i < members.vertices.size(); ++i) {
+    const std::uint32_t vertex = members.vertices[i];
+    const auto& world = draw.transformed->world;
+    const glm::vec3 position = world.empty() ? glm::vec3(0.0F) : world[vertex];
+    const glm::vec3 normal =
+        draw.mesh->normals.empty() ? glm::vec3(0.0F) : draw.mesh->normals[vertex];
+    for (int k = 0; k < 3; ++k) {
+      to.position[k][i] = position[k];
+      to.normal[k][i] = normal[k];
+    }
+    to.has_normal[i] = normal != glm::vec3(0.0F);
+  }
+}
+
+template <class Row>
+void PhongTile::set_up_values(const ClusterMembers& members, std::vector<ValuePlanes>& planes,
+                              const Row& row) {
+  for (std::size_t i = 0; i < members.vertices.size(); ++i) {
+    const glm::vec4 values = row(members.vertices[i]);
+    for (int k = 0; k < 4; ++k) rows_.row[i][k] = values[k];
+  }
+  raster::set_up_values(rows_, members.corners, members.group->count, triangles_.planes(),
+                        members.group->first, planes.data());
+}
+
+void PhongTile::set_up_group(const FrameShading& frame, const ClusterMembers& members) {
+  const TileGroups::Group& group = *members.group;
+  const std::uint32_t number = frame.list.clusters[group.cluster].draw;
+  const Draw& draw = frame.list.draws[number];
+  const ShadedDraw& shaded = frame.draws[number];
+  const scenes::Mesh& mesh = *draw.mesh;
+  ClusterFacing facing;
+  triangles_.set_up_planes(frame, members, 0, facing);
+  set_up_world(frame, members);
+  set_up_points(world_vertices_, members.vertices.size(), members.corners, group.count,
+                shaded.handedness, triangles_.planes(), group.first, planes_);
+
+  if (!planes_.colour.empty() && !mesh.colours.empty())
+    set_up_values(members, planes_.colour, [&](std::uint32_t v) { return mesh.colours[v]; });
+  if (!planes_.uv.empty())
+    set_up_values(members, planes_.uv, [&](std::uint32_t v) {
+      return mesh.uvs.empty() ? glm::vec4(0.0F) : glm::vec4(mesh.uvs[v], 0, 0);
+    });
+  if (!planes_.tangent.empty()) {
+    const auto tangent_of = [&](std::uint32_t v) {
+      if (mesh.tangents.empty()) return glm::vec4(0.0F);
+      return draw.transformed == nullptr ? tangent_in_world(draw, shaded, v) : mesh.tangents[v];
+    };
+    set_up_values(members, planes_.tangent,
+                  [&](std::uint32_t v) { return glm::vec4(glm::vec3(tangent_of(v)), 0); });
+    for (std::size_t i = 0; i < group.count; ++i)
+      planes_.geometric[group.first + i].w =
+          tangent_of(members.vertices[members.corners.of[0][i]]).w;
+  }
+
+  const auto material = static_cast<std::uint32_t>(&shading::material(frame.shader, mesh.material) -
+                                                   frame.shader.materials.data());
+  std::fill_n(kinds_.begin() + group.first, group.count,
+              2 * material + (mesh.colours.empty() ? 0U : 1U));
+}
+
+void PhongTile::shade_block(const FrameShading& frame,
+                            const std::uint16_t (&which)[shading::kBlockPoints],
+                            shading::LaneMask shown, int x, int y) {
+  set_points(planes_, which, x, y, points_);
+  const scenes::View& view = frame.screen.view;
+  shading::Vectors16 views;
+  shading::directions_to(view.eye, -view.forward, points_.position, views);
+  for (shading::LaneMask rest = shown; rest != 0;) {
+    const std::uint32_t kind = kinds_[which[std::countr_zero(rest)]];
+    shading::LaneMask lanes = 0;
+    for (int i = 0; i < shading::kBlockPoints; ++i)
+      lanes |= shading::LaneMask{kinds_[which[i]] == kind} << i;
+    points_.coloured = kind % 2 != 0;
+    shading::shade(frame.batch, kind / 2, points_, views, lanes & rest, {}, shaded_);
+    rest &= ~lanes;
+  }
+}
+
+template <class Colour>
+std::uint64_t PhongTile::shade(const FrameShading& frame, SeenTriangles& seen,
+                               const VisibilityTile& tile, const geometry::Rect& rect,
+                               const Window<Colour>& window) {
+  const std::uint64_t shown = triangles_.find(tile, rect);
+  make_room(frame);
+  triangles_.for_each_group(
+      frame, [&](std::uint32_t draw) { return !frame.draws[draw].blended; },
+      [&](const ClusterMembers& members) { set_up_group(frame, members); });
+  triangles_.write<Colour>(
+      frame, seen, tile, rect, window,
+      [&](std::uint64_t starts, const std::uint16_t* run, int x, int y, int count, Colour* pixels) {
+        starts &= ~std::uint64_t{1};  // the first run has begun
+        for (int i = 0; i < count; i += kBlockSize) {
+          std::uint16_t which[shading::kBlockPoints];
+          shading::LaneMask shown_here = 0;
+          // Pixels without a triangle have that of a neighbour.
+          std::uint16_t some = kNoTriangle;
+          for (int k = 0; k < kBlockSize; ++k) {
+            if (i + k < count) run += starts >> (i + k) & 1;
+            const bool drawn = *run != kNoTriangle && i + k < count;
+            shown_here |= shading::LaneMask{drawn} << k;
+            which[k] = *run;
+            if (drawn) some = *run;
+          }
+          if (shown_here != 0) {
+            for (std::uint16_t& triangle : which)
+              if (triangle == kNoTriangle) triangle = some;
+            shade_block(frame, which, shown_here, x + i, y);
+          }
+          store_colours(shaded_.colour, shown_here, pixels + i);
+        }
+      });
+  return shown;
+}
+
+template std::uint64_t PhongTile::shade(const FrameShading&, SeenTriangles&, const VisibilityTile&,
+                                        const geometry::Rect&, const Window<image::Rgba8>&);
+template std::uint64_t PhongTile::shade(const FrameShading&, SeenTriangles&, const VisibilityTile&,
+                                        const geometry::Rect&, const Window<image::RgbaF>&);
+
+}  // namespace delray::raster
