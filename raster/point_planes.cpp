@@ -141,13 +141,13 @@ void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std
 // Some lanes of a block: the arithmetic of point_at.
 class LanePoints {
  public:
-  HWY_INLINE LanePoints(const PointPlanes& planes, const std::uint16_t* which, int x, int y)
-      : which_(which) {
+  HWY_INLINE LanePoints(const PointPlanes& planes, const PixelBlock& block, std::size_t first)
+      : which_(block.triangle + first) {
     for (std::size_t i = 0; i < hn::Lanes(Floats()); ++i) {
-      const PixelTriangle& t = planes.position[which[i]];
-      dx_[i] = static_cast<float>(x + static_cast<int>(i)) - t.x;
-      dy_[i] = static_cast<float>(y) - t.y;
-      all_same_ &= which[i] == which[0];
+      const PixelTriangle& t = planes.position[which_[i]];
+      dx_[i] = block.x[first + i] - t.x;
+      dy_[i] = block.y[first + i] - t.y;
+      all_same_ &= which_[i] == which_[0] && dy_[i] == dy_[0];
     }
   }
 
@@ -184,10 +184,10 @@ class LanePoints {
   bool all_same_ = true;
 };
 
-HWY_INLINE void set_some(const PointPlanes& planes, const std::uint16_t* which, int x, int y,
-                         std::size_t to, shading::Points& points) {
+HWY_INLINE void set_some(const PointPlanes& planes, const PixelBlock& block, std::size_t to,
+                         shading::Points& points) {
   const Floats d;
-  const LanePoints lanes(planes, which, x, y);
+  const LanePoints lanes(planes, block, to);
   const FourVectors<F> position = lanes.sums(planes.position);
   const F share = hn::Div(hn::Set(d, 1.0F), position.v[3]);
   store(times(of(position), share), points.position, to);
@@ -229,10 +229,9 @@ HWY_INLINE void set_some(const PointPlanes& planes, const std::uint16_t* which, 
   }
 }
 
-void set_points(const PointPlanes& planes, const std::uint16_t* which, int x, int y,
-                shading::Points& points) {
+void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Points& points) {
   for (std::size_t i = 0; i < shading::kBlockPoints; i += hn::Lanes(Floats()))
-    set_some(planes, which + i, x + static_cast<int>(i), y, i, points);
+    set_some(planes, block, i, points);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -256,9 +255,8 @@ void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std
                    const TrianglePlanes& barycentrics, std::size_t first, ValuePlanes* planes) {
   HWY_DYNAMIC_DISPATCH(set_up_values)(vertices, corners, count, barycentrics, first, planes);
 }
-void set_points(const PointPlanes& planes, const std::uint16_t (&which)[shading::kBlockPoints],
-                int x, int y, shading::Points& points) {
-  HWY_DYNAMIC_DISPATCH(set_points)(planes, which, x, y, points);
+void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Points& points) {
+  HWY_DYNAMIC_DISPATCH(set_points)(planes, block, points);
 }
 
 }  // namespace delray::raster

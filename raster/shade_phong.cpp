@@ -1,5 +1,6 @@
 #include "raster/internal/shade_phong.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "raster/internal/shade_row.h"
@@ -90,23 +91,22 @@ void PhongTile::set_up_group(const FrameShading& frame, const ClusterMembers& me
   const auto material = static_cast<std::uint32_t>(&shading::material(frame.shader, mesh.material) -
                                                    frame.shader.materials.data());
   std::fill_n(kinds_.begin() + group.first, group.count,
-              2 * material + (mesh.colours.empty() ? 0U : 1U));
+              4 * material + (shaded.blended ? 2U : 0U) + (mesh.colours.empty() ? 0U : 1U));
 }
 
-void PhongTile::shade_block(const FrameShading& frame,
-                            const std::uint16_t (&which)[shading::kBlockPoints],
-                            shading::LaneMask shown, int x, int y) {
-  set_points(planes_, which, x, y, points_);
+void PhongTile::shade_block(const FrameShading& frame, shading::LaneMask shown) {
+  set_points(planes_, block_, points_);
   const scenes::View& view = frame.screen.view;
   shading::Vectors16 views;
   shading::directions_to(view.eye, -view.forward, points_.position, views);
+  const std::uint16_t* const triangle = block_.triangle;
   for (shading::LaneMask rest = shown; rest != 0;) {
-    const std::uint32_t kind = kinds_[which[std::countr_zero(rest)]];
+    const std::uint32_t kind = kinds_[triangle[std::countr_zero(rest)]];
     shading::LaneMask lanes = 0;
-    for (int i = 0; i < shading::kBlockPoints; ++i)
-      lanes |= shading::LaneMask{kinds_[which[i]] == kind} << i;
+    for (int i = 0; i < kBlockSize; ++i)
+      lanes |= shading::LaneMask{kinds_[triangle[i]] == kind} << i;
     points_.coloured = kind % 2 != 0;
-    shading::shade(frame.batch, kind / 2, points_, views, lanes & rest, {}, shaded_);
+    shading::shade(frame.batch, kind / 4, points_, views, lanes & rest, {}, shaded_);
     rest &= ~lanes;
   }
 }
@@ -125,7 +125,6 @@ std::uint64_t PhongTile::shade(const FrameShading& frame, SeenTriangles& seen,
       [&](std::uint64_t starts, const std::uint16_t* run, int x, int y, int count, Colour* pixels) {
         starts &= ~std::uint64_t{1};  // the first run has begun
         for (int i = 0; i < count; i += kBlockSize) {
-          std::uint16_t which[shading::kBlockPoints];
           shading::LaneMask shown_here = 0;
           // Pixels without a triangle have that of a neighbour.
           std::uint16_t some = kNoTriangle;
@@ -133,18 +132,63 @@ std::uint64_t PhongTile::shade(const FrameShading& frame, SeenTriangles& seen,
             if (i + k < count) run += starts >> (i + k) & 1;
             const bool drawn = *run != kNoTriangle && i + k < count;
             shown_here |= shading::LaneMask{drawn} << k;
-            which[k] = *run;
+            block_.triangle[k] = *run;
+            block_.x[k] = static_cast<float>(x + i + k);
+            block_.y[k] = static_cast<float>(y);
             if (drawn) some = *run;
           }
           if (shown_here != 0) {
-            for (std::uint16_t& triangle : which)
+            for (std::uint16_t& triangle : block_.triangle)
               if (triangle == kNoTriangle) triangle = some;
-            shade_block(frame, which, shown_here, x + i, y);
+            shade_block(frame, shown_here);
           }
           store_colours(shaded_.colour, shown_here, pixels + i);
         }
       });
   return shown;
+}
+
+void PhongTile::some_colours(const FrameShading& frame, SeenTriangles& seen,
+                             std::span<const SurfaceAt> surfaces, image::RgbaF* colours) {
+  numbers_.clear();
+  for (const SurfaceAt& surface : surfaces) numbers_.push_back(surface.number);
+  const std::vector<std::uint16_t> triangles = triangles_.set(numbers_);
+  make_room(frame);
+  triangles_.for_each_group(
+      frame, [](std::uint32_t) { return true; },
+      [&](const ClusterMembers& members) { set_up_group(frame, members); });
+  for (std::size_t first = 0; first < surfaces.size(); first += kBlockSize) {
+    const int count = static_cast<int>(std::min<std::size_t>(kBlockSize, surfaces.size() - first));
+    shading::LaneMask proper = 0;
+    for (int i = 0; i < kBlockSize; ++i) {
+      // The last block repeats its last surface.
+      const std::size_t which = first + static_cast<std::size_t>(std::min(i, count - 1));
+      block_.triangle[i] = triangles[which];
+      block_.x[i] = static_cast<float>(surfaces[which].x);
+      block_.y[i] = static_cast<float>(surfaces[which].y);
+      proper |= shading::LaneMask{i < count && !triangles_.is_left(triangles[which])} << i;
+    }
+    if (proper != 0) shade_block(frame, proper);
+    for (int i = 0; i < count; ++i) {
+      const SurfaceAt& surface = surfaces[first + static_cast<std::size_t>(i)];
+      image::RgbaF& colour = colours[first + static_cast<std::size_t>(i)];
+      if ((proper >> i & 1) == 0) {
+        colour = colour_at(frame, seen, surface.number, surface.x, surface.y);
+        continue;
+      }
+      const float alpha = (kinds_[block_.triangle[i]] & 2) != 0 ? shaded_.alpha[i] : 1.0F;
+      colour = premultiplied(shaded_.colour.get(i), alpha);
+    }
+  }
+}
+
+void PhongTile::colours(const FrameShading& frame, SeenTriangles& seen,
+                        std::span<const SurfaceAt> surfaces, image::RgbaF* colours) {
+  for (std::size_t first = 0; first < surfaces.size(); first += kTilePixels)
+    some_colours(
+        frame, seen,
+        surfaces.subspan(first, std::min<std::size_t>(kTilePixels, surfaces.size() - first)),
+        colours + first);
 }
 
 template std::uint64_t PhongTile::shade(const FrameShading&, SeenTriangles&, const VisibilityTile&,

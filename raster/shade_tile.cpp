@@ -45,10 +45,6 @@ glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x
   return lit * glm::vec3(shading::sample(frame.shader.textures[texture], uv, footprint));
 }
 
-image::RgbaF premultiplied(const glm::vec3& colour, float alpha) {
-  return {colour.x * alpha, colour.y * alpha, colour.z * alpha, alpha};
-}
-
 float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
   return seen.blended == 0
              ? 1.0F

@@ -15,12 +15,11 @@
 namespace delray::raster {
 namespace {
 
-// All surfaces seen at the samples, those of a pixel together. Of each payload_of(tile, number, x,
-// y) is kept unless it is nothing.
+// All surfaces seen at the samples, those of a pixel together. for_each(tile, rect, add) calls
+// add(x, y, key, payload) for those of a tile, pixel by pixel, front to back.
 template <class Payload, class F>
 composite::DeepImage<Payload> end_deep(Rank& rank, const DrawList& list, RegionDrawing& drawing,
-                                       F&& payload_of) {
-  using composite::is_opaque;
+                                       F&& for_each) {
   const int n = rank.options.supersampling;
   std::vector<composite::DeepTile<Payload>> tiles(static_cast<std::size_t>(rank.screen.tiles()));
   const auto index_of = [&](int x, int y) {
@@ -34,19 +33,14 @@ composite::DeepImage<Payload> end_deep(Rank& rank, const DrawList& list, RegionD
     const geometry::Rect& rect = rects.front();
     composite::DeepTile<Payload>& deep =
         tiles[rect.y0 / kTileSize * rank.screen.tiles_x + rect.x0 / kTileSize];
-    tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
-      const std::size_t before = deep.fragments.size();
-      for (const std::int64_t key : keys) {
-        const std::optional<Payload> payload = payload_of(tile, number_of(key), x, y);
-        if (!payload) continue;
-        const std::uint64_t primitive = list.primitive_of(number_of(key));
-        deep.fragments.push_back({*payload, depth_of(key), static_cast<std::uint32_t>(primitive),
-                                  static_cast<std::uint32_t>(primitive >> 32)});
-        if (is_opaque(*payload)) break;
-      }
-      if (deep.fragments.size() > before)
-        deep.pixels.push_back(
-            {index_of(x, y), static_cast<std::uint32_t>(deep.fragments.size() - before)});
+    for_each(tile, rect, [&](int x, int y, std::int64_t key, const Payload& payload) {
+      const std::uint64_t primitive = list.primitive_of(number_of(key));
+      deep.fragments.push_back({payload, depth_of(key), static_cast<std::uint32_t>(primitive),
+                                static_cast<std::uint32_t>(primitive >> 32)});
+      const std::uint64_t index = index_of(x, y);
+      if (deep.pixels.empty() || deep.pixels.back().index != index)
+        deep.pixels.push_back({index, 0});
+      ++deep.pixels.back().size;
     });
   });
   return {rank.options.width * n * n, rank.options.height, std::move(tiles)};
@@ -88,11 +82,13 @@ composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
 // Transparent surfaces have to be blended in one order over all ranks.
 std::unique_ptr<composite::Layer> draw_surfaces(Rank& rank, const DrawList& list,
                                                 RegionDrawing& drawing) {
-  const auto colour_of = [](TileView& tile, std::uint32_t number, int x, int y) {
-    const image::RgbaF colour = tile.colour(number, x, y);
-    return colour.a > 0 ? std::optional(colour) : std::nullopt;
-  };
-  return composite::make_deep(end_deep<image::RgbaF>(rank, list, drawing, colour_of));
+  return composite::make_deep(end_deep<image::RgbaF>(
+      rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
+        tile.for_each_surface(rect, [&](int x, int y, std::span<const SurfaceSeen> surfaces) {
+          for (const SurfaceSeen& surface : surfaces)
+            if (surface.colour.a > 0) add(x, y, surface.key, surface.colour);
+        });
+      }));
 }
 
 template <class Colour>
@@ -103,10 +99,16 @@ composite::Part blend_surfaces(Rank& rank, composite::Part&& part) {
 
 std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
                                               RegionDrawing& drawing) {
-  const auto point_of = [](TileView& tile, std::uint32_t number, int x, int y) {
-    return std::optional(point_seen(tile.frame(), tile.seen(), number, x, y));
-  };
-  return composite::make_deep(end_deep<SeenPoint>(rank, list, drawing, point_of));
+  return composite::make_deep(end_deep<SeenPoint>(
+      rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
+        tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
+          for (const std::int64_t key : keys) {
+            const SeenPoint point = point_seen(tile.frame(), tile.seen(), number_of(key), x, y);
+            add(x, y, key, point);
+            if (is_opaque(point)) break;
+          }
+        });
+      }));
 }
 
 template <class Colour>

@@ -61,15 +61,12 @@ bool shows_any(const TileView& tile, const geometry::Rect& rect,
 void append_surfaces(TileView& tile, const geometry::Rect& rect,
                      std::span<const PrimitiveRange> passed_over,
                      TileFragments<image::RgbaF>& seen) {
-  tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
-    for (const std::int64_t key : keys) {
-      const image::RgbaF colour = tile.colour(number_of(key), x, y);
-      const std::uint64_t primitive = tile.frame().list.primitive_of(number_of(key));
-      if (colour.a > 0 && !is_in(passed_over, primitive)) {
-        seen.positions.push_back(position_of(x, y));
-        seen.fragments.push_back(fragment_of(colour, depth_of(key), primitive));
-      }
-      if (composite::is_opaque(colour)) break;
+  tile.for_each_surface(rect, [&](int x, int y, std::span<const SurfaceSeen> surfaces) {
+    for (const SurfaceSeen& surface : surfaces) {
+      const std::uint64_t primitive = tile.frame().list.primitive_of(number_of(surface.key));
+      if (surface.colour.a <= 0 || is_in(passed_over, primitive)) continue;
+      seen.positions.push_back(position_of(x, y));
+      seen.fragments.push_back(fragment_of(surface.colour, depth_of(surface.key), primitive));
     }
   });
 }

@@ -1,5 +1,7 @@
 #include "raster/internal/tile_view.h"
 
+#include <numeric>
+
 #include "raster/internal/samples.h"
 
 namespace delray::raster {
@@ -41,27 +43,67 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
     }
 }
 
-// The fragments of a pixel lie together.
+void TileView::shade_asked() {
+  const std::vector<SurfaceAt>& asked = memory_.asked;
+  memory_.answers.resize(asked.size());
+  if (frame_.lighting == Lighting::phong && shaded_ == nullptr) {
+    shaded_now_ += asked.size();
+    memory_.phong.colours(frame_, memory_.seen, asked, memory_.answers.data());
+    return;
+  }
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    memory_.answers[i] = colour(asked[i].number, asked[i].x, asked[i].y);
+}
+
+// First what is in front at all pixels, then what is next where something is seen through that.
+void TileView::shade_surfaces(const geometry::Rect& rect, bool blended_only) {
+  std::vector<SurfaceSeen>& surfaces = memory_.surfaces;
+  std::vector<PixelSurfaces>& pixels = memory_.pixels;
+  surfaces.clear();
+  pixels.clear();
+  for_each_list(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
+    // What is opaque comes last.
+    if (blended_only && keys.front() == opaque_key(pixel_of(x, y))) return;
+    pixels.push_back({x, y, static_cast<std::uint32_t>(surfaces.size()),
+                      static_cast<std::uint32_t>(keys.size())});
+    for (const std::int64_t key : keys) surfaces.push_back({key, {}});
+  });
+  std::vector<std::uint32_t>& open = memory_.open_pixels;
+  open.resize(pixels.size());
+  std::iota(open.begin(), open.end(), 0U);
+  for (std::uint32_t layer = 0; !open.empty(); ++layer) {
+    memory_.asked.clear();
+    for (const std::uint32_t i : open)
+      memory_.asked.push_back(
+          {number_of(surfaces[pixels[i].first + layer].key), pixels[i].x, pixels[i].y});
+    shade_asked();
+    std::size_t still_open = 0;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      PixelSurfaces& pixel = pixels[open[k]];
+      SurfaceSeen& surface = surfaces[pixel.first + layer];
+      surface.colour = memory_.answers[k];
+      const bool counted = blended_only && surface.key == opaque_key(pixel_of(pixel.x, pixel.y));
+      shown_ += surface.colour.a > 0 && !counted;
+      if (composite::is_opaque(memory_.answers[k])) pixel.count = layer + 1;
+      if (layer + 1 < pixel.count) open[still_open++] = open[k];
+    }
+    open.resize(still_open);
+  }
+}
+
 template <class Colour>
 void TileView::blend(const geometry::Rect& rect, const Window<Colour>& window) {
-  const std::vector<BlendedFragment>& blended = memory_.blended;
-  for (std::size_t first = 0, last; first < blended.size(); first = last) {
-    const std::uint32_t pixel = blended[first].pixel;
-    last = first;
-    while (last < blended.size() && blended[last].pixel == pixel) ++last;
-    const int x = rect.x0 / kTileSize * kTileSize + static_cast<int>(pixel % kTileSize);
-    const int y = rect.y0 / kTileSize * kTileSize + static_cast<int>(pixel / kTileSize);
-    if (x < rect.x0 || x >= rect.x1 || y < rect.y0 || y >= rect.y1) continue;
+  if (memory_.blended.empty()) return;
+  shade_surfaces(rect, true);
+  for (const PixelSurfaces& pixel : memory_.pixels) {
     memory_.fragments.clear();
-    const auto add = [&](std::int64_t key) {
-      const image::RgbaF seen = colour(number_of(key), x, y);
-      if (seen.a > 0) memory_.fragments.push_back({seen, frame_.shown_depth(key), 0, 0});
-    };
-    for (std::size_t i = first; i < last; ++i) add(blended[i].key);
-    shown_ += memory_.fragments.size();
+    for (std::uint32_t i = pixel.first; i < pixel.first + pixel.count; ++i) {
+      const SurfaceSeen& surface = memory_.surfaces[i];
+      if (surface.colour.a > 0)
+        memory_.fragments.push_back({surface.colour, frame_.shown_depth(surface.key), 0, 0});
+    }
     if (memory_.fragments.empty()) continue;
-    if (const std::int64_t key = opaque_key(pixel); number_of(key) != kNothing) add(key);
-    const std::size_t to = window.at(x, y);
+    const std::size_t to = window.at(pixel.x, pixel.y);
     window.depth[to] = memory_.fragments.front().depth;
     composite::store(composite::blend(memory_.fragments), window.colour[to]);
   }

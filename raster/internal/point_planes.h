@@ -36,9 +36,12 @@ void set_up_points(const WorldVertices& vertices, std::size_t vertex_count,
 void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std::size_t count,
                    const TrianglePlanes& barycentrics, std::size_t first, ValuePlanes* planes);
 
-// Lane i: pixel (x + i, y) of triangle which[i]. Colours of vertices stay as they are if
-// planes.colour is empty.
-void set_points(const PointPlanes& planes, const std::uint16_t (&which)[shading::kBlockPoints],
-                int x, int y, shading::Points& points);
+// Pixels of a block, and their triangles.
+struct PixelBlock {
+  std::uint16_t triangle[shading::kBlockPoints];
+  float x[shading::kBlockPoints], y[shading::kBlockPoints];
+};
+// Colours of vertices stay as they are if planes.colour is empty.
+void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Points& points);
 
 }  // namespace delray::raster

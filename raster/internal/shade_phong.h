@@ -2,12 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raster/internal/point_planes.h"
 #include "raster/internal/tile_triangles.h"
 
 namespace delray::raster {
+
+// A triangle at a pixel.
+struct SurfaceAt {
+  std::uint32_t number;
+  int x, y;
+};
 
 // Memory for a tile. One per thread.
 class PhongTile {
@@ -18,6 +25,10 @@ class PhongTile {
   std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                       const geometry::Rect& rect, const Window<Colour>& window);
 
+  // As colour_at gives them, premultiplied.
+  void colours(const FrameShading& frame, SeenTriangles& seen, std::span<const SurfaceAt> surfaces,
+               image::RgbaF* colours);
+
  private:
   void make_room(const FrameShading& frame);
   void set_up_group(const FrameShading& frame, const ClusterMembers& members);
@@ -25,13 +36,18 @@ class PhongTile {
   template <class Row>
   void set_up_values(const ClusterMembers& members, std::vector<ValuePlanes>& planes,
                      const Row& row);
-  // Of triangles which[i] at the pixels from (x, y) on, where the bit of `shown` is set.
-  void shade_block(const FrameShading& frame, const std::uint16_t (&which)[shading::kBlockPoints],
-                   shading::LaneMask shown, int x, int y);
+  // The lanes of `shown`.
+  void shade_block(const FrameShading& frame, shading::LaneMask shown);
+  void some_colours(const FrameShading& frame, SeenTriangles& seen,
+                    std::span<const SurfaceAt> surfaces, image::RgbaF* colours);
 
   TileTriangles triangles_;
   PointPlanes planes_;
-  std::vector<std::uint32_t> kinds_;  // of triangles: 2 * material, 1 more with colours of vertices
+  // Of triangles: 4 * material, 2 more if something may be seen through it, 1 more with colours of
+  // vertices.
+  std::vector<std::uint32_t> kinds_;
+  std::vector<std::uint32_t> numbers_;
+  PixelBlock block_;
   WorldVertices world_vertices_;
   VertexRows rows_;
   shading::Points points_;

@@ -74,6 +74,9 @@ struct SeenPoint {
 inline bool is_opaque(const SeenPoint& seen) { return seen.blended == 0; }
 SeenPoint point_seen(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
                      int y);
+inline image::RgbaF premultiplied(const glm::vec3& colour, float alpha) {
+  return {colour.x * alpha, colour.y * alpha, colour.z * alpha, alpha};
+}
 // Its colour by phong, premultiplied.
 image::RgbaF shade(const FrameShading& frame, const SeenPoint& point);
 
