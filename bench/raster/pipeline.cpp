@@ -12,7 +12,6 @@
 #include "comm/agreed_pipeline.h"
 #include "comm/threads.h"
 #include "image/io.h"
-#include "parallel/arena.h"
 #include "raster/render.h"
 #include "scenes/camera_path.h"
 #include "scenes/generate.h"
@@ -75,7 +74,7 @@ void compare(const std::string& name, const Scene& scene, const raster::RenderOp
       predicted.push_back(parallel::predicted_seconds(one, kFrames));
     }
   });
-  std::printf("%-20s %d x %d ", name.c_str(), ranks, threads);
+  std::printf("%-20s %d x %d", name.c_str(), ranks, threads);
   for (std::size_t stage = 0; stage < alone[0].stages.size(); ++stage) {
     std::vector<double> seconds;
     for (const parallel::PipelineTimes& times : alone) seconds.push_back(times.stages[stage]);
@@ -89,18 +88,19 @@ void compare(const std::string& name, const Scene& scene, const raster::RenderOp
 
 }  // namespace
 
-// [SCENE ...]: as delray render takes them, gen:KIND[:TRIANGLES[:SEED]].
+// [SCENE [RANKS THREADS]]: a scene as delray render takes it, gen:KIND[:TRIANGLES[:SEED]].
 int main(int argc, char** argv) {
-  std::vector<std::string> names(argv + 1, argv + argc);
-  if (names.empty()) names = {"gen:terrain:1000000", "gen:field"};
+  std::vector<std::string> names = {"gen:terrain:1000000", "gen:field"};
+  if (argc > 1) names = {argv[1]};
+  std::vector<std::pair<int, int>> processors = {{1, 1}, {1, 2}, {2, 1}};
+  if (argc > 3) processors = {{std::stoi(argv[2]), std::stoi(argv[3])}};
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("raster_pipeline_" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
-  const parallel::AllowThreads allowed(4);
   std::printf(
-      "ms a frame of %zu           stages of one alone: transform, rasterize, compose, "
-      "encode; one by one, in a pipeline of %zu; gain, by formula 2.2\n",
-      kFrames, kSlots);
+      "ms a frame, %zu frames\n%-20s ranks x threads; one alone: transform, rasterize, compose, "
+      "encode; one by one, %zu at once; gain, with a processor for each stage\n",
+      kFrames, "scene", kSlots);
   for (const std::string& name : names) {
     Scene scene;
     scene.scene = scenes::generate(name);
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
     options.width = 1920;
     options.height = 1080;
     options.lighting = raster::Lighting::gouraud;
-    for (const auto& [ranks, threads] : {std::pair{1, 1}, {1, 2}, {2, 1}, {2, 2}})
+    for (const auto& [ranks, threads] : processors)
       compare(name, scene, options, ranks, threads, folder);
   }
   std::filesystem::remove_all(folder);
