@@ -9,7 +9,7 @@
 // Highway's own header comes after it.
 #include <hwy/highway.h>
 
-#include "raster/internal/transpose.h"
+#include "raster/internal/plane_lanes.h"
 
 #ifndef DELRAY_RASTER_PIXEL_TRIANGLES
 #define DELRAY_RASTER_PIXEL_TRIANGLES
@@ -162,16 +162,6 @@ void set_up_planes(const Screen& screen, const ScreenVertices& vertices, std::si
   }
 }
 
-// What the corners' shares of a plane's coefficient come to.
-HWY_INLINE FourVectors<F> weighted(const F (&share)[3], const FourVectors<F> (&radiance)[3]) {
-  FourVectors<F> sums;
-  for (int k = 0; k < 4; ++k)
-    sums.v[k] =
-        hn::Add(hn::Add(hn::Mul(share[0], radiance[0].v[k]), hn::Mul(share[1], radiance[1].v[k])),
-                hn::Mul(share[2], radiance[2].v[k]));
-  return sums;
-}
-
 void set_up_colours(const TrianglePlanes& planes, const glm::vec4* radiances, std::size_t count,
                     PixelTriangle* triangles) {
   const Floats d;
@@ -181,18 +171,7 @@ void set_up_colours(const TrianglePlanes& planes, const glm::vec4* radiances, st
     for (int k = 0; k < 3; ++k)
       radiance[k] = load_rows(
           d, [&](std::size_t m) HWY_ATTR { return &radiances[planes.corner[k][i + m]].x; });
-    const auto of = [&](const float(&row)[3][TrianglePlanes::kSize]) HWY_ATTR {
-      return weighted({hn::Load(d, row[0] + i), hn::Load(d, row[1] + i), hn::Load(d, row[2] + i)},
-                      radiance);
-    };
-    PixelTriangle* const to = triangles + i;
-    store_rows(d, of(planes.a), [&](std::size_t m) HWY_ATTR { return to[m].a; });
-    store_rows(d, of(planes.b), [&](std::size_t m) HWY_ATTR { return to[m].b; });
-    store_rows(d, of(planes.c), [&](std::size_t m) HWY_ATTR { return to[m].c; });
-    store_rows(d,
-               FourVectors<F>{{hn::Load(d, planes.x + i), hn::Load(d, planes.y + i), hn::Zero(d),
-                               hn::Zero(d)}},
-               [&](std::size_t m) HWY_ATTR { return &to[m].x; });
+    store_triangles(planes, i, radiance, triangles + i);
   }
 }
 

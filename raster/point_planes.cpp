@@ -9,7 +9,7 @@
 // Highway's own header comes after it.
 #include <hwy/highway.h>
 
-#include "raster/internal/transpose.h"
+#include "raster/internal/plane_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::raster {
@@ -59,25 +59,6 @@ HWY_INLINE void store(const Vector& v, shading::Vectors16& to, std::size_t i) {
   hn::Store(v.z, d, to.z.lane + i);
 }
 
-// The planes of four values at corners, for a vector's worth of triangles from `first` on.
-template <class To>
-HWY_INLINE void store_planes(const TrianglePlanes& barycentrics, std::size_t first,
-                             const FourVectors<F> (&values)[3], To* to) {
-  const Floats d;
-  const auto weighted = [&](const float(&row)[3][TrianglePlanes::kSize]) HWY_ATTR {
-    const F p = hn::LoadU(d, row[0] + first), q = hn::LoadU(d, row[1] + first),
-            r = hn::LoadU(d, row[2] + first);
-    FourVectors<F> sums;
-    for (int k = 0; k < 4; ++k)
-      sums.v[k] = hn::Add(hn::Add(hn::Mul(p, values[0].v[k]), hn::Mul(q, values[1].v[k])),
-                          hn::Mul(r, values[2].v[k]));
-    return sums;
-  };
-  store_rows(d, weighted(barycentrics.a), [&](std::size_t m) HWY_ATTR { return to[m].a; });
-  store_rows(d, weighted(barycentrics.b), [&](std::size_t m) HWY_ATTR { return to[m].b; });
-  store_rows(d, weighted(barycentrics.c), [&](std::size_t m) HWY_ATTR { return to[m].c; });
-}
-
 void set_up_points(const WorldVertices& vertices, std::size_t vertex_count,
                    const CornerNumbers& corners, std::size_t count, float handedness,
                    const TrianglePlanes& barycentrics, std::size_t first, PointPlanes& planes) {
@@ -114,12 +95,7 @@ void set_up_points(const WorldVertices& vertices, std::size_t vertex_count,
       const Vector own = chosen(hn::Ne(n.v[3], zero), of(n), geometric);
       n = {{own.x, own.y, own.z, zero}};
     }
-    PixelTriangle* const to = planes.position.data() + first + i;
-    store_planes(barycentrics, first + i, position, to);
-    store_rows(d,
-               FourVectors<F>{{hn::LoadU(d, barycentrics.x + first + i),
-                               hn::LoadU(d, barycentrics.y + first + i), zero, zero}},
-               [&](std::size_t m) HWY_ATTR { return &to[m].x; });
+    store_triangles(barycentrics, first + i, position, planes.position.data() + first + i);
     store_planes(barycentrics, first + i, normal, planes.normal.data() + first + i);
     store_rows(d, FourVectors<F>{{geometric.x, geometric.y, geometric.z, zero}},
                [&](std::size_t m) HWY_ATTR { return &planes.geometric[first + i + m].x; });

@@ -8,6 +8,8 @@
 
 #include "raster/internal/draw_into_tiles.h"
 #include "raster/internal/shade_tile.h"
+#include "scenes/generate.h"
+#include "tests/raster/random_scene.h"
 #include "tests/raster/targets.h"
 
 namespace delray::raster {
@@ -66,6 +68,33 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
     expect_same(image, expected);
   });
   EXPECT_GT(shown, expected.pixels() / 4);
+}
+
+// The same for scenes of many kinds, and for meshes that have no normals, or not everywhere.
+template <class Tile>
+void expect_vectors_give_what_pixels_give(Lighting lighting) {
+  const auto both = [&]<class Colour>(const scenes::Scene& scene, const scenes::Camera& camera,
+                                      int width, int height, Colour) {
+    expect_as_pixel_by_pixel<Colour, Tile>(scene, camera, width, height, lighting);
+  };
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const scenes::Scene scene = random_scene(seed);
+    both(scene, random_scene_camera(), 131, 97, image::Rgba8());
+    both(scene, random_scene_camera(), 66, 130, image::RgbaF());
+  }
+  for (const char* name : {"gen:terrain:40000", "gen:city:3000", "gen:field:20000"}) {
+    SCOPED_TRACE(name);
+    const scenes::Scene scene = scenes::generate(name);
+    both(scene, scene.cameras[0], 150, 100, image::Rgba8());
+  }
+  scenes::Scene scene = random_scene(4);
+  for (scenes::Mesh& mesh : scene.meshes) mesh.normals.clear();
+  both(scene, random_scene_camera(), 80, 70, image::Rgba8());
+  scene = random_scene(5);
+  for (scenes::Mesh& mesh : scene.meshes)
+    for (std::size_t i = 0; i < mesh.normals.size(); i += 2) mesh.normals[i] = glm::vec3(0.0F);
+  both(scene, random_scene_camera(), 80, 70, image::Rgba8());
 }
 
 }  // namespace delray::raster

@@ -5,41 +5,13 @@
 #include <random>
 
 #include "image/srgb.h"
-#include "scenes/generate.h"
-#include "tests/raster/random_scene.h"
 #include "tests/raster/shade_both_ways.h"
 
 namespace delray::raster {
 namespace {
 
-template <class Colour>
-void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& camera, int width,
-                              int height) {
-  raster::expect_as_pixel_by_pixel<Colour, GouraudTile>(scene, camera, width, height,
-                                                        Lighting::gouraud);
-}
-
 TEST(ShadeGouraud, GivesWhatPixelByPixelGives) {
-  for (unsigned seed = 0; seed < 3; ++seed) {
-    const scenes::Scene scene = random_scene(seed);
-    expect_as_pixel_by_pixel<image::Rgba8>(scene, random_scene_camera(), 131, 97);
-    expect_as_pixel_by_pixel<image::RgbaF>(scene, random_scene_camera(), 66, 130);
-  }
-  for (const char* name : {"gen:terrain:40000", "gen:city:3000", "gen:field:20000"}) {
-    SCOPED_TRACE(name);
-    const scenes::Scene scene = scenes::generate(name);
-    expect_as_pixel_by_pixel<image::Rgba8>(scene, scene.cameras[0], 150, 100);
-  }
-}
-
-TEST(ShadeGouraud, LightsCornersWithoutNormalsAsTheirTriangles) {
-  scenes::Scene scene = random_scene(4);
-  for (scenes::Mesh& mesh : scene.meshes) mesh.normals.clear();
-  expect_as_pixel_by_pixel<image::Rgba8>(scene, random_scene_camera(), 80, 70);
-  scene = random_scene(5);
-  for (scenes::Mesh& mesh : scene.meshes)
-    for (std::size_t i = 0; i < mesh.normals.size(); i += 2) mesh.normals[i] = glm::vec3(0.0F);
-  expect_as_pixel_by_pixel<image::Rgba8>(scene, random_scene_camera(), 80, 70);
+  expect_vectors_give_what_pixels_give<GouraudTile>(Lighting::gouraud);
 }
 
 TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
