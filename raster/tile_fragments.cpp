@@ -110,7 +110,7 @@ comm::Buffer pack_tiles(std::span<const TileSpan<Payload>> tiles) {
   comm::Buffer message(bytes);
   std::byte* to = message.data();
   const auto append = [&](const void* from, std::size_t size) {
-    std::memcpy(to, from, size);
+    if (size > 0) std::memcpy(to, from, size);  // of nothing the address may be null
     to += size;
   };
   for (const TileSpan<Payload>& tile : tiles) {
