@@ -112,12 +112,4 @@ struct DeepImage {
   }
 };
 
-// Every pixel blended and stored; the depth is that of the first fragment. O(pixels + fragments),
-// parallel.
-template <class Colour>
-image::BasicImage<Colour> flatten(const DeepImage<image::RgbaF>& deep);
-
-extern template image::Image8 flatten(const DeepImage<image::RgbaF>& deep);
-extern template image::ImageF flatten(const DeepImage<image::RgbaF>& deep);
-
 }  // namespace delray::composite

@@ -6,6 +6,7 @@
 #include "composite/codec.h"
 #include "composite/deep.h"
 #include "composite/dense.h"
+#include "composite/flatten.h"
 #include "composite/scheme.h"
 #include "parallel/parallel_for.h"
 #include "raster/internal/processor_seconds.h"
@@ -54,26 +55,16 @@ composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
   result.ranges = part.ranges;
   const composite::DeepImage<Payload> deep = composite::take_deep<Payload>(std::move(part));
   image::BasicImage<Colour> image(deep.width, deep.height);
-  const auto flatten_pixel = [&](std::size_t i, std::vector<composite::Fragment>& fragments) {
-    fragments.clear();
-    for (const auto& fragment : deep.at(i)) {
-      const image::RgbaF colour = colour_of(fragment.payload);
-      if (colour.a > 0) fragments.push_back({colour, fragment.depth, 0, 0});
-    }
-    image.colour[i] = {};
-    image.depth[i] = fragments.empty() ? image::kEmptyDepth : fragments.front().depth;
-    if (!fragments.empty()) composite::store(composite::blend(fragments), image.colour[i]);
-  };
   ProcessorSeconds seconds;
+  const auto colour_if_seen = [&](const Payload& payload) {
+    const image::RgbaF colour = colour_of(payload);
+    return colour.a > 0 ? std::optional(colour) : std::nullopt;
+  };
   for (const composite::PixelRange& range : result.ranges)
-    parallel::parallel_blocks(range.begin, range.end, kGrain,
-                              [&](std::size_t begin, std::size_t end) {
-                                std::vector<composite::Fragment> fragments;
-                                seconds.measure([&] {
-                                  for (std::size_t i = begin; i < end; ++i)
-                                    flatten_pixel(i, fragments);
-                                });
-                              });
+    parallel::parallel_blocks(
+        range.begin, range.end, kGrain, [&](std::size_t begin, std::size_t end) {
+          seconds.measure([&] { composite::flatten(deep, begin, end, image, colour_if_seen); });
+        });
   rank.counts.phases.shade += seconds.seconds();
   result.layer = composite::make_dense(std::move(image));
   return result;

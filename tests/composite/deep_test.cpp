@@ -1,4 +1,5 @@
 #include "composite/deep.h"
+#include "composite/flatten.h"
 
 #include <gtest/gtest.h>
 

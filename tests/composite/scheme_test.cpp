@@ -16,6 +16,7 @@
 #include "composite/codec.h"
 #include "composite/deep.h"
 #include "composite/dense.h"
+#include "composite/flatten.h"
 
 namespace delray::composite {
 namespace {

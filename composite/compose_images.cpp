@@ -1,0 +1,54 @@
+#include "composite/compose_images.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "composite/codec.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::composite {
+
+template <class Colour>
+image::BasicImage<Colour> compose_images(comm::Communicator& communicator,
+                                         image::BasicImage<Colour>&& image,
+                                         const ImageOptions& options) {
+  const Codec* const codec = find_codec(options.codec);
+  assert(codec != nullptr);
+  Part part = compose(communicator, codec->make(std::move(image), options.how), options.scheme,
+                      {.interlace = options.interlace});
+  part = gather(communicator, std::move(part), options.root);
+  if (communicator.rank() != options.root) return {};
+  return take_image<Colour>(std::move(part));
+}
+
+template <class Colour>
+image::BasicImage<Colour> compose_images(comm::Communicator& communicator,
+                                         const ImageBuffers<Colour>& buffers, float empty_depth,
+                                         const ImageOptions& options) {
+  assert(options.how == Operator::over || buffers.depth != nullptr);
+  constexpr std::size_t kGrain = std::size_t{1} << 15;  // pixels; about 30 microseconds
+  image::BasicImage<Colour> image(buffers.width, buffers.height);
+  parallel::parallel_blocks(0, image.pixels(), kGrain, [&](std::size_t begin, std::size_t end) {
+    if (buffers.depth == nullptr) {
+      std::copy(buffers.colour + begin, buffers.colour + end, image.colour.data() + begin);
+      std::fill(image.depth.data() + begin, image.depth.data() + end, image::kEmptyDepth);
+      return;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool empty = buffers.depth[i] == empty_depth && options.how == Operator::nearest;
+      image.depth[i] = empty ? image::kEmptyDepth : buffers.depth[i];
+      image.colour[i] = empty ? Colour{} : buffers.colour[i];
+    }
+  });
+  return compose_images(communicator, std::move(image), options);
+}
+
+template image::Image8 compose_images(comm::Communicator&, image::Image8&&, const ImageOptions&);
+template image::ImageF compose_images(comm::Communicator&, image::ImageF&&, const ImageOptions&);
+template image::Image8 compose_images(comm::Communicator&, const ImageBuffers<image::Rgba8>&, float,
+                                      const ImageOptions&);
+template image::ImageF compose_images(comm::Communicator&, const ImageBuffers<image::RgbaF>&, float,
+                                      const ImageOptions&);
+
+}  // namespace delray::composite
