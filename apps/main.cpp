@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   add_triangulate(program, session);
   add_verify(program, session);
   add_render(program, session);
+  add_compose(program, session);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -23,8 +23,8 @@ TEST(Program, TellsItsVersion) {
 
 TEST(Program, EverySubcommandHasHelpWithTwoExamples) {
   const Folder folder;
-  for (const std::string name :
-       {"info", "generate points", "generate scene", "triangulate", "verify", "render"}) {
+  for (const std::string name : {"info", "generate points", "generate scene", "triangulate",
+                                 "verify", "render", "compose"}) {
     const Ran ran = run("delray " + name + " --help", folder.path());
     EXPECT_EQ(ran.exit_code, 0) << name;
     const auto examples = ran.out.find("Examples:");
@@ -95,8 +95,8 @@ TEST(Program, RefusesOptionsWithoutEffect) {
 
 TEST(Program, ListsAreNameTabDescription) {
   const Folder folder;
-  for (const std::string command :
-       {"render --list", "triangulate --list", "generate points --list", "generate scene --list"}) {
+  for (const std::string command : {"render --list", "compose --list", "triangulate --list",
+                                    "generate points --list", "generate scene --list"}) {
     const Ran ran = run("delray " + command, folder.path());
     EXPECT_EQ(ran.exit_code, 0) << command;
     EXPECT_GE(count_of(ran.out, "\n"), 2) << command;

@@ -1,0 +1,229 @@
+// delray compose: merges images that other programs have rendered.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "apps/commands.h"
+#include "apps/launch.h"
+#include "apps/list.h"
+#include "apps/statistics.h"
+#include "apps/write_picture.h"
+#include "comm/agree_on_failure.h"
+#include "comm/collectives.h"
+#include "comm/ledger.h"
+#include "comm/recording.h"
+#include "composite/codec.h"
+#include "composite/dense.h"
+#include "composite/scheme.h"
+#include "files/error.h"
+#include "image/io.h"
+
+namespace delray::apps {
+namespace {
+
+struct ComposeRequest {
+  std::vector<std::string> parts;
+  std::string output, scheme = "radix-k", codec = "active", statistics;
+  bool ordered = false, interlace = false, list = false;
+  Launch launch;
+};
+
+[[noreturn]] void bad(const std::string& file, const std::string& what) {
+  throw files::FileError(files::Cause::input, file, "", what);
+}
+
+// As layers want it: what nothing covers is empty in colour and depth.
+image::ImageF read_part(const ComposeRequest& request, const std::string& file) {
+  if (!request.ordered) {
+    const std::vector<std::string> channels = image::read_info(file).channels;
+    if (std::find(channels.begin(), channels.end(), "Z") == channels.end()) {
+      bad(file,
+          "has no depth (a channel Z); --ordered puts pictures over each other in the order "
+          "given");
+    }
+  }
+  image::ImageF image = image::read_image_float(file);
+  for (std::size_t i = 0; i < image.pixels(); ++i) {
+    image::RgbaF& colour = image.colour[i];
+    float& depth = image.depth[i];
+    if (depth != depth) bad(file, fmt::format("the depth of pixel {} is not a number", i));
+    if (colour == image::RgbaF{}) {
+      colour = {};  // no negative zeros
+      depth = image::kEmptyDepth;
+    } else if (depth == image::kEmptyDepth) {
+      depth = std::numeric_limits<float>::max();  // a background: behind everything else
+    }
+  }
+  return image;
+}
+
+// The parts of a rank, an equal share of the list, merged; no pixels where there are none.
+image::ImageF read_parts(const ComposeRequest& request, composite::Operator how, std::size_t begin,
+                         std::size_t end) {
+  std::unique_ptr<composite::Layer> merged;
+  int width = 0, height = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    image::ImageF image = read_part(request, request.parts[i]);
+    if (merged != nullptr && (image.width != width || image.height != height)) {
+      bad(request.parts[i], fmt::format("is {} x {}, {} is {} x {}", image.width, image.height,
+                                        request.parts[begin], width, height));
+    }
+    width = image.width;
+    height = image.height;
+    auto layer = composite::make_dense(std::move(image), how);
+    if (merged == nullptr) {
+      merged = std::move(layer);
+    } else {
+      const composite::PixelRange all{0, layer->pixels()};
+      merged->merge(all, layer->cut(all), composite::Side::higher);
+    }
+  }
+  if (merged == nullptr) return {};
+  return composite::take_image<image::RgbaF>({{}, std::move(merged)});
+}
+
+// Ranks without a part get an empty image of everybody's size.
+void agree_on_size(comm::Communicator& communicator, const std::string& file,
+                   image::ImageF& image) {
+  const auto largest = [&](int value) {
+    return comm::all_reduce_value(communicator, value, [](int a, int b) { return std::max(a, b); });
+  };
+  const int width = largest(image.width), height = largest(image.height);
+  comm::all_or_none(communicator, comm::Phase::load, [&] {
+    if (image.pixels() == 0) {
+      image = image::ImageF(width, height);
+      clear(image);
+    } else if (image.width != width || image.height != height) {
+      bad(file, fmt::format("is {} x {}, others are up to {} x {}", image.width, image.height,
+                            width, height));
+    }
+  });
+}
+
+struct Outcome {
+  image::ImageF image;
+  double read = 0, compose = 0, gather = 0;
+  comm::Totals composed, gathered;
+};
+
+Outcome compose_parts(comm::Communicator& communicator, const ComposeRequest& request) {
+  const auto how = request.ordered ? composite::Operator::over : composite::Operator::nearest;
+  const auto share = [&](int rank) {
+    return request.parts.size() * static_cast<std::size_t>(rank) /
+           static_cast<std::size_t>(communicator.size());
+  };
+  const std::size_t begin = share(communicator.rank()), end = share(communicator.rank() + 1);
+  Outcome outcome;
+  Stopwatch stopwatch;
+  image::ImageF image = comm::all_or_none(communicator, comm::Phase::load,
+                                          [&] { return read_parts(request, how, begin, end); });
+  agree_on_size(communicator, begin < end ? request.parts[begin] : "", image);
+  outcome.read = stopwatch.lap();
+
+  std::vector<comm::Event> events;
+  comm::Recording recording(communicator, events);
+  auto layer = composite::find_codec(request.codec)->make(std::move(image), how);
+  composite::Part part = composite::compose(recording, std::move(layer), request.scheme,
+                                            {.interlace = request.interlace});
+  outcome.compose = stopwatch.lap();
+  part = composite::gather(recording, std::move(part), 0);
+  outcome.gather = stopwatch.lap();
+  const comm::Ledger ledger = comm::gather_ledger(communicator, events);
+  if (communicator.rank() != 0) return outcome;
+  outcome.composed = comm::totals(ledger, comm::Phase::compose);
+  outcome.gathered = comm::totals(ledger, comm::Phase::gather);
+  outcome.image = composite::take_image<image::RgbaF>(std::move(part));
+  if (request.ordered) {
+    for (std::size_t i = 0; i < outcome.image.pixels(); ++i) {
+      outcome.image.depth[i] = outcome.image.colour[i].a > 0 ? 0 : image::kEmptyDepth;
+    }
+  }
+  return outcome;
+}
+
+void check(const ComposeRequest& request) {
+  if (request.parts.empty()) throw UsageError("compose: PART is missing");
+  if (request.output.empty()) throw UsageError("compose: -o IMAGE is missing");
+  if (!image::is_picture_suffix(request.output)) {
+    throw UsageError(fmt::format("-o: '{}' is not a picture", request.output));
+  }
+  if (composite::find_scheme(request.scheme) == nullptr) {
+    find_entry(composite::schemes(), request.scheme, "--compose");
+  }
+  find_entry(composite::codecs(), request.codec, "--codec");
+}
+
+int run(const Session& session, const ComposeRequest& request) {
+  if (request.list) {
+    if (session.first_process) {
+      print_table(composite::schemes());
+      print_table(composite::codecs());
+    }
+    return kDone;
+  }
+  check(request);
+  run_ranks(session, request.launch, [&](comm::Communicator& communicator) {
+    Outcome outcome = compose_parts(communicator, request);
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() != 0) return;
+      Stopwatch stopwatch;
+      const int width = outcome.image.width, height = outcome.image.height;
+      const Picture picture = std::move(outcome.image);
+      const std::string hash = write_picture(session, request.output, picture);
+      constexpr auto kPixels = static_cast<std::size_t>(comm::Work::pixels_composited);
+      write_statistics(request.statistics,
+                       {{"schema", "delray.compose/1"},
+                        {"parts", request.parts},
+                        {"options",
+                         {{"ranks", communicator.size()},
+                          {"compose", request.scheme},
+                          {"codec", request.codec},
+                          {"ordered", request.ordered},
+                          {"interlace", request.interlace}}},
+                        {"image", {{"width", width}, {"height", height}, {"hash", hash}}},
+                        {"seconds",
+                         {{"read", outcome.read},
+                          {"compose", outcome.compose},
+                          {"gather", outcome.gather},
+                          {"write", stopwatch.lap()}}},
+                        {"rounds", outcome.composed.rounds},
+                        {"messages", outcome.composed.messages_sent},
+                        {"bytes", outcome.composed.bytes_sent},
+                        {"bytes_gathered", outcome.gathered.bytes_sent},
+                        {"pixels_composited", outcome.composed.work[kPixels]}});
+    });
+  });
+  return kDone;
+}
+
+}  // namespace
+
+void add_compose(CLI::App& program, Session& session) {
+  CLI::App* command = program.add_subcommand("compose", "merge images rendered elsewhere");
+  const auto request = std::make_shared<ComposeRequest>();
+  command->add_option("PART", request->parts,
+                      "EXR with depth (a channel Z): at every pixel the nearest part is seen, the "
+                      "first of those at equal depth");
+  command->add_option("-o,--output", request->output, "the picture: .png .exr .tif .jpg");
+  command->add_flag("--ordered", request->ordered,
+                    "the parts lie over each other, the first in front; no depth is needed");
+  command->add_option("--compose", request->scheme,
+                      "who sends which pixels to whom (default radix-k)");
+  command->add_option("--codec", request->codec, "how pixels travel (default active)");
+  command->add_flag("--interlace", request->interlace,
+                    "every piece that travels has something of everywhere");
+  add_launch_options(*command, request->launch);
+  command->add_option("--stats", request->statistics, "write statistics as JSON; - for stdout");
+  command->add_flag("--list", request->list, "list schemes and codecs");
+  add_common_options(*command, session,
+                     "compose part-0.exr part-1.exr -o picture.exr\n"
+                     "compose front.exr back.exr --ordered -o picture.png --stats -");
+  command->callback([&session, request] {
+    session.run = [&session, request] { return run(session, *request); };
+  });
+}
+
+}  // namespace delray::apps
