@@ -117,10 +117,10 @@ void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std
 // Some lanes of a block: the arithmetic of point_at.
 class LanePoints {
  public:
-  HWY_INLINE LanePoints(const PointPlanes& planes, const PixelBlock& block, std::size_t first)
+  HWY_INLINE LanePoints(const PixelTriangle* triangles, const PixelBlock& block, std::size_t first)
       : which_(block.triangle + first) {
     for (std::size_t i = 0; i < hn::Lanes(Floats()); ++i) {
-      const PixelTriangle& t = planes.position[which_[i]];
+      const PixelTriangle& t = triangles[which_[i]];
       dx_[i] = block.x[first + i] - t.x;
       dy_[i] = block.y[first + i] - t.y;
       all_same_ &= which_[i] == which_[0] && dy_[i] == dy_[0];
@@ -128,7 +128,7 @@ class LanePoints {
   }
 
   template <class Planes>
-  HWY_INLINE FourVectors<F> sums(const Planes& all) const {
+  HWY_INLINE FourVectors<F> sums(const Planes* all) const {
     const Floats d;
 #if HWY_TARGET != HWY_SCALAR
     if (!all_same_) {
@@ -160,42 +160,49 @@ class LanePoints {
   bool all_same_ = true;
 };
 
+// The arithmetic of texture_point.
+HWY_INLINE void set_texture_points(const LanePoints& lanes, const ValuePlanes* uvs,
+                                   const PixelTriangle* ones, F share, std::size_t to,
+                                   shading::Points& points) {
+  const Floats d;
+  const FourVectors<F> uv = lanes.sums(uvs);
+  const F u = hn::Mul(uv.v[0], share), v = hn::Mul(uv.v[1], share);
+  hn::Store(u, d, points.u.lane + to);
+  hn::Store(v, d, points.v.lane + to);
+  const auto change = [&](F slope, F value, F slope_of_one) HWY_ATTR {
+    return hn::Mul(hn::Sub(slope, hn::Mul(value, slope_of_one)), share);
+  };
+  const FourVectors<F> a = lanes.rows([&](std::uint16_t t) HWY_ATTR { return uvs[t].a; });
+  const FourVectors<F> b = lanes.rows([&](std::uint16_t t) HWY_ATTR { return uvs[t].b; });
+  const F a1 = lanes.rows([&](std::uint16_t t) HWY_ATTR { return ones[t].a; }).v[3];
+  const F b1 = lanes.rows([&](std::uint16_t t) HWY_ATTR { return ones[t].b; }).v[3];
+  hn::Store(change(a.v[0], u, a1), d, points.footprint_dx_u.lane + to);
+  hn::Store(change(a.v[1], v, a1), d, points.footprint_dx_v.lane + to);
+  hn::Store(change(b.v[0], u, b1), d, points.footprint_dy_u.lane + to);
+  hn::Store(change(b.v[1], v, b1), d, points.footprint_dy_v.lane + to);
+}
+
 HWY_INLINE void set_some(const PointPlanes& planes, const PixelBlock& block, std::size_t to,
                          shading::Points& points) {
   const Floats d;
-  const LanePoints lanes(planes, block, to);
-  const FourVectors<F> position = lanes.sums(planes.position);
+  const LanePoints lanes(planes.position.data(), block, to);
+  const FourVectors<F> position = lanes.sums(planes.position.data());
   const F share = hn::Div(hn::Set(d, 1.0F), position.v[3]);
   store(times(of(position), share), points.position, to);
   const FourVectors<F> geometric =
       lanes.rows([&](std::uint16_t t) HWY_ATTR { return &planes.geometric[t].x; });
   store(of(geometric), points.geometric_normal, to);
-  const Vector normal = unit(times(of(lanes.sums(planes.normal)), share), of(geometric));
+  const Vector normal = unit(times(of(lanes.sums(planes.normal.data())), share), of(geometric));
   store(normal, points.normal, to);
   if (!planes.colour.empty()) {
-    const FourVectors<F> colour = lanes.sums(planes.colour);
+    const FourVectors<F> colour = lanes.sums(planes.colour.data());
     store(times(of(colour), share), points.colour, to);
     hn::Store(hn::Mul(colour.v[3], share), d, points.colour_alpha.lane + to);
   }
-  if (!planes.uv.empty()) {
-    const FourVectors<F> uv = lanes.sums(planes.uv);
-    const F u = hn::Mul(uv.v[0], share), v = hn::Mul(uv.v[1], share);
-    hn::Store(u, d, points.u.lane + to);
-    hn::Store(v, d, points.v.lane + to);
-    const auto change = [&](F slope, F value, F slope_of_one) HWY_ATTR {
-      return hn::Mul(hn::Sub(slope, hn::Mul(value, slope_of_one)), share);
-    };
-    const FourVectors<F> a = lanes.rows([&](std::uint16_t t) HWY_ATTR { return planes.uv[t].a; });
-    const FourVectors<F> b = lanes.rows([&](std::uint16_t t) HWY_ATTR { return planes.uv[t].b; });
-    const F a1 = lanes.rows([&](std::uint16_t t) HWY_ATTR { return planes.position[t].a; }).v[3];
-    const F b1 = lanes.rows([&](std::uint16_t t) HWY_ATTR { return planes.position[t].b; }).v[3];
-    hn::Store(change(a.v[0], u, a1), d, points.footprint_dx_u.lane + to);
-    hn::Store(change(a.v[1], v, a1), d, points.footprint_dx_v.lane + to);
-    hn::Store(change(b.v[0], u, b1), d, points.footprint_dy_u.lane + to);
-    hn::Store(change(b.v[1], v, b1), d, points.footprint_dy_v.lane + to);
-  }
+  if (!planes.uv.empty())
+    set_texture_points(lanes, planes.uv.data(), planes.position.data(), share, to, points);
   if (!planes.tangent.empty()) {
-    const Vector tangent = times(of(lanes.sums(planes.tangent)), share);
+    const Vector tangent = times(of(lanes.sums(planes.tangent.data())), share);
     const Vector nothing = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     const Vector along = unit(minus(tangent, times(normal, dot(normal, tangent))), nothing);
     store(along, points.tangent, to);
@@ -210,6 +217,18 @@ void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Poi
     set_some(planes, block, i, points);
 }
 
+void set_values(const PixelTriangle* values, const ValuePlanes* uvs, const PixelBlock& block,
+                shading::Vectors16& results, shading::Points& points) {
+  const Floats d;
+  for (std::size_t i = 0; i < shading::kBlockPoints; i += hn::Lanes(d)) {
+    const LanePoints lanes(values, block, i);
+    const FourVectors<F> sums = lanes.sums(values);
+    const F share = hn::Div(hn::Set(d, 1.0F), sums.v[3]);
+    store(times(of(sums), share), results, i);
+    if (uvs != nullptr) set_texture_points(lanes, uvs, values, share, i, points);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raster
 HWY_AFTER_NAMESPACE();
@@ -220,6 +239,7 @@ namespace delray::raster {
 HWY_EXPORT(set_up_points);
 HWY_EXPORT(set_up_values);
 HWY_EXPORT(set_points);
+HWY_EXPORT(set_values);
 
 void set_up_points(const WorldVertices& vertices, std::size_t vertex_count,
                    const CornerNumbers& corners, std::size_t count, float handedness,
@@ -233,6 +253,12 @@ void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std
 }
 void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Points& points) {
   HWY_DYNAMIC_DISPATCH(set_points)(planes, block, points);
+}
+
+void set_values(std::span<const PixelTriangle> values, std::span<const ValuePlanes> uvs,
+                const PixelBlock& block, shading::Vectors16& results, shading::Points& points) {
+  HWY_DYNAMIC_DISPATCH(set_values)
+  (values.data(), uvs.empty() ? nullptr : uvs.data(), block, results, points);
 }
 
 }  // namespace delray::raster

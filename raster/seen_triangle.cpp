@@ -64,12 +64,9 @@ shading::Point plain_point_at(const SeenTriangle& triangle, int x, int y) {
   point.normal = glm::vec3(sums_at(triangle.normal_planes, dx, dy)) * share;
   if (triangle.has_colour) point.colour = sums_at(triangle.colour_planes, dx, dy) * share;
   if (triangle.has_uv) {
-    const ValuePlanes& uvs = triangle.uv_planes;
-    point.uv = glm::vec2(sums_at(uvs, dx, dy)) * share;
-    for (int k = 0; k < 2; ++k) {
-      point.footprint.dx[k] = (uvs.a[k] - point.uv[k] * positions.a[3]) * share;
-      point.footprint.dy[k] = (uvs.b[k] - point.uv[k] * positions.b[3]) * share;
-    }
+    const TexturePoint at = texture_point(triangle.uv_planes, positions, dx, dy, share);
+    point.uv = at.uv;
+    point.footprint = at.footprint;
   }
   if (triangle.has_tangent)
     point.tangent = glm::vec4(glm::vec3(sums_at(triangle.tangent_planes, dx, dy)) * share, 0);
@@ -172,6 +169,17 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   }
   if (result.barycentrics.proper) make_planes(result);
   return result;
+}
+
+TexturePoint texture_point(const ValuePlanes& uvs, const ValuePlanes& ones, float dx, float dy,
+                           float share) {
+  TexturePoint point;
+  point.uv = glm::vec2(sums_at(uvs, dx, dy)) * share;
+  for (int k = 0; k < 2; ++k) {
+    point.footprint.dx[k] = (uvs.a[k] - point.uv[k] * ones.a[3]) * share;
+    point.footprint.dy[k] = (uvs.b[k] - point.uv[k] * ones.b[3]) * share;
+  }
+  return point;
 }
 
 shading::Point point_at(const SeenTriangle& triangle, int x, int y) {

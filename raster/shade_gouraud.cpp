@@ -1,6 +1,7 @@
 #include "raster/internal/shade_gouraud.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace delray::raster {
 void GouraudTile::light(const FrameShading& frame, std::size_t number) {
@@ -104,6 +105,7 @@ void GouraudTile::set_up_group(const FrameShading& frame, const ClusterMembers& 
   const auto first_vertex = static_cast<std::uint32_t>(radiances_.size());
   ClusterFacing facing;
   triangles_.set_up_planes(frame, members, first_vertex, facing);
+  set_up_textures(frame, members);
   if (draw.transformed != nullptr) {
     for (const std::uint32_t vertex : members.vertices)
       radiances_.emplace_back(draw.transformed->radiances[vertex], 1.0F);
@@ -122,23 +124,62 @@ void GouraudTile::set_up_group(const FrameShading& frame, const ClusterMembers& 
   add_vertices(frame, *draw.mesh, members, first_vertex);
 }
 
+void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMembers& members) {
+  if (uvs_.empty()) return;
+  const TileGroups::Group& group = *members.group;
+  const scenes::Mesh& mesh = *frame.list.draws[frame.list.clusters[group.cluster].draw].mesh;
+  const std::uint32_t texture = shading::material(frame.shader, mesh.material).base_colour_texture;
+  std::fill_n(textures_.begin() + group.first, group.count, texture);
+  if (texture == scenes::kNone) return;
+  any_textured_ = true;
+  for (std::size_t i = 0; i < members.vertices.size(); ++i) {
+    const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(0.0F) : mesh.uvs[members.vertices[i]];
+    std::copy_n(&uv.x, 2, uv_rows_.row[i]);
+  }
+  set_up_values(uv_rows_, members.corners, group.count, triangles_.planes(), group.first,
+                uvs_.data());
+}
+
+// Into block_colours_.
+void GouraudTile::shade_textured(const FrameShading& frame, shading::LaneMask lanes) {
+  set_values(colours_, uvs_, block_, block_colours_, points_);
+  const std::uint16_t* const triangle = block_.triangle;
+  for (shading::LaneMask rest = lanes; rest != 0;) {
+    const std::uint32_t texture = textures_[triangle[std::countr_zero(rest)]];
+    shading::LaneMask same = 0;
+    for (int i = 0; i < kBlockSize; ++i)
+      same |= shading::LaneMask{textures_[triangle[i]] == texture} << i;
+    same &= rest;
+    rest &= ~same;
+    if (texture == scenes::kNone) continue;
+    shading::sample(frame.shader.textures[texture], points_, same, texels_);
+    for (; same != 0; same &= same - 1) {
+      const int i = std::countr_zero(same);
+      block_colours_.set(i, block_colours_.get(i) * texels_.colour.get(i));
+    }
+  }
+}
+
 void GouraudTile::leave_triangles_without_normals() {
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (const auto& corner : triangles_.planes().corner)
       if (radiances_[corner[t]].w == 0) triangles_.leave_to_shade_pixel(t);
 }
 
-// Those with a texture, or without normals, are left to shade_pixel.
-void GouraudTile::set_up_triangles(const FrameShading& frame, bool without_textures) {
+// Triangles without normals are left to shade_pixel.
+void GouraudTile::set_up_triangles(const FrameShading& frame) {
+  const std::size_t room = triangles_.size() + kBlockSize;
+  if (colours_.size() < room) colours_.resize(room);
+  uvs_.resize(frame.any_textures ? std::max(uvs_.size(), room) : 0);
+  textures_.resize(uvs_.size());
+  any_textured_ = false;
   all_have_normals_ = true;
   radiances_.assign(1, glm::vec4(0, 0, 0, 1));
   triangles_.for_each_group(
       frame,
       [&](std::uint32_t number) {
         const Draw& draw = frame.list.draws[number];
-        const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
-        return (!draw.mesh->normals.empty() || draw.transformed != nullptr) &&
-               (without_textures || material.base_colour_texture == scenes::kNone);
+        return !draw.mesh->normals.empty() || draw.transformed != nullptr;
       },
       [&](const ClusterMembers& members) { set_up_group(frame, members); });
   for (const std::size_t block : open_blocks_)
@@ -150,7 +191,7 @@ void GouraudTile::set_up_triangles(const FrameShading& frame, bool without_textu
 GouraudTile::LitCorners GouraudTile::light_corners(const FrameShading& frame,
                                                    std::span<const std::uint32_t> numbers) {
   const std::vector<std::uint16_t> indices = triangles_.set(numbers);
-  set_up_triangles(frame, true);
+  set_up_triangles(frame);
   if (triangles_.any_left()) {
     if (seen_ == nullptr) seen_ = std::make_unique<SeenTriangles>();
     seen_->clear();
@@ -185,14 +226,21 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
                                  const VisibilityTile& tile, const geometry::Rect& rect,
                                  const Window<Colour>& window) {
   const std::uint64_t shown = triangles_.find(tile, rect);
-  set_up_triangles(frame, false);
-  const std::size_t room = (triangles_.size() + kBlockSize - 1) / kBlockSize * kBlockSize;
-  if (colours_.size() < room) colours_.resize(room);
+  set_up_triangles(frame);
   set_up_colours(triangles_.planes(), radiances_, triangles_.size(), colours_.data());
+  using Runs = const std::uint16_t*;
   triangles_.write<Colour>(
       frame, seen, tile, rect, window,
-      [&](std::uint64_t starts, const std::uint16_t* runs, int x, int y, int count,
-          Colour* pixels) { shade_row(colours_, starts, runs, x, y, count, pixels); });
+      [&](std::uint64_t starts, Runs runs, int x, int y, int count, Colour* pixels) {
+        if (!any_textured_) {
+          shade_row(colours_, starts, runs, x, y, count, pixels);
+          return;
+        }
+        for_each_block(starts, runs, x, y, count, block_, [&](int i, shading::LaneMask lanes) {
+          if (lanes != 0) shade_textured(frame, lanes);
+          store_colours(block_colours_, lanes, pixels + i);
+        });
+      });
   return shown;
 }
 

@@ -123,27 +123,10 @@ std::uint64_t PhongTile::shade(const FrameShading& frame, SeenTriangles& seen,
   triangles_.write<Colour>(
       frame, seen, tile, rect, window,
       [&](std::uint64_t starts, const std::uint16_t* run, int x, int y, int count, Colour* pixels) {
-        starts &= ~std::uint64_t{1};  // the first run has begun
-        for (int i = 0; i < count; i += kBlockSize) {
-          shading::LaneMask shown_here = 0;
-          // Pixels without a triangle have that of a neighbour.
-          std::uint16_t some = kNoTriangle;
-          for (int k = 0; k < kBlockSize; ++k) {
-            if (i + k < count) run += starts >> (i + k) & 1;
-            const bool drawn = *run != kNoTriangle && i + k < count;
-            shown_here |= shading::LaneMask{drawn} << k;
-            block_.triangle[k] = *run;
-            block_.x[k] = static_cast<float>(x + i + k);
-            block_.y[k] = static_cast<float>(y);
-            if (drawn) some = *run;
-          }
-          if (shown_here != 0) {
-            for (std::uint16_t& triangle : block_.triangle)
-              if (triangle == kNoTriangle) triangle = some;
-            shade_block(frame, shown_here);
-          }
-          store_colours(shaded_.colour, shown_here, pixels + i);
-        }
+        for_each_block(starts, run, x, y, count, block_, [&](int i, shading::LaneMask lanes) {
+          if (lanes != 0) shade_block(frame, lanes);
+          store_colours(shaded_.colour, lanes, pixels + i);
+        });
       });
   return shown;
 }

@@ -32,17 +32,25 @@ glm::vec3 radiance(const FrameShading& frame, const scenes::Material& material,
 }
 
 glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x, int y) {
-  const Barycentrics& planes = triangle.barycentrics;
+  const Barycentrics& t = triangle.barycentrics;
   const std::uint32_t texture = triangle.material->base_colour_texture;
-  if (planes.proper && texture == scenes::kNone)
-    return value_at(triangle.radiance_planes, planes, x, y);
-  const Weights w = weights_at(planes, x, y);
-  const glm::vec3 lit = interpolate(w, triangle.radiance);
+  glm::vec3 lit;
+  TexturePoint at;
+  if (t.proper) {
+    const auto dx = static_cast<float>(x - t.x), dy = static_cast<float>(y - t.y);
+    const glm::vec4 sums = sums_at(triangle.radiance_planes, dx, dy);
+    const float share = 1 / sums.w;
+    lit = glm::vec3(sums) * share;
+    if (texture != scenes::kNone && triangle.has_uv)
+      at = texture_point(triangle.uv_planes, triangle.radiance_planes, dx, dy, share);
+  } else {
+    const Weights w = weights_at(t, x, y);
+    lit = interpolate(w, triangle.radiance);
+    at.uv = interpolate(w, triangle.uv);
+    at.footprint = {derivative(w, t.a, triangle.uv, at.uv), derivative(w, t.b, triangle.uv, at.uv)};
+  }
   if (texture == scenes::kNone) return lit;
-  const glm::vec2 uv = interpolate(w, triangle.uv);
-  const shading::Footprint footprint{derivative(w, planes.a, triangle.uv, uv),
-                                     derivative(w, planes.b, triangle.uv, uv)};
-  return lit * glm::vec3(shading::sample(frame.shader.textures[texture], uv, footprint));
+  return lit * glm::vec3(shading::sample(frame.shader.textures[texture], at.uv, at.footprint));
 }
 
 float alpha_at(const FrameShading& frame, const SeenPoint& seen) {

@@ -196,10 +196,4 @@ inline glm::vec4 sums_at(const ValuePlanes& planes, float dx, float dy) {
   return sums;
 }
 
-// Of three values and 1. REQUIRES: the barycentrics are proper; the triangle covers the pixel.
-inline glm::vec3 value_at(const ValuePlanes& planes, const Barycentrics& t, int x, int y) {
-  const glm::vec4 sums = sums_at(planes, static_cast<float>(x - t.x), static_cast<float>(y - t.y));
-  return glm::vec3(sums) * (1 / sums.w);
-}
-
 }  // namespace delray::raster

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "raster/internal/pixel_triangles.h"
@@ -43,5 +44,9 @@ struct PixelBlock {
 };
 // Colours of vertices stay as they are if planes.colour is empty.
 void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Points& points);
+
+// The same of any three values beside 1, and of uv and footprints unless there are no uvs.
+void set_values(std::span<const PixelTriangle> values, std::span<const ValuePlanes> uvs,
+                const PixelBlock& block, shading::Vectors16& results, shading::Points& points);
 
 }  // namespace delray::raster

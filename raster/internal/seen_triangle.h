@@ -52,6 +52,14 @@ Barycentrics make_screen_barycentrics(const Screen& screen, const ToView& to_vie
 SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
                                 const Draw& draw, const ShadedDraw& shaded, std::uint32_t t);
 
+// Where a pixel lies in the texture. `ones` are planes with a fourth value of 1.
+struct TexturePoint {
+  glm::vec2 uv{0.0F};
+  shading::Footprint footprint;
+};
+TexturePoint texture_point(const ValuePlanes& uvs, const ValuePlanes& ones, float dx, float dy,
+                           float share);
+
 // The point of the triangle at a pixel, or its corner k.
 shading::Point point_at(const SeenTriangle& triangle, int x, int y);
 shading::Point corner(const SeenTriangle& triangle, int k);

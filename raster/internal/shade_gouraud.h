@@ -40,7 +40,9 @@ class GouraudTile {
     std::uint32_t vertices[kBlockSize];
   };
 
-  void set_up_triangles(const FrameShading& frame, bool without_textures);
+  void set_up_triangles(const FrameShading& frame);
+  void set_up_textures(const FrameShading& frame, const ClusterMembers& members);
+  void shade_textured(const FrameShading& frame, shading::LaneMask lanes);
   void set_up_group(const FrameShading& frame, const ClusterMembers& members);
   void turn_normals(const Draw& draw, const ClusterMembers& members, std::size_t member,
                     std::uint32_t triangle, bool front, std::uint32_t first_vertex);
@@ -53,6 +55,15 @@ class GouraudTile {
 
   TileTriangles triangles_;             // their corners: into radiances_
   std::vector<PixelTriangle> colours_;  // of the triangles
+  // Of the triangles, if any draw has a texture.
+  std::vector<ValuePlanes> uvs_;
+  std::vector<std::uint32_t> textures_;  // kNone: none
+  bool any_textured_ = false;
+  VertexRows uv_rows_ = {};
+  PixelBlock block_;
+  shading::Vectors16 block_colours_;
+  shading::Points points_;
+  shading::Shaded texels_;
   // Of the group at hand: used vertices whose normals are turned, a sparse set (Briggs & Torczon
   // 1993): v is in it if turned_[turned_number_[v]] == v, so that it needs no clearing.
   std::uint8_t turned_number_[kClusterVertices];

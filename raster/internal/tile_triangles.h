@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "parallel/function_ref.h"
-#include "raster/internal/pixel_triangles.h"
+#include "raster/internal/point_planes.h"
 #include "raster/internal/shade_tile.h"
 #include "raster/internal/tile_groups.h"
 #include "raster/internal/tile_runs.h"
@@ -90,5 +90,30 @@ class TileTriangles {
   ClusterMembers members_[2];  // of a group and the next
   ScreenVertices screen_vertices_;
 };
+
+// Calls shade(i, shown) for pixels x + i .. of a row as ShadeRow gives it, a block at a time, with
+// the block filled; the lanes of `shown` show triangles, the others have one of these if there
+// are any.
+template <class F>
+void for_each_block(std::uint64_t starts, const std::uint16_t* run, int x, int y, int count,
+                    PixelBlock& block, F&& shade) {
+  starts &= ~std::uint64_t{1};  // the first run has begun
+  for (int i = 0; i < count; i += shading::kBlockPoints) {
+    shading::LaneMask shown = 0;
+    std::uint16_t some = kNoTriangle;
+    for (int k = 0; k < shading::kBlockPoints; ++k) {
+      if (i + k < count) run += starts >> (i + k) & 1;
+      const bool drawn = *run != kNoTriangle && i + k < count;
+      shown |= shading::LaneMask{drawn} << k;
+      block.triangle[k] = *run;
+      block.x[k] = static_cast<float>(x + i + k);
+      block.y[k] = static_cast<float>(y);
+      if (drawn) some = *run;
+    }
+    for (std::uint16_t& triangle : block.triangle)
+      if (triangle == kNoTriangle) triangle = some;
+    shade(i, shown);
+  }
+}
 
 }  // namespace delray::raster

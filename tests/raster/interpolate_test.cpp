@@ -167,7 +167,9 @@ TEST(Interpolate, ProperPlanesGiveTheColoursOfBoundedShares) {
       double exact[3];
       if (!exact_weights(screen.view, v, x, y, exact)) continue;
       const glm::vec3 bounded = interpolate(weights_at(t, x, y), colours);
-      const glm::vec3 value = value_at(planes, t, x, y);
+      const glm::vec4 sums =
+          sums_at(planes, static_cast<float>(x - t.x), static_cast<float>(y - t.y));
+      const glm::vec3 value = glm::vec3(sums) * (1 / sums.w);
       for (int k = 0; k < 3; ++k) ASSERT_NEAR(value[k], bounded[k], 1.0F / 32) << round;
       ++checked;
     }
