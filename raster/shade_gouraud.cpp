@@ -125,13 +125,20 @@ void GouraudTile::set_up_group(const FrameShading& frame, const ClusterMembers& 
 }
 
 void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMembers& members) {
-  if (uvs_.empty()) return;
   const TileGroups::Group& group = *members.group;
-  const scenes::Mesh& mesh = *frame.list.draws[frame.list.clusters[group.cluster].draw].mesh;
-  const std::uint32_t texture = shading::material(frame.shader, mesh.material).base_colour_texture;
-  std::fill_n(textures_.begin() + group.first, group.count, texture);
-  if (texture == scenes::kNone) return;
-  any_textured_ = true;
+  const std::uint32_t draw = frame.list.clusters[group.cluster].draw;
+  const scenes::Mesh& mesh = *frame.list.draws[draw].mesh;
+  const scenes::Material& material = shading::material(frame.shader, mesh.material);
+  const bool blended = frame.draws[draw].blended;
+  any_special_ |= blended || material.base_colour_texture != scenes::kNone;
+  if (frame.any_textures || frame.any_blended)
+    std::fill_n(surfaces_.begin() + group.first, group.count,
+                Surface{static_cast<std::uint32_t>(&material - frame.shader.materials.data()),
+                        material.base_colour_texture, blended});
+  if (blended && !mesh.colours.empty()) {  // whose alpha counts
+    for (std::size_t i = 0; i < group.count; ++i) triangles_.leave_to_shade_pixel(group.first + i);
+  }
+  if (material.base_colour_texture == scenes::kNone) return;
   for (std::size_t i = 0; i < members.vertices.size(); ++i) {
     const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(0.0F) : mesh.uvs[members.vertices[i]];
     std::copy_n(&uv.x, 2, uv_rows_.row[i]);
@@ -140,19 +147,22 @@ void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMember
                 uvs_.data());
 }
 
-// Into block_colours_.
-void GouraudTile::shade_textured(const FrameShading& frame, shading::LaneMask lanes) {
+// Into block_colours_ and block_alpha_.
+void GouraudTile::shade_special(const FrameShading& frame, shading::LaneMask lanes) {
   set_values(colours_, uvs_, block_, block_colours_, points_);
+  std::fill_n(block_alpha_.lane, kBlockSize, 1.0F);
   const std::uint16_t* const triangle = block_.triangle;
   for (shading::LaneMask rest = lanes; rest != 0;) {
-    const std::uint32_t texture = textures_[triangle[std::countr_zero(rest)]];
+    const Surface surface = surfaces_[triangle[std::countr_zero(rest)]];
     shading::LaneMask same = 0;
     for (int i = 0; i < kBlockSize; ++i)
-      same |= shading::LaneMask{textures_[triangle[i]] == texture} << i;
+      same |= shading::LaneMask{surfaces_[triangle[i]] == surface} << i;
     same &= rest;
     rest &= ~same;
-    if (texture == scenes::kNone) continue;
-    shading::sample(frame.shader.textures[texture], points_, same, texels_);
+    if (surface.blended)
+      shading::coverage(frame.batch, surface.material, points_, same, block_alpha_);
+    if (surface.texture == scenes::kNone) continue;
+    shading::sample(frame.shader.textures[surface.texture], points_, same, texels_);
     for (; same != 0; same &= same - 1) {
       const int i = std::countr_zero(same);
       block_colours_.set(i, block_colours_.get(i) * texels_.colour.get(i));
@@ -171,8 +181,8 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
   const std::size_t room = triangles_.size() + kBlockSize;
   if (colours_.size() < room) colours_.resize(room);
   uvs_.resize(frame.any_textures ? std::max(uvs_.size(), room) : 0);
-  textures_.resize(uvs_.size());
-  any_textured_ = false;
+  if (surfaces_.size() < room) surfaces_.resize(room);
+  any_special_ = false;
   all_have_normals_ = true;
   radiances_.assign(1, glm::vec4(0, 0, 0, 1));
   triangles_.for_each_group(
@@ -232,16 +242,28 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
   triangles_.write<Colour>(
       frame, seen, tile, rect, window,
       [&](std::uint64_t starts, Runs runs, int x, int y, int count, Colour* pixels) {
-        if (!any_textured_) {
+        if (!any_special_) {
           shade_row(colours_, starts, runs, x, y, count, pixels);
           return;
         }
         for_each_block(starts, runs, x, y, count, block_, [&](int i, shading::LaneMask lanes) {
-          if (lanes != 0) shade_textured(frame, lanes);
+          if (lanes != 0) shade_special(frame, lanes);
           store_colours(block_colours_, lanes, pixels + i);
         });
       });
   return shown;
+}
+
+void GouraudTile::colours(const FrameShading& frame, SeenTriangles& seen,
+                          std::span<const SurfaceAt> surfaces, image::RgbaF* colours) {
+  triangles_.colours(
+      frame, seen, surfaces, block_,
+      [&] {
+        set_up_triangles(frame);
+        set_up_colours(triangles_.planes(), radiances_, triangles_.size(), colours_.data());
+      },
+      [&](shading::LaneMask lanes) { shade_special(frame, lanes); },
+      [&](int i) { return premultiplied(block_colours_.get(i), block_alpha_[i]); }, colours);
 }
 
 template std::uint64_t GouraudTile::shade(const FrameShading&, SeenTriangles&,

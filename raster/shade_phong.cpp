@@ -131,47 +131,22 @@ std::uint64_t PhongTile::shade(const FrameShading& frame, SeenTriangles& seen,
   return shown;
 }
 
-void PhongTile::some_colours(const FrameShading& frame, SeenTriangles& seen,
-                             std::span<const SurfaceAt> surfaces, image::RgbaF* colours) {
-  numbers_.clear();
-  for (const SurfaceAt& surface : surfaces) numbers_.push_back(surface.number);
-  const std::vector<std::uint16_t> triangles = triangles_.set(numbers_);
-  make_room(frame);
-  triangles_.for_each_group(
-      frame, [](std::uint32_t) { return true; },
-      [&](const ClusterMembers& members) { set_up_group(frame, members); });
-  for (std::size_t first = 0; first < surfaces.size(); first += kBlockSize) {
-    const int count = static_cast<int>(std::min<std::size_t>(kBlockSize, surfaces.size() - first));
-    shading::LaneMask proper = 0;
-    for (int i = 0; i < kBlockSize; ++i) {
-      // The last block repeats its last surface.
-      const std::size_t which = first + static_cast<std::size_t>(std::min(i, count - 1));
-      block_.triangle[i] = triangles[which];
-      block_.x[i] = static_cast<float>(surfaces[which].x);
-      block_.y[i] = static_cast<float>(surfaces[which].y);
-      proper |= shading::LaneMask{i < count && !triangles_.is_left(triangles[which])} << i;
-    }
-    if (proper != 0) shade_block(frame, proper);
-    for (int i = 0; i < count; ++i) {
-      const SurfaceAt& surface = surfaces[first + static_cast<std::size_t>(i)];
-      image::RgbaF& colour = colours[first + static_cast<std::size_t>(i)];
-      if ((proper >> i & 1) == 0) {
-        colour = colour_at(frame, seen, surface.number, surface.x, surface.y);
-        continue;
-      }
-      const float alpha = (kinds_[block_.triangle[i]] & 2) != 0 ? shaded_.alpha[i] : 1.0F;
-      colour = premultiplied(shaded_.colour.get(i), alpha);
-    }
-  }
-}
-
 void PhongTile::colours(const FrameShading& frame, SeenTriangles& seen,
                         std::span<const SurfaceAt> surfaces, image::RgbaF* colours) {
-  for (std::size_t first = 0; first < surfaces.size(); first += kTilePixels)
-    some_colours(
-        frame, seen,
-        surfaces.subspan(first, std::min<std::size_t>(kTilePixels, surfaces.size() - first)),
-        colours + first);
+  triangles_.colours(
+      frame, seen, surfaces, block_,
+      [&] {
+        make_room(frame);
+        triangles_.for_each_group(
+            frame, [](std::uint32_t) { return true; },
+            [&](const ClusterMembers& members) { set_up_group(frame, members); });
+      },
+      [&](shading::LaneMask lanes) { shade_block(frame, lanes); },
+      [&](int i) {
+        const bool blended = (kinds_[block_.triangle[i]] & 2) != 0;
+        return premultiplied(shaded_.colour.get(i), blended ? shaded_.alpha[i] : 1.0F);
+      },
+      colours);
 }
 
 template std::uint64_t PhongTile::shade(const FrameShading&, SeenTriangles&, const VisibilityTile&,

@@ -64,10 +64,10 @@ float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances) {
-  FrameShading frame{screen, shader, list,  {},    {},       {},
-                     {},     false,  false, false, lighting, distances};
+  FrameShading frame{screen, shader, list,  {},    {},       {},       {},
+                     false,  false,  false, false, lighting, distances};
   add_draws(frame);
-  if (lighting == Lighting::phong) frame.batch = shading::make_batch_shader(shader);
+  frame.batch = shading::make_batch_shader(shader);
   if (lighting == Lighting::gouraud) {
     frame.untextured = shader.materials;
     for (scenes::Material& material : frame.untextured) {
@@ -87,6 +87,7 @@ void add_draws(FrameShading& frame) {
     frame.draws.push_back(make_shaded_draw(frame.screen.view, draw));
     frame.draws.back().blended = is_blended(frame.shader, *draw.mesh);
     const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
+    frame.any_blended |= frame.draws.back().blended;
     frame.any_colours |= !draw.mesh->colours.empty();
     frame.any_normal_maps |= material.normal_texture != scenes::kNone;
     for (const std::uint32_t texture :

@@ -46,9 +46,12 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
 void TileView::shade_asked() {
   const std::vector<SurfaceAt>& asked = memory_.asked;
   memory_.answers.resize(asked.size());
-  if (frame_.lighting == Lighting::phong && shaded_ == nullptr) {
+  if (shaded_ == nullptr) {
     shaded_now_ += asked.size();
-    memory_.phong.colours(frame_, memory_.seen, asked, memory_.answers.data());
+    if (frame_.lighting == Lighting::gouraud)
+      memory_.gouraud.colours(frame_, memory_.seen, asked, memory_.answers.data());
+    else
+      memory_.phong.colours(frame_, memory_.seen, asked, memory_.answers.data());
     return;
   }
   for (std::size_t i = 0; i < asked.size(); ++i)

@@ -23,6 +23,10 @@ class GouraudTile {
   std::uint64_t shade(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                       const geometry::Rect& rect, const Window<Colour>& window);
 
+  // As colour_at gives them, premultiplied.
+  void colours(const FrameShading& frame, SeenTriangles& seen, std::span<const SurfaceAt> surfaces,
+               image::RgbaF* colours);
+
   // Of at most kTilePixels triangles of the frame's list, each once: the radiance of corner k of
   // triangle i, without any texture, is radiances[corners[i][k]]. There are no others. Until the
   // next call.
@@ -40,9 +44,16 @@ class GouraudTile {
     std::uint32_t vertices[kBlockSize];
   };
 
+  // What a pixel's colour depends on besides the light.
+  struct Surface {
+    std::uint32_t material = 0, texture = scenes::kNone;
+    bool blended = false;
+    bool operator==(const Surface&) const = default;
+  };
+
   void set_up_triangles(const FrameShading& frame);
   void set_up_textures(const FrameShading& frame, const ClusterMembers& members);
-  void shade_textured(const FrameShading& frame, shading::LaneMask lanes);
+  void shade_special(const FrameShading& frame, shading::LaneMask lanes);
   void set_up_group(const FrameShading& frame, const ClusterMembers& members);
   void turn_normals(const Draw& draw, const ClusterMembers& members, std::size_t member,
                     std::uint32_t triangle, bool front, std::uint32_t first_vertex);
@@ -55,13 +66,14 @@ class GouraudTile {
 
   TileTriangles triangles_;             // their corners: into radiances_
   std::vector<PixelTriangle> colours_;  // of the triangles
-  // Of the triangles, if any draw has a texture.
+  // Of the triangles, if any draw has a texture; if any has one or is blended.
   std::vector<ValuePlanes> uvs_;
-  std::vector<std::uint32_t> textures_;  // kNone: none
-  bool any_textured_ = false;
+  std::vector<Surface> surfaces_;
+  bool any_special_ = false;  // in the tile
   VertexRows uv_rows_ = {};
   PixelBlock block_;
   shading::Vectors16 block_colours_;
+  shading::Floats16 block_alpha_;
   shading::Points points_;
   shading::Shaded texels_;
   // Of the group at hand: used vertices whose normals are turned, a sparse set (Briggs & Torczon

@@ -10,12 +10,6 @@
 
 namespace delray::raster {
 
-// A triangle at a pixel.
-struct SurfaceAt {
-  std::uint32_t number;
-  int x, y;
-};
-
 // Memory for a tile. One per thread.
 class PhongTile {
  public:
@@ -38,15 +32,12 @@ class PhongTile {
                      const Row& row);
   // The lanes of `shown`.
   void shade_block(const FrameShading& frame, shading::LaneMask shown);
-  void some_colours(const FrameShading& frame, SeenTriangles& seen,
-                    std::span<const SurfaceAt> surfaces, image::RgbaF* colours);
 
   TileTriangles triangles_;
   PointPlanes planes_;
   // Of triangles: 4 * material, 2 more if something may be seen through it, 1 more with colours of
   // vertices.
   std::vector<std::uint32_t> kinds_;
-  std::vector<std::uint32_t> numbers_;
   PixelBlock block_;
   WorldVertices world_vertices_;
   VertexRows rows_;

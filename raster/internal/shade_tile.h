@@ -20,11 +20,12 @@ struct FrameShading {
   const shading::Shader& shader;
   const DrawList& list;
   std::vector<ShadedDraw> draws;             // of the list's draws
-  shading::BatchShader batch;                // the shader for many points at a time; for phong
+  shading::BatchShader batch;                // the shader for many points at a time
   std::vector<scenes::Material> untextured;  // the shader's materials without textures; for gouraud
   shading::BatchShader untextured_batch;     // the same, for many vertices at a time
-  // Whether any draw so far has colours of vertices, a material with a texture, with a normal map.
-  bool any_colours = false, any_textures = false, any_normal_maps = false;
+  // Whether any draw so far has colours of vertices, a material with a texture, with a normal map,
+  // or may be seen through.
+  bool any_colours = false, any_textures = false, any_normal_maps = false, any_blended = false;
   Lighting lighting;
   // Images get distances along the view axis rather than -near / distance.
   bool distances;

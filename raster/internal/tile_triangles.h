@@ -1,6 +1,7 @@
 // The triangles that a tile shows, ready to be shaded by vectors.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +23,12 @@ struct ClusterMembers {
   std::uint32_t chosen_vertices[kClusterVertices] = {};
   std::uint8_t used[kClusterVertices] = {};    // by vertex of the cluster: 1, 0 between groups
   std::uint8_t number[kClusterVertices] = {};  // of those used
+};
+
+// A triangle at a pixel.
+struct SurfaceAt {
+  std::uint32_t number;
+  int x, y;
 };
 
 // Memory for a tile. One per thread.
@@ -74,6 +81,13 @@ class TileTriangles {
   void write(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
              const geometry::Rect& rect, const Window<Colour>& window, ShadeRow<Colour> shade_row);
 
+  // The colours of surfaces, premultiplied. Some at a time: set_up() sets up what they show, then
+  // shade_block(lanes) makes what colour_of(lane) tells of the block, which is filled.
+  template <class SetUpAll, class ShadeBlock, class ColourOf>
+  void colours(const FrameShading& frame, SeenTriangles& seen, std::span<const SurfaceAt> surfaces,
+               PixelBlock& block, SetUpAll&& set_up, ShadeBlock&& shade_block, ColourOf&& colour_of,
+               image::RgbaF* results);
+
  private:
   void ask_for(const FrameShading& frame);
   static void number_vertices(std::span<const std::uint32_t> vertices, ClusterMembers& members);
@@ -89,7 +103,41 @@ class TileTriangles {
   bool any_left_ = false;
   ClusterMembers members_[2];  // of a group and the next
   ScreenVertices screen_vertices_;
+  std::vector<std::uint32_t> numbers_;  // of surfaces
 };
+
+template <class SetUpAll, class ShadeBlock, class ColourOf>
+void TileTriangles::colours(const FrameShading& frame, SeenTriangles& seen,
+                            std::span<const SurfaceAt> surfaces, PixelBlock& block,
+                            SetUpAll&& set_up, ShadeBlock&& shade_block, ColourOf&& colour_of,
+                            image::RgbaF* results) {
+  for (; !surfaces.empty(); surfaces = surfaces.subspan(numbers_.size())) {
+    numbers_.clear();
+    for (const SurfaceAt& s : surfaces.first(std::min<std::size_t>(kTilePixels, surfaces.size())))
+      numbers_.push_back(s.number);
+    const std::vector<std::uint16_t> triangles = set(numbers_);
+    set_up();
+    for (std::size_t first = 0; first < triangles.size(); first += shading::kBlockPoints) {
+      const std::size_t count =
+          std::min<std::size_t>(shading::kBlockPoints, triangles.size() - first);
+      shading::LaneMask lanes = 0;
+      for (std::size_t i = 0; i < shading::kBlockPoints; ++i) {
+        // The last block repeats its last surface.
+        const std::size_t which = first + std::min(i, count - 1);
+        block.triangle[i] = triangles[which];
+        block.x[i] = static_cast<float>(surfaces[which].x);
+        block.y[i] = static_cast<float>(surfaces[which].y);
+        lanes |= shading::LaneMask{i < count && !is_left(triangles[which])} << i;
+      }
+      if (lanes != 0) shade_block(lanes);
+      for (std::size_t i = 0; i < count; ++i) {
+        const SurfaceAt& s = surfaces[first + i];
+        *results++ = lanes >> i & 1 ? colour_of(static_cast<int>(i))
+                                    : colour_at(frame, seen, s.number, s.x, s.y);
+      }
+    }
+  }
+}
 
 // Calls shade(i, shown) for pixels x + i .. of a row as ShadeRow gives it, a block at a time, with
 // the block filled; the lanes of `shown` show triangles, the others have one of these if there

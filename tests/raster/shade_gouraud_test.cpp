@@ -14,6 +14,10 @@ TEST(ShadeGouraud, GivesWhatPixelByPixelGives) {
   expect_vectors_give_what_pixels_give<GouraudTile>(Lighting::gouraud);
 }
 
+TEST(ShadeGouraud, ColoursOfSurfacesAreThoseOfEachAlone) {
+  expect_colours_of_each_alone<GouraudTile>(Lighting::gouraud);
+}
+
 TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
   // Colours around every step of the code, and those that are none.
   std::vector<float> colours = {0.0F, -1.0F, 1.0F, 2.0F, 1e30F, 1e-30F, 0x1p-13F};

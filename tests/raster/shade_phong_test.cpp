@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
-
 #include "tests/raster/shade_both_ways.h"
 
 namespace delray::raster {
@@ -49,51 +46,7 @@ TEST(ShadePhong, MixesKindsOfMaterials) {
 }
 
 TEST(ShadePhong, ColoursOfSurfacesAreThoseOfEachAlone) {
-  for (unsigned seed = 20; seed < 23; ++seed) {
-    SCOPED_TRACE(seed);
-    scenes::Scene scene = random_scene(seed);
-    for (std::size_t m = 0; m < scene.materials.size(); m += 2) {
-      scene.materials[m].alpha = scenes::Material::Alpha::blend;
-      scene.materials[m].base_colour.w = 0.3F;
-    }
-    const Screen screen = make_screen(scenes::make_view(random_scene_camera(), 120, 90));
-    const shading::Shader shader = shading::make_shader(scene);
-    SceneClusters clusters(scene.meshes);
-    const std::vector<std::uint64_t> first = scenes::first_primitives(scene);
-    const DrawList list = make_draw_list(pieces_of(scene, first, 0, first.back()), &clusters);
-    const FrameShading frame = make_frame_shading(screen, shader, list, Lighting::phong, false);
-    // Any triangles at the pixels of their boxes, some of them slivers, in any order.
-    std::vector<SurfaceAt> surfaces;
-    std::mt19937 random(seed);
-    for (int i = 0; i < 9000; ++i) {
-      const auto cluster = static_cast<std::uint32_t>(random() % list.clusters.size());
-      const Cluster& its = list.clusters[cluster];
-      const std::uint32_t place =
-          its.begin + static_cast<std::uint32_t>(random()) % (its.end - its.begin);
-      surfaces.push_back({cluster << kClusterBits | place, static_cast<int>(random() % 120),
-                          static_cast<int>(random() % 90)});
-    }
-    SeenTriangles seen;
-    seen.clear();
-    std::vector<image::RgbaF> expected, colours(surfaces.size());
-    for (const SurfaceAt& s : surfaces)
-      expected.push_back(colour_at(frame, seen, s.number, s.x, s.y));
-    const auto tile = std::make_unique<PhongTile>();
-    std::size_t through = 0;
-    for_each_target([&] {
-      tile->colours(frame, seen, surfaces, colours.data());
-      for (std::size_t i = 0; i < colours.size(); ++i) {
-        // A pixel may lie outside of its triangle here, where there is nothing to agree on.
-        const auto finite = [](const image::RgbaF& c) {
-          return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
-        };
-        if (!finite(expected[i])) continue;
-        ASSERT_EQ(std::memcmp(&colours[i], &expected[i], sizeof colours[i]), 0) << i;
-        through += colours[i].a < 1;
-      }
-    });
-    EXPECT_GT(through, 100U);
-  }
+  expect_colours_of_each_alone<PhongTile>(Lighting::phong);
 }
 
 }  // namespace
