@@ -11,5 +11,6 @@ void add_triangulate(CLI::App& program, Session& session);
 void add_verify(CLI::App& program, Session& session);
 void add_render(CLI::App& program, Session& session);
 void add_compose(CLI::App& program, Session& session);
+void add_compare(CLI::App& program, Session& session);
 
 }  // namespace delray::apps

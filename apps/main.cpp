@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   add_verify(program, session);
   add_render(program, session);
   add_compose(program, session);
+  add_compare(program, session);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

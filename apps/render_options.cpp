@@ -21,18 +21,6 @@ namespace {
 
 constexpr int kLargestSide = 32768;
 
-void parse_size(RenderRequest& request) {
-  const char* const end = request.size.data() + request.size.size();
-  const auto [x, error] = std::from_chars(request.size.data(), end, request.width);
-  const bool fine = error == std::errc() && x != end && *x == 'x' &&
-                    std::from_chars(x + 1, end, request.height).ptr == end;
-  if (!fine || request.width < 1 || request.height < 1 || request.width > kLargestSide ||
-      request.height > kLargestSide) {
-    throw UsageError(fmt::format("--size: '{}' is not WIDTHxHEIGHT, each from 1 to {}",
-                                 request.size, kLargestSide));
-  }
-}
-
 // Throws UsageError if one of the options was given.
 void refuse(const CLI::App& command, std::initializer_list<const char*> options,
             const std::string& with) {
@@ -97,6 +85,18 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
 }
 
 }  // namespace
+
+void parse_size(RenderRequest& request) {
+  const char* const end = request.size.data() + request.size.size();
+  const auto [x, error] = std::from_chars(request.size.data(), end, request.width);
+  const bool fine = error == std::errc() && x != end && *x == 'x' &&
+                    std::from_chars(x + 1, end, request.height).ptr == end;
+  if (!fine || request.width < 1 || request.height < 1 || request.width > kLargestSide ||
+      request.height > kLargestSide) {
+    throw UsageError(fmt::format("--size: '{}' is not WIDTHxHEIGHT, each from 1 to {}",
+                                 request.size, kLargestSide));
+  }
+}
 
 void add_render_options(CLI::App& command, RenderRequest& request) {
   add_scene_options(command, request.scene);

@@ -40,6 +40,9 @@ struct RenderRequest {
   Background behind;
 };
 
+// Sets width and height by size. Throws UsageError.
+void parse_size(RenderRequest& request);
+
 void add_render_options(CLI::App& command, RenderRequest& request);
 
 // Completes and checks a request. Throws UsageError for values that are not legal and for options

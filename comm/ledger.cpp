@@ -28,8 +28,12 @@ void Tally::add(const Event& event) {
   const auto phase = static_cast<std::size_t>(event.phase);
   Totals& sum = phases_[phase];
   if (!add_message(event, self_, sum)) return;
-  if (sum.rounds == 0 || event.round != last_round_[phase]) ++sum.rounds;
+  if (sum.rounds > 0 && event.round == last_round_[phase]) return;
+  ++sum.rounds;
   last_round_[phase] = event.round;
+  const auto round = static_cast<std::size_t>(event.round);
+  if (rounds_[phase].size() <= round) rounds_[phase].resize(round + 1);
+  rounds_[phase][round] = true;
 }
 
 Totals totals(std::span<const Event> events, int self, std::optional<Phase> phase) {

@@ -44,13 +44,19 @@ class Tally {
   // `self` is the rank's world rank.
   explicit Tally(int self) : self_(self) {}
 
+  // REQUIRES: rounds are numbered from 0.
   void add(const Event& event);
   const Totals& totals(Phase phase) const { return phases_[static_cast<std::size_t>(phase)]; }
+  // Element i: whether there was a message in round i. May be shorter than there are rounds.
+  const std::vector<bool>& rounds(Phase phase) const {
+    return rounds_[static_cast<std::size_t>(phase)];
+  }
 
  private:
   int self_;
   std::array<Totals, kPhases> phases_{};
   std::array<std::int32_t, kPhases> last_round_{};
+  std::array<std::vector<bool>, kPhases> rounds_{};
 };
 
 // Of one rank's events: `self` is its world rank. With a phase, of that phase only. O(events).

@@ -1,6 +1,7 @@
 #include "raster/render.h"
 
 #include <algorithm>
+#include <cassert>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "parallel/parallel_for.h"
 #include "raster/internal/frame_memory.h"
 #include "raster/internal/rank.h"
+#include "raster/internal/share_communicator.h"
 #include "raster/strategies.h"
 
 namespace delray::raster {
@@ -277,6 +279,14 @@ std::unique_ptr<FrameInSteps> Renderer::begin(comm::Communicator& communicator,
                                               const RenderOptions& options,
                                               const parallel::Progress* progress) {
   return std::make_unique<Steps>(*memory_, communicator, camera, options, progress);
+}
+
+Share Renderer::draw_share(int rank, int ranks, const scenes::Camera& camera,
+                           const RenderOptions& options, parallel::Progress* progress) {
+  assert(options.supersampling == 1);
+  ShareCommunicator communicator(rank, ranks);
+  Frame frame(*memory_, memory_->scratch, communicator, camera, options, progress);
+  return sort_last_share(frame.rank);
 }
 
 Result render(comm::Communicator& communicator, const scenes::Scene& scene,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "comm/communicator.h"
+#include "composite/deep_image.h"
 #include "image/image.h"
 #include "loadbalance/cost_model.h"
 #include "parallel/progress.h"
@@ -153,6 +154,10 @@ class FrameInSteps {
   virtual Result compose() = 0;
 };
 
+// A partial image of sort-last: colours and depths (smaller is nearer; no distances) of an opaque
+// scene, or all surfaces of one that blends some.
+using Share = std::variant<image::Image8, composite::DeepImage<image::RgbaF>>;
+
 // Renders frames of one scene, keeping the memory that a frame needs for the next one. One per
 // rank.
 class Renderer {
@@ -191,6 +196,12 @@ class Renderer {
   std::unique_ptr<FrameInSteps> begin(comm::Communicator& communicator,
                                       const scenes::Camera& camera, const RenderOptions& options,
                                       const parallel::Progress* progress = nullptr);
+
+  // What rank `rank` of `ranks` contributes to sort-last before anything travels: an equal,
+  // ascending share of the primitives, drawn over the whole frame. Not collective. `options` as
+  // above; only what concerns drawing counts, and supersampling is not allowed.
+  Share draw_share(int rank, int ranks, const scenes::Camera& camera, const RenderOptions& options,
+                   parallel::Progress* progress = nullptr);
 
   // Gives the memory of a picture that is no longer needed to the next frame: fresh memory takes
   // longer to write to than a simple scene takes to draw.

@@ -71,15 +71,19 @@ composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
 }
 
 // Transparent surfaces have to be blended in one order over all ranks.
-std::unique_ptr<composite::Layer> draw_surfaces(Rank& rank, const DrawList& list,
-                                                RegionDrawing& drawing) {
-  return composite::make_deep(end_deep<image::RgbaF>(
+composite::DeepImage<image::RgbaF> surfaces_of(Rank& rank, const DrawList& list,
+                                               RegionDrawing& drawing) {
+  return end_deep<image::RgbaF>(
       rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
         tile.for_each_surface(rect, [&](int x, int y, std::span<const SurfaceSeen> surfaces) {
           for (const SurfaceSeen& surface : surfaces)
             if (surface.colour.a > 0) add(x, y, surface.key, surface.colour);
         });
-      }));
+      });
+}
+std::unique_ptr<composite::Layer> draw_surfaces(Rank& rank, const DrawList& list,
+                                                RegionDrawing& drawing) {
+  return composite::make_deep(surfaces_of(rank, list, drawing));
 }
 
 template <class Colour>
@@ -182,6 +186,17 @@ class Steps final : public FrameSteps {
 std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank) {
   if (rank.options.float_pixels) return std::make_unique<Steps<image::RgbaF>>(rank);
   return std::make_unique<Steps<image::Rgba8>>(rank);
+}
+
+Share sort_last_share(Rank& rank) {
+  const auto [begin, end] = rank.own_primitives();
+  const DrawList list =
+      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
+  const geometry::Rect frame = rank.frame();
+  RegionDrawing drawing = rank.begin(list, {&frame, 1});
+  drawing.draw_all();
+  if (rank.transparent) return surfaces_of(rank, list, drawing);
+  return rank.end_samples<image::Rgba8>(drawing);
 }
 
 Picture sort_last(Rank& rank) {

@@ -93,6 +93,8 @@ Picture sort_first_scheduled(Rank& rank);
 Picture sort_middle(Rank& rank);
 Picture sort_last(Rank& rank);
 std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank);
+// What sort_last composites, of a rank that need not have others. REQUIRES: one sample per pixel.
+Share sort_last_share(Rank& rank);
 Picture hybrid(Rank& rank);
 
 }  // namespace delray::raster

@@ -52,7 +52,7 @@ std::vector<comm::Tally> counts_of(const Scheme& scheme, int ranks, const MakeLa
   comm::run_simulated(ranks, {}, 1, [&](comm::Communicator& communicator) {
     const int rank = communicator.rank();
     comm::Recording recording(communicator, result[static_cast<std::size_t>(rank)]);
-    gather(recording, scheme.compose(recording, make(rank), {}), 0);
+    gather(recording, compose(recording, make(rank), scheme.name), 0);
   });
   return result;
 }

@@ -1,0 +1,245 @@
+#include "apps/compare_compose.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+#include <thread>
+
+#include "apps/composed_shares.h"
+#include "comm/agree_on_failure.h"
+#include "comm/network.h"
+#include "composite/fit_machine.h"
+#include "composite/scheme.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+using composite::HollowImages;
+using composite::ImageMasks;
+using composite::MachineModel;
+
+constexpr const char* kThisMachine = "this-machine";
+// Of this many ranks at most samples are taken for the model of this machine.
+constexpr int kMostFittedRanks = 16;
+// Simulating this many takes long, and nobody has so many on one machine.
+constexpr int kMostRanksHere = 256;
+
+std::vector<std::string> schemes_of(const CompareRequest& request) {
+  if (!request.schemes.empty()) return request.schemes;
+  std::vector<std::string> names;
+  for (const composite::Scheme& scheme : composite::schemes()) names.emplace_back(scheme.name);
+  return names;
+}
+
+// Whether hollow layers can stand for those of a codec.
+bool is_simulated(const std::string& codec) { return codec == "dense" || codec == "active"; }
+
+HollowImages hollow(const std::vector<ImageMasks>& masks, const std::string& codec) {
+  return {masks, codec == "active", composite::kPixelBytes8};
+}
+
+// What messages cost between threads of this process, before it is fitted.
+comm::Network network_here() {
+  comm::Network network;
+  network.latency = 2e-6;
+  network.overhead = 5e-6;
+  network.seconds_per_byte = 0;
+  network.shared_cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return network;
+}
+
+class Comparison {
+ public:
+  Comparison(const Session& session, const CompareRequest& request, const Prepared& prepared,
+             parallel::Progress* progress)
+      : session_(session), request_(request), prepared_(prepared), progress_(progress) {}
+
+  std::vector<ComparedScheme> run() {
+    if (session_.under_mpi) {
+      measure_processes();
+      if (!session_.first_process) return {};
+    } else {
+      for (const int ranks : request_.ranks) {
+        spdlog::info("{} ranks", ranks);
+        if (ranks <= kMostMeasuredRanks) measure_threads(ranks);
+      }
+    }
+    predict();
+    return std::move(rows_);
+  }
+
+ private:
+  int repeats(int ranks) const { return request_.quick || ranks > 16 ? 1 : 5; }
+
+  std::vector<std::string> codecs_of(const raster::Share& share) const {
+    return is_transparent(share) ? std::vector<std::string>{"deep"} : request_.codecs;
+  }
+
+  void append(const std::string& scheme, const std::string& codec, int ranks,
+              const MeasuredScheme& measured) {
+    rows_.push_back({scheme,
+                     codec,
+                     ranks,
+                     measured.compose,
+                     measured.gather,
+                     measured.compose_seconds,
+                     measured.gather_seconds,
+                     measured.hash,
+                     {}});
+  }
+
+  // On every rank.
+  void measure_all(comm::Communicator& communicator, const raster::Share& share) {
+    const int ranks = communicator.size();
+    for (const std::string& codec : codecs_of(share)) {
+      for (const std::string& scheme : schemes_of(request_)) {
+        const MeasuredScheme measured =
+            measure_scheme(communicator, share, scheme, codec, repeats(ranks), request_, prepared_);
+        if (communicator.rank() == 0) append(scheme, codec, ranks, measured);
+      }
+    }
+  }
+
+  void measure_threads(int ranks) {
+    std::vector<raster::Share> shares;
+    parallel::Arena(parallel::arena_threads()).execute([&] {
+      ShareDrawer drawer(request_, prepared_, progress_);
+      composite::MaskMaker maker;
+      for (int rank = 0; rank < ranks; ++rank) {
+        shares.push_back(drawer.draw(rank, ranks));
+        if (is_transparent(shares.back())) continue;
+        masks_[ranks].push_back(maker.add(std::get<image::Image8>(shares.back()).depth.span()));
+      }
+    });
+    Launch launch = request_.render.launch;
+    launch.ranks = ranks;
+    run_ranks(session_, launch, [&](comm::Communicator& communicator) {
+      measure_all(communicator, shares[static_cast<std::size_t>(communicator.rank())]);
+    });
+  }
+
+  void measure_processes() {
+    run_ranks(session_, request_.render.launch, [&](comm::Communicator& communicator) {
+      communicator.mark(comm::Phase::rasterize, 0);
+      const raster::Share share = comm::all_or_none(communicator, comm::Phase::rasterize, [&] {
+        ShareDrawer drawer(request_, prepared_, progress_);
+        if (communicator.rank() == 0 && communicator.size() <= kMostMeasuredRanks) {
+          masks_[communicator.size()] = drawer.masks(communicator.size());
+        }
+        return drawer.draw(communicator.rank(), communicator.size());
+      });
+      measure_all(communicator, share);
+    });
+  }
+
+  const std::vector<ImageMasks>& masks(int ranks) {
+    if (masks_.count(ranks) == 0) {
+      parallel::Arena(parallel::arena_threads()).execute([&] {
+        masks_[ranks] = ShareDrawer(request_, prepared_, progress_).masks(ranks);
+      });
+    }
+    return masks_[ranks];
+  }
+
+  // Counts what was not measured, and predicts everything.
+  void predict() {
+    for (const std::string& codec : request_.codecs) {
+      if (!is_simulated(codec)) {
+        spdlog::warn("codec {} depends on pixels' values: nothing is predicted", codec);
+        continue;
+      }
+      const MachineModel here{network_here(), measure_layer_costs(*composite::find_codec(codec))};
+      const std::vector<composite::TimedScheme> samples = samples_of(codec);
+      for (const int ranks : ranks_of_rows()) {
+        const std::vector<ImageMasks>& images = masks(ranks);
+        if (images.empty()) continue;  // transparent
+        if (ranks > kMostMeasuredRanks) count_simulated(codec, ranks, images);
+        std::vector<std::pair<std::string, MachineModel>> machines;
+        for (const comm::NamedNetwork& named : comm::networks()) {
+          machines.emplace_back(named.name, MachineModel{named.network, here.costs});
+        }
+        if (ranks <= kMostRanksHere) {
+          machines.emplace_back(kThisMachine, fit_to_others(here, samples, ranks));
+        }
+        for (ComparedScheme& row : rows_) {
+          if (row.codec != codec || row.ranks != ranks) continue;
+          for (const auto& [name, machine] : machines) {
+            const composite::Simulated run = simulate(row.scheme, hollow(images, codec), machine);
+            row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
+          }
+        }
+        masks_.erase(ranks > kMostFittedRanks ? ranks : -1);
+      }
+    }
+    std::stable_sort(rows_.begin(), rows_.end(),
+                     [](const auto& a, const auto& b) { return a.ranks < b.ranks; });
+  }
+
+  std::vector<int> ranks_of_rows() const {
+    std::vector<int> ranks;
+    for (const ComparedScheme& row : rows_) ranks.push_back(row.ranks);
+    if (!session_.under_mpi) {
+      for (const int count : request_.ranks) {
+        if (count > kMostMeasuredRanks) ranks.push_back(count);
+      }
+    }
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    return ranks;
+  }
+
+  void count_simulated(const std::string& codec, int ranks, const std::vector<ImageMasks>& images) {
+    for (const std::string& scheme : schemes_of(request_)) {
+      const composite::Simulated run =
+          simulate(scheme, hollow(images, codec), {comm::networks()[0].network, {}});
+      ComparedScheme row;
+      row.scheme = scheme;
+      row.codec = codec;
+      row.ranks = ranks;
+      row.counts = run.compose;
+      row.gather = run.gather;
+      rows_.push_back(std::move(row));
+    }
+  }
+
+  std::vector<composite::TimedScheme> samples_of(const std::string& codec) {
+    std::vector<composite::TimedScheme> samples;
+    for (const ComparedScheme& row : rows_) {
+      if (row.codec != codec || row.ranks > kMostFittedRanks || row.ranks < 2) continue;
+      if (!row.compose_seconds || masks(row.ranks).empty()) continue;
+      samples.push_back(
+          {row.scheme, hollow(masks(row.ranks), codec), std::max(1e-9, *row.compose_seconds)});
+    }
+    return samples;
+  }
+
+  // Fitted to what other numbers of ranks took.
+  static MachineModel fit_to_others(const MachineModel& here,
+                                    const std::vector<composite::TimedScheme>& samples, int ranks) {
+    std::vector<composite::TimedScheme> others;
+    for (const composite::TimedScheme& sample : samples) {
+      if (static_cast<int>(sample.images.ranks.size()) != ranks) others.push_back(sample);
+    }
+    return fit_machine(here, others);
+  }
+
+  const Session& session_;
+  const CompareRequest& request_;
+  const Prepared& prepared_;
+  parallel::Progress* progress_;
+  std::map<int, std::vector<ImageMasks>> masks_;  // by number of ranks
+  std::vector<ComparedScheme> rows_;
+};
+
+}  // namespace
+
+std::vector<ComparedScheme> compare_compose(const Session& session, const CompareRequest& request,
+                                            const Prepared& prepared,
+                                            parallel::Progress* progress) {
+  return Comparison(session, request, prepared, progress).run();
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,49 @@
+// delray compare compose: every compositing scheme on one scene, counted, measured and predicted.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/render_frames.h"
+#include "apps/session.h"
+#include "apps/statistics.h"
+#include "composite/simulate.h"
+
+namespace delray::apps {
+
+struct CompareRequest {
+  RenderRequest render;  // scene, camera, size, threads
+  std::vector<int> ranks = {2, 3, 4, 8, 16, 64};
+  std::vector<std::string> codecs = {"active"};
+  std::vector<std::string> schemes;  // empty: all
+  bool quick = false;
+  bool list = false;
+  std::string output, statistics;
+};
+
+// How long a scheme would take.
+struct Predicted {
+  std::string network;
+  double seconds = 0, gather_seconds = 0;
+};
+
+// One scheme with one codec on so many ranks.
+struct ComparedScheme {
+  std::string scheme, codec;
+  int ranks = 0;
+  composite::Counts counts, gather;
+  std::optional<double> compose_seconds, gather_seconds;  // measured
+  std::string hash;                                       // of the picture; empty: not composited
+  std::vector<Predicted> predicted;
+};
+
+// More ranks than this are simulated only.
+inline constexpr int kMostMeasuredRanks = 64;
+
+// Compares; complete on the first process only. Throws as render does.
+std::vector<ComparedScheme> compare_compose(const Session& session, const CompareRequest& request,
+                                            const Prepared& prepared, parallel::Progress* progress);
+
+}  // namespace delray::apps

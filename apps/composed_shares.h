@@ -1,0 +1,45 @@
+// What the ranks of sort-last have drawn, and what it takes to composite it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/compare_compose.h"
+#include "comm/communicator.h"
+#include "composite/mask.h"
+#include "raster/render.h"
+
+namespace delray::apps {
+
+// Draws the shares of so many ranks one by one. Parallel in the caller's arena.
+class ShareDrawer {
+ public:
+  ShareDrawer(const CompareRequest& request, const Prepared& prepared,
+              parallel::Progress* progress);
+  raster::Share draw(int rank, int ranks);
+  // Of all ranks, from the first to the last; empty for a scene of which something is transparent.
+  std::vector<composite::ImageMasks> masks(int ranks);
+
+ private:
+  const Prepared& prepared_;
+  raster::RenderOptions options_;
+  parallel::Progress* progress_;
+  raster::Renderer renderer_;
+};
+
+// Whether layers are lists of surfaces, whatever the codec.
+bool is_transparent(const raster::Share& share);
+
+struct MeasuredScheme {
+  composite::Counts compose, gather;
+  double compose_seconds = 0, gather_seconds = 0;  // medians, until the last rank is done
+  std::string hash;                                // on rank 0
+};
+
+// Collective: composites copies of the shares `repeats` times after once to warm up, which is when
+// it counts. The result is rank 0's.
+MeasuredScheme measure_scheme(comm::Communicator& communicator, const raster::Share& share,
+                              const std::string& scheme, const std::string& codec, int repeats,
+                              const CompareRequest& request, const Prepared& prepared);
+
+}  // namespace delray::apps

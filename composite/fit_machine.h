@@ -1,0 +1,26 @@
+// A model of a machine from how long compositing took on it.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "composite/simulate.h"
+
+namespace delray::composite {
+
+// A scheme that was run and took so long, without the gather.
+struct TimedScheme {
+  std::string scheme;
+  HollowImages images;
+  double seconds = 0;
+};
+
+// `start` with the overhead of a message, the costs of cutting and those of merging scaled, each by
+// a factor of at most 30 up or down, so that simulated and measured times agree: least squares of
+// the logarithms (Gauss and Newton), with a light pull towards `start`. Some ten simulations of
+// each sample. `start` itself where there are no samples.
+//
+// REQUIRES: seconds > 0; all samples have one codec, that of start.costs.
+MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme> samples);
+
+}  // namespace delray::composite

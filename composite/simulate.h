@@ -1,0 +1,56 @@
+// Compositing on the simulated machine: what a scheme moves and how long it would take there, of as
+// many ranks as one likes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "comm/ledger.h"
+#include "comm/network.h"
+#include "composite/hollow.h"
+#include "composite/layer_costs.h"
+#include "composite/mask.h"
+
+namespace delray::composite {
+
+// Counted exactly, over all ranks.
+struct Counts {
+  std::uint64_t rounds = 0;  // numbers of rounds in which anybody sent or received
+  std::uint64_t bytes_total = 0, bytes_sent_max = 0, bytes_received_max = 0;
+  std::uint64_t messages = 0;
+  std::uint64_t pixels_composited_total = 0, pixels_composited_max = 0;
+  bool operator==(const Counts&) const = default;
+};
+Counts count(std::span<const comm::Tally> ranks, comm::Phase phase);
+// Collective: the same of all ranks of the communicator, each of which has its own tally; the
+// result is rank 0's. Call it on the communicator that was recorded, not on the recording.
+Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Phase phase);
+
+// What ranks know of their images, and how they send them.
+struct HollowImages {
+  std::span<const ImageMasks> ranks;       // at least one; all of one size
+  bool active = false;                     // codec "active", else "dense"
+  std::size_t pixel_bytes = kPixelBytes8;  // kPixelBytes8 or kPixelBytesF
+};
+
+// A machine on which layers are cut and merged.
+struct MachineModel {
+  comm::Network network;
+  LayerCosts costs;
+};
+
+struct Simulated {
+  Counts compose, gather;
+  double compose_seconds = 0, gather_seconds = 0;
+};
+
+// Runs the scheme and the gather to rank 0, ranks waiting for each other in between. Time and
+// memory grow with the messages and the pixels covered, not with ranks times pixels.
+//
+// REQUIRES: there is such a scheme.
+Simulated simulate(std::string_view scheme, const HollowImages& images,
+                   const MachineModel& machine);
+
+}  // namespace delray::composite

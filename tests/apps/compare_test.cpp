@@ -1,0 +1,124 @@
+// delray compare: the built program, and the JSON that scripts rely on.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "composite/codec.h"
+#include "composite/scheme.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string hash_of_render(const Folder& folder, const std::string& scene_and_size) {
+  const Ran ran = run("delray render " + scene_and_size + " -o a.png --stats - -q", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  return Json::parse(ran.out)["image"]["hash"];
+}
+
+TEST(CompareCompose, TellsOfEverySchemeWhatTheInterfaceSays) {
+  const Folder folder;
+  const std::string scene = "gen:city:3000 --size 150x101";
+  const Ran ran = run(
+      "delray compare compose " + scene + " --ranks 3,2,80 --codec active,dense --quick --stats -",
+      folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  EXPECT_EQ(json["schema"], "delray.compare.compose/1");
+  const std::string hash = hash_of_render(folder, scene);
+  ASSERT_EQ(json["rows"].size(), composite::schemes().size() * 3 * 2);
+  std::set<std::string> rows;
+  for (const Json& row : json["rows"]) {
+    const int ranks = row["ranks"];
+    rows.insert(row["scheme"].get<std::string>() + row["codec"].get<std::string>() +
+                std::to_string(ranks));
+    SCOPED_TRACE(row.dump());
+    for (const char* key : {"rounds", "bytes_total", "bytes_sent_max", "bytes_received_max",
+                            "messages", "pixels_composited_total", "pixels_composited_max"}) {
+      ASSERT_TRUE(row[key].is_number_unsigned()) << key;
+    }
+    EXPECT_GE(row["rounds"], 1);
+    EXPECT_GE(row["bytes_total"], row["bytes_sent_max"]);
+    EXPECT_GE(row["messages"], ranks - 1);
+    EXPECT_GE(row["pixels_composited_total"], row["pixels_composited_max"]);
+    std::set<std::string> networks;
+    for (const Json& predicted : row["predicted"]) {
+      networks.insert(predicted["network"].get<std::string>());
+      EXPECT_EQ(predicted["ranks"], ranks);
+      EXPECT_GT(predicted["seconds"], 0);
+    }
+    EXPECT_TRUE(networks.count("shared-bus") && networks.count("this-machine"));
+    if (ranks <= 64) {
+      EXPECT_GT(row["seconds"]["compose"], 0);
+      EXPECT_GE(row["seconds"]["gather"], 0);
+      EXPECT_EQ(row["image_hash"], hash);
+    } else {
+      EXPECT_TRUE(row["seconds"]["compose"].is_null());
+      EXPECT_TRUE(row["image_hash"].is_null());
+    }
+  }
+  EXPECT_EQ(rows.size(), json["rows"].size());
+}
+
+TEST(CompareCompose, BlendsTransparentScenesAlikeAndTakesEveryCodec) {
+  const Folder folder;
+  for (const std::string scene : {"gen:spheres:500", "gen:cornell"}) {
+    const Ran ran = run("delray compare compose " + scene +
+                            " --size 61x47 --ranks 1,4 --codec lz4,bounds --compose tree "
+                            "radix-k:2 bus --quick --stats f.json -o report.html",
+                        folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("radix-k:2"), std::string::npos) << ran.out;
+    const std::string hash = hash_of_render(folder, scene + " --size 61x47");
+    EXPECT_NE(folder.read("report.html").find("<td>radix-k:2</td>"), std::string::npos);
+    const Json json = Json::parse(folder.read("f.json"));
+    EXPECT_GE(json["rows"].size(), 6U);
+    for (const Json& row : json["rows"]) EXPECT_EQ(row["image_hash"], hash) << row.dump();
+  }
+}
+
+TEST(CompareCompose, RefusesWhatItCannotDo) {
+  const Folder folder;
+  for (const std::string arguments :
+       {"", "gen:spheres --ranks 2,x", "gen:spheres --codec nothing",
+        "gen:spheres --compose nothing", "gen:spheres -o report.png"}) {
+    const Ran ran = run("delray compare compose " + arguments, folder.path());
+    EXPECT_EQ(ran.exit_code, 2) << arguments << ran.err;
+    EXPECT_EQ(ran.out, "");
+  }
+}
+
+TEST(CompareCompose, ListsSchemesCodecsAndNetworks) {
+  const Folder folder;
+  const Ran ran = run("delray compare compose --list", folder.path());
+  EXPECT_EQ(ran.exit_code, 0);
+  for (const char* name : {"tree\t", "active\t", "hdr-infiniband\t"}) {
+    EXPECT_NE(ran.out.find(name), std::string::npos) << name;
+  }
+}
+
+TEST(CompareCompose, MeasuresTheProcessesOfMpirun) {
+  if (run("mpirun --version", ".").exit_code != 0) GTEST_SKIP() << "no mpirun";
+  const Folder folder;
+  const Ran ran = run(
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+      "OMPI_MCA_btl_vader_single_copy_mechanism=none mpirun --oversubscribe -n 3 " DELRAY_PROGRAM
+      " compare compose gen:city:2000 --size 64x48 --quick --stats - -q",
+      folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  ASSERT_EQ(json["rows"].size(), composite::schemes().size());
+  const std::string hash = hash_of_render(folder, "gen:city:2000 --size 64x48");
+  for (const Json& row : json["rows"]) {
+    EXPECT_EQ(row["ranks"], 3);
+    EXPECT_EQ(row["image_hash"], hash);
+    EXPECT_EQ(row["predicted"].size(), 5U);
+  }
+}
+
+}  // namespace
+}  // namespace delray::tests
