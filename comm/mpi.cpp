@@ -81,25 +81,27 @@ struct Engine {
 
 // Waits between two looks at MPI: at first not at all, so that an answer is taken at once; then it
 // lets others run; at last it sleeps, so that ranks without a core of their own do not take turns
-// at finding nothing.
+// at finding nothing. While messages are on their way, which large ones are only as long as both
+// ends look, it takes long to sleep.
 class Patience {
  public:
   explicit Patience(const Engine& engine) : looks_(engine.cores_are_scarce ? kSpins : 0) {}
 
-  void pause() {
+  void pause(bool on_their_way = false) {
     ++looks_;
     if (looks_ <= kSpins) return;
-    if (looks_ <= kSpins + kYields) {
+    const int rest = looks_ - kSpins - (on_their_way ? kYieldsOnTheWay : kYields);
+    if (rest <= 0) {
       sched_yield();
       return;
     }
-    std::this_thread::sleep_for(
-        std::chrono::microseconds(std::min(looks_ - kSpins - kYields, 200)));
-    looks_ = std::min(looks_, kSpins + kYields + 1000);
+    std::this_thread::sleep_for(std::chrono::microseconds(std::min(rest, 200)));
+    looks_ = std::min(looks_, kSpins + kYieldsOnTheWay + 1000);
   }
 
  private:
-  static constexpr int kSpins = 1000, kYields = 100;
+  // A look and a yield take about a microsecond where nobody else wants the core.
+  static constexpr int kSpins = 1000, kYields = 1000, kYieldsOnTheWay = 100000;
   int looks_;
 };
 
@@ -162,7 +164,7 @@ class MpiCommunicator final : public Communicator {
     Message* message = wait(from_or_any, tag_or_any, Deadline::never());
     Transfer incoming = queue_.take(message);
     Patience patience(*engine_);
-    while (!completed(incoming.requests)) patience.pause();
+    while (!completed(incoming.requests)) patience.pause(/*on_their_way=*/true);
     return std::move(incoming.buffer);
   }
 
@@ -269,8 +271,8 @@ class MpiCommunicator final : public Communicator {
       pull();
       if (Message* message = queue_.find(from, tag)) return message;
       if (deadline.wait <= std::chrono::nanoseconds{0}) return nullptr;
+      engine_->reap();
       if (first) {
-        engine_->reap();
         if (longest != kNever) begin = Clock::now();
       } else if (longest != kNever && Clock::now() - begin >= longest) {
         if (longest == deadline.wait) return nullptr;
@@ -278,7 +280,7 @@ class MpiCommunicator final : public Communicator {
                      std::to_string(std::chrono::duration<double>(longest).count()) +
                      " s for a message from " + internal::describe_pattern(from, tag));
       }
-      patience.pause();
+      patience.pause(!engine_->unfinished.empty());
     }
   }
 
@@ -301,7 +303,7 @@ class MpiCommunicator final : public Communicator {
     MPI_Request everybody = MPI_REQUEST_NULL;
     bool finished_mine = false;
     int finished_all = 0;
-    for (Patience patience(*engine_); !finished_all; patience.pause()) {
+    for (Patience patience(*engine_); !finished_all; patience.pause(!finished_mine)) {
       pull();
       for (const auto& communicator : retired) communicator->pull();
       engine_->finish_some();
