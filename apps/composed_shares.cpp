@@ -7,6 +7,7 @@
 #include "comm/recording.h"
 #include "composite/codec.h"
 #include "composite/deep.h"
+#include "composite/flatten.h"
 #include "composite/scheme.h"
 #include "image/hash.h"
 
