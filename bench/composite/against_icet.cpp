@@ -1,12 +1,14 @@
-// Compositing over MPI beside IceT: the same pictures, the same processes, collected on rank 0; all
-// take turns, medians. Run it under mpirun with any number of processes.
+// Compositing beside IceT: the same pictures, the same processes, collected on rank 0; all take
+// turns, medians. Run it under mpirun with any number of processes on one machine.
 #include <fmt/format.h>
 #include <mpi.h>
 #include <time.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <string>
 #include <thread>
@@ -14,6 +16,7 @@
 #include "bench/measure.h"
 #include "bench/peers/icet.h"
 #include "comm/mpi.h"
+#include "comm/threads.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "parallel/arena.h"
@@ -75,15 +78,24 @@ struct Times {
   double processor = 0;  // of all processes together
 };
 
-// Until all processes have come here; without looking all the time, which would take the processor
-// from those that are to come.
+// Until all processes have come here; who waits looks so seldom that it takes no time from those
+// that are to come.
 void meet() {
   MPI_Request all = MPI_REQUEST_NULL;
   MPI_Ibarrier(MPI_COMM_WORLD, &all);
   for (int done = 0; !done;) {
     MPI_Test(&all, &done, MPI_STATUS_IGNORE);
-    if (!done) std::this_thread::sleep_for(std::chrono::microseconds(20));
+    if (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+}
+
+// All processes, which share a machine, sleep until one moment.
+void start_together() {
+  meet();
+  constexpr double kUntilAllSleep = 5e-3;
+  double start = MPI_Wtime() + kUntilAllSleep;
+  MPI_Bcast(&start, 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  std::this_thread::sleep_for(std::chrono::duration<double>(start - MPI_Wtime()));
 }
 
 // On rank 0.
@@ -93,7 +105,7 @@ Times times_of(auto&& work) {
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
   };
-  meet();
+  start_together();
   double begin = MPI_Wtime(), processor = used();
   work();
   double end = MPI_Wtime(), first = 0, last = 0;
@@ -107,91 +119,151 @@ Times times_of(auto&& work) {
   return all;
 }
 
+enum class Side { icet, mpi, in_process };
+
 struct Row {
-  std::string name;
-  bool icet = false;
+  Side side;
+  std::string method, codec;  // a strategy or scheme
   std::vector<double> seconds, processor;
   void add(const Times& times) {
     seconds.push_back(times.seconds);
     processor.push_back(times.processor);
   }
+  std::string name() const {
+    return side == Side::icet ? "IceT " + method
+                              : method + " " + codec + (side == Side::mpi ? "" : " in process");
+  }
 };
 
-void measure(comm::Communicator& communicator, const Options& options, const std::string& kind) {
-  const bool blended = kind == "blended";
-  const int rank = communicator.rank();
-  const Image8 mine = picture(options, kind, rank, communicator.size());
-  Image8 for_icet = copy(mine);  // whose empty depth is 1
-  for (std::size_t i = 0; i < mine.pixels(); ++i) {
-    if (mine.depth[i] == image::kEmptyDepth) for_icet.depth[i] = 1;
-  }
-  const IcetKind icet_kind = blended ? IcetKind::ordered : IcetKind::nearest;
-  Icet icet(options.width, options.height, icet_kind);
+// All rows: IceT's, ours over MPI, and ours over threads of rank 0 while the others sleep.
+std::vector<Row> rows_of(const Options& options, IcetKind kind) {
   std::vector<Row> rows;
-  for (const std::string& strategy : Icet::strategies(icet_kind)) {
-    rows.push_back({strategy, true, {}, {}});
-  }
-  for (const composite::Scheme& scheme : composite::schemes()) {
-    for (const composite::Codec& codec : composite::codecs()) {
-      if (!options.all && std::strcmp(codec.name, "active") != 0) continue;
-      rows.push_back({scheme.name + (" " + std::string(codec.name)), false, {}, {}});
+  const auto add = [&](Side side, const std::string& method, const std::string& codec) {
+    const bool wanted = options.only.empty() || std::find(options.only.begin(), options.only.end(),
+                                                          method) != options.only.end();
+    if (wanted) rows.push_back({side, method, codec, {}, {}});
+  };
+  for (const std::string& strategy : Icet::strategies(kind)) add(Side::icet, strategy, "");
+  for (const Side side : {Side::mpi, Side::in_process}) {
+    for (const composite::Scheme& scheme : composite::schemes()) {
+      for (const composite::Codec& codec : composite::codecs()) {
+        if (options.all || std::strcmp(codec.name, "active") == 0) {
+          add(side, scheme.name, codec.name);
+        }
+      }
     }
   }
-  if (!options.only.empty()) {
-    std::erase_if(rows, [&](const Row& row) {
-      return std::find(options.only.begin(), options.only.end(),
-                       row.name.substr(0, row.name.find(' '))) == options.only.end();
-    });
+  return rows;
+}
+
+std::unique_ptr<composite::Layer> layer_of(const Row& row, const Image8& image, bool blended) {
+  return composite::find_codec(row.codec)->make(
+      copy(image), blended ? composite::Operator::over : composite::Operator::nearest);
+}
+
+composite::Part compose(comm::Communicator& communicator, const Row& row,
+                        std::unique_ptr<composite::Layer> layer) {
+  composite::Part part = composite::compose(communicator, std::move(layer), row.method);
+  composite::forget_depth<image::Rgba8>(part);  // which IceT does not collect either
+  return composite::gather(communicator, std::move(part), 0);
+}
+
+// Colours of the picture, on rank 0.
+Image8 run(comm::Communicator& communicator, const Options& options, const std::string& kind,
+           Icet& icet, const Image8& mine, Row& row) {
+  const bool blended = kind == "blended";
+  const int rank = communicator.rank(), ranks = communicator.size();
+  if (row.side == Side::icet) {
+    Image8 image = copy(mine);
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+      if (image.depth[i] == image::kEmptyDepth) image.depth[i] = 1;
+    }
+    icet.choose(row.method);
+    const image::Rgba8* result = nullptr;
+    row.add(times_of([&] {
+      result = icet.compose(image.colour.data(), blended ? nullptr : image.depth.data());
+    }));
+    if (rank == 0) std::memcpy(image.colour.data(), result, image.pixels() * sizeof *result);
+    return image;
   }
+  composite::Part part;
+  if (row.side == Side::mpi) {
+    auto layer = layer_of(row, mine, blended);
+    row.add(times_of([&] { part = compose(communicator, row, std::move(layer)); }));
+  } else {
+    std::vector<std::unique_ptr<composite::Layer>> layers;
+    for (int i = 0; i < ranks && rank == 0; ++i) {
+      layers.push_back(layer_of(row, picture(options, kind, i, ranks), blended));
+    }
+    row.add(times_of([&] {
+      if (rank != 0) return;
+      comm::run_threads(ranks, 1, [&](comm::Communicator& thread) {
+        auto result =
+            compose(thread, row, std::move(layers[static_cast<std::size_t>(thread.rank())]));
+        if (thread.rank() == 0) part = std::move(result);
+      });
+    }));
+  }
+  return rank == 0 ? composite::take_image<image::Rgba8>(std::move(part)) : Image8();
+}
+
+std::size_t pixels_that_differ(const Image8& a, const Image8& b) {
+  const auto far = [](int x, int y) { return std::abs(x - y) > 4; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.pixels(); ++i) {
+    const image::Rgba8 c = a.colour[i], d = b.colour[i];
+    count += far(c.r, d.r) || far(c.g, d.g) || far(c.b, d.b) || far(c.a, d.a);
+  }
+  return count;
+}
+
+void print(const std::vector<Row>& rows) {
+  double best = 1e9;
+  for (const Row& row : rows) {
+    if (row.side == Side::icet) best = std::min(best, median(row.seconds));
+  }
+  // IceT's seconds for the same algorithm; 0 where it has none.
+  const auto same = [&](const std::string& scheme) {
+    const std::string strategy = scheme.starts_with("binary-swap") ? "bswap"
+                                 : scheme == "radix-k"             ? "radixk"
+                                 : scheme == "direct-send"         ? "direct"
+                                                                   : scheme;
+    for (const Row& row : rows) {
+      if (row.side == Side::icet && row.method == strategy) return median(row.seconds);
+    }
+    return 0.0;
+  };
+  fmt::print("{:38} {:>8} {:>12} {:>10} {:>10}\n", "", "ms", "processor ms", "of best", "of same");
+  for (const Row& row : rows) {
+    const double seconds = median(row.seconds), other = same(row.method);
+    fmt::print("{:38} {:8.2f} {:12.2f} {:10.2f} {:>10}\n", row.name(), 1e3 * seconds,
+               1e3 * median(row.processor), seconds / best,
+               other > 0 && row.side != Side::icet ? fmt::format("{:.2f}", seconds / other) : "");
+  }
+}
+
+void measure(comm::Communicator& communicator, const Options& options, const std::string& kind) {
+  const Image8 mine = picture(options, kind, communicator.rank(), communicator.size());
+  const IcetKind icet_kind = kind == "blended" ? IcetKind::ordered : IcetKind::nearest;
+  Icet icet(options.width, options.height, icet_kind);
+  std::vector<Row> rows = rows_of(options, icet_kind);
   Image8 expected;
   std::size_t wrong = 0;
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     for (Row& row : rows) {
-      const Image8 touched = copy(row.icet ? for_icet : mine);
-      if (row.icet) {
-        icet.choose(row.name);
-        const image::Rgba8* result = nullptr;
-        row.add(times_of([&] {
-          result = icet.compose(touched.colour.data(), blended ? nullptr : touched.depth.data());
-        }));
-        if (rank == 0 && expected.pixels() == 0) {
-          expected = Image8(options.width, options.height);
-          std::memcpy(expected.colour.data(), result, mine.pixels() * sizeof *result);
-        }
-        continue;
-      }
-      const std::size_t space = row.name.find(' ');
-      auto layer = composite::find_codec(row.name.substr(space + 1))
-                       ->make(copy(mine),
-                              blended ? composite::Operator::over : composite::Operator::nearest);
-      composite::Part part;
-      row.add(times_of([&] {
-        part = composite::compose(communicator, std::move(layer), row.name.substr(0, space));
-        composite::forget_depth<image::Rgba8>(part);  // which IceT does not collect either
-        part = composite::gather(communicator, std::move(part), 0);
-      }));
-      if (rank != 0) continue;
-      const Image8 image = composite::take_image<image::Rgba8>(std::move(part));
-      for (std::size_t i = 0; i < image.pixels() && repeat == 0 && expected.pixels() > 0; ++i) {
-        const auto far = [](int a, int b) { return std::abs(a - b) > 4; };
-        const image::Rgba8 a = image.colour[i], b = expected.colour[i];
-        wrong += far(a.r, b.r) || far(a.g, b.g) || far(a.b, b.b) || far(a.a, b.a);
+      Image8 image = run(communicator, options, kind, icet, mine, row);
+      if (communicator.rank() != 0 || repeat > 0) continue;
+      if (expected.pixels() > 0) {
+        wrong += pixels_that_differ(image, expected);
+      } else {
+        expected = std::move(image);
       }
     }
   }
-  if (rank != 0) return;
-  fmt::print("\n{}: {} ranks, {} x {}, ms{}\n", kind, communicator.size(), options.width,
+  if (communicator.rank() != 0) return;
+  fmt::print("\n{}: {} ranks, {} x {}{}\n", kind, communicator.size(), options.width,
              options.height, wrong > 0 ? fmt::format("; {} WRONG PIXELS", wrong) : "");
-  double best_icet = 1e9;
-  for (const Row& row : rows) {
-    if (row.icet) best_icet = std::min(best_icet, median(row.seconds));
-  }
-  for (const Row& row : rows) {
-    const double seconds = median(row.seconds);
-    fmt::print("{:32} {:8.2f} ms {:8.2f} of IceT's best {:8.2f} ms of processors\n",
-               (row.icet ? "IceT " : "") + row.name, 1e3 * seconds, seconds / best_icet,
-               1e3 * median(row.processor));
-  }
+  print(rows);
 }
 
 }  // namespace
@@ -208,6 +280,7 @@ int main(int argc, char** argv) {
   app.add_flag("--all", options.all, "all codecs");
   CLI11_PARSE(app, argc, argv);
   const delray::bench::KeepMemory kept;
+  const delray::parallel::AllowThreads allowed(64);
   delray::comm::run_mpi(&argc, &argv, [&](delray::comm::Communicator& communicator) {
     delray::parallel::Arena(1).execute([&] {
       for (const std::string& kind : options.pictures) {
