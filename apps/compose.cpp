@@ -18,6 +18,7 @@
 #include "composite/codec.h"
 #include "composite/dense.h"
 #include "composite/scheme.h"
+#include "composite/write_parts.h"
 #include "files/error.h"
 #include "image/io.h"
 
@@ -27,7 +28,7 @@ namespace {
 struct ComposeRequest {
   std::vector<std::string> parts;
   std::string output, scheme = "radix-k", codec = "active", statistics;
-  bool ordered = false, interlace = false, list = false;
+  bool ordered = false, interlace = false, in_pieces = false, list = false;
   Launch launch;
 };
 
@@ -103,9 +104,19 @@ void agree_on_size(comm::Communicator& communicator, const std::string& file,
   });
 }
 
+// Layers over each other have no depth: 0 where something is.
+void set_depths(composite::Part& part) {
+  image::ImageF& image = dynamic_cast<composite::ImageLayer<image::RgbaF>&>(*part.layer).image();
+  for (const composite::PixelRange& range : part.ranges) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      image.depth[i] = image.colour[i].a > 0 ? 0 : image::kEmptyDepth;
+    }
+  }
+}
+
 struct Outcome {
-  image::ImageF image;
-  double read = 0, compose = 0, gather = 0;
+  image::ImageF image;  // on rank 0, of no use where pieces were written
+  double read = 0, compose = 0, gather = 0, write = 0;
   comm::Totals composed, gathered;
 };
 
@@ -129,18 +140,20 @@ Outcome compose_parts(comm::Communicator& communicator, const ComposeRequest& re
   composite::Part part = composite::compose(recording, std::move(layer), request.scheme,
                                             {.interlace = request.interlace});
   outcome.compose = stopwatch.lap();
-  part = composite::gather(recording, std::move(part), 0);
-  outcome.gather = stopwatch.lap();
+  if (request.ordered) set_depths(part);
+  if (request.in_pieces) {
+    composite::write_parts(communicator, part, request.output);
+    outcome.write = stopwatch.lap();
+  } else {
+    part = composite::gather(recording, std::move(part), 0);
+    outcome.gather = stopwatch.lap();
+  }
   const comm::Ledger ledger = comm::gather_ledger(communicator, events);
   if (communicator.rank() != 0) return outcome;
   outcome.composed = comm::totals(ledger, comm::Phase::compose);
   outcome.gathered = comm::totals(ledger, comm::Phase::gather);
+  if (request.ordered) set_depths(part);  // those of other ranks have not come along
   outcome.image = composite::take_image<image::RgbaF>(std::move(part));
-  if (request.ordered) {
-    for (std::size_t i = 0; i < outcome.image.pixels(); ++i) {
-      outcome.image.depth[i] = outcome.image.colour[i].a > 0 ? 0 : image::kEmptyDepth;
-    }
-  }
   return outcome;
 }
 
@@ -154,6 +167,9 @@ void check(const ComposeRequest& request) {
     find_entry(composite::schemes(), request.scheme, "--compose");
   }
   find_entry(composite::codecs(), request.codec, "--codec");
+  if (request.in_pieces && !request.output.ends_with(".exr")) {
+    throw UsageError("--in-pieces: only .exr files have a place for every pixel beforehand");
+  }
 }
 
 int run(const Session& session, const ComposeRequest& request) {
@@ -169,10 +185,14 @@ int run(const Session& session, const ComposeRequest& request) {
     Outcome outcome = compose_parts(communicator, request);
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() != 0) return;
-      Stopwatch stopwatch;
       const int width = outcome.image.width, height = outcome.image.height;
-      const Picture picture = std::move(outcome.image);
-      const std::string hash = write_picture(session, request.output, picture);
+      std::string hash;
+      if (!request.in_pieces) {
+        Stopwatch stopwatch;
+        const Picture picture = std::move(outcome.image);
+        hash = write_picture(session, request.output, picture);
+        outcome.write = stopwatch.lap();
+      }
       constexpr auto kPixels = static_cast<std::size_t>(comm::Work::pixels_composited);
       write_statistics(request.statistics,
                        {{"schema", "delray.compose/1"},
@@ -182,13 +202,14 @@ int run(const Session& session, const ComposeRequest& request) {
                           {"compose", request.scheme},
                           {"codec", request.codec},
                           {"ordered", request.ordered},
-                          {"interlace", request.interlace}}},
+                          {"interlace", request.interlace},
+                          {"in_pieces", request.in_pieces}}},
                         {"image", {{"width", width}, {"height", height}, {"hash", hash}}},
                         {"seconds",
                          {{"read", outcome.read},
                           {"compose", outcome.compose},
                           {"gather", outcome.gather},
-                          {"write", stopwatch.lap()}}},
+                          {"write", outcome.write}}},
                         {"rounds", outcome.composed.rounds},
                         {"messages", outcome.composed.messages_sent},
                         {"bytes", outcome.composed.bytes_sent},
@@ -215,6 +236,10 @@ void add_compose(CLI::App& program, Session& session) {
   command->add_option("--codec", request->codec, "how pixels travel (default active)");
   command->add_flag("--interlace", request->interlace,
                     "every piece that travels has something of everywhere");
+  command->add_flag(
+      "--in-pieces", request->in_pieces,
+      "every rank writes its own pixels into the EXR; nothing is gathered, and no hash "
+      "told");
   add_launch_options(*command, request->launch);
   command->add_option("--stats", request->statistics, "write statistics as JSON; - for stdout");
   command->add_flag("--list", request->list, "list schemes and codecs");

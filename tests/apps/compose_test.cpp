@@ -51,7 +51,9 @@ TEST(ComposeCommand, ShowsTheNearestPart) {
        {"delray compose " + parts + "-o out.exr",
         "delray compose " + parts + "-o out.exr --ranks 3",
         "delray compose " + parts + "-o out.exr --ranks 8 --compose tree --codec lz4 --interlace",
-        kMpirun + "delray compose " + parts + "-o out.exr --compose 2-3-swap"}) {
+        "delray compose " + parts + "-o out.exr --ranks 3 --in-pieces",
+        kMpirun + "delray compose " + parts + "-o out.exr --compose 2-3-swap",
+        kMpirun + "delray compose " + parts + "-o out.exr --in-pieces"}) {
     SCOPED_TRACE(command);
     const Ran ran = run(command, folder.path());
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
@@ -119,6 +121,7 @@ TEST(ComposeCommand, RefusesWhatItCannotMerge) {
   EXPECT_EQ(code("-o out.png"), 2);
   EXPECT_EQ(code(parts), 2);
   EXPECT_EQ(code(parts + "-o out.nothing"), 2);
+  EXPECT_EQ(code(parts + "-o out.png --in-pieces"), 2);
   EXPECT_EQ(code(parts + "-o out.png --compose radix-k:0"), 2);
   EXPECT_EQ(code(parts + "-o out.png --codec zip"), 2);
   EXPECT_EQ(
