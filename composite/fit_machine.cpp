@@ -8,7 +8,7 @@
 namespace delray::composite {
 namespace {
 
-constexpr std::size_t kFactors = 3;
+constexpr std::size_t kFactors = 4;
 using Factors = std::array<double, kFactors>;  // logarithms
 
 MachineModel scaled(const MachineModel& start, const Factors& logarithms) {
@@ -22,6 +22,7 @@ MachineModel scaled(const MachineModel& start, const Factors& logarithms) {
        {&LayerCosts::merge, &LayerCosts::merge_pixel, &LayerCosts::merge_covered}) {
     model.costs.*cost *= std::exp(logarithms[2]);
   }
+  model.network.latency *= std::exp(logarithms[3]);
   return model;
 }
 
@@ -54,8 +55,8 @@ Factors solve(std::array<Factors, kFactors> matrix, Factors right) {
 }  // namespace
 
 MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme> samples) {
-  constexpr int kIterations = 3;
-  constexpr double kStep = 0.1, kPull = 0.02;
+  constexpr int kIterations = 4;
+  constexpr double kStep = 0.1, kPull = 0.02, kFar = 0.15;
   const double kMost = std::log(30.0);
   Factors at{};
   for (int iteration = 0; iteration < kIterations && !samples.empty(); ++iteration) {
@@ -74,8 +75,12 @@ MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme>
     const double pull = kPull * static_cast<double>(samples.size());
     for (std::size_t k = 0; k < kFactors; ++k) {
       for (std::size_t i = 0; i < errors.size(); ++i) {
-        right[k] -= slopes[k][i] * errors[i];
-        for (std::size_t j = 0; j < kFactors; ++j) matrix[k][j] += slopes[k][i] * slopes[j][i];
+        // What lies far off, by chance or because of what the model knows nothing of, pulls no
+        // harder than an error of kFar (Huber 1964).
+        const double slope =
+            slopes[k][i] * std::min(1.0, kFar / std::max(std::abs(errors[i]), kFar));
+        right[k] -= slope * errors[i];
+        for (std::size_t j = 0; j < kFactors; ++j) matrix[k][j] += slope * slopes[j][i];
       }
       matrix[k][k] += pull;
       right[k] -= pull * at[k];

@@ -15,10 +15,10 @@ struct TimedScheme {
   double seconds = 0;
 };
 
-// `start` with the overhead of a message, the costs of cutting and those of merging scaled, each by
-// a factor of at most 30 up or down, so that simulated and measured times agree: least squares of
-// the logarithms (Gauss and Newton), with a light pull towards `start`. Some ten simulations of
-// each sample. `start` itself where there are no samples.
+// `start` with overhead and latency of messages, the costs of cutting and those of merging scaled,
+// each by a factor of at most 30 up or down, so that simulated and measured times agree: least
+// squares of the logarithms, of what lies far off only the direction, with a light pull towards
+// `start`. Some twenty simulations of each sample. `start` itself where there are no samples.
 //
 // REQUIRES: seconds > 0; all samples have one codec, that of start.costs.
 MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme> samples);

@@ -1,4 +1,6 @@
-// A program over MPI in which rank RANK fails: comm_failing_rank throw|file|agreed|abort|stall RANK
+// A program over MPI in which rank RANK fails:
+// comm_failing_rank throw|file|agreed|abort|stall|kill RANK
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -22,6 +24,7 @@ void fail(comm::Communicator& communicator, const std::string& how, int failing)
   const files::FileError error(files::Cause::input, "broken.ply", "line 7", "not a number");
   if (how == "throw" && is_failing) throw std::runtime_error("the disk is on fire");
   if (how == "file" && is_failing) throw error;
+  if (how == "kill" && is_failing) std::raise(SIGKILL);
   if (how == "abort" && is_failing) communicator.abort("nothing left to do");
   if (how == "agreed") {
     const auto part = communicator.split(0, 0);

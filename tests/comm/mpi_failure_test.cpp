@@ -1,12 +1,17 @@
 // How programs end when one of their MPI processes fails: by what the launcher prints and returns.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -23,8 +28,9 @@ Outcome launch(const std::string& arguments) {
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
   setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 1);
-  const std::string command = std::string("timeout -s KILL 60 ") + DELRAY_MPIEXEC + " -n 4 " +
-                              DELRAY_FAILING_RANK + " " + arguments + " 2>&1 < /dev/null";
+  std::string command("timeout -s KILL 60 " DELRAY_MPIEXEC " -n 4 " DELRAY_FAILING_RANK " ");
+  command += arguments;
+  command += " 2>&1 < /dev/null";
   Outcome outcome;
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return outcome;
@@ -80,6 +86,35 @@ TEST_F(MpiFailure, StallEndsAllWithFive) {
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
   EXPECT_NE(outcome.output.find("for a message from rank 0 with tag 2"), std::string::npos)
       << outcome.output;
+}
+
+// Processes that have this argument. A shell that has it among others in one argument is none.
+std::vector<std::string> processes_with(const std::string& argument) {
+  std::string wanted(1, '\0');
+  wanted += argument;
+  wanted += '\0';
+  std::vector<std::string> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "cmdline", std::ios::binary);
+    const std::string line((std::istreambuf_iterator<char>(file)), {});
+    if (line.find(wanted) != std::string::npos) found.push_back(entry.path());
+  }
+  return found;
+}
+
+// Nothing can be done about SIGKILL: the launcher notices, and the others tell where they were.
+TEST_F(MpiFailure, AfterAKilledProcessNothingIsLeftAndTheLogNamesThePhase) {
+  std::string mark("mark-"), arguments("kill 1 ");
+  mark += std::to_string(getpid());
+  arguments += mark;
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome outcome = launch(arguments);
+  EXPECT_NE(outcome.exit_code, 0) << outcome.output;
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  EXPECT_NE(outcome.output.find("was told to end in phase compose"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("signal 9"), std::string::npos) << outcome.output;
+  EXPECT_EQ(processes_with(mark), std::vector<std::string>());
 }
 
 TEST_F(MpiFailure, MessagesThatNobodyReceivesDoNotHinderTheEnd) {
