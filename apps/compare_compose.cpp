@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <thread>
 
@@ -221,7 +222,12 @@ class Comparison {
                                     const std::vector<composite::TimedScheme>& samples, int ranks) {
     std::vector<composite::TimedScheme> others;
     for (const composite::TimedScheme& sample : samples) {
-      if (static_cast<int>(sample.images.ranks.size()) != ranks) others.push_back(sample);
+      const auto count = static_cast<int>(sample.images.ranks.size());
+      if (count == ranks) continue;
+      // Ranks that share cores as these do tell most.
+      const double octaves = std::log2(static_cast<double>(count) / ranks);
+      others.push_back(sample);
+      others.back().weight = 1 / (1 + 4 * octaves * octaves);
     }
     return fit_machine(here, others);
   }

@@ -72,13 +72,14 @@ MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme>
     }
     std::array<Factors, kFactors> matrix{};
     Factors right{};
-    const double pull = kPull * static_cast<double>(samples.size());
+    double pull = 0;
+    for (const TimedScheme& sample : samples) pull += kPull * sample.weight;
     for (std::size_t k = 0; k < kFactors; ++k) {
       for (std::size_t i = 0; i < errors.size(); ++i) {
         // What lies far off, by chance or because of what the model knows nothing of, pulls no
         // harder than an error of kFar (Huber 1964).
-        const double slope =
-            slopes[k][i] * std::min(1.0, kFar / std::max(std::abs(errors[i]), kFar));
+        const double slope = slopes[k][i] * samples[i].weight *
+                             std::min(1.0, kFar / std::max(std::abs(errors[i]), kFar));
         right[k] -= slope * errors[i];
         for (std::size_t j = 0; j < kFactors; ++j) matrix[k][j] += slope * slopes[j][i];
       }

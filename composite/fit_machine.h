@@ -13,6 +13,7 @@ struct TimedScheme {
   std::string scheme;
   HollowImages images;
   double seconds = 0;
+  double weight = 1;  // how much it counts
 };
 
 // `start` with overhead and latency of messages, the costs of cutting and those of merging scaled,
@@ -20,7 +21,7 @@ struct TimedScheme {
 // squares of the logarithms, of what lies far off only the direction, with a light pull towards
 // `start`. Some twenty simulations of each sample. `start` itself where there are no samples.
 //
-// REQUIRES: seconds > 0; all samples have one codec, that of start.costs.
+// REQUIRES: seconds > 0, weight >= 0; all samples have one codec, that of start.costs.
 MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme> samples);
 
 }  // namespace delray::composite
