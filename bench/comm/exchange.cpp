@@ -3,6 +3,7 @@
 // message, sends it, and reads what comes; both ways take turns; medians. With --threads N the
 // Communicator of in-process ranks stands in, and there is nothing to compare with.
 #include <fmt/format.h>
+#include <mpi.h>
 
 #include <CLI/CLI.hpp>
 #include <cstring>
@@ -11,7 +12,6 @@
 
 #include "bench/measure.h"
 #include "comm/collectives.h"
-#include "comm/internal/mpi_header.h"
 #include "comm/mpi.h"
 #include "comm/threads.h"
 
