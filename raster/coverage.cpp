@@ -57,17 +57,19 @@ void Coverage::for_each_square(const geometry::Rect& box, F&& f) const {
         static_cast<std::size_t>(x));
 }
 
-double Coverage::layers(const Square& square) const {
-  return square.opaque / (kSide * kSide * static_cast<double>(n_) * n_);
+double Coverage::layers(const Square& square, bool blended) const {
+  return (square.opaque + (blended ? square.blended : 0)) /
+         (kSide * kSide * static_cast<double>(n_) * n_);
 }
 
-void Coverage::add(const geometry::Rect& box, double samples, bool blended) {
-  if (box.empty() || blended) return;
-  const double each = samples / static_cast<double>(squares_of(box).area());
-  for_each_square(box, [&](std::size_t i) { squares_[i].opaque += each; });
+void Coverage::add(const geometry::Rect& box, double samples, const Surface& surface) {
+  if (box.empty()) return;
+  const double each = surface.opacity * samples / static_cast<double>(squares_of(box).area());
+  double Square::*const hides = surface.blended ? &Square::blended : &Square::opaque;
+  for_each_square(box, [&](std::size_t i) { squares_[i].*hides += each; });
 }
 
-double Coverage::add_large(const ScreenTriangle& triangle, bool blended) {
+double Coverage::add_large(const ScreenTriangle& triangle, const Surface& surface) {
   const ScreenVertex* v = triangle.vertex;
   const geometry::Rect squares =
       squares_of(pixels_of(centres_in_box(v[0], v[1], v[2], screen_), n_));
@@ -81,29 +83,29 @@ double Coverage::add_large(const ScreenTriangle& triangle, bool blended) {
                              j * side - std::int64_t{screen_.centre_y} * kSubpixels, side);
       Square& square = squares_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) +
                                 static_cast<std::size_t>(i)];
-      if (!blended) square.opaque += samples;
-      (blended ? square.large_blended : square.large_opaque) += samples;
+      (surface.blended ? square.blended : square.opaque) += surface.opacity * samples;
+      (surface.blended ? square.large_blended : square.large_opaque) += samples;
       all += samples;
     }
   return all;
 }
 
 void Coverage::sum_over_ranks(comm::Communicator& communicator) {
-  std::vector<double> opaque, large;
+  std::vector<double> all, large;
   for (const Square& s : squares_) {
-    opaque.push_back(s.opaque);
+    all.insert(all.end(), {s.opaque, s.blended});
     large.insert(large.end(), {s.large_opaque, s.large_blended});
   }
-  comm::all_reduce(communicator, std::span<double>(opaque), std::plus<>());
+  comm::all_reduce(communicator, std::span<double>(all), std::plus<>());
   comm::reduce(communicator, 0, std::span<double>(large), std::plus<>());
   for (std::size_t i = 0; i < squares_.size(); ++i)
-    squares_[i] = {opaque[i], large[2 * i], large[2 * i + 1]};
+    squares_[i] = {all[2 * i], all[2 * i + 1], large[2 * i], large[2 * i + 1]};
 }
 
-double Coverage::seen(const geometry::Rect& box) const {
+double Coverage::seen(const geometry::Rect& box, bool blended) const {
   double covered = 0, seen = 0;
   for_each_square(box, [&](std::size_t i) {
-    const double here = layers(squares_[i]);
+    const double here = layers(squares_[i], blended);
     covered += here;
     seen += here * seen_of(here);
   });
@@ -120,7 +122,8 @@ std::vector<loadbalance::WeightedBox> Coverage::costs_of_large(double seen_price
                    static_cast<std::size_t>(i)];
       const double drawn = square.large_opaque + square.large_blended;
       if (!(drawn > 0)) continue;
-      const double seen = square.large_opaque * seen_of(layers(square)) + square.large_blended;
+      const double seen = square.large_opaque * seen_of(layers(square, false)) +
+                          square.large_blended * seen_of(layers(square, true));
       const geometry::Rect pixels{i * kSide, j * kSide, (i + 1) * kSide, (j + 1) * kSide};
       boxes.push_back(
           {geometry::intersection(pixels, frame_), seen_price * seen + drawn_price * drawn, 0, 0});

@@ -44,6 +44,17 @@ bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh) {
   return alpha_varies(shader, material, mesh) || !(material.base_colour.w >= 1.0F);
 }
 
+double mean_opacity(const shading::Shader& shader, const scenes::Mesh& mesh) {
+  if (!is_blended(shader, mesh)) return 1;
+  const scenes::Material& material = shading::material(shader, mesh.material);
+  double opacity = std::clamp(static_cast<double>(material.base_colour.w), 0.0, 1.0);
+  if (material.base_colour_texture != scenes::kNone) {
+    const shading::Texture& texture = shader.textures[material.base_colour_texture];
+    opacity *= texture.texels[texture.levels.back().first].a / 255.0;
+  }
+  return opacity;
+}
+
 PreparedDraw prepare_draw(const Screen& screen, const Draw& draw, const shading::Shader& shader,
                           bool cull_single_sided) {
   const scenes::Material& material = shading::material(shader, draw.mesh->material);

@@ -68,7 +68,10 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
   Coverage coverage(rank.screen, rank.options.supersampling);
   constexpr std::size_t kGrain = 1024;  // triangles
   const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
-  const auto blended = [&](std::size_t group) { return draws[draw_of[group]].blended; };
+  std::vector<Coverage::Surface> surfaces;
+  for (const PreparedDraw& prepared : draws)
+    surfaces.push_back({prepared.blended, mean_opacity(rank.shader, *prepared.draw->mesh)});
+  const auto surface = [&](std::size_t group) { return surfaces[draw_of[group]]; };
   std::mutex adds_large;
   ProcessorSeconds seconds;
   parallel::parallel_blocks(0, groups.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -88,19 +91,19 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
         if (large.empty()) continue;
         const std::lock_guard lock(adds_large);
         for (const ScreenTriangle& triangle : large)
-          large_samples[i] += coverage.add_large(triangle, blended(i));
+          large_samples[i] += coverage.add_large(triangle, surface(i));
       }
     });
   });
   for (std::size_t i = 0; i < groups.size(); ++i)
-    coverage.add(boxes[i].box, samples[i], blended(i));
+    coverage.add(boxes[i].box, samples[i], surface(i));
   if (rank.ranks() > 1) coverage.sum_over_ranks(rank.communicator);
   if (seen_samples != nullptr)
     *seen_samples = {model.per_pixel, std::vector<double>(groups.size()),
                      std::vector<double>(groups.size())};
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (boxes[i].box.empty()) continue;
-    const double seen = blended(i) ? 1 : coverage.seen(boxes[i].box);
+    const double seen = coverage.seen(boxes[i].box, surface(i).blended);
     boxes[i].cost += model.per_pixel * samples[i] * (seen + kDrawn);
     if (seen_samples == nullptr) continue;
     seen_samples->all[i] = seen * (samples[i] + large_samples[i]);

@@ -25,6 +25,10 @@ struct PreparedDraw {
 // Whether what lies behind a mesh of the material may shine through it somewhere.
 bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh);
 
+// How much of what lies behind the mesh it hides, on average over its texture, in [0, 1]; 1 unless
+// it is blended. An estimate.
+double mean_opacity(const shading::Shader& shader, const scenes::Mesh& mesh);
+
 // Refers to the draw.
 PreparedDraw prepare_draw(const Screen& screen, const Draw& draw, const shading::Shader& shader,
                           bool cull_single_sided);
