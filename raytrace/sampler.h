@@ -1,0 +1,47 @@
+// The random numbers of ray tracing: a pixel, the number of its sample and a dimension decide each
+// of them, so that they are the same whoever asks for them, when and in which order.
+//
+// A pair of dimensions is a Sobol (0,2)-sequence (Sobol 1967) under a nested uniform scrambling
+// (Owen 1995) of its own, over samples in an order of its own, so that pairs can be put side by
+// side (Burley 2020). The scrambling is by hashing, after Laine and Karras (2011): the first 2^k
+// samples of a pixel, and any aligned 2^k after them, have exactly one point in every box of the
+// unit square whose sides are powers of two and whose area is 2^-k.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace delray::raytrace {
+
+// What all numbers of a pixel derive from; different for every pixel and seed (Philox: Salmon et
+// al. 2011).
+std::uint64_t pixel_key(std::uint64_t seed, int x, int y);
+
+// Number `sample` of a dimension, and of a pair of dimensions: multiples of 2^-24 from [0, 1). A
+// dimension and a pair with the same number have nothing to do with each other.
+float sobol(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
+glm::vec2 sobol_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
+
+// The same without any order among samples: independent numbers, to compare with.
+glm::vec2 independent_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
+
+// Dimension after dimension of one sample of a pixel. Copies are cheap and go on by themselves.
+class Sampler {
+ public:
+  Sampler() = default;
+  Sampler(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension = 0)
+      : pixel_(pixel), sample_(sample), dimension_(dimension) {}
+
+  float one() { return sobol(pixel_, sample_, dimension_++); }
+  glm::vec2 two() { return sobol_pair(pixel_, sample_, dimension_++); }
+
+  // Whoever does without some numbers leaves them out, so that later ones stay what they are.
+  void skip(std::uint32_t dimensions) { dimension_ += dimensions; }
+  std::uint32_t dimension() const { return dimension_; }
+
+ private:
+  std::uint64_t pixel_ = 0;
+  std::uint32_t sample_ = 0, dimension_ = 0;
+};
+
+}  // namespace delray::raytrace
