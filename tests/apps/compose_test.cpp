@@ -40,10 +40,6 @@ std::string write_parts(const Folder& folder, int parts, float alpha) {
   return names;
 }
 
-const std::string kMpirun =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-    "OMPI_MCA_btl_vader_single_copy_mechanism=none mpirun --oversubscribe -n 3 ";
-
 TEST(ComposeCommand, ShowsTheNearestPart) {
   const Folder folder;
   const std::string parts = write_parts(folder, 5, 1);
@@ -52,8 +48,8 @@ TEST(ComposeCommand, ShowsTheNearestPart) {
         "delray compose " + parts + "-o out.exr --ranks 3",
         "delray compose " + parts + "-o out.exr --ranks 8 --compose tree --codec lz4 --interlace",
         "delray compose " + parts + "-o out.exr --ranks 3 --in-pieces",
-        kMpirun + "delray compose " + parts + "-o out.exr --compose 2-3-swap",
-        kMpirun + "delray compose " + parts + "-o out.exr --in-pieces"}) {
+        mpirun(3) + "delray compose " + parts + "-o out.exr --compose 2-3-swap",
+        mpirun(3) + "delray compose " + parts + "-o out.exr --in-pieces"}) {
     SCOPED_TRACE(command);
     const Ran ran = run(command, folder.path());
     ASSERT_EQ(ran.exit_code, 0) << ran.err;

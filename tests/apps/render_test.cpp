@@ -15,10 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kMpirun =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-    "OMPI_MCA_btl_vader_single_copy_mechanism=none mpirun --oversubscribe -n 4 ";
-
 // The statistics of a rendering that must succeed.
 json statistics(const std::string& command, const Folder& folder) {
   const Ran ran = run(command + " --stats stats.json -q", folder.path());
@@ -40,7 +36,7 @@ TEST(RenderCommand, OnePictureForEveryStrategyRankCountAndThreadCount) {
   }
   for (const std::string options :
        {"--strategy sort-last --compose binary-swap", "--strategy sort-first --threads 2"}) {
-    EXPECT_EQ(statistics(kMpirun + base + options, folder)["image"]["hash"], hash) << options;
+    EXPECT_EQ(statistics(mpirun(4) + base + options, folder)["image"]["hash"], hash) << options;
   }
   // The same bytes in the file but for the command line that it tells.
   EXPECT_EQ(folder.read("a.png").substr(0, 16), bytes.substr(0, 16));
@@ -52,7 +48,7 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
       "delray render gen:spheres:3000 -o a.png --size 95x61 --engine raytrace --spp 2 ";
   const std::string hash = statistics(base + "--threads 1", folder)["image"]["hash"];
   EXPECT_EQ(statistics(base + "--ranks 3 --threads 2", folder)["image"]["hash"], hash);
-  EXPECT_EQ(statistics(kMpirun + base, folder)["image"]["hash"], hash);
+  EXPECT_EQ(statistics(mpirun(4) + base, folder)["image"]["hash"], hash);
 }
 
 TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
@@ -73,7 +69,7 @@ TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
                                   "--threads 3 --frames-at-once 6"}) {
       EXPECT_EQ(statistics(base + options + " " + how, folder)["image"]["hash"], hash) << how;
     }
-    EXPECT_EQ(statistics(kMpirun + base + options, folder)["image"]["hash"], hash);
+    EXPECT_EQ(statistics(mpirun(4) + base + options, folder)["image"]["hash"], hash);
   }
   // The last key is a single picture.
   EXPECT_EQ(statistics(base + "--camera-path path.txt", folder)["image"]["hash"],
@@ -197,22 +193,22 @@ TEST(RenderCommand, GlbRendersLikeTheGeneratedScene) {
 
 TEST(RenderCommand, RanksUnderMpirunAreWrongUsage) {
   const Folder folder;
-  EXPECT_EQ(run(kMpirun + "delray render gen:cornell -o a.png --ranks 2", folder.path()).exit_code,
-            2);
+  EXPECT_EQ(
+      run(mpirun(4) + "delray render gen:cornell -o a.png --ranks 2", folder.path()).exit_code, 2);
   EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(RenderCommand, WrongUsageFoundWhileLoadingUnderMpirunIsTwo) {
   const Folder folder;
   const Ran ran =
-      run(kMpirun + "delray render gen:cornell -o a.png --exaggeration 3", folder.path());
+      run(mpirun(4) + "delray render gen:cornell -o a.png --exaggeration 3", folder.path());
   EXPECT_EQ(ran.exit_code, 2) << ran.err;
   EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(RenderCommand, BadInputUnderMpirunIsThreeOnAllRanks) {
   const Folder folder;
-  const Ran ran = run(kMpirun + "delray render missing.glb -o a.png", folder.path());
+  const Ran ran = run(mpirun(4) + "delray render missing.glb -o a.png", folder.path());
   EXPECT_EQ(ran.exit_code, 3) << ran.err;
   EXPECT_NE(ran.err.find("missing.glb"), std::string::npos) << ran.err;
   EXPECT_TRUE(folder.files().empty());

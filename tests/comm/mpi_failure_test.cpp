@@ -43,14 +43,7 @@ Outcome launch(const std::string& arguments) {
   return outcome;
 }
 
-class MpiFailure : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(DELRAY_MPIEXEC)) GTEST_SKIP() << "no mpirun";
-  }
-};
-
-TEST_F(MpiFailure, ExceptionEndsAllWithFiveAndNamesTheRank) {
+TEST(MpiFailure, ExceptionEndsAllWithFiveAndNamesTheRank) {
   const Outcome outcome = launch("throw 2");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
   EXPECT_NE(outcome.output.find("rank 2 failed in phase compose: the disk is on fire"),
@@ -58,7 +51,7 @@ TEST_F(MpiFailure, ExceptionEndsAllWithFiveAndNamesTheRank) {
       << outcome.output;
 }
 
-TEST_F(MpiFailure, AbortIsAFailure) {
+TEST(MpiFailure, AbortIsAFailure) {
   const Outcome outcome = launch("abort 3");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
   EXPECT_NE(outcome.output.find("rank 3 failed in phase compose: nothing left to do"),
@@ -66,14 +59,14 @@ TEST_F(MpiFailure, AbortIsAFailure) {
       << outcome.output;
 }
 
-TEST_F(MpiFailure, BadInputOfOneRankEndsAllWithThree) {
+TEST(MpiFailure, BadInputOfOneRankEndsAllWithThree) {
   const Outcome outcome = launch("file 1");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_NE(outcome.output.find("broken.ply: line 7: not a number"), std::string::npos)
       << outcome.output;
 }
 
-TEST_F(MpiFailure, AgreedBadInputIsThrownOnAllRanks) {
+TEST(MpiFailure, AgreedBadInputIsThrownOnAllRanks) {
   const Outcome outcome = launch("agreed 1");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_NE(outcome.output.find("all agree: broken.ply: line 7: not a number"), std::string::npos)
@@ -81,7 +74,7 @@ TEST_F(MpiFailure, AgreedBadInputIsThrownOnAllRanks) {
   EXPECT_EQ(outcome.output.find("failed in phase"), std::string::npos) << outcome.output;
 }
 
-TEST_F(MpiFailure, StallEndsAllWithFive) {
+TEST(MpiFailure, StallEndsAllWithFive) {
   const Outcome outcome = launch("stall 0");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
   EXPECT_NE(outcome.output.find("for a message from rank 0 with tag 2"), std::string::npos)
@@ -103,7 +96,7 @@ std::vector<std::string> processes_with(const std::string& argument) {
 }
 
 // Nothing can be done about SIGKILL: the launcher notices, and the others tell where they were.
-TEST_F(MpiFailure, AfterAKilledProcessNothingIsLeftAndTheLogNamesThePhase) {
+TEST(MpiFailure, AfterAKilledProcessNothingIsLeftAndTheLogNamesThePhase) {
   std::string mark("mark-"), arguments("kill 1 ");
   mark += std::to_string(getpid());
   arguments += mark;
@@ -117,7 +110,7 @@ TEST_F(MpiFailure, AfterAKilledProcessNothingIsLeftAndTheLogNamesThePhase) {
   EXPECT_EQ(processes_with(mark), std::vector<std::string>());
 }
 
-TEST_F(MpiFailure, MessagesThatNobodyReceivesDoNotHinderTheEnd) {
+TEST(MpiFailure, MessagesThatNobodyReceivesDoNotHinderTheEnd) {
   const Outcome outcome = launch("none");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }

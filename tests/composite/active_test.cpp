@@ -1,7 +1,6 @@
 #include "composite/active.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <bit>
@@ -10,6 +9,7 @@
 #include <random>
 
 #include "composite/dense.h"
+#include "tests/support/targets.h"
 
 namespace delray::composite {
 namespace {
@@ -17,21 +17,6 @@ namespace {
 using image::BasicImage;
 using image::Rgba8;
 using image::RgbaF;
-
-// Runs `f` on every instruction set that this machine and build have.
-template <class F>
-void on_every_target(F&& f) {
-  const auto targets = hwy::SupportedAndGeneratedTargets();
-  ASSERT_FALSE(targets.empty());
-  for (const auto target : targets) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    f();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 Rgba8 random_colour(std::mt19937& random, Rgba8 /*type*/) {
   return std::bit_cast<Rgba8>(static_cast<std::uint32_t>(random()));
@@ -135,7 +120,7 @@ TYPED_TEST(ActiveLayers, LeaveTheBytesThatDenseOnesLeave) {
   std::vector<BasicImage<TypeParam>> own, other;
   for (const Shape& shape : few) own.push_back(picture<TypeParam>(kPixels, shape.covered, 1));
   for (const Shape& shape : all) other.push_back(picture<TypeParam>(kPixels, shape.covered, 2));
-  on_every_target([&] {
+  tests::for_each_target([&] {
     for (std::size_t i = 0; i < own.size(); ++i) {
       for (std::size_t k = 0; k < other.size(); ++k) {
         for (const PixelRange& range : kRanges) {

@@ -2,7 +2,6 @@
 #include "composite/codec.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "image/image.h"
+#include "tests/support/targets.h"
 
 namespace delray::composite {
 namespace {
@@ -19,18 +19,6 @@ namespace {
 using image::BasicImage;
 using image::Rgba8;
 using image::RgbaF;
-
-template <class F>
-void on_every_target(F&& f) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    f();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 // Premultiplied; every third is opaque.
 void set_random(std::mt19937& random, Rgba8& colour) {
@@ -142,7 +130,7 @@ void expect_dense(const Codec& codec, Operator how, Shape own, Shape other, Pixe
 
 TYPED_TEST(Codecs, LeaveTheBytesThatDenseOnesLeave) {
   constexpr PixelRange kRanges[] = {{0, 8927}, {57, 5000}, {300, 301}, {226, 339}, {9, 9}};
-  on_every_target([&] {
+  tests::for_each_target([&] {
     for (const Codec& codec : codecs()) {
       for (const Operator how : {Operator::nearest, Operator::over}) {
         for (const Shape other : kShapes) {

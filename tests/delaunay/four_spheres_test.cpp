@@ -2,14 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/highway.h>
 #include <array>
 #include <cstdint>
 #include <random>
 #include <vector>
+#include "tests/support/targets.h"
 
 #include "delaunay/conflict.h"
 #include "tests/delaunay/hard_points3.h"
+#include "tests/support/targets.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -60,12 +61,10 @@ Tally compare(const std::vector<glm::dvec3>& points, std::uint64_t seed) {
 }
 
 TEST(FourSpheres, AnswerLikeThePredicatesOnEveryInstructionSet) {
-  for (std::int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
-    hwy::SetSupportedTargetsForTest(rest & -rest);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  tests::for_each_target([] {
     for (const HardPoints3& kind : hard_points3()) {
       for (std::uint64_t seed = 0; seed < 2; ++seed) {
-        SCOPED_TRACE(kind.name + ", " + hwy::TargetName(rest & -rest));
+        SCOPED_TRACE(kind.name);
         const Tally tally = compare(kind.make(40, seed), seed);
         if (kind.name == "uniform" || kind.name == "lattice") {
           EXPECT_EQ(tally.undecided, 0);
@@ -75,9 +74,7 @@ TEST(FourSpheres, AnswerLikeThePredicatesOnEveryInstructionSet) {
         }
       }
     }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+  });
 }
 
 }  // namespace

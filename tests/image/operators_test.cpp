@@ -1,29 +1,15 @@
 #include "image/operators.h"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <cstring>
 #include <random>
 #include <vector>
 
+#include "tests/support/targets.h"
+
 namespace delray::image {
 namespace {
-
-// Runs `f` on every instruction set that this machine and build have.
-template <class F>
-void on_every_target(F&& f) {
-  const auto targets = hwy::SupportedAndGeneratedTargets();
-  ASSERT_FALSE(targets.empty());
-  for (const auto target : targets) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    f();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 // Sizes around every vector width.
 std::vector<std::size_t> sizes() {
@@ -60,7 +46,7 @@ TYPED_TEST_SUITE(Operators, Colours);
 
 TYPED_TEST(Operators, MergeKeepsTheNearerPixelOnEveryTarget) {
   using Colour = TypeParam;
-  on_every_target([] {
+  tests::for_each_target([] {
     std::mt19937 random(17);
     for (const std::size_t n : sizes()) {
       for (const Tie tie : {Tie::target, Tie::other}) {
@@ -109,7 +95,7 @@ RgbaF over(const RgbaF& f, const RgbaF& b) {
 
 TYPED_TEST(Operators, BlendsAsThePlainFormulaDoesOnEveryTarget) {
   using Colour = TypeParam;
-  on_every_target([] {
+  tests::for_each_target([] {
     std::mt19937 random(18);
     for (const std::size_t n : sizes()) {
       std::vector<Colour> target(n + 2), other(n + 1), in_front, behind;
@@ -131,7 +117,7 @@ TYPED_TEST(Operators, BlendsAsThePlainFormulaDoesOnEveryTarget) {
 }
 
 TEST(Blend, RoundsEveryProductOfEightBitsToNearest) {
-  on_every_target([] {
+  tests::for_each_target([] {
     for (int alpha = 0; alpha < 256; ++alpha) {
       std::vector<Rgba8> front(256), back(256);
       for (std::size_t c = 0; c < 256; ++c) {

@@ -7,7 +7,7 @@
 #include "parallel/arena.h"
 #include "scenes/generate.h"
 #include "tests/raster/coverage.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -184,7 +184,7 @@ TEST(DrawIntoTiles, EveryTargetDrawsTheSame) {
   const geometry::Rect frame = screen.frame();
   const scenes::Scene scene = walls(2);
   const std::vector<std::int64_t> expected = expected_keys(screen, scene, true);
-  for_each_target([&] {
+  tests::for_each_target([&] {
     TriangleCounts counts;
     EXPECT_EQ(drawn(screen, scene, {&frame, 1}, {true, true, 1}, counts), expected);
   });

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tests/raster/coverage.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -29,7 +29,7 @@ TEST(PixelTriangles, PlanesAreThoseOfTrianglesAlone) {
   const auto planes = std::make_unique<TrianglePlanes>();
   const auto vertices = std::make_unique<ScreenVertices>();
   std::size_t proper = 0, improper = 0, outside = 0;
-  for_each_target([&] {
+  tests::for_each_target([&] {
     std::mt19937 random(3);
     for (int round = 0; round < 60; ++round) {
       make_vertices(random, *vertices);
@@ -75,7 +75,7 @@ TEST(PixelTriangles, ColoursAreThoseOfTrianglesAlone) {
   const auto planes = std::make_unique<TrianglePlanes>();
   std::vector<glm::vec4> radiances(50);
   std::vector<PixelTriangle> triangles(112);
-  for_each_target([&] {
+  tests::for_each_target([&] {
     std::mt19937 random(4);
     std::uniform_real_distribution<float> value(-3, 3);
     for (glm::vec4& radiance : radiances)

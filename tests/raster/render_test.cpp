@@ -15,7 +15,7 @@
 #include "raster/combinations.h"
 #include "scenes/generate.h"
 #include "tests/raster/kinds_of_picture.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -189,7 +189,7 @@ TEST(Render, EveryInstructionSetGivesTheSamePicture) {
   options.width = 133;
   options.height = 77;
   const Result expected = rendered(scene, random_scene_camera(), options);
-  for_each_target([&] {
+  tests::for_each_target([&] {
     EXPECT_TRUE(
         same_bytes(rendered(scene, random_scene_camera(), options).picture, expected.picture));
   });

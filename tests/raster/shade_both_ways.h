@@ -13,7 +13,7 @@
 #include "raster/internal/tile_triangles.h"
 #include "scenes/generate.h"
 #include "tests/raster/random_scene.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 
@@ -54,7 +54,7 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   for (const TileJob& job : jobs.jobs)
     shown +=
         shade_tile(frame, seen, tiles.open(job.tile), screen.tile(job.tile), window_of(expected));
-  for_each_target([&] {
+  tests::for_each_target([&] {
     image::clear(image);
     std::uint64_t shown_by_vectors = 0;
     for (const TileJob& job : jobs.jobs) {
@@ -134,7 +134,7 @@ void expect_colours_of_each_alone(Lighting lighting) {
       expected.push_back(colour_at(frame, seen, s.number, s.x, s.y));
     const auto tile = std::make_unique<Tile>();
     std::size_t through = 0;
-    for_each_target([&] {
+    tests::for_each_target([&] {
       tile->colours(frame, seen, surfaces, colours.data());
       for (std::size_t i = 0; i < colours.size(); ++i) {
         // A pixel may lie outside of its triangle here, where there is nothing to agree on.

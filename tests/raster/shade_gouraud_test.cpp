@@ -30,7 +30,7 @@ TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> unit(0, 1);
   for (int i = 0; i < 5000; ++i) colours.push_back(unit(random) * unit(random));
-  for_each_target([&] {
+  tests::for_each_target([&] {
     for (const float colour : colours) {
       PixelTriangle flat{};
       flat.c[0] = flat.c[2] = colour;

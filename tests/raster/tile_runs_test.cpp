@@ -5,7 +5,7 @@
 #include <memory>
 #include <random>
 
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 TEST(TileRuns, ChangesAreWhereNeighboursDiffer) {
   const auto tile = std::make_unique<VisibilityTile>();
   const auto runs = std::make_unique<TileRuns>();
-  for_each_target([&] {
+  tests::for_each_target([&] {
     std::mt19937 random(1);
     for (int round = 0; round < 20; ++round) {
       const int j0 = round % 2 == 0 ? 0 : static_cast<int>(random() % 30);
@@ -42,7 +42,7 @@ TEST(TileRuns, RunsHaveTheTrianglesOfTheirPixels) {
   const auto runs = std::make_unique<TileRuns>();
   const auto groups = std::make_unique<TileGroups>();
   const auto result = std::make_unique<RunTriangles>();
-  for_each_target([&] {
+  tests::for_each_target([&] {
     std::mt19937 random(2);
     for (int round = 0; round < 30; ++round) {
       const int i0 = static_cast<int>(random() % 20) * (round % 2), j0 = round % 3 * 7;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "tests/raster/coverage.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -62,7 +62,7 @@ TEST(Transform, IsTheSameOnEveryTargetForEveryCount) {
     std::vector<glm::vec3> positions(n);
     for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), coordinate(random)};
     std::vector<ScreenVertex> first;
-    for_each_target([&] {
+    tests::for_each_target([&] {
       const std::vector<ScreenVertex> vertices = transformed(map, screen, positions);
       if (first.empty()) first = vertices;
       for (std::size_t i = 0; i < n; ++i) {
@@ -85,7 +85,7 @@ TEST(Transform, BoundsWhatIsInside) {
     for (glm::vec3& p : positions) p = {coordinate(random), coordinate(random), -2};
     std::vector<std::uint32_t> which(n);
     std::iota(which.rbegin(), which.rend(), 0U);
-    for_each_target([&] {
+    tests::for_each_target([&] {
       ScreenVertices vertices;
       transform(map, screen, positions, which, vertices);
       EXPECT_FALSE(vertices.any_outside);
@@ -111,7 +111,7 @@ TEST(Transform, MarksWhatCannotBeProjected) {
                                  {0, 0, std::nanf("")},
                                  {0, 0, -1},
                                  {0, 0, -0.01F}};
-  for_each_target([&] {
+  tests::for_each_target([&] {
     const std::vector<ScreenVertex> vertices =
         transformed(to_view(screen.view, glm::mat4x3(1.0F)), screen, positions);
     for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(vertices[i].x, kOutside) << i;

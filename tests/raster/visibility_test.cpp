@@ -7,7 +7,7 @@
 #include <random>
 
 #include "tests/raster/coverage.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -49,21 +49,21 @@ void expect_exact_coverage(int reach, int step, int rounds, unsigned seed) {
 }
 
 TEST(Visibility, CoverageIsExactForRandomTriangles) {
-  for_each_target([] {
+  tests::for_each_target([] {
     expect_exact_coverage(30 * kSubpixels, 1, 60, 1);
     expect_exact_coverage(3 * kSubpixels, 1, 60, 2);
   });
 }
 
 TEST(Visibility, CoverageIsExactForCornersOnPixelCentres) {
-  for_each_target([] {
+  tests::for_each_target([] {
     expect_exact_coverage(20 * kSubpixels, kSubpixels, 60, 3);
     expect_exact_coverage(4 * kSubpixels, kHalfPixel, 60, 4);
   });
 }
 
 TEST(Visibility, CoverageIsExactAtTheEndsOfTheGuardBand) {
-  for_each_target([] {
+  tests::for_each_target([] {
     expect_exact_coverage(kGuardSubpixels, 1, 60, 5);
     expect_exact_coverage(kGuardSubpixels, kGuardSubpixels, 60, 6);
   });
@@ -144,7 +144,7 @@ TEST(Visibility, LeavesTheLeastDepthAndNumberInAnyOrderOnEveryTarget) {
           expected.number[y * kWidth + x] = t.number;
         }
       }
-  for_each_target([&] {
+  tests::for_each_target([&] {
     for (int round = 0; round < 4; ++round) {
       EXPECT_EQ(drawn(screen, triangles, entries), expected) << "round " << round;
       std::shuffle(entries.begin(), entries.end(), random);

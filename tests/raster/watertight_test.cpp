@@ -6,7 +6,7 @@
 
 #include "raster/internal/set_up.h"
 #include "tests/raster/coverage.h"
-#include "tests/raster/targets.h"
+#include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
@@ -89,7 +89,7 @@ TEST(Watertight, RandomTriangulationsCoverEachPixelOnce) {
 }
 
 TEST(Watertight, EveryTargetCoversEachPixelOnce) {
-  for_each_target([] { expect_each_pixel_once(50 * kSubpixels, kHalfPixel, 60, 300); });
+  tests::for_each_target([] { expect_each_pixel_once(50 * kSubpixels, kHalfPixel, 60, 300); });
 }
 
 // A plane through the camera's feet, cut into triangles that pass below and behind it and as far as

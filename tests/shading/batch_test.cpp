@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "shading/shade.h"
-#include "tests/raster/targets.h"
 #include "tests/shading/random_scene.h"
+#include "tests/support/targets.h"
 
 namespace delray::shading {
 namespace {
@@ -65,7 +65,7 @@ struct Case {
 };
 
 TEST(Batch, ShadesAsTheScalarFunctionsDo) {
-  raster::for_each_target([] {
+  tests::for_each_target([] {
     for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
       const Case c(seed);
       for (std::uint32_t m = 0; m < c.shader.materials.size(); ++m) {
@@ -91,7 +91,7 @@ TEST(Batch, ShadesAsTheScalarFunctionsDo) {
 }
 
 TEST(Batch, PartsAreThoseOfTheScalarFunctions) {
-  raster::for_each_target([] {
+  tests::for_each_target([] {
     for (std::uint32_t seed = 1; seed <= kSeeds / 2; ++seed) {
       const Case c(seed);
       const std::uint32_t m = seed % 3;
@@ -137,7 +137,7 @@ TEST(Batch, PartsAreThoseOfTheScalarFunctions) {
 }
 
 TEST(Batch, LightsComeOneByOne) {
-  raster::for_each_target([] {
+  tests::for_each_target([] {
     for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
       const Case c(seed);
       const std::uint32_t m = seed % 3;
@@ -172,7 +172,7 @@ TEST(Batch, LightsComeOneByOne) {
 }
 
 TEST(Batch, LanesThatAreNotMeantMakeNoDifference) {
-  raster::for_each_target([] {
+  tests::for_each_target([] {
     for (std::uint32_t seed = 1; seed <= kSeeds / 4; ++seed) {
       Case c(seed);
       const std::uint32_t m = seed % 3;
@@ -207,7 +207,7 @@ TEST(Batch, LanesThatAreNotMeantMakeNoDifference) {
 }
 
 TEST(Batch, TexturesAndCoverageAreThoseOfTheScalarFunctions) {
-  raster::for_each_target([] {
+  tests::for_each_target([] {
     for (std::uint32_t seed = 1; seed <= kSeeds / 2; ++seed) {
       const Case c(seed);
       const std::uint32_t m = seed % 3;
@@ -233,7 +233,7 @@ TEST(Batch, TexturesAndCoverageAreThoseOfTheScalarFunctions) {
 }
 
 TEST(Batch, DirectionsLeadToTheEye) {
-  raster::for_each_target([] {
+  tests::for_each_target([] {
     const glm::vec3 eye(1, 2, 3), otherwise(0, 0, 1);
     RandomScene random(5);
     Vectors16 positions, views;

@@ -54,6 +54,12 @@ Ran run(const std::string& command, const fs::path& folder) {
   return ran;
 }
 
+std::string mpirun(int processes) {
+  return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+         "OMPI_MCA_btl_vader_single_copy_mechanism=none mpirun --oversubscribe -n " +
+         std::to_string(processes) + " ";
+}
+
 Folder::Folder() : path_(fresh_path()) { fs::create_directories(path_); }
 Folder::~Folder() {
   std::error_code ignored;

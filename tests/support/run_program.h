@@ -15,6 +15,10 @@ struct Ran {
 // `command` goes to a shell, in `folder`; "delray" at its start or after "| " is the built program.
 Ran run(const std::string& command, const std::filesystem::path& folder);
 
+// What to write before a command so that MPI runs it with so many processes, however few cores
+// there are.
+std::string mpirun(int processes);
+
 // An empty folder that is removed with it.
 class Folder {
  public:

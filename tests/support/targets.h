@@ -2,19 +2,18 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include <cstdint>
 
-#include <hwy/highway.h>
-
-namespace delray::raster {
+namespace delray::tests {
 
 // Calls f() once for each Highway target compiled in and supported, that target being chosen.
 template <class F>
 void for_each_target(F&& f) {
-  const std::int64_t supported = hwy::SupportedTargets();
-  for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
-    const std::int64_t target = rest & -rest;
+  const auto targets = hwy::SupportedAndGeneratedTargets();
+  ASSERT_FALSE(targets.empty());
+  for (const std::int64_t target : targets) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     SCOPED_TRACE(hwy::TargetName(target));
@@ -24,4 +23,4 @@ void for_each_target(F&& f) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-}  // namespace delray::raster
+}  // namespace delray::tests
