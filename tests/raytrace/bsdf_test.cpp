@@ -1,0 +1,284 @@
+#include "raytrace/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "raytrace/optics.h"
+#include "raytrace/sampler.h"
+
+namespace delray::raytrace {
+namespace {
+
+using shading::Surface;
+
+struct Named {
+  std::string name;
+  Surface surface;
+};
+
+Surface made_of(float metallic, float roughness, float transmission, float ior, bool front,
+                const glm::vec3& colour) {
+  Surface s;
+  s.metallic = metallic;
+  s.roughness = roughness;
+  s.transmission = transmission;
+  s.ior = ior;
+  s.front = front;
+  s.base_colour = colour;
+  return s;
+}
+
+// Materials of every kind, their normals along z.
+std::vector<Named> materials(const glm::vec3& colour) {
+  std::vector<Named> all;
+  for (const float roughness : {0.35F, 0.6F, 1.0F}) {
+    const std::string r = " " + std::to_string(roughness);
+    all.push_back({"plastic" + r, made_of(0, roughness, 0, 1.5F, true, colour)});
+    all.push_back({"metal" + r, made_of(1, roughness, 0, 1.5F, true, colour)});
+    all.push_back({"half metal" + r, made_of(0.5F, roughness, 0, 1.5F, true, colour)});
+    all.push_back({"glass" + r, made_of(0, roughness, 1, 1.5F, true, colour)});
+    all.push_back({"glass from inside" + r, made_of(0, roughness, 1, 1.5F, false, colour)});
+    all.push_back({"half glass" + r, made_of(0.2F, roughness, 0.5F, 1.3F, true, colour)});
+    all.push_back({"thin air" + r, made_of(0, roughness, 1, 1.0F, true, colour)});
+  }
+  return all;
+}
+
+glm::vec3 direction(float z, float phi) {
+  const float r = std::sqrt(std::max(0.0F, 1.0F - z * z));
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+glm::vec3 uniform_direction(std::mt19937& random) {
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  return direction(2.0F * unit(random) - 1.0F, 2.0F * static_cast<float>(M_PI) * unit(random));
+}
+
+TEST(Bsdf, IsWhatShadingReflectsWhereNothingIsGlass) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  for (int i = 0; i < 20000; ++i) {
+    Surface s = made_of(unit(random), 0.09F + 0.91F * unit(random), 0.0F, 1.0F + unit(random), true,
+                        {unit(random), unit(random), unit(random)});
+    s.normal = s.geometric_normal = uniform_direction(random);
+    glm::vec3 v = uniform_direction(random), l = uniform_direction(random);
+    if (glm::dot(v, s.normal) < 0) v = -v;
+    if (glm::dot(l, s.normal) < 0) l = -l;
+    if (glm::dot(v, s.normal) < 0.01F || glm::dot(l, s.normal) < 0.01F) continue;
+    if (i % 2 == 0) l = glm::normalize(mirrored(v, s.normal) + 0.05F * l);
+    const glm::vec3 expected = shading::reflect(shading::lobes(s), s.normal, v, l);
+    const BsdfValue got = evaluate(make_bsdf(s, v), l);
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_NEAR(got.value[k], expected[k], 2e-3F * expected[k] + 1e-5F) << "seed 1, try " << i;
+    }
+  }
+}
+
+TEST(Bsdf, IsReciprocal) {
+  std::mt19937 random(2);
+  for (const Named& m : materials({0.9F, 0.5F, 0.2F})) {
+    for (int i = 0; i < 300; ++i) {
+      glm::vec3 a = uniform_direction(random), b = uniform_direction(random);
+      a.z = std::max(std::abs(a.z), 0.05F);
+      a = glm::normalize(a);
+      if (std::abs(b.z) < 0.05F) continue;
+      const Bsdf from_a = make_bsdf(m.surface, a);
+      const bool through = b.z < 0;
+      Surface other = m.surface;
+      if (through) {
+        other.front = !other.front;
+        other.normal = other.geometric_normal = {0, 0, -1};
+      }
+      const Bsdf from_b = make_bsdf(other, b);
+      const glm::vec3 ab = evaluate(from_a, b).value / std::abs(b.z);
+      const glm::vec3 ba = evaluate(from_b, a).value / std::abs(a.z);
+      // Over the squares of the indices on the light's sides.
+      const float scale = through ? from_a.ratio * from_a.ratio : 1.0F;
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_NEAR(ab[k] * scale, ba[k], 2e-3F * ba[k] + 1e-5F)
+            << m.name << (through ? " through" : "") << ", seed 2, try " << i;
+      }
+    }
+  }
+}
+
+constexpr int kRows = 16, kColumns = 24, kBins = kRows * kColumns;
+
+int bin_of(const glm::vec3& d) {
+  const int row = std::min(kRows - 1, static_cast<int>((d.z * 0.5F + 0.5F) * kRows));
+  const double turn = std::atan2(d.y, d.x) / (2 * M_PI) + 0.5;
+  return row * kColumns + std::min(kColumns - 1, static_cast<int>(turn * kColumns));
+}
+
+// What pdf says, bin by bin.
+std::vector<double> expected_bins(const Bsdf& bsdf) {
+  constexpr int kFine = 12;
+  std::vector<double> bins(kBins, 0.0);
+  for (int i = 0; i < kRows * kFine; ++i) {
+    for (int j = 0; j < kColumns * kFine; ++j) {
+      const auto z = static_cast<float>((i + 0.5) / (kRows * kFine) * 2 - 1);
+      const auto phi = static_cast<float>((j + 0.5) / (kColumns * kFine) * 2 * M_PI - M_PI);
+      bins[static_cast<std::size_t>(i / kFine) * kColumns + static_cast<std::size_t>(j / kFine)] +=
+          evaluate(bsdf, direction(z, phi)).pdf * 4 * M_PI / (kBins * kFine * kFine);
+    }
+  }
+  return bins;
+}
+
+TEST(Bsdf, SamplesAreDistributedAsTheirDensitySays) {
+  constexpr int kSamples = 20000;
+  for (const Named& m : materials({0.9F, 0.5F, 0.2F})) {
+    for (const float z : {0.9F, 0.3F}) {
+      const Bsdf bsdf = make_bsdf(m.surface, direction(z, 0.7F));
+      const std::vector<double> expected = expected_bins(bsdf);
+      std::vector<double> found(kBins, 0.0);
+      std::mt19937 random(3);
+      std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+      double lost = 0, deltas = 0;
+      for (int i = 0; i < kSamples; ++i) {
+        const BsdfSample s = sample(bsdf, unit(random), {unit(random), unit(random)});
+        if (s.delta) {
+          ++deltas;
+        } else if (s.pdf > 0) {
+          ASSERT_NEAR(glm::length(s.direction), 1.0F, 1e-4F);
+          ASSERT_NEAR(s.pdf / evaluate(bsdf, s.direction).pdf, 1.0F, 1e-3F);
+          found[static_cast<std::size_t>(bin_of(s.direction))] += 1;
+        } else {
+          ++lost;
+        }
+      }
+      double chi2 = 0, mass = 0, rest_found = 0, rest_expected = 0;
+      int freedom = 0;
+      for (int b = 0; b < kBins; ++b) {
+        const double e = expected[static_cast<std::size_t>(b)] * kSamples;
+        mass += e / kSamples;
+        if (e < 10) {
+          rest_found += found[static_cast<std::size_t>(b)], rest_expected += e;
+          continue;
+        }
+        chi2 += std::pow(found[static_cast<std::size_t>(b)] - e, 2) / e;
+        ++freedom;
+      }
+      if (rest_expected > 10) {
+        chi2 += std::pow(rest_found - rest_expected, 2) / rest_expected;
+        ++freedom;
+      }
+      // What is not drawn is what is reflected below the horizon.
+      const double missing = (lost + deltas) / kSamples;
+      EXPECT_NEAR(mass, 1.0 - missing, 0.02) << m.name << " " << z;
+      EXPECT_LT(missing - deltas / kSamples, 0.5) << m.name << " " << z;
+      if (freedom == 0) continue;  // nothing but deltas
+      EXPECT_LT(chi2, freedom + 5 * std::sqrt(2.0 * freedom)) << m.name << " " << z;
+    }
+  }
+}
+
+glm::dvec3 albedo(const Bsdf& bsdf, std::uint32_t samples) {
+  const std::uint64_t pixel = pixel_key(5, 0, 0);
+  glm::dvec3 sum(0);
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    Sampler sampler(pixel, i);
+    const float lobe = sampler.one();
+    sum += glm::dvec3(sample(bsdf, lobe, sampler.two()).weight);
+  }
+  return sum / static_cast<double>(samples);
+}
+
+TEST(Bsdf, SamplesIntegrateToWhatQuadratureSays) {
+  for (const Named& m : materials({0.9F, 0.5F, 0.2F})) {
+    for (const float z : {1.0F, 0.4F}) {
+      const Bsdf bsdf = make_bsdf(m.surface, direction(z, 0.7F));
+      if (bsdf.straight) continue;
+      glm::dvec3 integral(0);
+      // Rings of equal width: what passes head-on is a narrow lobe.
+      constexpr int kFine = 400, kAround = 200;
+      for (int i = 0; i < kFine; ++i) {
+        const double theta = (i + 0.5) / kFine * M_PI;
+        for (int j = 0; j < kAround; ++j) {
+          const glm::vec3 light = direction(static_cast<float>(std::cos(theta)),
+                                            static_cast<float>((j + 0.5) / kAround * 2 * M_PI));
+          integral += glm::dvec3(evaluate(bsdf, light).value) * std::sin(theta);
+        }
+      }
+      integral *= M_PI / kFine * 2 * M_PI / kAround;
+      const glm::dvec3 sampled = albedo(bsdf, 16384);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(sampled[k], integral[k], 0.01) << m.name << " " << z;
+    }
+  }
+}
+
+TEST(Bsdf, NeverReturnsMoreThanItGets) {
+  std::vector<Named> all = materials(glm::vec3(1.0F));
+  for (const bool front : {true, false}) {
+    all.push_back({"mirror", made_of(1, 0, 0, 1.5F, front, glm::vec3(1.0F))});
+    all.push_back({"clear glass", made_of(0, 0, 1, 1.5F, front, glm::vec3(1.0F))});
+    all.push_back({"varnish", made_of(0, 0, 0, 1.5F, front, glm::vec3(1.0F))});
+    all.push_back({"narrow metal", made_of(1, 0.1F, 0, 1.5F, front, glm::vec3(1.0F))});
+  }
+  for (const Named& m : all) {
+    for (const float z : {1.0F, 0.7F, 0.3F, 0.05F}) {
+      const double a = albedo(make_bsdf(m.surface, direction(z, 0.7F)), 8192).x;
+      EXPECT_LT(a, 1.015) << m.name << " " << z;
+      EXPECT_GT(a, 0.25) << m.name << " " << z;
+      if (m.surface.roughness == 0.0F && (m.surface.metallic == 1 || m.surface.transmission == 1)) {
+        EXPECT_NEAR(a, 1.0, 1e-3) << m.name << " " << z;  // neither loses anything
+      }
+    }
+  }
+}
+
+TEST(Bsdf, SmoothGlassHasTwoDirections) {
+  const glm::vec3 view = direction(0.6F, 1.0F), normal(0, 0, 1);
+  for (const bool front : {true, false}) {
+    const Bsdf bsdf = make_bsdf(made_of(0, 0, 1, 1.5F, front, {0.9F, 0.5F, 0.2F}), view);
+    const Refraction bent = refracted(view, normal, front ? 1 / 1.5F : 1.5F);
+    int reflections = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const BsdfSample s = sample(bsdf, (static_cast<float>(i) + 0.5F) / 1000, {0.3F, 0.8F});
+      ASSERT_TRUE(s.delta);
+      ASSERT_EQ(s.pdf, 0.0F);
+      reflections += s.transmitted ? 0 : 1;
+      const glm::vec3 expected = s.transmitted ? bent.direction : mirrored(view, normal);
+      ASSERT_LT(glm::length(s.direction - expected), 1e-5F);
+      ASSERT_EQ(evaluate(bsdf, s.direction).value, glm::vec3(0.0F));
+    }
+    if (front) {
+      const float passed = 1.6F / 3 * (1 - bent.reflected);
+      EXPECT_NEAR(reflections, 1000 * bent.reflected / (bent.reflected + passed), 3);
+    } else {
+      EXPECT_EQ(reflections, 1000);  // beyond the critical angle
+    }
+  }
+}
+
+TEST(Bsdf, NoLightLeaksThroughTheGeometricSurface) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  for (int i = 0; i < 20000; ++i) {
+    Surface s = made_of(unit(random), unit(random), i % 2 == 0 ? 1.0F : 0.0F, 1.5F, i % 3 == 0,
+                        glm::vec3(0.8F));
+    s.normal = glm::normalize(s.geometric_normal + 0.9F * uniform_direction(random));
+    glm::vec3 view = uniform_direction(random);
+    if (view.z < 0) view = -view;  // on the geometric side, perhaps below the shading normal
+    const Bsdf bsdf = make_bsdf(s, view);
+    ASSERT_GT(bsdf.view.z, 0.0F);
+    const BsdfSample got = sample(bsdf, unit(random), {unit(random), unit(random)});
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(got.weight[k] >= 0.0F && got.weight[k] < 100.0F);
+    if (got.weight == glm::vec3(0.0F)) continue;
+    ASSERT_EQ(got.direction.z < 0, got.transmitted) << "seed 4, try " << i;
+  }
+}
+
+TEST(Bsdf, BlackReturnsNothing) {
+  const Bsdf bsdf = make_bsdf(made_of(1, 0.5F, 0, 1.5F, true, glm::vec3(0.0F)), {0, 0, 1});
+  EXPECT_EQ(sample(bsdf, 0.5F, {0.5F, 0.5F}).weight, glm::vec3(0.0F));
+  EXPECT_EQ(evaluate(bsdf, {0, 0, 1}).value, glm::vec3(0.0F));
+}
+
+}  // namespace
+}  // namespace delray::raytrace
