@@ -1,0 +1,96 @@
+// All that gives light in a scene, and how to draw from it: its lights, its environment and the
+// triangles that glow.
+//
+// Which one is drawn goes by power, as far as it can be told beforehand. A light of no size can
+// only be found by drawing it; the environment and what glows are met by rays that a surface
+// scatters as well, and weighted against that (multiple importance sampling; Veach 1997). An area
+// light whose parallelogram is covered by the triangles of an instance that glow the same is met
+// there; one without such a lamp is met by no ray. What glows does so on both sides, an area light
+// on one.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "raytrace/alias_table.h"
+#include "raytrace/rectangle.h"
+#include "raytrace/sampler.h"
+#include "raytrace/sky_table.h"
+#include "scenes/scene.h"
+#include "shading/shader.h"
+
+namespace delray::raytrace {
+
+struct LightSample {
+  glm::vec3 direction{0, 0, 1};  // unit vector to the light
+  float distance = std::numeric_limits<float>::infinity();
+  glm::vec3 weight{0.0F};  // what arrives, over the density: the value of a Bsdf times this is an
+                           // estimate of all light, if nothing is in the way. Zero: none
+  float pdf = 0.0F;        // per steradian; 0: scattered rays never find it, it counts in full
+};
+
+class LightTable {
+ public:
+  // What `sample` takes from a sampler.
+  static constexpr std::uint32_t kDimensions = 3;
+
+  LightTable() = default;
+  // The shader is that of the scene. Keeps glowing triangles of its own, once for each mesh.
+  // O(glowing triangles + vertices of the scene). REQUIRES: indices of the scene are in range.
+  LightTable(const scenes::Scene& scene, const shading::Shader& shader);
+
+  bool empty() const { return emitters_.size() == 0; }
+
+  // Takes kDimensions from the sampler, whatever is drawn.
+  LightSample sample(const shading::Shader& shader, const glm::vec3& from, Sampler& sampler) const;
+
+  // The density with which `sample` would have drawn what a ray from `from` met: a point of a
+  // triangle, or the environment. 0 for what does not glow.
+  float pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, const glm::vec3& from,
+                   const glm::vec3& position) const;
+  float pdf_of_sky(const glm::vec3& direction) const;
+
+  std::uint64_t glowing_triangles() const;  // that can be drawn, of all instances
+
+ private:
+  // In space of the mesh.
+  struct Triangle {
+    glm::vec3 a, ab, ac;
+    glm::vec2 uv[3];
+    float alpha[3];
+  };
+  struct GlowingMesh {
+    std::vector<Triangle> triangles;
+    AliasTable table;
+    std::vector<std::uint32_t> slots;  // of the mesh's triangles in `triangles`; kNone: dark
+    std::uint32_t material = 0;
+    double power = 0.0;
+  };
+  struct GlowingInstance {
+    std::uint32_t instance = 0;  // of the scene; ascending
+    std::uint32_t mesh = 0;      // in meshes_
+    std::uint32_t light = 0;     // the area light that this is the lamp of; kNone
+    glm::mat4x3 transform{1.0F};
+  };
+
+  void add_glowing(const scenes::Scene& scene, const shading::Shader& shader);
+  std::uint32_t lamp_of(const GlowingInstance& instance, const glm::vec3& emission) const;
+  void weigh(const scenes::Scene& scene);
+  LightSample draw_light(std::uint32_t light, const glm::vec3& from, float chance,
+                         const glm::vec2& place) const;
+  LightSample draw_glow(const shading::Shader& shader, const GlowingInstance& instance,
+                        const glm::vec3& from, float chance, const glm::vec2& element,
+                        const glm::vec2& place) const;
+
+  std::vector<scenes::Light> lights_;
+  std::vector<bool> has_lamp_;  // of lights
+  std::vector<GlowingMesh> meshes_;
+  std::vector<GlowingInstance> instances_;
+  SkyTable sky_;
+  bool has_sky_ = false;
+  AliasTable emitters_;  // lights, the sky, glowing instances
+};
+
+}  // namespace delray::raytrace
