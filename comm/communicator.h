@@ -90,8 +90,8 @@ class Communicator {
   virtual void send(int to, Tag tag, Buffer&& message) = 0;
   // Waits for a message and takes it; first in, first out per source and tag.
   virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;
-  // The next message that receive(envelope.source, envelope.tag) would take, left in place; nothing
-  // when none arrives before the deadline.
+  // The next message that receive(envelope.source, envelope.tag) would take, without waiting for
+  // the rest of it, left in place; nothing when none has arrived whole before the deadline.
   virtual std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) = 0;
 
   // Collective: ranks that give the same colour form a communicator, ordered by key, then rank.

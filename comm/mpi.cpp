@@ -161,7 +161,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   Buffer receive(int from_or_any, Tag tag_or_any) override {
-    Message* message = wait(from_or_any, tag_or_any, Deadline::never());
+    Message* message = wait(from_or_any, tag_or_any, Deadline::never(), /*whole=*/false);
     Transfer incoming = queue_.take(message);
     Patience patience(*engine_);
     while (!completed(incoming.requests)) patience.pause(/*on_their_way=*/true);
@@ -169,7 +169,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) override {
-    const Message* message = wait(from_or_any, tag_or_any, deadline);
+    const Message* message = wait(from_or_any, tag_or_any, deadline, /*whole=*/true);
     if (!message) return std::nullopt;
     return Envelope{message->source, message->tag, message->payload.buffer.size()};
   }
@@ -261,15 +261,21 @@ class MpiCommunicator final : public Communicator {
     queue_.push(source, static_cast<Tag>(announcement.tag), 0, std::move(incoming));
   }
 
-  Message* wait(int from, Tag tag, Deadline deadline) {
+  // The first message that matches; with `whole` when all of it has come.
+  Message* find(int from, Tag tag, bool whole) {
+    Message* message = queue_.find(from, tag);
+    return !whole || message == nullptr || completed(message->payload.requests) ? message : nullptr;
+  }
+
+  Message* wait(int from, Tag tag, Deadline deadline, bool whole) {
     constexpr auto kNever = std::chrono::nanoseconds::max();
-    if (Message* message = queue_.find(from, tag)) return message;
+    if (Message* message = find(from, tag, whole)) return message;
     const auto longest = std::min(deadline.wait, engine_->options.timeout);
     Clock::time_point begin{};
     Patience patience(*engine_);
     for (bool first = true;; first = false) {
       pull();
-      if (Message* message = queue_.find(from, tag)) return message;
+      if (Message* message = find(from, tag, whole)) return message;
       if (deadline.wait <= std::chrono::nanoseconds{0}) return nullptr;
       engine_->reap();
       if (first) {

@@ -40,52 +40,89 @@ PixelRange TileCompositor::range(int tile) const {
 }
 
 void TileCompositor::merge_what_came(int tile) {
-  Own& own = own_[static_cast<std::size_t>(tile / communicator_.size())];
-  if (!own.drawn) return;
-  for (; own.merged < order_.size(); ++own.merged) {
-    const auto next = own.not_yet.find(order_[own.merged]);
-    if (next == own.not_yet.end()) return;
+  Own& mine = own(tile);
+  if (!mine.drawn) return;
+  for (; mine.merged < order_.size(); ++mine.merged) {
+    const auto next = mine.not_yet.find(order_[mine.merged]);
+    if (next == mine.not_yet.end()) return;
     const Side side = next->first < communicator_.rank() ? Side::lower : Side::higher;
-    communicator_.work(comm::Work::pixels_composited,
-                       layer_->merge(range(tile), next->second, side));
-    own.not_yet.erase(next);
+    if (next->second) {
+      communicator_.work(comm::Work::pixels_composited,
+                         layer_->merge(range(tile), *next->second, side));
+    }
+    mine.not_yet.erase(next);
   }
 }
 
-// The number of a tile goes before its pixels.
-void TileCompositor::take_one(int from) {
-  const int tile = communicator_.receive(from, internal::kTagTile).as<int>()[0];
-  own_[static_cast<std::size_t>(tile / communicator_.size())].not_yet.emplace(
-      from, communicator_.receive(from, internal::kTagTilePixels));
+void TileCompositor::add(int tile, int from, std::optional<comm::Buffer>&& pixels) {
+  own(tile).not_yet.emplace(from, std::move(pixels));
   --missing_;
   merge_what_came(tile);
 }
 
-void TileCompositor::drawn(int tile) {
+// The number of a tile goes before its pixels; the complement of the number if there are none.
+void TileCompositor::take_number(int from) {
+  const int number = communicator_.receive(from, internal::kTagTile).as<int>()[0];
+  if (number < 0) {
+    add(~number, from, std::nullopt);
+  } else {
+    announced_[from].push_back(number);
+  }
+}
+
+void TileCompositor::take_pixels(Announced::iterator from) {
+  const int source = from->first, tile = from->second.front();
+  from->second.pop_front();
+  if (from->second.empty()) announced_.erase(from);
+  add(tile, source, communicator_.receive(source, internal::kTagTilePixels));
+}
+
+// Large messages may be on their way for as long as their sender is drawing: they are not waited
+// for.
+void TileCompositor::take_what_came() {
+  const auto now = comm::Deadline::now();
+  while (missing_ > 0) {
+    const auto next = communicator_.probe(comm::kAnyRank, internal::kTagTile, now);
+    if (!next) break;
+    take_number(next->source);
+  }
+  for (auto from = announced_.begin(); from != announced_.end();) {
+    const auto here = from++;
+    for (auto left = here->second.size(); left > 0; --left) {
+      if (!communicator_.probe(here->first, internal::kTagTilePixels, now)) break;
+      take_pixels(here);
+    }
+  }
+}
+
+void TileCompositor::drawn(int tile) { hand_over(tile, true); }
+void TileCompositor::nothing_in(int tile) { hand_over(tile, false); }
+
+void TileCompositor::hand_over(int tile, bool has_pixels) {
   const PixelRange pixels = range(tile);
   if (pixels.size() == 0) return;
   communicator_.mark(comm::Phase::compose, 0);
   if (const int to = owner(tile); to != communicator_.rank()) {
-    communicator_.send(to, internal::kTagTile, comm::Buffer::of_value(tile));
-    communicator_.send(to, internal::kTagTilePixels, layer_->cut(pixels));
+    const int number = has_pixels ? tile : ~tile;
+    communicator_.send(to, internal::kTagTile, comm::Buffer::of_value(number));
+    if (has_pixels) communicator_.send(to, internal::kTagTilePixels, layer_->cut(pixels));
   } else {
-    own_[static_cast<std::size_t>(tile / communicator_.size())].drawn = true;
+    own(tile).drawn = true;
     merge_what_came(tile);
   }
-  while (missing_ > 0) {
-    const auto next =
-        communicator_.probe(comm::kAnyRank, internal::kTagTile, comm::Deadline::now());
-    if (!next) return;
-    take_one(next->source);
-  }
+  take_what_came();
 }
 
 Part TileCompositor::finish() {
   communicator_.mark(comm::Phase::compose, 0);
-  while (missing_ > 0) {
-    const auto next =
-        communicator_.probe(comm::kAnyRank, internal::kTagTile, comm::Deadline::never());
-    take_one(next->source);
+  for (take_what_came(); missing_ > 0; take_what_came()) {
+    if (announced_.empty()) {
+      const auto next =
+          communicator_.probe(comm::kAnyRank, internal::kTagTile, comm::Deadline::never());
+      take_number(next->source);
+    } else {
+      take_pixels(announced_.begin());
+    }
   }
   Part part;
   for (int tile = communicator_.rank(); tile < tiles_; tile += communicator_.size()) {

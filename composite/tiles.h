@@ -1,8 +1,10 @@
 // A distributed framebuffer: tiles are composited while others are still being drawn.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,8 +36,11 @@ class TileCompositor {
   Layer& layer() { return *layer_; }
 
   // Sends the tile to its owner and merges what has come for own tiles that are drawn. REQUIRES:
-  // nobody draws into the layer meanwhile; it was not called for this tile before.
+  // nobody draws into the layer meanwhile, or only into tiles that are not drawn yet of a layer
+  // with an image; neither this nor nothing_in was called for this tile before.
   void drawn(int tile);
+  // The same of a tile in which this rank has nothing: no pixels of it travel.
+  void nothing_in(int tile);
   // Waits for the tiles of the others.
   Part finish();
 
@@ -43,10 +48,17 @@ class TileCompositor {
   // Of a tile of this rank's own.
   struct Own {
     bool drawn = false;
-    std::size_t merged = 0;                 // ranks of order_
-    std::map<int, comm::Buffer> not_yet{};  // that have come before their turn
+    std::size_t merged = 0;  // ranks of order_
+    // What has come before its turn; without a message from those who have nothing.
+    std::map<int, std::optional<comm::Buffer>> not_yet{};
   };
-  void take_one(int from);
+  using Announced = std::map<int, std::deque<int>>;
+  Own& own(int tile) { return own_[static_cast<std::size_t>(tile / communicator_.size())]; }
+  void hand_over(int tile, bool has_pixels);
+  void take_number(int from);
+  void take_pixels(Announced::iterator from);
+  void take_what_came();
+  void add(int tile, int from, std::optional<comm::Buffer>&& pixels);
   void merge_what_came(int tile);
 
   comm::Communicator& communicator_;
@@ -55,7 +67,8 @@ class TileCompositor {
   int tiles_ = 0;
   std::vector<int> order_;   // in which the images of other ranks are merged
   std::vector<Own> own_;     // of tile rank + i * ranks
-  std::size_t missing_ = 0;  // messages
+  Announced announced_;      // tiles whose pixels are on their way, by source, in their order
+  std::size_t missing_ = 0;  // of other ranks
 };
 
 }  // namespace delray::composite

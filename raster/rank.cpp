@@ -34,6 +34,15 @@ void Rank::end(RegionDrawing& drawing, FinishTile finish_tile) {
   counts += done;
 }
 
+void Rank::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
+                    parallel::FunctionRef<void(int, int)> rows_finished) {
+  drawing.finish_rows(first, rows, finish_tile, [&](int begin, int end, const RegionCounts& done) {
+    tell_work(done);
+    counts += done;
+    rows_finished(begin, end);
+  });
+}
+
 void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
                   FinishTile finish_tile) {
   communicator.mark(comm::Phase::rasterize, 0);
@@ -46,6 +55,20 @@ template <class Colour>
 void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
                   const Window<Colour>& window) {
   for (const geometry::Rect& rect : rects) tile.shade_pixels(rect, n, window);
+}
+
+template <class Colour>
+void store_samples(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                   image::BasicImage<Colour>& image) {
+  for (const geometry::Rect& rect : rects) {
+    if (n == 1) {
+      tile.shade(rect, window_of(image));
+      continue;
+    }
+    const Window<Colour> samples = tile_window<Colour>(rect);
+    tile.shade(rect, samples);
+    gather_samples(samples, n, pixels_of(rect, n), image);
+  }
 }
 
 template <class Colour>
@@ -83,15 +106,7 @@ image::BasicImage<Colour> Rank::end_samples(RegionDrawing& drawing) {
   image::BasicImage<Colour> image =
       take_image<Colour>(options.width * samples_per_pixel(), options.height);
   end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
-    for (const geometry::Rect& rect : rects) {
-      if (n == 1) {
-        tile.shade(rect, window_of(image));
-        continue;
-      }
-      const Window<Colour> samples = tile_window<Colour>(rect);
-      tile.shade(rect, samples);
-      gather_samples(samples, n, pixels_of(rect, n), image);
-    }
+    store_samples(rects, tile, n, image);
   });
   return image;
 }
@@ -132,5 +147,7 @@ template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
                            const Window<image::Rgba8>&);
 template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
                            const Window<image::RgbaF>&);
+template void store_samples(std::span<const geometry::Rect>, TileView&, int, image::Image8&);
+template void store_samples(std::span<const geometry::Rect>, TileView&, int, image::ImageF&);
 
 }  // namespace delray::raster

@@ -1,7 +1,10 @@
 #include "raster/internal/regions.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <numeric>
+#include <utility>
 
 #include "parallel/parallel_for.h"
 #include "raster/internal/processor_seconds.h"
@@ -112,15 +115,48 @@ void RegionDrawing::draw_all() {
 }
 
 RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
-  const Screen& screen = task_.screen;
-  const bool shade_now = task_.options.shade == Shade::immediate;
   RegionCounts counts;
-  counts.triangles = end_drawing(screen, scratch_.workers, scratch_.later, costs_);
+  end_drawing_into(counts);
+  finish_jobs(tiles_.jobs, finish_tile, counts);
+  return counts;
+}
+
+void RegionDrawing::finish_rows(int first, int rows, FinishTile finish_tile,
+                                RowsFinished rows_finished) {
+  const Screen& screen = task_.screen;
+  assert(0 <= first && first < screen.tiles_y && rows >= 1);
+  RegionCounts counts;
+  end_drawing_into(counts);
+  const auto job_at = [&](int row) {
+    return std::partition_point(tiles_.jobs.begin(), tiles_.jobs.end(), [&](const TileJob& job) {
+      return job.tile < row * screen.tiles_x;
+    });
+  };
+  const auto finish_between = [&](int from, int to) {
+    for (int begin = from; begin < to; begin += rows) {
+      const int end = std::min(begin + rows, to);
+      finish_jobs(std::span(job_at(begin), job_at(end)), finish_tile, counts);
+      rows_finished(begin, end, std::exchange(counts, {}));
+    }
+  };
+  finish_between(first, screen.tiles_y);
+  finish_between(0, first);
+}
+
+void RegionDrawing::end_drawing_into(RegionCounts& counts) {
+  counts.triangles = end_drawing(task_.screen, scratch_.workers, scratch_.later, costs_);
   counts.phases.transform = costs_.set_up;
   counts.phases.bin = costs_.sort;
+  counts.phases.rasterize = costs_.rasterize;
+  counts.shaded = costs_.shaded;
+}
 
+void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
+                                RegionCounts& counts) {
+  const Screen& screen = task_.screen;
+  const bool shade_now = task_.options.shade == Shade::immediate;
   ProcessorSeconds rasterize_seconds, shade_seconds;
-  std::atomic<std::uint64_t> fragments{0}, shaded{costs_.shaded};
+  std::atomic<std::uint64_t> fragments{0}, shaded{0};
   std::atomic<std::size_t> next{0};
   parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t) {
     StageClock<2> clock;
@@ -128,8 +164,8 @@ RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
-      if (k >= tiles_.jobs.size()) break;
-      const int index = tiles_.jobs[k].tile;
+      if (k >= jobs.size()) break;
+      const int index = jobs[k].tile;
       VisibilityTile* tile = nullptr;
       if (scratch_.tiles.is_drawn_in(index)) {
         tile = &scratch_.tiles.open(index);
@@ -150,7 +186,7 @@ RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
                           static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
                     : nullptr;
       TileView view(frame_->shading(), tile, colours, mine);
-      finish_tile(tiles_.rects_of(tiles_.jobs[k]), view);
+      finish_tile(tiles_.rects_of(jobs[k]), view);
       clock.finish(1);
       shown_here += view.shown();
       shaded_here += view.shaded();
@@ -160,12 +196,11 @@ RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
     shaded.fetch_add(shaded_here, std::memory_order_relaxed);
     clock.add_to({&rasterize_seconds, &shade_seconds});
   });
-  counts.phases.rasterize = costs_.rasterize + rasterize_seconds.seconds();
-  counts.phases.shade = shade_seconds.seconds();
-  counts.fragments = fragments;
-  counts.shaded = shaded;
-  counts.tiles = tiles_.jobs.size();
-  return counts;
+  counts.phases.rasterize += rasterize_seconds.seconds();
+  counts.phases.shade += shade_seconds.seconds();
+  counts.fragments += fragments;
+  counts.shaded += shaded;
+  counts.tiles += jobs.size();
 }
 
 }  // namespace delray::raster

@@ -163,6 +163,21 @@ class Steps final : public FrameSteps {
       part = shade_points<Colour>(rank_, std::move(part));
     else if (rank_.transparent)
       part = blend_surfaces<Colour>(rank_, std::move(part));
+    return picture_of(std::move(part));
+  }
+
+  // Whether tiles can go to their owners before all are finished.
+  bool has_tiles() const {
+    return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.transparent &&
+           !shades_last();
+  }
+  // Instead of rasterize and compose. REQUIRES: has_tiles().
+  Picture rasterize_and_compose() { return picture_of(hand_over_tiles<Colour>(rank_, *drawing_)); }
+
+ private:
+  bool shades_last() const { return rank_.options.shade == Shade::composited; }
+
+  Picture picture_of(composite::Part&& part) {
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
                            rank_.options.height);
     part = timed(rank_.communicator, rank_.counts.phases.gather,
@@ -171,15 +186,22 @@ class Steps final : public FrameSteps {
     return composite::take_image<Colour>(std::move(part));
   }
 
- private:
-  bool shades_last() const { return rank_.options.shade == Shade::composited; }
-
   Rank& rank_;
   DrawList list_;
   std::unique_ptr<RegionDrawing> drawing_;
   image::BasicImage<Colour> image_;          // a single rank's
   std::unique_ptr<composite::Layer> layer_;  // of one among several
 };
+
+template <class Colour>
+Picture render(Rank& rank) {
+  rank.communicator.mark(comm::Phase::rasterize, 0);
+  Steps<Colour> steps(rank);
+  steps.transform();
+  if (steps.has_tiles()) return steps.rasterize_and_compose();
+  steps.rasterize();
+  return steps.compose();
+}
 
 }  // namespace
 
@@ -200,11 +222,7 @@ Share sort_last_share(Rank& rank) {
 }
 
 Picture sort_last(Rank& rank) {
-  rank.communicator.mark(comm::Phase::rasterize, 0);
-  const std::unique_ptr<FrameSteps> steps = sort_last_steps(rank);
-  steps->transform();
-  steps->rasterize();
-  return steps->compose();
+  return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 
 }  // namespace delray::raster

@@ -51,7 +51,10 @@ struct Rank {
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
   // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
   void end(RegionDrawing& drawing, FinishTile finish_tile);
-  // The same into an image of the frame: pixels, with samples averaged.
+  // The same as RegionDrawing::finish_rows; work is told before rows_finished is called.
+  void end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
+                parallel::FunctionRef<void(int begin, int end)> rows_finished);
+  // The same as end into an image of the frame: pixels, with samples averaged.
   template <class Colour>
   void end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image);
 
@@ -78,6 +81,11 @@ template <class Colour>
 void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
                   const Window<Colour>& window);
 
+// The same into an image of the frame with the samples of a pixel together.
+template <class Colour>
+void store_samples(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                   image::BasicImage<Colour>& image);
+
 // Runs f and adds the seconds that it took on this rank, waiting for others included.
 template <class F>
 auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
@@ -92,6 +100,12 @@ Picture sort_first(Rank& rank);
 Picture sort_first_scheduled(Rank& rank);
 Picture sort_middle(Rank& rank);
 Picture sort_last(Rank& rank);
+// Finishes a drawing of the whole frame and composites it meanwhile, by the scheme `tiles`: a tile
+// goes to its owner as soon as it is finished here. The part is in samples. Collective.
+//
+// REQUIRES: nothing is transparent; pixels are shaded before they are composited.
+template <class Colour>
+composite::Part hand_over_tiles(Rank& rank, RegionDrawing& drawing);
 std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank);
 // What sort_last composites, of a rank that need not have others. REQUIRES: one sample per pixel.
 Share sort_last_share(Rank& rank);

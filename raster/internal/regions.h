@@ -61,6 +61,8 @@ class PreparedFrame {
 };
 
 using FinishTile = parallel::FunctionRef<void(std::span<const geometry::Rect>, TileView&)>;
+// Rows [begin, end) of the screen's tiles are finished; what was done since the last call.
+using RowsFinished = parallel::FunctionRef<void(int begin, int end, const RegionCounts& done)>;
 
 // A frame under way. The list may be given more draws and clusters until `finish`; calls are the
 // rank's own thread's.
@@ -85,11 +87,18 @@ class RegionDrawing {
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
   // parts of regions in it. Parallel. To be called once, in the end.
   RegionCounts finish(FinishTile finish_tile);
+  // The same, `rows` rows of tiles at a time, from row `first` on and from the top to it again.
+  // After each time rows_finished is called, in the caller's thread.
+  //
+  // REQUIRES: 0 <= first < the screen's rows of tiles; rows >= 1.
+  void finish_rows(int first, int rows, FinishTile finish_tile, RowsFinished rows_finished);
 
  private:
   RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
                 const PreparedFrame* frame, Scratch& scratch);
   TileMemory& memory() const;
+  void end_drawing_into(RegionCounts& counts);
+  void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
 
   const RegionTask task_;
   Scratch& scratch_;
