@@ -54,13 +54,4 @@ class EmbreeScene {
   bool has_instances_ = false;
 };
 
-// The hit of a ray that hit something. REQUIRES: ray.triangle != kMiss.
-inline Hit hit_of(const Ray& ray) {
-  return {ray.far, ray.instance != kMiss ? ray.instance : ray.geometry, ray.triangle, ray.u, ray.v};
-}
-inline Hit hit_of(const RayPacket& packet, int i) {
-  return {packet.far[i], packet.instance[i] != kMiss ? packet.instance[i] : packet.geometry[i],
-          packet.triangle[i], packet.u[i], packet.v[i]};
-}
-
 }  // namespace delray::raytrace

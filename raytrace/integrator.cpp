@@ -9,7 +9,7 @@ namespace delray::raytrace {
 namespace {
 
 constexpr Integrator kIntegrators[] = {
-    {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", trace_whitted},
+    {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", make_whitted},
 };
 
 }  // namespace

@@ -6,9 +6,6 @@
 namespace delray::raytrace {
 namespace {
 
-// 2^-18 is 64 roundings of a float; Embree's intersection and the sums below take about 20.
-constexpr float kOffset = 0x1p-18F;
-
 float largest(const glm::vec3& v) {
   return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
@@ -32,7 +29,6 @@ shading::Footprint footprint(const scenes::Mesh& mesh, const glm::uvec3& corners
   const glm::vec2 b = mesh.uvs[corners.z] - mesh.uvs[corners.x];
   const float uv_area = std::abs(a.x * b.y - a.y * b.x);
   if (!(world_area > 0.0F)) return {};
-  constexpr float kSteepest = 0.05F;
   const float step = width * std::sqrt(uv_area / world_area) / std::max(cosine, kSteepest);
   return {{step, 0.0F}, {0.0F, step}};
 }

@@ -14,6 +14,12 @@ struct Cone {
   float width = 0.0F;
 };
 
+// A slant beyond which a footprint grows no further.
+inline constexpr float kSteepest = 0.05F;
+
+// 2^-18 is 64 roundings of a float; Embree's intersection and the sums of a point take about 20.
+inline constexpr float kOffset = 0x1p-18F;
+
 struct Intersection {
   shading::Point point;
   // A ray that starts this far from the point along either direction of the geometric normal cannot

@@ -60,6 +60,15 @@ struct Hit {
   float u = 0.0F, v = 0.0F;
 };
 
+// The hit of a ray that hit something. REQUIRES: ray.triangle != kMiss.
+inline Hit hit_of(const Ray& ray) {
+  return {ray.far, ray.instance != kMiss ? ray.instance : ray.geometry, ray.triangle, ray.u, ray.v};
+}
+inline Hit hit_of(const RayPacket& packet, int i) {
+  return {packet.far[i], packet.instance[i] != kMiss ? packet.instance[i] : packet.geometry[i],
+          packet.triangle[i], packet.u[i], packet.v[i]};
+}
+
 // What a shadow ray passed on its way that does not stop it altogether, in no particular order.
 struct SeeThrough {
   static constexpr int kMost = 12;  // beyond that many layers nothing is seen

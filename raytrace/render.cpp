@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "comm/collectives.h"
 #include "geometry/rect.h"
 #include "parallel/parallel_for.h"
+#include "raytrace/answer.h"
 #include "raytrace/flush_to_zero.h"
-#include "raytrace/samples.h"
 #include "raytrace/tiles.h"
 
 namespace delray::raytrace {
@@ -38,44 +40,65 @@ struct TilePixels {
   double busy = 0.0;
 };
 
+// Walks that are at rest between the tiles of a frame: one for each thread, in the end.
+class Walks {
+ public:
+  Walks(const Integrator& integrator, const Setting& setting)
+      : integrator_(integrator), setting_(setting) {}
+
+  std::unique_ptr<Walk> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!resting_.empty()) {
+        std::unique_ptr<Walk> walk = std::move(resting_.back());
+        resting_.pop_back();
+        return walk;
+      }
+    }
+    return integrator_.make(setting_);
+  }
+  void give(std::unique_ptr<Walk> walk) {
+    const std::lock_guard lock(mutex_);
+    resting_.push_back(std::move(walk));
+  }
+
+ private:
+  const Integrator& integrator_;
+  const Setting& setting_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Walk>> resting_;
+};
+
 // What all tiles of a frame have in common.
 struct Frame {
   const Tracer& tracer;
-  scenes::View view;
   const RenderOptions& options;
-  const Integrator& integrator;
+  const Setting& setting;
+  Walks& walks;
   std::vector<Rect> tiles;
   std::vector<std::uint32_t> mine;
 };
 
-Block block_at(int x, int y, const Rect& tile) {
-  Block block;
-  block.x = x;
-  block.y = y;
-  for (int i = 0; i < kPacketRays; ++i) {
-    block.active.ray[i] = tile.contains(x + i % kBlockSide, y + i / kBlockSide) ? -1 : 0;
-  }
-  return block;
-}
+// Rays of so many pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
+constexpr int kTaskSide = 16;
+static_assert(kTileSide % kTaskSide == 0 && kTaskSide % kBlockSide == 0);
 
-void trace_block(const Frame& frame, const Rect& tile, Block& block, TilePixels& pixels) {
-  const int samples = frame.options.samples;
-  const float weight = 1.0F / static_cast<float>(samples);
-  BlockResult result;
-  for (int s = 0; s < samples; ++s) {
-    block.offset = sample_position(s, samples);
-    frame.integrator.trace(frame.tracer, frame.view, frame.options.trace, block, result,
-                           pixels.rays);
-    for (int i = 0; i < kPacketRays; ++i) {
-      if (block.active.ray[i] == 0) continue;
-      const auto at = static_cast<std::size_t>(block.y + i / kBlockSide - tile.y0) *
-                          static_cast<std::size_t>(tile.width()) +
-                      static_cast<std::size_t>(block.x + i % kBlockSide - tile.x0);
-      image::RgbaF& sum = pixels.colour[at];
-      const image::RgbaF& c = result.colour[i];
-      sum = {sum.r + c.r * weight, sum.g + c.g * weight, sum.b + c.b * weight,
-             sum.a + c.a * weight};
-      pixels.depth[at] = std::min(pixels.depth[at], result.depth[i]);
+void add_samples(const Walk& walk, const Task& task, float weight, const Rect& tile,
+                 TilePixels& pixels) {
+  const SampleBlock* block = walk.samples().data();
+  for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
+    for (int x = task.pixels.x0; x < task.pixels.x1; x += kBlockSide, ++block) {
+      for (int i = 0; i < kPacketRays; ++i) {
+        const int column = x + i % kBlockSide, row = y + i / kBlockSide;
+        if (column >= task.pixels.x1 || row >= task.pixels.y1) continue;
+        const auto at =
+            static_cast<std::size_t>(row - tile.y0) * static_cast<std::size_t>(tile.width()) +
+            static_cast<std::size_t>(column - tile.x0);
+        image::RgbaF& sum = pixels.colour[at];
+        sum = {sum.r + block->colour.x[i] * weight, sum.g + block->colour.y[i] * weight,
+               sum.b + block->colour.z[i] * weight, sum.a + block->alpha[i] * weight};
+        pixels.depth[at] = std::min(pixels.depth[at], block->depth[i]);
+      }
     }
   }
 }
@@ -86,12 +109,21 @@ TilePixels trace_tile(const Frame& frame, const Rect& tile) {
   TilePixels pixels;
   pixels.colour.resize(static_cast<std::size_t>(tile.area()));
   pixels.depth.assign(pixels.colour.size(), image::kEmptyDepth);
-  for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
-    for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-      Block block = block_at(x, y, tile);
-      trace_block(frame, tile, block, pixels);
+  const float weight = 1.0F / static_cast<float>(frame.options.samples);
+  std::unique_ptr<Walk> walk = frame.walks.take();
+  for (int y = tile.y0; y < tile.y1; y += kTaskSide) {
+    for (int x = tile.x0; x < tile.x1; x += kTaskSide) {
+      Task task;
+      task.pixels = geometry::intersection(tile, {x, y, x + kTaskSide, y + kTaskSide});
+      for (int s = 0; s < frame.options.samples; ++s) {
+        task.first_sample = s;
+        for (walk->start(task); !walk->done(); walk->go_on()) answer(frame.tracer, walk->wave());
+        add_samples(*walk, task, weight, tile, pixels);
+        pixels.rays += walk->rays();
+      }
     }
   }
+  frame.walks.give(std::move(walk));
   pixels.busy = thread_seconds() - start;
   return pixels;
 }
@@ -168,7 +200,7 @@ void collect(comm::Communicator& communicator, const Frame& frame,
   }
   const std::vector<comm::Buffer> messages = comm::gather(communicator, 0, std::move(message));
   if (!root) return;
-  result.image = image::ImageF(frame.view.width, frame.view.height);
+  result.image = image::ImageF(frame.setting.view.width, frame.setting.view.height);
   parallel::parallel_for(0, traced.size(), 16, [&](std::size_t i) {
     put(frame.tiles[frame.mine[i]], traced[i].colour.data(), traced[i].depth.data(), result.image);
   });
@@ -179,7 +211,8 @@ void collect(comm::Communicator& communicator, const Frame& frame,
     std::memcpy(&ranks[rank], from.data(), sizeof(RankStatistics));
     ranks[0].bytes_received += from.size();
     unpack(from, frame.tiles,
-           tiles_of_rank(dealt, frame.view.width, frame.view.height, rank, communicator.size()),
+           tiles_of_rank(dealt, frame.setting.view.width, frame.setting.view.height, rank,
+                         communicator.size()),
            result.image);
   }
   for (const RankStatistics& rank : ranks) result.statistics.rays += rank.rays;
@@ -197,10 +230,13 @@ Result render(comm::Communicator& communicator, const Tracer& tracer, const scen
   if (width > 0 && height > 0) view = scenes::make_view(camera, width, height);
   view.width = width;
   view.height = height;
+  const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
+  const Setting setting{shader, view, options.trace, options.samples};
+  Walks walks(chosen, setting);
   const Frame frame{tracer,
-                    view,
                     options,
-                    chosen,
+                    setting,
+                    walks,
                     tiles(width, height),
                     tiles_of_rank(dealt, width, height, communicator.rank(), communicator.size())};
 

@@ -2,7 +2,7 @@
 
 #include "shading/batch.h"
 
-#include "shading/internal/targets.h"
+#include "shading/targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/batch_parts.cpp"

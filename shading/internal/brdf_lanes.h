@@ -8,7 +8,7 @@
 
 #include "shading/batch_shader.h"
 #include "shading/brdf.h"
-#include "shading/internal/lanes.h"
+#include "shading/lanes.h"
 #include "shading/internal/specular_table.h"
 
 HWY_BEFORE_NAMESPACE();

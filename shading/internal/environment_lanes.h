@@ -10,7 +10,7 @@
 
 #include "shading/environment.h"
 #include "shading/internal/gradient.h"
-#include "shading/internal/lanes.h"
+#include "shading/lanes.h"
 #include "shading/internal/texture_lanes.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "shading/batch_shader.h"
-#include "shading/internal/lanes.h"
+#include "shading/lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

@@ -8,7 +8,7 @@
 
 #include "shading/batch_shader.h"
 #include "shading/internal/brdf_lanes.h"
-#include "shading/internal/lanes.h"
+#include "shading/lanes.h"
 #include "shading/internal/texture_lanes.h"
 
 HWY_BEFORE_NAMESPACE();

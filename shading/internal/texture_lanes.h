@@ -8,7 +8,7 @@
 
 #include <limits>
 
-#include "shading/internal/lanes.h"
+#include "shading/lanes.h"
 #include "shading/internal/texel_values.h"
 #include "shading/texture.h"
 

@@ -1,0 +1,27 @@
+// Answers from a scene that this rank holds whole.
+#pragma once
+
+#include "raytrace/tracer.h"
+#include "raytrace/wave.h"
+
+namespace delray::raytrace {
+
+// Answers all questions of the wave. Coherent groups are traced as packets, rays to nearest hits of
+// the others one by one: every ray by the same kernel of Embree, whatever it shares a group with.
+void answer(const Tracer& tracer, Wave& wave);
+
+// One thing that can be seen through and is in the way of light.
+struct Layer {
+  float distance = 0.0F;
+  std::uint32_t placement = kMiss, triangle = kMiss;
+  glm::vec3 left{1.0F};  // what it leaves of light that travels through it
+};
+
+// The layer of a hit. `direction` is the unit direction of the shadow ray.
+Layer layer_of(const Tracer& tracer, const Hit& hit, const glm::vec3& direction);
+
+// What layers leave of the light together, multiplied in ascending order of (distance, placement,
+// triangle), into which they are sorted.
+glm::vec3 left_by(std::span<Layer> layers);
+
+}  // namespace delray::raytrace

@@ -1,0 +1,89 @@
+// What integrators that follow no random paths have in common: layers that can be seen through,
+// misses, and lights with their shadow rays.
+#pragma once
+
+#include <cstdint>
+
+#include "raytrace/walk.h"
+#include "shading/batch.h"
+
+namespace delray::raytrace {
+
+// A ray that could change its sample by less than this is not sent.
+inline constexpr float kLeastWeight = 1.0F / 256.0F;
+
+// What an integrator knows of the rays of a group besides.
+struct RayLanes {
+  bool whole = true;          // the primary rays of `block`: of the rest only `weight` is set
+  std::uint32_t block = 0;    // of samples()
+  bool weighted = false;      // whether weights are set; all are 1 if not
+  shading::Vectors16 weight;  // what the sample makes of radiance along the ray
+  alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * block + lane in it
+  alignas(64) std::int32_t depth[kPacketRays];    // how often it may be mirrored or refracted
+  alignas(64) std::uint32_t layers[kPacketRays];  // passed before
+  alignas(64) std::uint32_t placement[kPacketRays], triangle[kPacketRays];  // of the last layer
+
+  std::uint32_t pixel_of(int i) const {
+    return whole ? block * kPacketRays + static_cast<std::uint32_t>(i) : pixel[i];
+  }
+  glm::vec3 weight_of(int i) const { return weighted ? weight.get(i) : glm::vec3(1.0F); }
+};
+
+// A ray to be put into a group. `direction` may have any length, `view` is the unit vector back.
+struct NextRay {
+  glm::vec3 origin{0.0F}, direction{0.0F}, view{0.0F};
+  float near = 0.0F, width = 0.0F, spread = 0.0F;
+  glm::vec3 weight{1.0F};
+  std::uint32_t pixel = 0;
+  std::int32_t depth = 0;
+  std::uint32_t layers = 0, placement = kMiss, triangle = kMiss;
+};
+
+class LitWalk : public Walk {
+ public:
+  explicit LitWalk(const Setting& setting) : Walk(setting) {}
+
+ protected:
+  // Adds what the surfaces that a group's rays met show, and asks for more.
+  virtual void shade(RayGroup& group, RayLanes& lanes) = 0;
+
+  // Looks at the hits of a group: asks for rays behind layers, sets `surfaces` and multiplies
+  // weights by alpha. Returns the lanes that show anything.
+  shading::LaneMask look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces);
+
+  // Adds what leaves surfaces towards the lanes' rays to their samples.
+  void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
+
+  // Asks for shadow rays to every light that matters, one group of rays for each.
+  void ask_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                  const shading::Surfaces& surfaces);
+
+  void ask(const NextRay& ray);
+
+  std::int32_t depth_of(const RayLanes& lanes, int i) const {
+    return lanes.whole ? setting_.options.depth : lanes.depth[i];
+  }
+
+ private:
+  // What shadow rays will add to samples if all of the light arrives.
+  struct Light {
+    bool whole = true;
+    std::uint32_t block = 0;
+    alignas(64) std::uint32_t pixel[kPacketRays];
+    shading::Vectors16 reflected;
+  };
+
+  void begin() final;
+  void look() final;
+  void add_light(const ShadowGroup& group, const Light& light);
+  void add_environment(const RayGroup& group, const RayLanes& lanes);
+  shading::LaneMask look_through(const RayGroup& group, RayLanes& lanes, shading::LaneMask mask,
+                                 const shading::Surfaces& surfaces);
+  void ask_behind(const RayGroup& group, const RayLanes& lanes, int i, const glm::vec3& weight);
+
+  Groups<RayLanes> asked_, answered_;  // of next_.rays and wave_.rays
+  Groups<Light> asked_lights_, answered_lights_;
+  int used_ = kPacketRays;  // lanes of the last group of next_.rays
+};
+
+}  // namespace delray::raytrace

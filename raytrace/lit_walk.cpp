@@ -1,0 +1,280 @@
+#include "raytrace/internal/lit_walk.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "image/image.h"
+
+namespace delray::raytrace {
+namespace {
+
+using shading::LaneMask;
+
+// Lamps are modelled around their lights; a shadow ray ends a little before it gets there.
+constexpr float kShadowReach = 1.0F - 0x1p-10F;
+
+constexpr std::uint32_t kMostLayers = 64;  // of cut-outs and blended surfaces along one ray
+
+float brightest(const glm::vec3& v) { return std::max(std::max(v.x, v.y), v.z); }
+
+float next_up(float x) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + 1); }
+
+// The lanes of `rest` whose hits have the same material as the first of them.
+LaneMask same_material(const RayGroup& group, LaneMask rest) {
+  const std::uint32_t material = group.material[std::countr_zero(rest)];
+  LaneMask same = 0;
+  for (int i = 0; i < kPacketRays; ++i) same |= group.material[i] == material ? 1U << i : 0U;
+  return same & rest;
+}
+
+void add_masked(const shading::Floats16& from, LaneMask mask, shading::Floats16& to) {
+  for (int i = 0; i < kPacketRays; ++i) to[i] += (mask >> i & 1) != 0 ? from[i] : 0.0F;
+}
+
+void multiply(const shading::Vectors16& by, shading::Vectors16& v) {
+  for (int i = 0; i < kPacketRays; ++i) {
+    v.x[i] *= by.x[i];
+    v.y[i] *= by.y[i];
+    v.z[i] *= by.z[i];
+  }
+}
+
+}  // namespace
+
+void LitWalk::begin() {
+  asked_.clear();
+  asked_lights_.clear();
+  used_ = kPacketRays;
+  for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
+    RayLanes& lanes = asked_.add();
+    lanes.whole = true;
+    lanes.block = block;
+    lanes.weighted = false;
+  }
+}
+
+void LitWalk::look() {
+  std::swap(asked_, answered_);
+  std::swap(asked_lights_, answered_lights_);
+  asked_.clear();
+  asked_lights_.clear();
+  used_ = kPacketRays;
+  for (std::size_t g = 0; g < wave_.shadows.size(); ++g) {
+    add_light(wave_.shadows[g], answered_lights_[g]);
+  }
+  for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
+    RayGroup& group = wave_.rays[g];
+    add_environment(group, answered_[g]);
+    if (group.hits != 0) shade(group, answered_[g]);
+  }
+}
+
+void LitWalk::add_light(const ShadowGroup& group, const Light& light) {
+  const auto arriving = [&](int i) {
+    const glm::vec3 reflected = light.reflected.get(i);
+    return (group.dimmed >> i & 1) != 0 ? reflected * group.left.get(i) : reflected;
+  };
+  if (light.whole && group.dimmed == 0) {
+    SampleBlock& block = samples_[light.block];
+    add_masked(light.reflected.x, group.lit, block.colour.x);
+    add_masked(light.reflected.y, group.lit, block.colour.y);
+    add_masked(light.reflected.z, group.lit, block.colour.z);
+    return;
+  }
+  for (LaneMask rest = group.lit; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint32_t pixel =
+        light.whole ? light.block * kPacketRays + static_cast<std::uint32_t>(i) : light.pixel[i];
+    SampleBlock& block = samples_[pixel / kPacketRays];
+    const int lane = static_cast<int>(pixel % kPacketRays);
+    block.colour.set(lane, block.colour.get(lane) + arriving(i));
+  }
+}
+
+void LitWalk::add_environment(const RayGroup& group, const RayLanes& lanes) {
+  LaneMask missed = active_lanes(group.active) & ~group.hits;
+  if (missed == 0) return;
+  if (setting_.options.background == TraceOptions::Background::transparent) {
+    // Primary rays make the picture transparent.
+    for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      if (depth_of(lanes, i) != setting_.options.depth) continue;
+      const std::uint32_t pixel = lanes.pixel_of(i);
+      samples_[pixel / kPacketRays].alpha[static_cast<int>(pixel % kPacketRays)] =
+          1.0F - lanes.weight_of(i).x;
+      missed &= ~(1U << i);
+    }
+    if (missed == 0) return;
+  }
+  if (setting_.shader.shader->environment.black) return;
+  shading::Vectors16 directions, radiance;
+  for (int i = 0; i < kPacketRays; ++i) {
+    directions.x[i] = -group.view.x[i];
+    directions.y[i] = -group.view.y[i];
+    directions.z[i] = -group.view.z[i];
+  }
+  shading::environment_radiance(setting_.shader, directions, 0.0F, missed, radiance);
+  add(lanes, missed, radiance);
+}
+
+LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces) {
+  LaneMask layered = 0;
+  for (LaneMask rest = group.hits; rest != 0;) {
+    const LaneMask same = same_material(group, rest);
+    const std::uint32_t material = group.material[std::countr_zero(rest)];
+    shading::evaluate(setting_.shader, material, group.points, group.view, same, surfaces);
+    const bool opaque =
+        setting_.shader.material(material).material.alpha == scenes::Material::Alpha::opaque;
+    if (!opaque) layered |= same;
+    rest &= ~same;
+  }
+  const LaneMask hidden = layered != 0 ? look_through(group, lanes, layered, surfaces) : 0;
+  const LaneMask seen = group.hits & ~hidden;
+  for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint32_t pixel = lanes.pixel_of(i);
+    float& depth = samples_[pixel / kPacketRays].depth[static_cast<int>(pixel % kPacketRays)];
+    if (depth == image::kEmptyDepth) depth = group.packet.far[i];
+  }
+  return seen;
+}
+
+LaneMask LitWalk::look_through(const RayGroup& group, RayLanes& lanes, LaneMask mask,
+                               const shading::Surfaces& surfaces) {
+  if (!lanes.weighted) {
+    for (int i = 0; i < kPacketRays; ++i) lanes.weight.set(i, glm::vec3(1.0F));
+    lanes.weighted = true;
+  }
+  LaneMask hidden = 0;
+  for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const Hit hit = hit_of(group.packet, i);
+    const bool again =
+        !lanes.whole && hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
+    const float alpha = again ? 0.0F : surfaces.alpha[i];
+    const glm::vec3 weight = lanes.weight.get(i);
+    ask_behind(group, lanes, i, weight * (1.0F - alpha));
+    lanes.weight.set(i, weight * alpha);
+    if (!(alpha > 0.0F)) hidden |= 1U << i;
+  }
+  return hidden;
+}
+
+void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
+                         const glm::vec3& weight) {
+  const std::uint32_t layers = lanes.whole ? 1 : lanes.layers[i] + 1;
+  if (brightest(weight) < kLeastWeight || layers >= kMostLayers) return;
+  const RayPacket& packet = group.packet;
+  const Hit hit = hit_of(packet, i);
+  NextRay ray;
+  ray.origin = {packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]};
+  ray.direction = {packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]};
+  ray.view = group.view.get(i);
+  ray.near = next_up(hit.distance);
+  ray.width = group.width[i];
+  ray.spread = group.spread[i];
+  ray.weight = weight;
+  ray.pixel = lanes.pixel_of(i);
+  ray.depth = depth_of(lanes, i);
+  ray.layers = layers;
+  ray.placement = hit.placement;
+  ray.triangle = hit.triangle;
+  ask(ray);
+}
+
+void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16& radiance) {
+  if (lanes.whole && !lanes.weighted) {
+    SampleBlock& block = samples_[lanes.block];
+    add_masked(radiance.x, mask, block.colour.x);
+    add_masked(radiance.y, mask, block.colour.y);
+    add_masked(radiance.z, mask, block.colour.z);
+    return;
+  }
+  for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint32_t pixel = lanes.pixel_of(i);
+    SampleBlock& block = samples_[pixel / kPacketRays];
+    const int lane = static_cast<int>(pixel % kPacketRays);
+    block.colour.set(lane, block.colour.get(lane) + radiance.get(i) * lanes.weight_of(i));
+  }
+}
+
+void LitWalk::ask_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                         const shading::Surfaces& surfaces) {
+  shading::Arriving arriving;
+  for (std::size_t l = 0; l < setting_.shader.lights.size(); ++l) {
+    const LaneMask reached =
+        shading::reflect_light(setting_.shader, l, surfaces, group.view, mask, arriving);
+    if (reached == 0) continue;
+    rays_.shadow += static_cast<std::uint64_t>(std::popcount(reached));
+    Light& light = asked_lights_.add();
+    light.whole = lanes.whole;
+    light.block = lanes.block;
+    if (!lanes.whole) std::copy_n(lanes.pixel, kPacketRays, light.pixel);
+    light.reflected = arriving.reflected;
+    if (lanes.weighted) multiply(lanes.weight, light.reflected);
+    ShadowGroup& shadows = next_.shadows.add();
+    shadows.coherent = group.coherent;
+    ShadowPacket& packet = shadows.packet;
+    for (int i = 0; i < kPacketRays; ++i) {
+      shadows.active.ray[i] = (reached >> i & 1) != 0 ? -1 : 0;
+      packet.origin_x[i] =
+          surfaces.position.x[i] + surfaces.geometric_normal.x[i] * group.offset[i];
+      packet.origin_y[i] =
+          surfaces.position.y[i] + surfaces.geometric_normal.y[i] * group.offset[i];
+      packet.origin_z[i] =
+          surfaces.position.z[i] + surfaces.geometric_normal.z[i] * group.offset[i];
+      packet.near[i] = 0.0F;
+      packet.direction_x[i] = arriving.direction.x[i];
+      packet.direction_y[i] = arriving.direction.y[i];
+      packet.direction_z[i] = arriving.direction.z[i];
+      packet.time[i] = 0.0F;
+      packet.far[i] = arriving.distance[i] * kShadowReach;
+      packet.mask[i] = 0xFFFFFFFFU;
+      packet.flags[i] = 0;
+    }
+  }
+}
+
+void LitWalk::ask(const NextRay& ray) {
+  if (used_ == kPacketRays) {
+    RayGroup& fresh = next_.rays.add();
+    std::fill_n(fresh.active.ray, kPacketRays, 0);
+    fresh.coherent = false;
+    RayLanes& lanes = asked_.add();
+    lanes.whole = false;
+    lanes.weighted = true;
+    used_ = 0;
+  }
+  const int i = used_++;
+  RayGroup& group = next_.rays.back();
+  RayPacket& packet = group.packet;
+  group.active.ray[i] = -1;
+  packet.origin_x[i] = ray.origin.x;
+  packet.origin_y[i] = ray.origin.y;
+  packet.origin_z[i] = ray.origin.z;
+  packet.near[i] = ray.near;
+  packet.direction_x[i] = ray.direction.x;
+  packet.direction_y[i] = ray.direction.y;
+  packet.direction_z[i] = ray.direction.z;
+  packet.time[i] = 0.0F;
+  packet.far[i] = std::numeric_limits<float>::infinity();
+  packet.mask[i] = 0xFFFFFFFFU;
+  packet.id[i] = packet.flags[i] = 0;
+  packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
+  group.view.set(i, ray.view);
+  group.width[i] = ray.width;
+  group.spread[i] = ray.spread;
+  RayLanes& lanes = asked_.back();
+  lanes.weight.set(i, ray.weight);
+  lanes.pixel[i] = ray.pixel;
+  lanes.depth[i] = ray.depth;
+  lanes.layers[i] = ray.layers;
+  lanes.placement[i] = ray.placement;
+  lanes.triangle[i] = ray.triangle;
+  ++(ray.depth == setting_.options.depth ? rays_.primary : rays_.secondary);
+}
+
+}  // namespace delray::raytrace
