@@ -3,12 +3,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "raytrace/direct.h"
 #include "raytrace/whitted.h"
 
 namespace delray::raytrace {
 namespace {
 
 constexpr Integrator kIntegrators[] = {
+    {"direct", "lights with their shadows, and the environment", make_direct},
     {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", make_whitted},
 };
 

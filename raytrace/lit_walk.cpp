@@ -21,14 +21,6 @@ float brightest(const glm::vec3& v) { return std::max(std::max(v.x, v.y), v.z); 
 
 float next_up(float x) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + 1); }
 
-// The lanes of `rest` whose hits have the same material as the first of them.
-LaneMask same_material(const RayGroup& group, LaneMask rest) {
-  const std::uint32_t material = group.material[std::countr_zero(rest)];
-  LaneMask same = 0;
-  for (int i = 0; i < kPacketRays; ++i) same |= group.material[i] == material ? 1U << i : 0U;
-  return same & rest;
-}
-
 void add_masked(const shading::Floats16& from, LaneMask mask, shading::Floats16& to) {
   for (int i = 0; i < kPacketRays; ++i) to[i] += (mask >> i & 1) != 0 ? from[i] : 0.0F;
 }
@@ -119,19 +111,40 @@ void LitWalk::add_environment(const RayGroup& group, const RayLanes& lanes) {
   add(lanes, missed, radiance);
 }
 
+LaneMask LitWalk::same_material(const RayGroup& group, LaneMask rest) {
+  const std::uint32_t material = group.material[std::countr_zero(rest)];
+  LaneMask same = 0;
+  for (int i = 0; i < kPacketRays; ++i) same |= group.material[i] == material ? 1U << i : 0U;
+  return same & rest;
+}
+
 LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces) {
+  for (LaneMask rest = group.hits; rest != 0;) {
+    const LaneMask same = same_material(group, rest);
+    shading::evaluate(setting_.shader, group.material[std::countr_zero(rest)], group.points,
+                      group.view, same, surfaces);
+    rest &= ~same;
+  }
+  return see(group, lanes, surfaces.alpha);
+}
+
+LaneMask LitWalk::see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha) {
   LaneMask layered = 0;
   for (LaneMask rest = group.hits; rest != 0;) {
     const LaneMask same = same_material(group, rest);
-    const std::uint32_t material = group.material[std::countr_zero(rest)];
-    shading::evaluate(setting_.shader, material, group.points, group.view, same, surfaces);
-    const bool opaque =
-        setting_.shader.material(material).material.alpha == scenes::Material::Alpha::opaque;
-    if (!opaque) layered |= same;
+    const auto& material = setting_.shader.material(group.material[std::countr_zero(rest)]);
+    if (material.material.alpha != scenes::Material::Alpha::opaque) layered |= same;
     rest &= ~same;
   }
-  const LaneMask hidden = layered != 0 ? look_through(group, lanes, layered, surfaces) : 0;
+  const LaneMask hidden = layered != 0 ? look_through(group, lanes, layered, alpha) : 0;
   const LaneMask seen = group.hits & ~hidden;
+  if (lanes.whole) {  // the first that these pixels see
+    shading::Floats16& depth = samples_[lanes.block].depth;
+    for (int i = 0; i < kPacketRays; ++i) {
+      depth[i] = (seen >> i & 1) != 0 ? group.packet.far[i] : image::kEmptyDepth;
+    }
+    return seen;
+  }
   for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const std::uint32_t pixel = lanes.pixel_of(i);
@@ -141,23 +154,23 @@ LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfa
   return seen;
 }
 
-LaneMask LitWalk::look_through(const RayGroup& group, RayLanes& lanes, LaneMask mask,
-                               const shading::Surfaces& surfaces) {
+LaneMask LitWalk::look_through(const RayGroup& group, RayLanes& lanes, LaneMask layered,
+                               const shading::Floats16& alpha) {
   if (!lanes.weighted) {
     for (int i = 0; i < kPacketRays; ++i) lanes.weight.set(i, glm::vec3(1.0F));
     lanes.weighted = true;
   }
   LaneMask hidden = 0;
-  for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
+  for (LaneMask rest = layered; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const Hit hit = hit_of(group.packet, i);
     const bool again =
         !lanes.whole && hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
-    const float alpha = again ? 0.0F : surfaces.alpha[i];
+    const float covered = again ? 0.0F : alpha[i];
     const glm::vec3 weight = lanes.weight.get(i);
-    ask_behind(group, lanes, i, weight * (1.0F - alpha));
-    lanes.weight.set(i, weight * alpha);
-    if (!(alpha > 0.0F)) hidden |= 1U << i;
+    ask_behind(group, lanes, i, weight * (1.0F - covered));
+    lanes.weight.set(i, weight * covered);
+    if (!(covered > 0.0F)) hidden |= 1U << i;
   }
   return hidden;
 }

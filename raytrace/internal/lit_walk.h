@@ -47,9 +47,15 @@ class LitWalk : public Walk {
   // Adds what the surfaces that a group's rays met show, and asks for more.
   virtual void shade(RayGroup& group, RayLanes& lanes) = 0;
 
-  // Looks at the hits of a group: asks for rays behind layers, sets `surfaces` and multiplies
-  // weights by alpha. Returns the lanes that show anything.
+  // Sets `surfaces` of a group's hits, and does what see() does.
   shading::LaneMask look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces);
+
+  // Given Surface::alpha of the hits: asks for rays behind layers, multiplies weights by alpha,
+  // notes depths. Returns the lanes that show anything.
+  shading::LaneMask see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha);
+
+  // The lanes of `rest` whose hits have the same material as the first of them.
+  static shading::LaneMask same_material(const RayGroup& group, shading::LaneMask rest);
 
   // Adds what leaves surfaces towards the lanes' rays to their samples.
   void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
@@ -77,8 +83,8 @@ class LitWalk : public Walk {
   void look() final;
   void add_light(const ShadowGroup& group, const Light& light);
   void add_environment(const RayGroup& group, const RayLanes& lanes);
-  shading::LaneMask look_through(const RayGroup& group, RayLanes& lanes, shading::LaneMask mask,
-                                 const shading::Surfaces& surfaces);
+  shading::LaneMask look_through(const RayGroup& group, RayLanes& lanes, shading::LaneMask layered,
+                                 const shading::Floats16& alpha);
   void ask_behind(const RayGroup& group, const RayLanes& lanes, int i, const glm::vec3& weight);
 
   Groups<RayLanes> asked_, answered_;  // of next_.rays and wave_.rays
