@@ -49,69 +49,51 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
                  worker.result);
 }
 
-// The tiles of a batch by number. Mostly one thing lies in the same tile as the one before it.
-class TouchedTiles {
- public:
-  explicit TouchedTiles(Worker& worker) : worker_(worker) {}
-
-  Worker::TouchedTile& operator[](std::uint32_t tile) {
-    if (tile != last_tile_) {
-      last_tile_ = tile;
-      last_ = find(tile);
-    }
-    return worker_.touched[last_];
-  }
-
- private:
-  std::size_t find(std::uint32_t tile) {
-    std::uint32_t& number = worker_.touched_number[tile];
-    if (number == 0) {
-      worker_.touched.push_back({tile, 0, 0, 0, 0, 0, 0});
-      number = static_cast<std::uint32_t>(worker_.touched.size());
-    }
-    return number - 1;
-  }
-
-  Worker& worker_;
-  std::uint32_t last_tile_ = kNothing;
-  std::size_t last_ = 0;
-};
-
-// By counting, into worker.fragments and worker.entries.
+// By counting, into worker.fragments, entries and windows. Neighbours in a batch lie in one tile or
+// the next at random: there are no branches on tiles.
 void sort_by_tile(Worker& worker) {
   const SetUpResult& result = worker.result;
-  worker.touched.clear();
-  TouchedTiles tiles(worker);
-  for (std::size_t i = 0; i < result.fragments; ++i)
-    ++tiles[result.address[i] / kTilePixels].last_fragment;
-  for (const SetUpResult::Entry& entry : result.entries) ++tiles[entry.tile].last_entry;
+  const std::span addresses(result.address.data(), result.fragments);
   const std::span window_tiles(result.windows.tile.data(), result.windows.size);
-  for (const std::uint32_t tile : window_tiles) ++tiles[tile].last_window;
-  std::uint32_t fragments = 0, entries = 0, windows = 0;
-  for (Worker::TouchedTile& tile : worker.touched) {
-    const std::uint32_t here = tile.last_fragment, entries_here = tile.last_entry;
-    tile.first_fragment = tile.last_fragment = fragments;
-    tile.first_entry = tile.last_entry = entries;
-    windows += std::exchange(tile.last_window, windows);
-    tile.first_window = tile.last_window;
-    fragments += here;
-    entries += entries_here;
+  std::uint32_t low = kNothing, high = 0;
+  const auto touch = [&](std::uint32_t tile) {
+    low = std::min(low, tile);
+    high = std::max(high, tile);
+    return tile;
+  };
+  Worker::TileCounts* const counts = worker.counts.data();
+  for (const std::uint32_t address : addresses) ++counts[touch(address / kTilePixels)].fragments;
+  for (const SetUpResult::Entry& entry : result.entries) ++counts[touch(entry.tile)].entries;
+  for (const std::uint32_t tile : window_tiles) ++counts[touch(tile)].windows;
+
+  worker.touched.clear();
+  Worker::TileCounts next;
+  for (std::uint32_t tile = low; tile <= high && low != kNothing; ++tile) {
+    const Worker::TileCounts here = counts[tile];
+    if ((here.fragments | here.entries | here.windows) == 0) continue;
+    counts[tile] = next;
+    const Worker::TileCounts first = next;
+    next = {first.fragments + here.fragments, first.entries + here.entries,
+            first.windows + here.windows};
+    worker.touched.push_back({tile, first.fragments, next.fragments, first.entries, next.entries,
+                              first.windows, next.windows});
   }
-  if (worker.fragments.size() < fragments) worker.fragments.resize(fragments);
-  if (worker.entries.size() < entries) worker.entries.resize(entries);
+
+  if (worker.fragments.size() < next.fragments) worker.fragments.resize(next.fragments);
   Fragment* const sorted = worker.fragments.data();
-  for (std::size_t i = 0; i < result.fragments; ++i) {
-    const std::uint32_t address = result.address[i];
-    sorted[tiles[address / kTilePixels].last_fragment++] = {
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    const std::uint32_t address = addresses[i];
+    sorted[counts[address / kTilePixels].fragments++] = {
         static_cast<std::int64_t>(std::uint64_t{result.code[i]} << 32 | result.number[i]),
         address % kTilePixels};
   }
+  if (worker.entries.size() < next.entries) worker.entries.resize(next.entries);
   for (const SetUpResult::Entry& entry : result.entries)
-    worker.entries[tiles[entry.tile].last_entry++] = entry.entry;
-  if (worker.windows.size() < windows) worker.windows.resize(windows);
+    worker.entries[counts[entry.tile].entries++] = entry.entry;
+  if (worker.windows.size() < next.windows) worker.windows.resize(next.windows);
   for (std::uint32_t k = 0; k < window_tiles.size(); ++k)
-    worker.windows[tiles[window_tiles[k]].last_window++] = k;
-  for (const Worker::TouchedTile& tile : worker.touched) worker.touched_number[tile.tile] = 0;
+    worker.windows[counts[window_tiles[k]].windows++] = k;
+  for (const Worker::TouchedTile& touched : worker.touched) counts[touched.tile] = {};
 }
 
 void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Worker& worker,
@@ -156,6 +138,13 @@ void draw_touched(const DrawIntoTiles& task, Worker& worker, FrameTiles& tiles) 
     });
     if (worker.touched.size() == before) std::this_thread::yield();
   }
+}
+
+glm::vec3 eye_in_mesh(const ToView& to_view) {
+  const glm::vec4* row = to_view.row;
+  const glm::dmat3 axes =
+      glm::transpose(glm::dmat3(glm::dvec3(row[0]), glm::dvec3(row[1]), glm::dvec3(row[2])));
+  return -(glm::inverse(axes) * glm::dvec3(row[0].w, row[1].w, row[2].w));
 }
 
 // The entries of one triangle, which lie together.
@@ -211,16 +200,29 @@ void bin(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
 std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task,
                                          std::span<const std::uint32_t> clusters) {
   const DrawList& list = task.list;
-  if (list.draws.size() < 2) return {clusters.begin(), clusters.end()};
+  // The slots of a draw: clusters that face the eye, then those that turn away from it, which the
+  // former often hide.
+  std::vector<std::uint32_t> count(2 * list.draws.size());
+  std::vector<glm::vec3> eye(list.draws.size());
+  for (std::size_t i = 0; i < eye.size(); ++i) eye[i] = eye_in_mesh(task.draws[i].to_view);
+  std::vector<std::uint32_t> slot(clusters.size());
+  constexpr std::size_t kGrain = 4096;
+  parallel::parallel_for(0, clusters.size(), kGrain, [&](std::size_t i) {
+    const Cluster& cluster = list.clusters[clusters[i]];
+    const MeshCluster& part = list.block_of(cluster).clusters[cluster.part];
+    const bool away =
+        part.cosine > 0 && glm::dot(part.box.centre() - eye[cluster.draw], part.axis) > 0;
+    slot[i] = 2 * cluster.draw + (away ? 1 : 0);
+  });
+  for (const std::uint32_t s : slot) ++count[s];
 
-  // By counting: the order of clusters within a draw stays.
-  std::vector<std::uint32_t> count(list.draws.size());
-  for (const std::uint32_t k : clusters) ++count[list.clusters[k].draw];
+  // By counting: the order of clusters within a slot stays.
   std::vector<std::uint32_t> draws;
   std::vector<float> distance(list.draws.size());
   for (std::uint32_t i = 0; i < distance.size(); ++i) {
-    if (count[i] == 0) continue;
+    if (count[2 * i] + count[2 * i + 1] == 0) continue;
     draws.push_back(i);
+    if (list.draws.size() == 1) break;
     geometry::Box3 box;
     for (const auto& block : list.draws[i].clusters->blocks)
       if (block != nullptr) box.include(block->box);
@@ -231,9 +233,10 @@ std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task,
                    [&](std::uint32_t a, std::uint32_t b) { return distance[a] < distance[b]; });
   std::vector<std::uint32_t>& next = count;
   std::uint32_t first = 0;
-  for (const std::uint32_t draw : draws) first += std::exchange(next[draw], first);
+  for (const std::uint32_t draw : draws)
+    for (const std::uint32_t s : {2 * draw, 2 * draw + 1}) first += std::exchange(next[s], first);
   std::vector<std::uint32_t> order(clusters.size());
-  for (const std::uint32_t k : clusters) order[next[list.clusters[k].draw]++] = k;
+  for (std::size_t i = 0; i < clusters.size(); ++i) order[next[slot[i]]++] = clusters[i];
   return order;
 }
 
@@ -248,7 +251,7 @@ void begin_drawing(const Screen& screen, std::vector<std::unique_ptr<Worker>>& w
     worker->result.blended_entries.clear();
     worker->result.counts = {};
     worker->shaded = 0;
-    worker->touched_number.assign(static_cast<std::size_t>(screen.tiles()), 0);
+    worker->counts.assign(static_cast<std::size_t>(screen.tiles()), {});
   }
 }
 

@@ -15,6 +15,9 @@ namespace delray::raster {
 
 // What a thread needs, kept from batch to batch and frame to frame.
 struct Worker {
+  struct TileCounts {
+    std::uint32_t fragments = 0, entries = 0, windows = 0;
+  };
   struct TouchedTile {
     std::uint32_t tile;
     std::uint32_t first_fragment, last_fragment, first_entry, last_entry;
@@ -23,7 +26,7 @@ struct Worker {
 
   ScreenVertices vertices;
   SetUpResult result;
-  std::vector<std::uint32_t> touched_number;  // by tile: 1 + index into touched, or 0
+  std::vector<TileCounts> counts;  // by tile; zero but while a batch is sorted
   std::vector<TouchedTile> touched;
   std::vector<Fragment> fragments;     // by tile
   std::vector<std::uint32_t> entries;  // by tile
@@ -69,7 +72,8 @@ struct DrawCosts {
   std::uint64_t shaded = 0;
 };
 
-// Numbers of clusters of the list, those of near draws first; those of a draw stay in their order.
+// Numbers of clusters of the list, those of near draws first, of a draw those first that face the
+// eye; else they stay in their order. O(clusters), parallel.
 std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task,
                                          std::span<const std::uint32_t> clusters);
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "parallel/arena.h"
@@ -154,6 +156,77 @@ std::vector<std::int64_t> expected_keys(const Screen& screen, const scenes::Scen
              cluster.first + place, k << kClusterBits | place, draw_one);
   }
   return keys;
+}
+
+// Of one instance of a ball before the eye, clusters of the far side come after those of the near
+// one; all of a near ball come before those of a far one.
+TEST(DrawIntoTiles, OrderIsNearDrawsFirstAndOfADrawWhatFacesTheEye) {
+  const Screen screen = make_screen(plain_view(301, 205));
+  scenes::Mesh ball;
+  constexpr std::uint32_t kRound = 64, kPatch = 8;
+  for (std::uint32_t j = 0; j <= kRound; ++j)
+    for (std::uint32_t i = 0; i < kRound; ++i) {
+      const double a = 6.283185307 * i / kRound, b = 3.141592654 * j / kRound;
+      ball.positions.emplace_back(std::cos(a) * std::sin(b), std::cos(b),
+                                  -std::sin(a) * std::sin(b));
+    }
+  for (std::uint32_t k = 0; k < kRound * kRound; ++k) {  // patch by patch
+    const std::uint32_t patch = k / (kPatch * kPatch), place = k % (kPatch * kPatch);
+    const std::uint32_t i = patch % (kRound / kPatch) * kPatch + place % kPatch;
+    const std::uint32_t j = patch / (kRound / kPatch) * kPatch + place / kPatch;
+    const std::uint32_t v = j * kRound + i, next = j * kRound + (i + 1) % kRound;
+    ball.triangles.emplace_back(v, v + kRound, next);
+    ball.triangles.emplace_back(next, v + kRound, next + kRound);
+  }
+  scenes::Scene scene;
+  scene.meshes = {ball};
+  const float distance[2] = {30, 5};
+  for (const float d : distance) {
+    glm::mat4x3 m(1.0F);
+    m[0] = {0, 0, -2}, m[2] = {2, 0, 0};  // turned and stretched
+    m[3] = {0, 0, -d};
+    scene.instances.push_back({0, m});
+  }
+  SceneClusters clusters(scene.meshes);
+  const std::vector<std::uint64_t> first = scenes::first_primitives(scene);
+  const DrawList list = make_draw_list(pieces_of(scene, first, 0, first.back()), &clusters);
+  const shading::Shader shader = shading::make_shader(scene);
+  const std::vector<PreparedDraw> draws = prepare_draws(screen, list, shader, false);
+  const DrawIntoTiles task{screen, list, draws, screen.frame(), false, {}, {}};
+  std::vector<std::uint32_t> all(list.clusters.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  const std::vector<std::uint32_t> order = nearest_first(task, all);
+  EXPECT_TRUE(std::is_permutation(order.begin(), order.end(), all.begin(), all.end()));
+
+  int facing = 0, away = 0;
+  std::uint32_t last_draw = 1;
+  bool turned = false;
+  for (const std::uint32_t k : order) {
+    const Cluster& cluster = list.clusters[k];
+    ASSERT_LE(cluster.draw, last_draw);
+    if (cluster.draw != last_draw) turned = false;
+    last_draw = cluster.draw;
+    // How its triangles, by their planes in the world, are turned to the eye, from -1 to 1.
+    float turn = 0;
+    const MeshCluster& part = list.block_of(cluster).clusters[cluster.part];
+    const glm::mat4x3& m = scene.instances[cluster.draw].transform;
+    for (std::uint32_t place = 0; place < part.count; ++place) {
+      const glm::uvec3& t = ball.triangles[cluster.first + place];
+      const glm::vec3 a = m * glm::vec4(ball.positions[t.x], 1);
+      const glm::vec3 b = m * glm::vec4(ball.positions[t.y], 1);
+      const glm::vec3 c = m * glm::vec4(ball.positions[t.z], 1);
+      const glm::vec3 normal = glm::cross(b - a, c - a);
+      const float length = glm::length(normal) * glm::length(a);
+      if (length > 0) turn += glm::dot(normal, a) / length / static_cast<float>(part.count);
+    }
+    const bool faces = turn<-0.4F, turns = turn> 0.4F;  // the rest is undecided
+    EXPECT_FALSE(faces && turned) << "cluster " << k;
+    turned |= turns;
+    facing += faces ? 1 : 0;
+    away += turns ? 1 : 0;
+  }
+  EXPECT_GT(facing, 10);
+  EXPECT_GT(away, 10);
 }
 
 TEST(DrawIntoTiles, GivesWhatTrianglesOneByOneGive) {
