@@ -118,6 +118,9 @@ View make_view(const Camera& camera, int width, int height) {
                               : static_cast<float>(kNearFraction * (distance > 0 ? distance : 1));
   view.width = width;
   view.height = height;
+  view.lens_radius = 0.5F * std::max(0.0F, camera.aperture);
+  view.focus_distance =
+      camera.focus > 0 ? camera.focus : static_cast<float>(distance > 0 ? distance : 1);
   return view;
 }
 

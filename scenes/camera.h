@@ -7,13 +7,16 @@
 
 namespace delray::scenes {
 
-// A pinhole camera. `up` need not be at right angles to the view, only not parallel to it.
+// A camera with a thin lens, or a pinhole if the lens has no size. `up` need not be at right angles
+// to the view, only not parallel to it.
 struct Camera {
   glm::vec3 eye{0, 0, 1};
   glm::vec3 at{0, 0, 0};
   glm::vec3 up{0, 1, 0};
   float vertical_fov = 40.0F;  // degrees, 0 < fov < 180
   float near = 0;              // distance of the near plane; 0: a small part of |at - eye|
+  float aperture = 0;          // diameter of the lens, >= 0; the rasterizer sees through its centre
+  float focus = 0;             // distance of what is sharp, along the view; 0: that of `at`
 };
 
 // A camera bound to a frame of pixels: the one place where pixels and directions meet.
@@ -29,9 +32,22 @@ struct View {
   float half_width = 0, half_height = 0;
   float near = 0;
   int width = 0, height = 0;
+  float lens_radius = 0;     // 0: a pinhole
+  float focus_distance = 1;  // along `forward`
 
+  // Through the centre of the lens.
   glm::vec3 ray(float x, float y) const {  // not normalised: its part along `forward` is 1
     return forward + right * ((x - half_width) / scale) - up * ((y - half_height) / scale);
+  }
+
+  // Through a point of the lens, given in the unit disc: all of them meet at the focus distance.
+  // The direction's part along `forward` is 1 as well.
+  struct Ray {
+    glm::vec3 origin, direction;
+  };
+  Ray ray(float x, float y, const glm::vec2& lens) const {
+    const glm::vec3 across = right * (lens.x * lens_radius) + up * (lens.y * lens_radius);
+    return {eye + across, ray(x, y) - across * (1.0F / focus_distance)};
   }
 };
 

@@ -62,6 +62,40 @@ TEST(Camera, ViewHasItsAxesAtRightAnglesAndItsFieldOfView) {
   EXPECT_NEAR(view.near, 1e-3F * glm::distance(glm::vec3(3, 2, 5), glm::vec3(1, 0, -1)), 1e-6F);
 }
 
+TEST(Camera, RaysThroughTheLensMeetAtTheFocusDistance) {
+  Camera camera;
+  camera.eye = {3, -1, 2};
+  camera.at = {1, 4, -2};
+  camera.aperture = 0.5F;
+  camera.focus = 7.0F;
+  const View view = make_view(camera, 80, 60);
+  for (const glm::vec2 pixel : {glm::vec2(40, 30), glm::vec2(3.5F, 51)}) {
+    const glm::vec3 focus = view.eye + view.ray(pixel.x, pixel.y) * 7.0F;
+    for (const glm::vec2 lens : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(-0.6F, 0.8F)}) {
+      const View::Ray ray = view.ray(pixel.x, pixel.y, lens);
+      EXPECT_LT(glm::length(ray.origin + ray.direction * 7.0F - focus), 1e-5F);
+      EXPECT_NEAR(glm::length(ray.origin - view.eye), 0.25F * glm::length(lens), 1e-6F);
+      EXPECT_NEAR(glm::dot(ray.direction, view.forward), 1.0F, 1e-5F);
+      EXPECT_NEAR(glm::dot(ray.origin - view.eye, view.forward), 0.0F, 1e-5F);
+    }
+  }
+}
+
+TEST(Camera, FocusesOnWhatItLooksAtAndIsAPinholeUnlessTold) {
+  Camera camera;
+  camera.eye = {0, 0, 5};
+  const View view = make_view(camera, 8, 8);
+  EXPECT_EQ(view.focus_distance, 5.0F);
+  EXPECT_EQ(view.lens_radius, 0.0F);
+  const View::Ray ray = view.ray(2, 3, {0.7F, -0.7F});
+  EXPECT_EQ(ray.origin, view.eye);
+  EXPECT_EQ(ray.direction, view.ray(2, 3));
+  camera.at = camera.eye;
+  camera.aperture = -1.0F;
+  EXPECT_EQ(make_view(camera, 8, 8).lens_radius, 0.0F);
+  EXPECT_GT(make_view(camera, 8, 8).focus_distance, 0.0F);
+}
+
 TEST(Camera, DegenerateCamerasGiveSomeView) {
   const Camera cameras[] = {{{1, 2, 3}, {1, 2, 3}, {0, 1, 0}, 40, 0},
                             {{0, 0, 0}, {0, 5, 0}, {0, 1, 0}, 40, 0},
