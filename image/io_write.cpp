@@ -104,6 +104,8 @@ OIIO::ImageSpec spec_of_codes(int width, int height, int channels) {
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
+  // Of pictures, 6 (the default) takes half as long again for files 6 % smaller.
+  spec.attribute("png:compressionLevel", 4);
   return spec;
 }
 
