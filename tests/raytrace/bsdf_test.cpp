@@ -107,23 +107,24 @@ TEST(Bsdf, IsReciprocal) {
   }
 }
 
-constexpr int kRows = 16, kColumns = 24, kBins = kRows * kColumns;
+constexpr int kBinRows = 16, kBinColumns = 24, kBins = kBinRows * kBinColumns;
 
 int bin_of(const glm::vec3& d) {
-  const int row = std::min(kRows - 1, static_cast<int>((d.z * 0.5F + 0.5F) * kRows));
+  const int row = std::min(kBinRows - 1, static_cast<int>((d.z * 0.5F + 0.5F) * kBinRows));
   const double turn = std::atan2(d.y, d.x) / (2 * M_PI) + 0.5;
-  return row * kColumns + std::min(kColumns - 1, static_cast<int>(turn * kColumns));
+  return row * kBinColumns + std::min(kBinColumns - 1, static_cast<int>(turn * kBinColumns));
 }
 
 // What pdf says, bin by bin.
 std::vector<double> expected_bins(const Bsdf& bsdf) {
   constexpr int kFine = 12;
   std::vector<double> bins(kBins, 0.0);
-  for (int i = 0; i < kRows * kFine; ++i) {
-    for (int j = 0; j < kColumns * kFine; ++j) {
-      const auto z = static_cast<float>((i + 0.5) / (kRows * kFine) * 2 - 1);
-      const auto phi = static_cast<float>((j + 0.5) / (kColumns * kFine) * 2 * M_PI - M_PI);
-      bins[static_cast<std::size_t>(i / kFine) * kColumns + static_cast<std::size_t>(j / kFine)] +=
+  for (int i = 0; i < kBinRows * kFine; ++i) {
+    for (int j = 0; j < kBinColumns * kFine; ++j) {
+      const auto z = static_cast<float>((i + 0.5) / (kBinRows * kFine) * 2 - 1);
+      const auto phi = static_cast<float>((j + 0.5) / (kBinColumns * kFine) * 2 * M_PI - M_PI);
+      bins[static_cast<std::size_t>(i / kFine) * kBinColumns +
+           static_cast<std::size_t>(j / kFine)] +=
           evaluate(bsdf, direction(z, phi)).pdf * 4 * M_PI / (kBins * kFine * kFine);
     }
   }

@@ -11,17 +11,17 @@
 namespace delray::raytrace {
 namespace {
 
-constexpr std::uint32_t kSamples = 20000;
+constexpr std::uint32_t kDrawn = 20000;
 
 // Irradiance (red) that arrives at `from` on a surface with `normal`, as samples have it.
 double estimate(const LightTable& table, const shading::Shader& shader, const glm::vec3& from,
                 const glm::vec3& normal) {
   double sum = 0;
-  for (std::uint32_t i = 0; i < kSamples; ++i) {
+  for (std::uint32_t i = 0; i < kDrawn; ++i) {
     Sampler sampler(99, i);
     const LightSample s = table.sample(shader, from, sampler);
     EXPECT_EQ(sampler.dimension(), LightTable::kDimensions);
-    sum += s.weight.x * std::max(0.0F, glm::dot(s.direction, normal)) / kSamples;
+    sum += s.weight.x * std::max(0.0F, glm::dot(s.direction, normal)) / kDrawn;
   }
   return sum;
 }

@@ -8,12 +8,13 @@
 namespace delray::raytrace {
 namespace {
 
-constexpr int kSide = 256;
+constexpr int kGridSide = 256;
 
 template <class F>
 void for_grid(F&& f) {
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) f(glm::vec2((i + 0.5F) / kSide, (j + 0.5F) / kSide));
+  for (int i = 0; i < kGridSide; ++i) {
+    for (int j = 0; j < kGridSide; ++j)
+      f(glm::vec2((i + 0.5F) / kGridSide, (j + 0.5F) / kGridSide));
   }
 }
 
@@ -28,7 +29,7 @@ TEST(Warp, DiscIsCoveredUniformly) {
     bins[static_cast<std::size_t>(std::min(7.0, r2 * 8)) * 8 +
          static_cast<std::size_t>(std::min(7.0, turn * 8))]++;
   });
-  for (const int count : bins) EXPECT_NEAR(count, kSide * kSide / 64, kSide);
+  for (const int count : bins) EXPECT_NEAR(count, kGridSide * kGridSide / 64, kGridSide);
 }
 
 TEST(Warp, CosineDirectionsHaveTheirDensity) {
@@ -39,8 +40,8 @@ TEST(Warp, CosineDirectionsHaveTheirDensity) {
     ASSERT_NEAR(glm::dot(d, d), 1.0F, 1e-5F);
     mean_z += d.z, mean_z2 += d.z * d.z;
   });
-  EXPECT_NEAR(mean_z / (kSide * kSide), 2.0 / 3, 1e-3);
-  EXPECT_NEAR(mean_z2 / (kSide * kSide), 0.5, 1e-3);
+  EXPECT_NEAR(mean_z / (kGridSide * kGridSide), 2.0 / 3, 1e-3);
+  EXPECT_NEAR(mean_z2 / (kGridSide * kGridSide), 0.5, 1e-3);
 }
 
 TEST(Warp, FramesAreOrthonormalAndRightHanded) {
