@@ -29,6 +29,7 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
   options.shade = request.shade == "immediate"    ? raster::Shade::immediate
                   : request.shade == "composited" ? raster::Shade::composited
                                                   : raster::Shade::deferred;
+  options.blend = request.blend == "by-cell" ? raster::Blend::by_cell : raster::Blend::by_owner;
   options.supersampling = request.supersampling;
   options.costs =
       request.costs == "measured" ? raster::CostSource::measured : raster::CostSource::model;

@@ -43,7 +43,7 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
     refuse(command, {"--partition", "--travel", "--costs", "--regions", "--keep"},
            "--strategy sort-last");
   } else {
-    refuse(command, {"--compose", "--codec"}, "--strategy " + request.strategy);
+    refuse(command, {"--compose", "--codec", "--blend"}, "--strategy " + request.strategy);
   }
   if (request.strategy == "sort-first") {
     if (!request.schedule.empty()) {
@@ -69,16 +69,16 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
     if (request.lighting == "gouraud") {
       throw UsageError("--shade composited: vertices are lit before with --shading gouraud");
     }
-    refuse(command, {"--codec"}, "--shade composited");
+    refuse(command, {"--codec", "--blend"}, "--shade composited");
   }
 }
 
 void check_raytrace(const CLI::App& command, RenderRequest& request) {
   if (request.schedule.empty()) request.schedule = "interlaced";
   refuse(command,
-         {"--strategy", "--partition", "--compose", "--codec", "--shading", "--shade", "--samples",
-          "--travel", "--costs", "--regions", "--keep", "--block", "--groups", "--geometry-ranks",
-          "--redistribute"},
+         {"--strategy", "--partition", "--compose", "--codec", "--shading", "--shade", "--blend",
+          "--samples", "--travel", "--costs", "--regions", "--keep", "--block", "--groups",
+          "--geometry-ranks", "--redistribute"},
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
   find_entry(raytrace::schedules(), request.schedule, "--schedule");
@@ -137,6 +137,12 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->check(CLI::IsMember({"phong", "gouraud"}))
       ->group(raster);
   command.add_option("--codec", request.codec, "how pixels travel, sort-last")->group(raster);
+  command
+      .add_option("--blend", request.blend,
+                  "transparent surfaces: by-owner (of the pixel, exactly; default), or by-cell: "
+                  "each rank those in its cell of space, then front to back; sort-last")
+      ->check(CLI::IsMember({"by-owner", "by-cell"}))
+      ->group(raster);
   command
       .add_option("--shade", request.shade,
                   "pixels: deferred (default), immediate, or composited (once ranks are)")

@@ -25,8 +25,8 @@ struct RenderRequest {
   bool list = false;
   // raster
   std::string strategy = "sort-last", partition = "mahd", scheme = "binary-swap",
-              lighting = "phong", codec = "dense", shade = "deferred", travel = "geometry",
-              groups = "one", redistribution = "immediate";
+              lighting = "phong", codec = "dense", shade = "deferred", blend = "by-owner",
+              travel = "geometry", groups = "one", redistribution = "immediate";
   std::string costs = "model";
   int supersampling = 1, regions_per_rank = 1, block = 64, geometry_ranks = 0;
   double keep_factor = 1.2;

@@ -31,6 +31,7 @@ Json options_of(const RenderRequest& request, int ranks) {
     if (request.strategy == "sort-last") {
       options["compose"] = request.scheme;
       options["codec"] = request.codec;
+      options["blend"] = request.blend;
     } else {
       options["partition"] = request.partition;
       options["travel"] = request.travel;

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cassert>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -11,21 +13,23 @@
 namespace delray::composite {
 namespace {
 
-// Ranks whose layer is not empty, ascending; all where all are.
-std::vector<int> taking_part(comm::Communicator& communicator, const Layer& layer) {
+// Ranks whose layer is not empty, all where all are; in the order that is asked for, or ascending.
+std::vector<int> taking_part(comm::Communicator& communicator, const Layer& layer,
+                             std::vector<int> order) {
   const auto size = static_cast<std::size_t>(communicator.size());
   const auto rank = static_cast<std::size_t>(communicator.rank());
   std::vector<std::uint64_t> bits((size + 63) / 64);
   if (!layer.empty()) bits[rank / 64] |= std::uint64_t{1} << rank % 64;
   comm::all_reduce(communicator, std::span(bits), std::bit_or<>());
-  std::vector<int> result;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (bits[i / 64] >> i % 64 & 1) result.push_back(static_cast<int>(i));
+  if (order.empty()) {
+    order.resize(size);
+    std::iota(order.begin(), order.end(), 0);
   }
-  if (!result.empty()) return result;
-  result.resize(size);
-  std::iota(result.begin(), result.end(), 0);
-  return result;
+  assert(order.size() == size);
+  std::vector<int> result;
+  std::copy_if(order.begin(), order.end(), std::back_inserter(result),
+               [&](int k) { return (bits[static_cast<std::size_t>(k) / 64] >> k % 64 & 1) != 0; });
+  return result.empty() ? order : result;
 }
 
 }  // namespace
@@ -36,7 +40,7 @@ Part compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
   assert(choice.scheme != nullptr);
   if (!choice.radices.empty()) options.radices = std::move(choice.radices);
   communicator.mark(comm::Phase::compose, 0);
-  internal::Members members(communicator, taking_part(communicator, *layer));
+  internal::Members members(communicator, taking_part(communicator, *layer, options.order));
   if (members.rank() < 0) return {{}, std::move(layer)};
   if (!options.interlace) return choice.scheme->compose(members, std::move(layer), options);
   layer = interlace(std::move(layer), members.size(), options.samples_per_pixel);

@@ -8,16 +8,21 @@
 namespace delray::composite {
 namespace {
 
-// Pixels that lie behind what arrived, where that hides them, are forgotten.
-template <class Colour>
-void prune_hidden(Colour* colour, float* depth, float other_depth) {
-  if (*depth < other_depth) return;
-  *colour = {};
-  *depth = image::kEmptyDepth;
-}
-
 bool hides(image::Rgba8 colour) { return colour.a == 255; }
 bool hides(image::RgbaF colour) { return colour.a == 1; }
+
+// What lies behind.
+void cover(std::span<float> depth, const float* front) {
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    depth[i] = front[i] == image::kEmptyDepth ? depth[i] : front[i];
+  }
+}
+// What lies in front.
+void fill(std::span<float> depth, const float* back) {
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    depth[i] = depth[i] == image::kEmptyDepth ? back[i] : depth[i];
+  }
+}
 
 // Calls f(i, k) for the k-th set bit, i.
 template <class F>
@@ -51,6 +56,17 @@ std::uint64_t ImageLayer<Colour>::find_covered(std::size_t begin, std::size_t en
              : internal::find_coloured(image_.colour.span().subspan(begin, end - begin), mask);
 }
 
+// Forgets a pixel that element k of what arrived hides.
+template <class Colour>
+void ImageLayer<Colour>::prune_pixel(std::size_t pixel, const Pixels& others, std::size_t k) {
+  if (operator_ == Operator::nearest ? image_.depth[pixel] < others.depth[k]
+                                     : !hides(others.colour[k])) {
+    return;
+  }
+  image_.colour[pixel] = {};
+  if (has_depth()) image_.depth[pixel] = image::kEmptyDepth;
+}
+
 template <class Colour>
 void ImageLayer<Colour>::apply_to_all(Action action, std::size_t first, std::size_t size,
                                       const Pixels& pixels) {
@@ -61,20 +77,16 @@ void ImageLayer<Colour>::apply_to_all(Action action, std::size_t first, std::siz
     std::copy(other.begin(), other.end(), colour.begin());
     if (has_depth()) std::copy_n(pixels.depth, size, depth.begin());
   } else if (action == Action::prune) {
-    for (std::size_t i = 0; i < size; ++i) {
-      if (has_depth()) {
-        prune_hidden(&colour[i], &depth[i], pixels.depth[i]);
-      } else if (hides(other[i])) {
-        colour[i] = {};
-      }
-    }
-  } else if (has_depth()) {
+    for (std::size_t i = 0; i < size; ++i) prune_pixel(first + i, pixels, i);
+  } else if (operator_ == Operator::nearest) {
     image::z_merge(colour, depth, other, std::span(pixels.depth, size),
                    action == Action::merge_lower ? image::Tie::other : image::Tie::target);
   } else if (action == Action::merge_lower) {
     image::blend_front(colour, other);
+    if (has_depth()) cover(depth, pixels.depth);
   } else {
     image::blend_back(colour, other);
+    if (has_depth()) fill(depth, pixels.depth);
   }
 }
 
@@ -89,19 +101,17 @@ void ImageLayer<Colour>::apply_to_covered(Action action, std::size_t first, std:
       internal::expand(covered.depth, covered.readable, mask, std::span(depth, size));
     }
   } else if (action == Action::prune) {
-    for_each_bit(mask, [&](std::size_t i, std::size_t k) {
-      if (has_depth()) {
-        prune_hidden(colour + i, depth + i, covered.depth[k]);
-      } else if (hides(covered.colour[k])) {
-        colour[i] = {};
-      }
-    });
-  } else if (has_depth()) {
+    for_each_bit(mask, [&](std::size_t i, std::size_t k) { prune_pixel(first + i, covered, k); });
+  } else if (operator_ == Operator::nearest) {
     internal::z_merge(colour, depth, mask, {covered.colour, covered.depth, covered.readable},
                       action == Action::merge_higher ? image::Tie::target : image::Tie::other);
   } else {
-    internal::blend(colour, size, mask, {covered.colour, nullptr, covered.readable},
-                    action != Action::merge_higher);
+    const bool in_front = action != Action::merge_higher;
+    internal::blend(colour, size, mask, {covered.colour, nullptr, covered.readable}, in_front);
+    if (!has_depth()) return;
+    for_each_bit(mask, [&](std::size_t i, std::size_t k) {
+      if (in_front || depth[i] == image::kEmptyDepth) depth[i] = covered.depth[k];
+    });
   }
 }
 

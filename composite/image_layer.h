@@ -21,6 +21,9 @@ enum class Operator : std::uint8_t {
   // that nothing covers has the colour {}. Rounded after every merge, so that the result depends on
   // the scheme and the number of ranks, by no more than docs/compositing.md says.
   over,
+  // The same, and depths travel: a pixel has that of the foremost layer that covers it, which is to
+  // say, has a depth there.
+  over_with_depth,
 };
 
 // Owns the image. A codec derives from it, for cut and apply.
@@ -61,7 +64,7 @@ class ImageLayer : public Layer {
   // Does `action` with what cut(range) gave elsewhere; returns the pixels that it looked at.
   virtual std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) = 0;
 
-  bool has_depth() const { return operator_ == Operator::nearest; }
+  bool has_depth() const { return operator_ != Operator::over; }
   std::size_t bytes_per_pixel() const { return sizeof(Colour) + (has_depth() ? sizeof(float) : 0); }
   // Sets the bits of covered pixels of a group and returns how many. REQUIRES: mask is zero.
   std::uint64_t find_covered(std::size_t begin, std::size_t end, GroupMask& mask) const;
@@ -74,6 +77,8 @@ class ImageLayer : public Layer {
   void apply_to_none(Action action, std::size_t first, std::size_t size);
 
  private:
+  void prune_pixel(std::size_t pixel, const Pixels& others, std::size_t k);
+
   image::BasicImage<Colour> image_;
   Operator operator_;
 };

@@ -19,6 +19,10 @@ struct ComposeOptions {
   std::vector<int> radices = {};
   // compose() only: which pixels lie beside each other in an encoded range. See interlaced.h.
   bool interlace = false;
+  // compose() only: all ranks, each once, as their layers lie one behind the other, the foremost
+  // first, for layers that are blended in order; the lower of two ranks is then the one that comes
+  // earlier here. Empty: by number. The same on every rank.
+  std::vector<int> order = {};
 };
 
 // A scheme takes each rank's layer (all of the same size) and leaves every pixel final on exactly

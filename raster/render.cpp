@@ -56,6 +56,9 @@ void check(const RenderOptions& options, int ranks) {
   if (options.shade == Shade::composited &&
       (options.strategy != "sort-last" || options.lighting != Lighting::phong))
     throw std::invalid_argument("only sort-last shades after compositing, and only with phong");
+  if (options.blend == Blend::by_cell &&
+      (options.strategy != "sort-last" || options.shade == Shade::composited))
+    throw std::invalid_argument("only sort-last blends by cell, and after shading");
   if (options.geometry_ranks < 0 ||
       (options.geometry_ranks > 0 &&
        (options.groups != Groups::two || options.strategy != "sort-middle")))

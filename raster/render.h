@@ -1,8 +1,9 @@
 // The rasterizer: a scene into a picture over any number of ranks and threads.
 //
 // The picture is the same, byte for byte, for every strategy, scheme, partition, number of ranks
-// and number of threads: a pixel shows the primitive with the least (depth, primitive number) of
-// those that cover its centre by the top-left rule, at positions snapped to 1/256 pixel.
+// and number of threads (but for Blend::by_cell): a pixel shows the primitive with the least
+// (depth, primitive number) of those that cover its centre by the top-left rule, at positions
+// snapped to 1/256 pixel.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +38,14 @@ enum class Travel : std::uint8_t { geometry, numbers };
 // what travels is what shading needs, not colours (sort-last with phong lighting).
 enum class Shade : std::uint8_t { deferred, immediate, composited };
 
+// Where transparent surfaces are blended (sort-last). by_owner: all of them travel, and the owner
+// of a pixel blends them, once. by_cell: space is cut into a cell for each rank (a kd-tree), every
+// rank blends what lies in its own, and what travels are colours, put over each other front to back
+// as seen from the camera. That takes a layer's bytes however many surfaces lie behind each other,
+// and rounds at every merge, so that the picture depends on scheme and number of ranks: colours in
+// float by some 2^-23 for each rank, 8-bit codes by 1 here and there.
+enum class Blend : std::uint8_t { by_owner, by_cell };
+
 // What a triangle set up and a sample shaded cost beside each other, as fitted to what a few scenes
 // took (bench/raster/balance.cpp): phong takes longer for a sample.
 loadbalance::RasterCostModel cost_model(Lighting lighting);
@@ -64,6 +73,7 @@ struct RenderOptions {
   // Clusters of triangles behind what was drawn before are skipped whole: the same picture sooner.
   bool skip_hidden_clusters = true;
   std::string strategy = "sort-last";
+  Blend blend = Blend::by_owner;
   std::string scheme = "binary-swap";  // of composite::schemes(); sort-last
   std::string codec = "dense";         // of composite::codecs(); sort-last
   std::string partition = "mahd";      // of loadbalance::partitioners(); sort-first and -middle

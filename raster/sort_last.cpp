@@ -2,6 +2,7 @@
 // a compositing scheme merges the images. On equal depths the lower rank wins, which has the lower
 // primitive numbers.
 #include <atomic>
+#include <type_traits>
 
 #include "composite/codec.h"
 #include "composite/deep.h"
@@ -9,6 +10,7 @@
 #include "composite/flatten.h"
 #include "composite/scheme.h"
 #include "parallel/parallel_for.h"
+#include "raster/internal/frame_memory.h"
 #include "raster/internal/processor_seconds.h"
 #include "raster/internal/rank.h"
 #include "raster/internal/samples.h"
@@ -92,6 +94,27 @@ composite::Part blend_surfaces(Rank& rank, composite::Part&& part) {
                                        [](const image::RgbaF& colour) { return colour; });
 }
 
+// The pixels that this rank owns in the end, as the picture has them.
+template <class Colour>
+composite::Part stored(composite::Part&& part) {
+  if constexpr (std::is_same_v<Colour, image::RgbaF>) {
+    return std::move(part);
+  } else {
+    constexpr std::size_t kGrain = 1 << 14;  // samples
+    composite::Part result;
+    result.ranges = part.ranges;
+    image::ImageF light = composite::take_image<image::RgbaF>(std::move(part));
+    image::BasicImage<Colour> image(light.width, light.height);
+    for (const composite::PixelRange& range : result.ranges)
+      parallel::parallel_for(range.begin, range.end, kGrain, [&](std::size_t i) {
+        composite::store(light.colour[i], image.colour[i]);
+      });
+    image.depth = std::move(light.depth);
+    result.layer = composite::make_dense(std::move(image));
+    return result;
+  }
+}
+
 std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
                                               RegionDrawing& drawing) {
   return composite::make_deep(end_deep<SeenPoint>(
@@ -129,9 +152,7 @@ class Steps final : public FrameSteps {
   explicit Steps(Rank& rank) : rank_(rank) {}
 
   void transform() override {
-    const auto [begin, end] = rank_.own_primitives();
-    list_ =
-        make_draw_list(pieces_of(rank_.scene, rank_.first_primitives, begin, end), &rank_.clusters);
+    list_ = make_draw_list(pieces(), &rank_.clusters);
     const geometry::Rect frame = rank_.frame();
     drawing_.reset(new RegionDrawing(rank_.begin(list_, {&frame, 1})));
     drawing_->draw_all();
@@ -143,6 +164,8 @@ class Steps final : public FrameSteps {
       rank_.end_pixels(*drawing_, image_);
     } else if (shades_last()) {
       layer_ = draw_points(rank_, list_, *drawing_);
+    } else if (has_cells()) {
+      layer_ = draw_cell(rank_, list_, *drawing_, cell_);
     } else if (rank_.transparent) {
       layer_ = draw_surfaces(rank_, list_, *drawing_);
     } else {
@@ -156,11 +179,14 @@ class Steps final : public FrameSteps {
   Picture compose() override {
     if (rank_.ranks() == 1) return std::move(image_);
     composite::Part part = timed(rank_.communicator, rank_.counts.phases.compose, [&] {
-      return composite::compose(rank_.communicator, std::move(layer_), rank_.options.scheme,
-                                {.samples_per_pixel = rank_.samples_per_pixel()});
+      return composite::compose(
+          rank_.communicator, std::move(layer_), rank_.options.scheme,
+          {.samples_per_pixel = rank_.samples_per_pixel(), .order = std::move(order_)});
     });
     if (shades_last())
       part = shade_points<Colour>(rank_, std::move(part));
+    else if (has_cells())
+      part = stored<Colour>(std::move(part));
     else if (rank_.transparent)
       part = blend_surfaces<Colour>(rank_, std::move(part));
     return picture_of(std::move(part));
@@ -169,13 +195,26 @@ class Steps final : public FrameSteps {
   // Whether tiles can go to their owners before all are finished.
   bool has_tiles() const {
     return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.transparent &&
-           !shades_last();
+           !shades_last() && !has_cells();
   }
   // Instead of rasterize and compose. REQUIRES: has_tiles().
   Picture rasterize_and_compose() { return picture_of(hand_over_tiles<Colour>(rank_, *drawing_)); }
 
  private:
   bool shades_last() const { return rank_.options.shade == Shade::composited; }
+  bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }
+
+  std::vector<Piece> pieces() {
+    if (has_cells()) {
+      SceneCells& cells = rank_.memory.cells;
+      cut_scene(rank_, cells);
+      cell_ = cells.cell(rank_.number());
+      order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.eye);
+      return cells.pieces;
+    }
+    const auto [begin, end] = rank_.own_primitives();
+    return pieces_of(rank_.scene, rank_.first_primitives, begin, end);
+  }
 
   Picture picture_of(composite::Part&& part) {
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
@@ -191,6 +230,9 @@ class Steps final : public FrameSteps {
   std::unique_ptr<RegionDrawing> drawing_;
   image::BasicImage<Colour> image_;          // a single rank's
   std::unique_ptr<composite::Layer> layer_;  // of one among several
+  // With a cell for each rank.
+  geometry::Box3 cell_;
+  std::vector<int> order_;
 };
 
 template <class Colour>

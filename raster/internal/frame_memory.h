@@ -2,6 +2,7 @@
 #pragma once
 
 #include "raster/internal/group_traffic.h"
+#include "raster/internal/scene_cells.h"
 #include "raster/internal/screen_partition.h"
 
 namespace delray::raster {
@@ -9,6 +10,7 @@ namespace delray::raster {
 struct FrameMemory {
   ScreenPartition screen;
   GroupTraffic traffic;
+  SceneCells cells;  // of sort-last, blended in order
 };
 
 }  // namespace delray::raster

@@ -155,6 +155,18 @@ TEST(RenderCommand, StatisticsHaveEveryKey) {
   }
 }
 
+TEST(RenderCommand, BlendsByCellOfSpaceWithSortLastAlone) {
+  const Folder folder;
+  const std::string base = "delray render gen:city:2000 -o a.png --size 80x60 --blend by-cell ";
+  const json one = statistics(base + "--ranks 1", folder);
+  EXPECT_EQ(one["options"]["blend"], "by-cell");
+  // Nothing is transparent, so that nothing is rounded.
+  EXPECT_EQ(statistics(base + "--ranks 5", folder)["image"]["hash"], one["image"]["hash"]);
+  for (const std::string other : {"--strategy hybrid", "--shade composited", "--engine raytrace"}) {
+    EXPECT_EQ(run(base + other, folder.path()).exit_code, 2) << other;
+  }
+}
+
 TEST(RenderCommand, PointsBecomeAReliefInOneCommand) {
   const Folder folder;
   std::string rows;

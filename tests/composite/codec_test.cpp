@@ -32,6 +32,8 @@ void set_random(std::mt19937& random, RgbaF& colour) {
   colour = {channel(), channel(), channel(), alpha};
 }
 
+constexpr Operator kOperators[] = {Operator::nearest, Operator::over, Operator::over_with_depth};
+
 enum class Shape { nothing, dots, half, rectangle, lines, everything };
 constexpr Shape kShapes[] = {Shape::nothing,   Shape::dots,  Shape::half,
                              Shape::rectangle, Shape::lines, Shape::everything};
@@ -132,7 +134,7 @@ TYPED_TEST(Codecs, LeaveTheBytesThatDenseOnesLeave) {
   constexpr PixelRange kRanges[] = {{0, 8927}, {57, 5000}, {300, 301}, {226, 339}, {9, 9}};
   tests::for_each_target([&] {
     for (const Codec& codec : codecs()) {
-      for (const Operator how : {Operator::nearest, Operator::over}) {
+      for (const Operator how : kOperators) {
         for (const Shape other : kShapes) {
           for (const PixelRange range : kRanges) {
             SCOPED_TRACE(std::string(codec.name) + ", operator " +
@@ -154,7 +156,7 @@ TYPED_TEST(Codecs, LeaveTheBytesThatDenseOnesLeave) {
 TYPED_TEST(Codecs, PruneOnlyWhatIsHidden) {
   const PixelRange all{0, kWidth * kHeight};
   for (const Codec& codec : codecs()) {
-    for (const Operator how : {Operator::nearest, Operator::over}) {
+    for (const Operator how : kOperators) {
       SCOPED_TRACE(codec.name);
       const auto front = codec.make(kept_picture<TypeParam>(Shape::half, 1), how);
       const auto whole = codec.make(kept_picture<TypeParam>(Shape::half, 1), how);
@@ -181,6 +183,7 @@ TEST(CodecTable, SendsWhatItPromises) {
   };
   EXPECT_EQ(bytes("dense", Shape::dots, Operator::nearest), 960000U);
   EXPECT_EQ(bytes("dense", Shape::dots, Operator::over), 480000U);
+  EXPECT_EQ(bytes("dense", Shape::dots, Operator::over_with_depth), 960000U);
   EXPECT_EQ(bytes("active", Shape::nothing, Operator::over), 8U);
   EXPECT_EQ(bytes("active", Shape::everything, Operator::over), 480008U);
   EXPECT_EQ(bytes("bounds", Shape::rectangle, Operator::nearest), 16U + 69 * 49 * 8);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "comm/ledger.h"
@@ -75,6 +77,100 @@ TEST(SortLast, SendsNoPixelsOfTilesWithNothing) {
       }
     }
   }
+}
+
+Picture by_cell(const scenes::Scene& scene, RenderOptions options, int ranks, int threads = 1) {
+  options.blend = Blend::by_cell;
+  Picture picture;
+  comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
+    Result mine = render(communicator, scene, random_scene_camera(), options);
+    if (communicator.rank() == 0) picture = std::move(mine.picture);
+  });
+  return picture;
+}
+
+struct Difference {
+  float colour = 0;        // the largest of a channel
+  std::size_t depths = 0;  // pixels that differ
+};
+
+template <class Colour>
+Difference difference(const Picture& a, const Picture& b) {
+  const auto& first = std::get<image::BasicImage<Colour>>(a);
+  const auto& second = std::get<image::BasicImage<Colour>>(b);
+  Difference result;
+  for (std::size_t i = 0; i < first.pixels(); ++i) {
+    const Colour &c = first.colour[i], &d = second.colour[i];
+    for (const auto channel : {&Colour::r, &Colour::g, &Colour::b, &Colour::a}) {
+      const auto off = static_cast<float>(c.*channel) - static_cast<float>(d.*channel);
+      result.colour = std::max(result.colour, std::abs(off));
+    }
+    result.depths += first.depth[i] != second.depth[i];
+  }
+  return result;
+}
+
+RenderOptions small_picture() {
+  RenderOptions options;
+  options.width = 123;
+  options.height = 87;
+  return options;
+}
+
+// As exact blending but for rounding: of a float at each of up to 9 merges, or to the next code.
+TEST(SortLast, BlendsByCellWhatItBlendsByOwner) {
+  for (const unsigned seed : {20U, 21U, 22U}) {
+    const scenes::Scene scene = transparent_scene(seed);
+    RenderOptions options = small_picture();
+    options.supersampling = seed == 22 ? 2 : 1;
+    for (const bool float_pixels : {true, false}) {
+      options.float_pixels = float_pixels;
+      const Picture expected = by_cell(scene, options, 1);
+      for (const int ranks : {2, 3, 5, 9}) {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", ranks " + std::to_string(ranks));
+        for (const char* scheme : {"binary-swap", "direct-send"}) {
+          options.scheme = scheme;
+          const Picture picture = by_cell(scene, options, ranks);
+          const Difference off = float_pixels ? difference<image::RgbaF>(picture, expected)
+                                              : difference<image::Rgba8>(picture, expected);
+          EXPECT_LE(off.colour, float_pixels ? 3e-6F : 1.0F) << scheme;
+          EXPECT_EQ(off.depths, 0U) << scheme;
+        }
+      }
+    }
+  }
+}
+
+// Where nothing is seen through there is nothing to round.
+TEST(SortLast, DrawsOpaqueScenesByCellExactly) {
+  const scenes::Scene scene = random_scene(23);
+  const RenderOptions options = small_picture();
+  const Picture expected = by_cell(scene, options, 1);
+  for (const int ranks : {2, 7}) {
+    EXPECT_TRUE(same_bytes(by_cell(scene, options, ranks), expected)) << ranks;
+  }
+}
+
+TEST(SortLast, BlendsByCellTheSameForEveryCodecAndThreadCount) {
+  const scenes::Scene scene = transparent_scene(24);
+  RenderOptions options = small_picture();
+  for (const char* scheme : {"radix-k", "tiles", "bus"}) {
+    options.scheme = scheme;
+    options.codec = "dense";
+    const Picture expected = by_cell(scene, options, 4);
+    for (const char* codec : {"active", "bounds", "lz4"}) {
+      options.codec = codec;
+      EXPECT_TRUE(same_bytes(by_cell(scene, options, 4, 2), expected)) << scheme << codec;
+    }
+  }
+}
+
+TEST(SortLast, BlendsByCellMoreRanksThanTriangles) {
+  scenes::Scene scene = transparent_scene(25, 1);
+  scene.instances.resize(2);
+  const RenderOptions options = small_picture();
+  EXPECT_LE(difference<image::Rgba8>(by_cell(scene, options, 7), by_cell(scene, options, 1)).colour,
+            1);
 }
 
 }  // namespace
