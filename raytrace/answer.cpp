@@ -50,7 +50,7 @@ void intersect(const EmbreeScene& embree, RayGroup& group) {
 void occlude(const Tracer& tracer, ShadowGroup& group) {
   const shading::LaneMask active = active_lanes(group.active);
   SeeThrough passed[kPacketRays];
-  tracer.embree.occluded(group.active, group.packet, passed);
+  tracer.embree.occluded(group.active, group.packet, passed, group.coherent);
   group.lit = group.dimmed = 0;
   for (int i = 0; i < kPacketRays; ++i) {
     group.lit |= group.packet.far[i] >= 0.0F ? 1U << i : 0U;
@@ -64,7 +64,8 @@ void occlude(const Tracer& tracer, ShadowGroup& group) {
     Layer layers[SeeThrough::kMost];
     const auto count = static_cast<std::size_t>(passed[i].count);
     for (std::size_t k = 0; k < count; ++k) {
-      layers[k] = layer_of(tracer, passed[i].hits[k], direction);
+      layers[k] =
+          layer_of(tracer, passed[i].hits[k], direction, (group.through_glass >> i & 1) != 0);
     }
     group.dimmed |= 1U << i;
     group.left.set(i, left_by({layers, count}));
@@ -79,16 +80,19 @@ void answer(const Tracer& tracer, Wave& wave) {
   for (ShadowGroup& group : wave.shadows) occlude(tracer, group);
 }
 
-Layer layer_of(const Tracer& tracer, const Hit& hit, const glm::vec3& direction) {
+Layer layer_of(const Tracer& tracer, const Hit& hit, const glm::vec3& direction,
+               bool through_glass) {
   const Placement& placement = tracer.placements[hit.placement];
   const Intersection at = intersection(placement, hit, direction, {0.0F});
   const glm::vec3 view = -direction;
   const shading::Surface s =
       shading::evaluate(tracer.shader, tracer.shader.materials[placement.material], at.point, view);
+  const glm::vec3 beside(1.0F - s.alpha);
+  if (!through_glass) return {hit.distance, hit.placement, hit.triangle, beside};
   const float share = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
   const float reflected = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior).reflected;
   return {hit.distance, hit.placement, hit.triangle,
-          glm::vec3(1.0F - s.alpha) + s.base_colour * (s.alpha * share * (1.0F - reflected))};
+          beside + s.base_colour * (s.alpha * share * (1.0F - reflected))};
 }
 
 glm::vec3 left_by(std::span<Layer> layers) {

@@ -41,7 +41,7 @@ Bsdf make_bsdf(const shading::Surface& surface, const glm::vec3& view);
 struct BsdfValue {
   glm::vec3 value{0.0F};  // f(view, light) * |cos|: radiance to the viewer per unit of irradiance
                           // at normal incidence
-  float pdf = 0.0F;  // with which `sample` draws the direction, per steradian
+  float pdf = 0.0F;       // with which `sample` draws the direction, per steradian
 };
 
 // Without deltas. Zero for directions whose side of the geometric normal is not that of the shading

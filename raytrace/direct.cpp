@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "raytrace/internal/lit_walk.h"
+#include "raytrace/internal/same_material.h"
 
 namespace delray::raytrace {
 namespace {

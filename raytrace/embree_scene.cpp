@@ -300,10 +300,10 @@ bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {
 }
 
 void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
-                           std::span<SeeThrough, kPacketRays> passed) const {
+                           std::span<SeeThrough, kPacketRays> passed, bool coherent) const {
   Query query;
   // Embree 3.13.5 with AVX-512 loops forever on coherent occlusion packets that meet an instance.
-  const bool coherent = !has_instances_;
+  coherent = coherent && !has_instances_;
   start(query, coherent);
   query.passed = passed.data();
   for (int i = 0; i < kPacketRays; ++i) {

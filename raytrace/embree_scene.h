@@ -39,7 +39,7 @@ class EmbreeScene {
   // into `passed` instead, once each. A negative `far` on return: occluded.
   bool occluded(Ray& ray, SeeThrough& passed) const;
   void occluded(const ActiveRays& active, ShadowPacket& packet,
-                std::span<SeeThrough, kPacketRays> passed) const;
+                std::span<SeeThrough, kPacketRays> passed, bool coherent) const;
 
   bool has_see_through() const { return has_see_through_; }
   std::uint64_t memory() const;  // bytes that Embree holds for this scene

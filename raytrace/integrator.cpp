@@ -3,14 +3,18 @@
 #include <stdexcept>
 #include <string>
 
+#include "raytrace/ao.h"
 #include "raytrace/direct.h"
+#include "raytrace/path.h"
 #include "raytrace/whitted.h"
 
 namespace delray::raytrace {
 namespace {
 
 constexpr Integrator kIntegrators[] = {
+    {"ao", "ambient occlusion: how much of the sky each surface sees", make_ao},
     {"direct", "lights with their shadows, and the environment", make_direct},
+    {"path", "light on all ways, by chance (Kajiya 1986)", make_path},
     {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", make_whitted},
 };
 

@@ -6,20 +6,13 @@
 #include <utility>
 
 #include "image/image.h"
+#include "raytrace/internal/ask.h"
+#include "raytrace/internal/same_material.h"
 
 namespace delray::raytrace {
 namespace {
 
 using shading::LaneMask;
-
-// Lamps are modelled around their lights; a shadow ray ends a little before it gets there.
-constexpr float kShadowReach = 1.0F - 0x1p-10F;
-
-constexpr std::uint32_t kMostLayers = 64;  // of cut-outs and blended surfaces along one ray
-
-float brightest(const glm::vec3& v) { return std::max(std::max(v.x, v.y), v.z); }
-
-float next_up(float x) { return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + 1); }
 
 void add_masked(const shading::Floats16& from, LaneMask mask, shading::Floats16& to) {
   for (int i = 0; i < kPacketRays; ++i) to[i] += (mask >> i & 1) != 0 ? from[i] : 0.0F;
@@ -109,13 +102,6 @@ void LitWalk::add_environment(const RayGroup& group, const RayLanes& lanes) {
   }
   shading::environment_radiance(setting_.shader, directions, 0.0F, missed, radiance);
   add(lanes, missed, radiance);
-}
-
-LaneMask LitWalk::same_material(const RayGroup& group, LaneMask rest) {
-  const std::uint32_t material = group.material[std::countr_zero(rest)];
-  LaneMask same = 0;
-  for (int i = 0; i < kPacketRays; ++i) same |= group.material[i] == material ? 1U << i : 0U;
-  return same & rest;
 }
 
 LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces) {
@@ -221,41 +207,47 @@ void LitWalk::ask_lights(const RayGroup& group, const RayLanes& lanes, LaneMask 
     const LaneMask reached =
         shading::reflect_light(setting_.shader, l, surfaces, group.view, mask, arriving);
     if (reached == 0) continue;
-    rays_.shadow += static_cast<std::uint64_t>(std::popcount(reached));
-    Light& light = asked_lights_.add();
-    light.whole = lanes.whole;
-    light.block = lanes.block;
-    if (!lanes.whole) std::copy_n(lanes.pixel, kPacketRays, light.pixel);
-    light.reflected = arriving.reflected;
-    if (lanes.weighted) multiply(lanes.weight, light.reflected);
-    ShadowGroup& shadows = next_.shadows.add();
-    shadows.coherent = group.coherent;
-    ShadowPacket& packet = shadows.packet;
-    for (int i = 0; i < kPacketRays; ++i) {
-      shadows.active.ray[i] = (reached >> i & 1) != 0 ? -1 : 0;
-      packet.origin_x[i] =
-          surfaces.position.x[i] + surfaces.geometric_normal.x[i] * group.offset[i];
-      packet.origin_y[i] =
-          surfaces.position.y[i] + surfaces.geometric_normal.y[i] * group.offset[i];
-      packet.origin_z[i] =
-          surfaces.position.z[i] + surfaces.geometric_normal.z[i] * group.offset[i];
-      packet.near[i] = 0.0F;
-      packet.direction_x[i] = arriving.direction.x[i];
-      packet.direction_y[i] = arriving.direction.y[i];
-      packet.direction_z[i] = arriving.direction.z[i];
-      packet.time[i] = 0.0F;
-      packet.far[i] = arriving.distance[i] * kShadowReach;
-      packet.mask[i] = 0xFFFFFFFFU;
-      packet.flags[i] = 0;
-    }
+    for (int i = 0; i < kPacketRays; ++i) arriving.distance[i] *= kShadowReach;
+    ask_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
+                arriving.reflected, group.coherent);
+  }
+}
+
+void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                          const shading::Surfaces& surfaces, const shading::Vectors16& directions,
+                          const shading::Floats16& distances, const shading::Vectors16& reflected,
+                          bool coherent) {
+  rays_.shadow += static_cast<std::uint64_t>(std::popcount(mask));
+  Light& light = asked_lights_.add();
+  light.whole = lanes.whole;
+  light.block = lanes.block;
+  if (!lanes.whole) std::copy_n(lanes.pixel, kPacketRays, light.pixel);
+  light.reflected = reflected;
+  if (lanes.weighted) multiply(lanes.weight, light.reflected);
+  ShadowGroup& shadows = next_.shadows.add();
+  shadows.coherent = coherent;
+  shadows.through_glass = shading::kAllLanes;
+  ShadowPacket& packet = shadows.packet;
+  const shading::Vectors16 &from = surfaces.position, &up = surfaces.geometric_normal;
+  for (int i = 0; i < kPacketRays; ++i) {
+    shadows.active.ray[i] = (mask >> i & 1) != 0 ? -1 : 0;
+    packet.origin_x[i] = from.x[i] + up.x[i] * group.offset[i];
+    packet.origin_y[i] = from.y[i] + up.y[i] * group.offset[i];
+    packet.origin_z[i] = from.z[i] + up.z[i] * group.offset[i];
+    packet.near[i] = 0.0F;
+    packet.direction_x[i] = directions.x[i];
+    packet.direction_y[i] = directions.y[i];
+    packet.direction_z[i] = directions.z[i];
+    packet.time[i] = 0.0F;
+    packet.far[i] = distances[i];
+    packet.mask[i] = 0xFFFFFFFFU;
+    packet.flags[i] = 0;
   }
 }
 
 void LitWalk::ask(const NextRay& ray) {
   if (used_ == kPacketRays) {
-    RayGroup& fresh = next_.rays.add();
-    std::fill_n(fresh.active.ray, kPacketRays, 0);
-    fresh.coherent = false;
+    clear_lanes(next_.rays.add());
     RayLanes& lanes = asked_.add();
     lanes.whole = false;
     lanes.weighted = true;
@@ -263,21 +255,7 @@ void LitWalk::ask(const NextRay& ray) {
   }
   const int i = used_++;
   RayGroup& group = next_.rays.back();
-  RayPacket& packet = group.packet;
-  group.active.ray[i] = -1;
-  packet.origin_x[i] = ray.origin.x;
-  packet.origin_y[i] = ray.origin.y;
-  packet.origin_z[i] = ray.origin.z;
-  packet.near[i] = ray.near;
-  packet.direction_x[i] = ray.direction.x;
-  packet.direction_y[i] = ray.direction.y;
-  packet.direction_z[i] = ray.direction.z;
-  packet.time[i] = 0.0F;
-  packet.far[i] = std::numeric_limits<float>::infinity();
-  packet.mask[i] = 0xFFFFFFFFU;
-  packet.id[i] = packet.flags[i] = 0;
-  packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
-  group.view.set(i, ray.view);
+  set_ray(group, i, ray.origin, ray.direction, ray.view, ray.near);
   group.width[i] = ray.width;
   group.spread[i] = ray.spread;
   RayLanes& lanes = asked_.back();

@@ -1,9 +1,7 @@
 #include "raytrace/internal/primary_rays.h"
 
-#include <bit>
 #include <limits>
 
-#include "raytrace/samples.h"
 #include "shading/targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -30,24 +28,31 @@ HWY_INLINE void put(I v, std::uint32_t* to) {
   hn::Store(v, IntTag(), reinterpret_cast<std::int32_t*>(to));
 }
 
-// The block at (x, y), samples at `offset` from the corners of its pixels.
-void primary_block(const scenes::View& view, int x, int y, const glm::vec2& offset,
+void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
                    shading::LaneMask mask, RayGroup& group) {
   const IntTag di;
   RayPacket& packet = group.packet;
   const F zero = set(0.0F), scale = set(view.scale);
   const I none = set(-1);
   for (int i = 0; i < kPacketRays; i += lanes()) {
-    const F column = to_float(hn::Load(di, kColumns + i) + set(x)) + set(offset.x);
-    const F row = to_float(hn::Load(di, kRows + i) + set(y)) + set(offset.y);
+    const F column = to_float(hn::Load(di, kColumns + i) + set(x)) + load(places.x, i);
+    const F row = to_float(hn::Load(di, kRows + i) + set(y)) + load(places.y, i);
     const F right = (column - set(view.half_width)) / scale;
     const F up = (row - set(view.half_height)) / scale;
-    const F3 direction = set(view.forward) + set(view.right) * right - set(view.up) * up;
+    F3 direction = set(view.forward) + set(view.right) * right - set(view.up) * up;
+    F3 origin = set(view.eye);
+    if (view.lens_radius > 0.0F) {
+      const F radius = set(view.lens_radius);
+      const F3 aside = set(view.right) * (load(places.lens_x, i) * radius) +
+                       set(view.up) * (load(places.lens_y, i) * radius);
+      origin = origin + aside;
+      direction = direction - aside * set(1.0F / view.focus);
+    }
     const F length = hn::Sqrt(dot(direction, direction));
     const F3 unit = direction * (set(1.0F) / length);
-    put(set(view.eye.x), packet.origin_x + i);
-    put(set(view.eye.y), packet.origin_y + i);
-    put(set(view.eye.z), packet.origin_z + i);
+    put(origin.x, packet.origin_x + i);
+    put(origin.y, packet.origin_y + i);
+    put(origin.z, packet.origin_z + i);
     put(set(view.near), packet.near + i);
     put(direction.x, packet.direction_x + i);
     put(direction.y, packet.direction_y + i);
@@ -76,36 +81,12 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace delray::raytrace {
-namespace {
 
 HWY_EXPORT(primary_block);
 
-// Lanes of the block at (x, y) that are pixels of the task.
-shading::LaneMask inside(const geometry::Rect& pixels, int x, int y) {
-  if (x + kBlockSide <= pixels.x1 && y + kBlockSide <= pixels.y1) return shading::kAllLanes;
-  shading::LaneMask mask = 0;
-  for (int i = 0; i < kPacketRays; ++i) {
-    mask |= pixels.contains(x + i % kBlockSide, y + i / kBlockSide) ? 1U << i : 0U;
-  }
-  return mask;
-}
-
-}  // namespace
-
-std::uint64_t ask_primary_rays(const Setting& setting, const Task& task, Groups<RayGroup>& groups) {
-  std::uint64_t count = 0;
-  for (int s = 0; s < task.samples; ++s) {
-    const glm::vec2 offset = sample_position(task.first_sample + s, setting.samples);
-    for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
-      for (int x = task.pixels.x0; x < task.pixels.x1; x += kBlockSide) {
-        const shading::LaneMask mask = inside(task.pixels, x, y);
-        count += static_cast<std::uint64_t>(std::popcount(mask));
-        HWY_DYNAMIC_DISPATCH(primary_block)
-        (setting.view, x, y, offset, mask, groups.add());
-      }
-    }
-  }
-  return count;
+void set_primary_rays(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
+                      shading::LaneMask mask, RayGroup& group) {
+  HWY_DYNAMIC_DISPATCH(primary_block)(view, x, y, places, mask, group);
 }
 
 }  // namespace delray::raytrace

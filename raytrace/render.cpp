@@ -231,7 +231,7 @@ Result render(comm::Communicator& communicator, const Tracer& tracer, const scen
   view.width = width;
   view.height = height;
   const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
-  const Setting setting{shader, view, options.trace, options.samples};
+  const Setting setting{shader, tracer.lights, view, options.trace, options.samples};
   Walks walks(chosen, setting);
   const Frame frame{tracer,
                     options,

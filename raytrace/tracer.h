@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "raytrace/embree_scene.h"
+#include "raytrace/light_table.h"
 #include "raytrace/placement.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
@@ -17,6 +18,7 @@ struct Tracer {
   shading::Shader shader;
   std::vector<Placement> placements;
   EmbreeScene embree;
+  LightTable lights;
   std::uint64_t degenerate = 0;  // triangles that can never be hit
   double build_seconds = 0.0;
 };

@@ -1,9 +1,13 @@
 #include "raytrace/walk.h"
 
+#include <bit>
 #include <cassert>
+#include <utility>
 
 #include "image/image.h"
 #include "raytrace/internal/primary_rays.h"
+#include "raytrace/samples.h"
+#include "raytrace/warp.h"
 
 namespace delray::raytrace {
 namespace {
@@ -16,7 +20,62 @@ void clear(SampleBlock& block) {
   }
 }
 
+// Lanes of the block at (x, y) that are pixels of the task.
+shading::LaneMask inside(const geometry::Rect& pixels, int x, int y) {
+  if (x + kBlockSide <= pixels.x1 && y + kBlockSide <= pixels.y1) return shading::kAllLanes;
+  shading::LaneMask mask = 0;
+  for (int i = 0; i < kPacketRays; ++i) {
+    mask |= pixels.contains(x + i % kBlockSide, y + i / kBlockSide) ? 1U << i : 0U;
+  }
+  return mask;
+}
+
+// Dimensions of the sampler.
+enum : std::uint32_t { kPosition, kLens, kFirstFree };
+
 }  // namespace
+
+// Keys of pixels take some time, and many integrators can do without.
+void Walk::ask_primary_rays() {
+  const bool lens = setting_.view.lens_radius > 0.0F;
+  const bool jittered = positions_ == Positions::random && setting_.samples > 1;
+  if (lens || positions_ == Positions::random) {
+    for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
+      for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide) {
+        for (int i = 0; i < kPacketRays; ++i) {
+          keys_.push_back(pixel_key(setting_.options.seed, x + i % kBlockSide, y + i / kBlockSide));
+        }
+      }
+    }
+  }
+  PrimaryPlaces places;
+  std::size_t block = 0;
+  for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
+    places.set(sample_position(s, setting_.samples));
+    block = 0;
+    for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
+      for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide, ++block) {
+        const std::uint64_t* keys = keys_.data() + block * kPacketRays;
+        const auto sample = static_cast<std::uint32_t>(s);
+        for (int i = 0; jittered && i < kPacketRays; ++i) {
+          places.set_position(i, sobol_pair(keys[i], sample, kPosition));
+        }
+        for (int i = 0; lens && i < kPacketRays; ++i) {
+          places.set_lens(i, disc_point(sobol_pair(keys[i], sample, kLens)));
+        }
+        const shading::LaneMask mask = inside(task_.pixels, x, y);
+        set_primary_rays(setting_.view, x, y, places, mask, next_.rays.add());
+        rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
+      }
+    }
+  }
+}
+
+Sampler Walk::sampler(std::uint32_t pixel) const {
+  const auto pixels = static_cast<std::uint32_t>(keys_.size());
+  return {keys_[pixel % pixels], static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels,
+          kFirstFree};
+}
 
 void Walk::start(const Task& task) {
   assert(task.pixels.x0 % kBlockSide == 0 && task.pixels.y0 % kBlockSide == 0);
@@ -26,7 +85,8 @@ void Walk::start(const Task& task) {
   next_.clear();
   samples_.resize(static_cast<std::size_t>(task.blocks()) * static_cast<std::size_t>(task.samples));
   for (SampleBlock& block : samples_) clear(block);
-  rays_.primary += ask_primary_rays(setting_, task, next_.rays);
+  keys_.clear();
+  ask_primary_rays();
   begin();
   std::swap(wave_, next_);
 }

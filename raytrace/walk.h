@@ -4,9 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "geometry/rect.h"
+#include "raytrace/light_table.h"
+#include "raytrace/sampler.h"
 #include "raytrace/wave.h"
 #include "scenes/camera.h"
 #include "shading/batch_shader.h"
@@ -16,6 +20,8 @@ namespace delray::raytrace {
 struct TraceOptions {
   int depth = 8;        // how often light may be mirrored or refracted on its way to the camera
   bool shadows = true;  // of integrators that can do without
+  float reach = std::numeric_limits<float>::infinity();  // of ambient occlusion, in the world
+  std::uint64_t seed = 0;                                // of everything random
   enum class Background : std::uint8_t {
     environment,  // where nothing is hit the environment shows, alpha 1
     transparent,  // where nothing is hit colour and alpha are 0
@@ -37,6 +43,7 @@ struct RayCounts {
 // What all tasks of a frame have in common.
 struct Setting {
   const shading::BatchShader& shader;
+  const LightTable& lights;
   scenes::View view;
   TraceOptions options;
   int samples = 1;  // per pixel, in all tasks together
@@ -85,18 +92,30 @@ class Walk {
   const RayCounts& rays() const { return rays_; }
 
  protected:
-  explicit Walk(const Setting& setting) : setting_(setting) {}
+  // Where samples lie in their pixels: at the same places in all of them, or anywhere.
+  enum class Positions : std::uint8_t { regular, random };
+  explicit Walk(const Setting& setting, Positions positions = Positions::regular)
+      : setting_(setting), positions_(positions) {}
 
+  // Prepares for primary rays, which are in next_ already: group g is of samples_[g].
+  virtual void begin() = 0;
   // Looks at the answered wave_, adds to samples_ and asks in next_, which is empty.
   virtual void look() = 0;
-  // Prepares for primary rays, which are in next_ already: group g is of block and sample g.
-  virtual void begin() = 0;
+
+  // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
+  Sampler sampler(std::uint32_t pixel) const;
 
   Setting setting_;
   Task task_;
   Wave wave_, next_;
   std::vector<SampleBlock> samples_;
   RayCounts rays_;
+
+ private:
+  void ask_primary_rays();
+
+  Positions positions_;
+  std::vector<std::uint64_t> keys_;  // of the task's pixels, 16 for each block
 };
 
 }  // namespace delray::raytrace

@@ -39,6 +39,7 @@ struct ShadowGroup {
   ActiveRays active;
   ShadowPacket packet;
   bool coherent = false;
+  shading::LaneMask through_glass = 0;  // lanes whose light passes glass, unbent
 
   // The answer. Nothing arrives in lanes outside `lit`; in lanes of `dimmed`, a part of those,
   // `left` says what surfaces that can be seen through leave of it, channel by channel.

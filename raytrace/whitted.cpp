@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "raytrace/internal/ask.h"
 #include "raytrace/internal/lit_walk.h"
 #include "raytrace/optics.h"
 #include "shading/shade.h"
@@ -14,8 +15,6 @@ using shading::LaneMask;
 
 // Roughness up to which a surface is a perfect mirror, and from which it is none.
 constexpr float kMirror = 0.15F, kMatt = 0.5F;
-
-float brightest(const glm::vec3& v) { return std::max(std::max(v.x, v.y), v.z); }
 
 class Whitted final : public LitWalk {
  public:

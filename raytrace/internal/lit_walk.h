@@ -41,7 +41,8 @@ struct NextRay {
 
 class LitWalk : public Walk {
  public:
-  explicit LitWalk(const Setting& setting) : Walk(setting) {}
+  explicit LitWalk(const Setting& setting, Positions positions = Positions::regular)
+      : Walk(setting, positions) {}
 
  protected:
   // Adds what the surfaces that a group's rays met show, and asks for more.
@@ -54,15 +55,19 @@ class LitWalk : public Walk {
   // notes depths. Returns the lanes that show anything.
   shading::LaneMask see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha);
 
-  // The lanes of `rest` whose hits have the same material as the first of them.
-  static shading::LaneMask same_material(const RayGroup& group, shading::LaneMask rest);
-
   // Adds what leaves surfaces towards the lanes' rays to their samples.
   void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
 
   // Asks for shadow rays to every light that matters, one group of rays for each.
   void ask_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
                   const shading::Surfaces& surfaces);
+
+  // The same for directions of the lanes' own, unit vectors, of which `reflected` will be added
+  // where nothing is within a distance. `coherent`: they are like those of neighbours.
+  void ask_shadows(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                   const shading::Surfaces& surfaces, const shading::Vectors16& directions,
+                   const shading::Floats16& distances, const shading::Vectors16& reflected,
+                   bool coherent);
 
   void ask(const NextRay& ray);
 

@@ -111,7 +111,7 @@ TEST(EmbreeScene, OcclusionPacketsAgreeWithSingleRays) {
         }
         const ShadowPacket sent = packet;
         SeeThrough passed[kPacketRays];
-        tracer.embree.occluded(active, packet, passed);
+        tracer.embree.occluded(active, packet, passed, true);
         for (int i = 0; i < kPacketRays; ++i) {
           if (active.ray[i] == 0) continue;
           Ray one = ray({sent.origin_x[i], sent.origin_y[i], sent.origin_z[i]}, {0.1F, 0, -1});
