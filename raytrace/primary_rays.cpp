@@ -46,7 +46,7 @@ void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& 
       const F3 aside = set(view.right) * (load(places.lens_x, i) * radius) +
                        set(view.up) * (load(places.lens_y, i) * radius);
       origin = origin + aside;
-      direction = direction - aside * set(1.0F / view.focus);
+      direction = direction - aside * set(1.0F / view.focus_distance);
     }
     const F length = hn::Sqrt(dot(direction, direction));
     const F3 unit = direction * (set(1.0F) / length);

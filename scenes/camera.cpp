@@ -116,8 +116,6 @@ View make_view(const Camera& camera, int width, int height) {
   view.scale = static_cast<float>(0.5 * height / std::tan(radians(camera.vertical_fov) * 0.5));
   view.near = camera.near > 0 ? camera.near
                               : static_cast<float>(kNearFraction * (distance > 0 ? distance : 1));
-  view.lens_radius = camera.lens_radius;
-  view.focus = camera.focus > 0 ? camera.focus : static_cast<float>(distance > 0 ? distance : 1);
   view.width = width;
   view.height = height;
   view.lens_radius = 0.5F * std::max(0.0F, camera.aperture);

@@ -44,6 +44,7 @@ geometry::Box3 bounds(const Scene& scene) {
         geometry::Box3 box;
         for (std::size_t i = first; i < last; ++i) {
           const Instance& instance = scene.instances[i];
+          if (instance.mesh >= scene.meshes.size()) continue;
           box.include(bounds_of(scene.meshes[instance.mesh], instance.transform));
         }
         return box;
