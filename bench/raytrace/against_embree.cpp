@@ -170,6 +170,7 @@ void compare(const std::string& name, const Arguments& arguments) {
     recorded = record(tracer, camera, options);
     choose_loops(*bare, recorded);
   }
+  const bench::KeepMemory keep;
   double first = 0.0;
   for (const int threads : arguments.threads) {
     std::vector<double> ours, theirs, ratios;
