@@ -1,5 +1,6 @@
 // delray compare: variants of one thing on an input of the user's own.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,11 +9,13 @@
 #include "apps/commands.h"
 #include "apps/compare_compose.h"
 #include "apps/comparison.h"
+#include "apps/compose_report.h"
 #include "apps/list.h"
 #include "apps/progress_bar.h"
 #include "comm/agree_on_failure.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
+#include "files/atomic_file.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -54,12 +57,16 @@ int run(Session& session, const CLI::App& command, CompareRequest request) {
   const auto prepared = parallel::Arena(parallel::arena_threads()).execute([&] {
     return prepare(request.render, progress);
   });
-  const std::vector<ComparedScheme> rows = compare_compose(session, request, *prepared, progress);
+  const ComposeComparison comparison = compare_compose(session, request, *prepared, *progress);
   if (!session.first_process) return kDone;
-  if (request.statistics != "-") print_comparison(rows);
-  if (!request.output.empty()) write_comparison(request.output, request, rows);
-  write_statistics(request.statistics, comparison_statistics(request, *prepared, rows));
-  return kDone;
+  if (request.statistics != "-") print_comparison(comparison.rows);
+  if (!request.output.empty()) {
+    files::write_file(request.output, compose_report(session, request, *prepared, comparison));
+  }
+  write_statistics(request.statistics, comparison_statistics(request, *prepared, comparison));
+  if (!comparison.unfinished) return kDone;
+  spdlog::error("interrupted: what was finished is written");
+  return kInterrupted;
 }
 
 void add_compare_compose(CLI::App& compare, Session& session) {
@@ -67,7 +74,8 @@ void add_compare_compose(CLI::App& compare, Session& session) {
       compare.add_subcommand("compose", "every compositing scheme: counted, measured, predicted");
   const auto request = std::make_shared<CompareRequest>();
   add_scene_options(*command, request->render.scene);
-  command->add_option("-o,--output", request->output, "the table as a page: .html");
+  command->add_option("-o,--output", request->output,
+                      "the report, a page that needs nothing else: .html");
   command->add_option("--size", request->render.size, "WIDTHxHEIGHT (default 1280x720)");
   add_camera_options(*command, request->render.camera);
   command

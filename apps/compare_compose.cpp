@@ -9,7 +9,10 @@
 #include <thread>
 
 #include "apps/composed_shares.h"
+#include "apps/share_layers.h"
+#include "apps/shown_scheme.h"
 #include "comm/agree_on_failure.h"
+#include "comm/collectives.h"
 #include "comm/network.h"
 #include "composite/fit_machine.h"
 #include "composite/scheme.h"
@@ -25,6 +28,8 @@ using composite::MachineModel;
 constexpr const char* kThisMachine = "this-machine";
 // Of this many ranks at most samples are taken for the model of this machine.
 constexpr int kMostFittedRanks = 16;
+// Pictures of more ranks would not fit a page.
+constexpr int kMostShownRanks = 8;
 // Simulating this many takes long, and nobody has so many on one machine.
 constexpr int kMostRanksHere = 256;
 
@@ -55,21 +60,36 @@ comm::Network network_here() {
 class Comparison {
  public:
   Comparison(const Session& session, const CompareRequest& request, const Prepared& prepared,
-             parallel::Progress* progress)
-      : session_(session), request_(request), prepared_(prepared), progress_(progress) {}
+             parallel::Progress& progress)
+      : session_(session),
+        request_(request),
+        prepared_(prepared),
+        progress_(progress),
+        drawing_(&progress) {}
 
-  std::vector<ComparedScheme> run() {
-    if (session_.under_mpi) {
-      measure_processes();
-      if (!session_.first_process) return {};
-    } else {
-      for (const int ranks : request_.ranks) {
-        spdlog::info("{} ranks", ranks);
-        if (ranks <= kMostMeasuredRanks) measure_threads(ranks);
+  ComposeComparison run() {
+    // Each scheme, codec and number of ranks is measured or counted, then predicted.
+    const std::size_t variants = schemes_of(request_).size() * request_.codecs.size();
+    progress_.start(2 * variants * (session_.under_mpi ? 1 : request_.ranks.size()));
+    try {
+      if (session_.under_mpi) {
+        measure_processes();
+        if (!session_.first_process) return {};
+      } else {
+        for (const int ranks : request_.ranks) {
+          spdlog::info("{} ranks", ranks);
+          if (ranks <= kMostMeasuredRanks) measure_threads(ranks);
+        }
       }
+      predict();
+    } catch (const parallel::Interrupted&) {
+      if (rows_.empty()) throw;
+      result_.unfinished = true;
     }
-    predict();
-    return std::move(rows_);
+    std::stable_sort(rows_.begin(), rows_.end(),
+                     [](const auto& a, const auto& b) { return a.ranks < b.ranks; });
+    result_.rows = std::move(rows_);
+    return std::move(result_);
   }
 
  private:
@@ -97,17 +117,59 @@ class Comparison {
     const int ranks = communicator.size();
     for (const std::string& codec : codecs_of(share)) {
       for (const std::string& scheme : schemes_of(request_)) {
+        // All ranks stop before the same scheme.
+        const bool stop = communicator.rank() == 0 && progress_.stop_requested();
+        if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0)
+          throw parallel::Interrupted{};
         const MeasuredScheme measured =
             measure_scheme(communicator, share, scheme, codec, repeats(ranks), request_, prepared_);
-        if (communicator.rank() == 0) append(scheme, codec, ranks, measured);
+        if (communicator.rank() != 0) continue;
+        append(scheme, codec, ranks, measured);
+        count_step();
       }
     }
+    if (!request_.output.empty() && ranks == shown_ranks()) show_fastest(communicator, share);
+  }
+
+  // Stops are asked for in measure_all and predict, where nothing is lost by them.
+  void count_step() {
+    try {
+      progress_.advance();
+    } catch (const parallel::Interrupted&) {
+    }
+  }
+  void stop_if_asked() const {
+    if (progress_.stop_requested()) throw parallel::Interrupted{};
+  }
+
+  // Of the runs that are measured, few enough ranks that their pictures can be looked at.
+  int shown_ranks() const {
+    int shown = 0;
+    for (const int ranks : request_.ranks)
+      if (ranks <= kMostShownRanks) shown = std::max(shown, ranks);
+    if (shown == 0) shown = request_.ranks.front();
+    return session_.under_mpi ? session_ranks_ : shown;
+  }
+
+  void show_fastest(comm::Communicator& communicator, const raster::Share& share) {
+    const ComparedScheme* best =
+        communicator.rank() == 0 ? fastest(rows_, communicator.size()) : nullptr;
+    const std::string name = best != nullptr ? best->scheme + '\n' + best->codec : std::string();
+    const comm::Buffer told =
+        comm::broadcast(communicator, 0, comm::Buffer::of(std::span<const char>(name)));
+    const std::span<const char> letters = told.as<char>();
+    const std::string all(letters.begin(), letters.end());
+    const std::size_t end = all.find('\n');
+    ShownScheme shown = show_scheme(communicator, share, all.substr(0, end), all.substr(end + 1),
+                                    request_, prepared_);
+    if (communicator.rank() == 0)
+      result_.shown = std::make_shared<const ShownScheme>(std::move(shown));
   }
 
   void measure_threads(int ranks) {
     std::vector<raster::Share> shares;
     parallel::Arena(parallel::arena_threads()).execute([&] {
-      ShareDrawer drawer(request_, prepared_, progress_);
+      ShareDrawer drawer(request_, prepared_, &drawing_);
       composite::MaskMaker maker;
       for (int rank = 0; rank < ranks; ++rank) {
         shares.push_back(drawer.draw(rank, ranks));
@@ -124,9 +186,10 @@ class Comparison {
 
   void measure_processes() {
     run_ranks(session_, request_.render.launch, [&](comm::Communicator& communicator) {
+      session_ranks_ = communicator.size();
       communicator.mark(comm::Phase::rasterize, 0);
       const raster::Share share = comm::all_or_none(communicator, comm::Phase::rasterize, [&] {
-        ShareDrawer drawer(request_, prepared_, progress_);
+        ShareDrawer drawer(request_, prepared_, &drawing_);
         if (communicator.rank() == 0 && communicator.size() <= kMostMeasuredRanks) {
           masks_[communicator.size()] = drawer.masks(communicator.size());
         }
@@ -139,7 +202,7 @@ class Comparison {
   const std::vector<ImageMasks>& masks(int ranks) {
     if (masks_.count(ranks) == 0) {
       parallel::Arena(parallel::arena_threads()).execute([&] {
-        masks_[ranks] = ShareDrawer(request_, prepared_, progress_).masks(ranks);
+        masks_[ranks] = ShareDrawer(request_, prepared_, &drawing_).masks(ranks);
       });
     }
     return masks_[ranks];
@@ -167,6 +230,8 @@ class Comparison {
         }
         for (ComparedScheme& row : rows_) {
           if (row.codec != codec || row.ranks != ranks) continue;
+          stop_if_asked();
+          count_step();
           for (const auto& [name, machine] : machines) {
             const composite::Simulated run = simulate(row.scheme, hollow(images, codec), machine);
             row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
@@ -175,8 +240,6 @@ class Comparison {
         masks_.erase(ranks > kMostFittedRanks ? ranks : -1);
       }
     }
-    std::stable_sort(rows_.begin(), rows_.end(),
-                     [](const auto& a, const auto& b) { return a.ranks < b.ranks; });
   }
 
   std::vector<int> ranks_of_rows() const {
@@ -194,6 +257,8 @@ class Comparison {
 
   void count_simulated(const std::string& codec, int ranks, const std::vector<ImageMasks>& images) {
     for (const std::string& scheme : schemes_of(request_)) {
+      stop_if_asked();
+      count_step();
       const composite::Simulated run =
           simulate(scheme, hollow(images, codec), {comm::networks()[0].network, {}});
       ComparedScheme row;
@@ -211,8 +276,8 @@ class Comparison {
     for (const ComparedScheme& row : rows_) {
       if (row.codec != codec || row.ranks > kMostFittedRanks || row.ranks < 2) continue;
       if (!row.compose_seconds || masks(row.ranks).empty()) continue;
-      samples.push_back(
-          {row.scheme, hollow(masks(row.ranks), codec), std::max(1e-9, *row.compose_seconds)});
+      samples.push_back({row.scheme, hollow(masks(row.ranks), codec),
+                         std::max(1e-9, row.compose_seconds->median)});
     }
     return samples;
   }
@@ -235,17 +300,31 @@ class Comparison {
   const Session& session_;
   const CompareRequest& request_;
   const Prepared& prepared_;
-  parallel::Progress* progress_;
+  parallel::Progress& progress_;
+  parallel::Progress drawing_;
+  int session_ranks_ = 0;  // processes of mpirun
+  ComposeComparison result_;
   std::map<int, std::vector<ImageMasks>> masks_;  // by number of ranks
   std::vector<ComparedScheme> rows_;
 };
 
 }  // namespace
 
-std::vector<ComparedScheme> compare_compose(const Session& session, const CompareRequest& request,
-                                            const Prepared& prepared,
-                                            parallel::Progress* progress) {
+ComposeComparison compare_compose(const Session& session, const CompareRequest& request,
+                                  const Prepared& prepared, parallel::Progress& progress) {
   return Comparison(session, request, prepared, progress).run();
+}
+
+const ComparedScheme* fastest(const std::vector<ComparedScheme>& rows, int ranks) {
+  const ComparedScheme* best = nullptr;
+  const auto seconds = [](const ComparedScheme& row) {
+    return row.compose_seconds->median + row.gather_seconds->median;
+  };
+  for (const ComparedScheme& row : rows) {
+    if (row.ranks != ranks || !row.compose_seconds) continue;
+    if (best == nullptr || seconds(row) < seconds(*best)) best = &row;
+  }
+  return best;
 }
 
 }  // namespace delray::apps

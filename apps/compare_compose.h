@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/render_frames.h"
 #include "apps/session.h"
+#include "apps/spread.h"
 #include "apps/statistics.h"
 #include "composite/simulate.h"
 
@@ -34,7 +36,7 @@ struct ComparedScheme {
   std::string scheme, codec;
   int ranks = 0;
   composite::Counts counts, gather;
-  std::optional<double> compose_seconds, gather_seconds;  // measured
+  std::optional<Spread> compose_seconds, gather_seconds;  // measured
   std::string hash;                                       // of the picture; empty: not composited
   std::vector<Predicted> predicted;
 };
@@ -42,8 +44,20 @@ struct ComparedScheme {
 // More ranks than this are simulated only.
 inline constexpr int kMostMeasuredRanks = 64;
 
-// Compares; complete on the first process only. Throws as render does.
-std::vector<ComparedScheme> compare_compose(const Session& session, const CompareRequest& request,
-                                            const Prepared& prepared, parallel::Progress* progress);
+struct ShownScheme;
+
+struct ComposeComparison {
+  std::vector<ComparedScheme> rows;          // by number of ranks
+  std::shared_ptr<const ShownScheme> shown;  // of the fastest one, if a page is asked for
+  bool unfinished = false;                   // told to stop before the end
+};
+
+// Compares; complete on the first process only. Told to stop, gives what is finished. Throws as
+// render does, parallel::Interrupted where nothing is finished.
+ComposeComparison compare_compose(const Session& session, const CompareRequest& request,
+                                  const Prepared& prepared, parallel::Progress& progress);
+
+// The row that took least, compositing and gather, with so many ranks; null if none was measured.
+const ComparedScheme* fastest(const std::vector<ComparedScheme>& rows, int ranks);
 
 }  // namespace delray::apps

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "comm/network.h"
-#include "files/atomic_file.h"
 
 namespace delray::apps {
 namespace {
@@ -23,18 +22,70 @@ Json counts_of(const ComparedScheme& row) {
           {"pixels_composited_max", row.counts.pixels_composited_max}};
 }
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json median_of(const std::optional<Spread>& times) {
+  return times ? Json(times->median) : Json(nullptr);
+}
+Json spread_of(const std::optional<Spread>& times) {
+  if (!times) return nullptr;
+  return {{"least", times->least}, {"most", times->most}, {"runs", times->runs}};
+}
 
 std::string millions(std::uint64_t amount) {
   return fmt::format("{:.3f}", static_cast<double>(amount) / 1e6);
 }
 
-std::string milliseconds(const std::optional<double>& seconds) {
-  return seconds ? fmt::format("{:.2f}", *seconds * 1e3) : "-";
+std::string milliseconds(double seconds) { return fmt::format("{:.2f}", seconds * 1e3); }
+std::string milliseconds(const std::optional<Spread>& times) {
+  return times ? milliseconds(times->median) : "-";
 }
 
-// A heading and a line for each row, with a column for each network that any row has.
-std::vector<std::vector<std::string>> table_of(const std::vector<ComparedScheme>& rows) {
+}  // namespace
+
+Json comparison_statistics(const CompareRequest& request, const Prepared& prepared,
+                           const ComposeComparison& comparison) {
+  Json table = Json::array();
+  for (const ComparedScheme& row : comparison.rows) {
+    Json one = counts_of(row);
+    one["gather"] = {{"bytes_total", row.gather.bytes_total}, {"messages", row.gather.messages}};
+    one["seconds"] = {{"compose", median_of(row.compose_seconds)},
+                      {"gather", median_of(row.gather_seconds)}};
+    one["spread"] = {{"compose", spread_of(row.compose_seconds)},
+                     {"gather", spread_of(row.gather_seconds)}};
+    one["predicted"] = Json::array();
+    for (const Predicted& predicted : row.predicted) {
+      one["predicted"].push_back({{"network", predicted.network},
+                                  {"ranks", row.ranks},
+                                  {"seconds", predicted.seconds},
+                                  {"gather_seconds", predicted.gather_seconds}});
+    }
+    one["image_hash"] = row.hash.empty() ? Json(nullptr) : Json(row.hash);
+    table.push_back(std::move(one));
+  }
+  Json networks = Json::array();
+  for (const comm::NamedNetwork& named : comm::networks()) {
+    networks.push_back({{"name", named.name},
+                        {"latency", named.network.latency},
+                        {"overhead", named.network.overhead},
+                        {"seconds_per_byte", named.network.seconds_per_byte},
+                        {"copy_seconds_per_byte", named.network.copy_seconds_per_byte},
+                        {"bus", named.network.is_bus}});
+  }
+  return {{"schema", "delray.compare.compose/1"},
+          {"scene",
+           {{"file", request.render.scene.file.path},
+            {"triangles", scenes::triangle_count(prepared.scene)}}},
+          {"options",
+           {{"size", request.render.size},
+            {"ranks", request.ranks},
+            {"codecs", request.codecs},
+            {"threads", request.render.launch.threads},
+            {"quick", request.quick}}},
+          {"unfinished", comparison.unfinished},
+          {"networks", std::move(networks)},
+          {"rows", std::move(table)}};
+}
+
+std::vector<std::vector<std::string>> comparison_table(const std::vector<ComparedScheme>& rows) {
   std::vector<std::string> networks;
   for (const ComparedScheme& row : rows) {
     for (const Predicted& predicted : row.predicted) {
@@ -72,57 +123,8 @@ std::vector<std::vector<std::string>> table_of(const std::vector<ComparedScheme>
   return table;
 }
 
-constexpr const char* kExplanation =
-    "Counted: rounds, messages, bytes and pixels composited of all ranks together, and the most "
-    "that any rank sends, receives and composites. Measured: until the last rank is done; the "
-    "gather to rank 0 comes on top. Predicted: compositing on ranks with a core each over the "
-    "network named; on this machine by a model that was fitted to the other numbers of ranks.";
-
-}  // namespace
-
-Json comparison_statistics(const CompareRequest& request, const Prepared& prepared,
-                           const std::vector<ComparedScheme>& rows) {
-  Json table = Json::array();
-  for (const ComparedScheme& row : rows) {
-    Json one = counts_of(row);
-    one["gather"] = {{"bytes_total", row.gather.bytes_total}, {"messages", row.gather.messages}};
-    one["seconds"] = {{"compose", or_null(row.compose_seconds)},
-                      {"gather", or_null(row.gather_seconds)}};
-    one["predicted"] = Json::array();
-    for (const Predicted& predicted : row.predicted) {
-      one["predicted"].push_back({{"network", predicted.network},
-                                  {"ranks", row.ranks},
-                                  {"seconds", predicted.seconds},
-                                  {"gather_seconds", predicted.gather_seconds}});
-    }
-    one["image_hash"] = row.hash.empty() ? Json(nullptr) : Json(row.hash);
-    table.push_back(std::move(one));
-  }
-  Json networks = Json::array();
-  for (const comm::NamedNetwork& named : comm::networks()) {
-    networks.push_back({{"name", named.name},
-                        {"latency", named.network.latency},
-                        {"overhead", named.network.overhead},
-                        {"seconds_per_byte", named.network.seconds_per_byte},
-                        {"copy_seconds_per_byte", named.network.copy_seconds_per_byte},
-                        {"bus", named.network.is_bus}});
-  }
-  return {{"schema", "delray.compare.compose/1"},
-          {"scene",
-           {{"file", request.render.scene.file.path},
-            {"triangles", scenes::triangle_count(prepared.scene)}}},
-          {"options",
-           {{"size", request.render.size},
-            {"ranks", request.ranks},
-            {"codecs", request.codecs},
-            {"threads", request.render.launch.threads},
-            {"quick", request.quick}}},
-          {"networks", std::move(networks)},
-          {"rows", std::move(table)}};
-}
-
 void print_comparison(const std::vector<ComparedScheme>& rows) {
-  const auto table = table_of(rows);
+  const auto table = comparison_table(rows);
   std::vector<std::size_t> widths(table[0].size());
   for (const auto& line : table) {
     for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
@@ -136,31 +138,6 @@ void print_comparison(const std::vector<ComparedScheme>& rows) {
     }
     fmt::print("\n");
   }
-}
-
-void write_comparison(const std::string& path, const CompareRequest& request,
-                      const std::vector<ComparedScheme>& rows) {
-  const auto escaped = [](const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-      result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-    }
-    return result;
-  };
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>{0}</title>\n"
-      "<style>body{{font-family:sans-serif}}table{{border-collapse:collapse}}"
-      "td,th{{padding:2px 8px;text-align:right;border-bottom:1px solid #ccc}}</style>\n"
-      "<h1>Compositing {0}, {1}</h1>\n<p>{2}</p>\n<table>\n",
-      escaped(request.render.scene.file.path), escaped(request.render.size), kExplanation);
-  const char* cell = "th";
-  for (const auto& line : table_of(rows)) {
-    page += "<tr>";
-    for (const std::string& text : line) page += fmt::format("<{0}>{1}</{0}>", cell, escaped(text));
-    page += "</tr>\n";
-    cell = "td";
-  }
-  files::write_file(path, page + "</table>\n</html>\n");
 }
 
 }  // namespace delray::apps

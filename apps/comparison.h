@@ -1,4 +1,4 @@
-// How a comparison of compositing schemes is told: as JSON, as text, as a page.
+// How a comparison of compositing schemes is told: as JSON and as text.
 #pragma once
 
 #include <string>
@@ -11,11 +11,10 @@ namespace delray::apps {
 
 // `delray.compare.compose/1`.
 Json comparison_statistics(const CompareRequest& request, const Prepared& prepared,
-                           const std::vector<ComparedScheme>& rows);
+                           const ComposeComparison& comparison);
+// A heading and a line for each row, with a column for each network that any row has.
+std::vector<std::vector<std::string>> comparison_table(const std::vector<ComparedScheme>& rows);
 // For people, on stdout.
 void print_comparison(const std::vector<ComparedScheme>& rows);
-// The same table as a page of HTML. Throws files::FileError.
-void write_comparison(const std::string& path, const CompareRequest& request,
-                      const std::vector<ComparedScheme>& rows);
 
 }  // namespace delray::apps

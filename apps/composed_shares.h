@@ -27,13 +27,10 @@ class ShareDrawer {
   raster::Renderer renderer_;
 };
 
-// Whether layers are lists of surfaces, whatever the codec.
-bool is_transparent(const raster::Share& share);
-
 struct MeasuredScheme {
   composite::Counts compose, gather;
-  double compose_seconds = 0, gather_seconds = 0;  // medians, until the last rank is done
-  std::string hash;                                // on rank 0
+  Spread compose_seconds, gather_seconds;  // until the last rank is done
+  std::string hash;                        // on rank 0
 };
 
 // Collective: composites copies of the shares `repeats` times after once to warm up, which is when

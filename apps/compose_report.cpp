@@ -1,0 +1,362 @@
+#include "apps/compose_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "apps/comparison.h"
+#include "apps/provenance.h"
+#include "apps/report/chart.h"
+#include "apps/report/matrix.h"
+#include "apps/report/page.h"
+#include "apps/report/table.h"
+#include "apps/report/timeline.h"
+#include "apps/shown_scheme.h"
+#include "comm/network.h"
+
+namespace delray::apps {
+namespace {
+
+using namespace report;
+
+double total(const ComparedScheme& row) {
+  return row.compose_seconds->median + row.gather_seconds->median;
+}
+// Of compositing and gather, at least and at most.
+ChartPoint measured_point(const ComparedScheme& row) {
+  return {static_cast<double>(row.ranks), total(row) * 1e3,
+          (row.compose_seconds->least + row.gather_seconds->least) * 1e3,
+          (row.compose_seconds->most + row.gather_seconds->most) * 1e3};
+}
+
+std::string name_of(const ComparedScheme& row, bool with_codec) {
+  return with_codec ? row.scheme + ", " + row.codec : row.scheme;
+}
+
+template <class F>
+auto unique_of(const std::vector<ComparedScheme>& rows, F&& of) {
+  std::vector<std::decay_t<decltype(of(rows[0]))>> result;
+  for (const ComparedScheme& row : rows)
+    if (std::find(result.begin(), result.end(), of(row)) == result.end()) result.push_back(of(row));
+  return result;
+}
+std::vector<std::string> codecs_of(const std::vector<ComparedScheme>& rows) {
+  return unique_of(rows, [](const ComparedScheme& row) { return row.codec; });
+}
+std::vector<int> ranks_of(const std::vector<ComparedScheme>& rows) {
+  return unique_of(rows, [](const ComparedScheme& row) { return row.ranks; });
+}
+
+using PointOf = std::function<std::optional<ChartPoint>(const ComparedScheme&)>;
+
+// A line for each scheme with the codec.
+std::vector<Series> series_of(const std::vector<ComparedScheme>& rows, const std::string& codec,
+                              Source source, const PointOf& point) {
+  std::vector<Series> result;
+  for (const std::string& scheme :
+       unique_of(rows, [](const ComparedScheme& row) { return row.scheme; })) {
+    Series series{scheme, source, {}};
+    for (const ComparedScheme& row : rows)
+      if (row.scheme == scheme && row.codec == codec)
+        if (const std::optional<ChartPoint> at = point(row)) series.points.push_back(*at);
+    if (!series.points.empty()) result.push_back(std::move(series));
+  }
+  return result;
+}
+
+Html chart_over_ranks(const std::vector<ComparedScheme>& rows, const std::string& codec,
+                      const std::string& title, const std::string& label, Source source,
+                      const PointOf& point) {
+  LineChart chart;
+  chart.title = title + ", codec " + codec;
+  chart.x_label = "ranks";
+  chart.y_label = label;
+  chart.x_scale = chart.y_scale = Scale::logarithmic;
+  chart.ticks_at_points = true;
+  chart.series = series_of(rows, codec, source, point);
+  return chart.series.empty() ? Html() : line_chart(chart);
+}
+
+std::string in_milliseconds(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+std::string in_megabytes(std::uint64_t bytes) {
+  return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6);
+}
+
+const Predicted* prediction(const ComparedScheme& row, const std::string& network) {
+  const auto at = std::find_if(row.predicted.begin(), row.predicted.end(),
+                               [&](const Predicted& p) { return p.network == network; });
+  return at == row.predicted.end() ? nullptr : &*at;
+}
+
+std::vector<std::string> networks_of(const std::vector<ComparedScheme>& rows) {
+  std::vector<std::string> result;
+  for (const ComparedScheme& row : rows)
+    for (const Predicted& p : row.predicted)
+      if (std::find(result.begin(), result.end(), p.network) == result.end())
+        result.push_back(p.network);
+  return result;
+}
+
+// With the same number of ranks, the one that took least after `best`.
+const ComparedScheme* runner_up(const std::vector<ComparedScheme>& rows,
+                                const ComparedScheme& best) {
+  const ComparedScheme* next = nullptr;
+  for (const ComparedScheme& row : rows)
+    if (&row != &best && row.ranks == best.ranks && row.compose_seconds &&
+        (next == nullptr || total(row) < total(*next)))
+      next = &row;
+  return next;
+}
+
+// Of so many ranks over the network, the one that is predicted to take least, with the gather.
+const ComparedScheme* fastest_over(const std::vector<ComparedScheme>& rows, int ranks,
+                                   const std::string& network) {
+  const ComparedScheme* best = nullptr;
+  const auto seconds = [&](const ComparedScheme& row) {
+    const Predicted* p = prediction(row, network);
+    return p->seconds + p->gather_seconds;
+  };
+  for (const ComparedScheme& row : rows)
+    if (row.ranks == ranks && prediction(row, network) != nullptr &&
+        (best == nullptr || seconds(row) < seconds(*best)))
+      best = &row;
+  return best;
+}
+
+// What to use on this machine, and what comes close.
+Html sentence(const std::vector<ComparedScheme>& rows, const ComparedScheme& best, bool codecs) {
+  Html text = fmt::format("<p>On {} ranks of this machine use {}: {} with the gather", best.ranks,
+                          strong(name_of(best, codecs)), in_milliseconds(total(best)));
+  const ChartPoint spread = measured_point(best);
+  text += best.compose_seconds->runs > 1
+              ? fmt::format(" (measured, median of {} runs, {} to {})", best.compose_seconds->runs,
+                            in_milliseconds(spread.low / 1e3), in_milliseconds(spread.high / 1e3))
+              : " (measured once)";
+  text += fmt::format(", {} sent in {} messages (counted).", in_megabytes(best.counts.bytes_total),
+                      best.counts.messages);
+  const ComparedScheme* next = runner_up(rows, best);
+  if (next == nullptr) return text + "</p>\n";
+  text += fmt::format(" {} takes {:.0f} % more", escaped(name_of(*next, codecs)),
+                      (total(*next) / total(best) - 1) * 100);
+  const bool certain = best.compose_seconds->runs > 1 && measured_point(*next).low > spread.high;
+  return text + (certain ? ".</p>\n" : ", which other runs may turn round.</p>\n");
+}
+
+Html answer(const std::vector<ComparedScheme>& rows) {
+  const bool codecs = codecs_of(rows).size() > 1;
+  Html result;
+  std::vector<std::string> networks = networks_of(rows);
+  std::erase(networks, "this-machine");
+  Table best_of;
+  best_of.columns = {
+      {"ranks", true, false, {}}, {"here", false, true, Source::measured}, {"ms", true, false, {}}};
+  for (const std::string& network : networks) {
+    best_of.columns.push_back({network, false, true, Source::predicted});
+    best_of.columns.push_back({"ms", true, false, {}});
+  }
+  const ComparedScheme* last = nullptr;
+  for (const int ranks : ranks_of(rows)) {
+    const ComparedScheme* best = fastest(rows, ranks);
+    if (best != nullptr) last = best;
+    std::vector<std::string> line = {std::to_string(ranks),
+                                     best != nullptr ? name_of(*best, codecs) : "-",
+                                     best != nullptr ? short_number(total(*best) * 1e3) : "-"};
+    for (const std::string& network : networks) {
+      const ComparedScheme* over = fastest_over(rows, ranks, network);
+      line.push_back(over != nullptr ? name_of(*over, codecs) : "-");
+      const Predicted* p = over != nullptr ? prediction(*over, network) : nullptr;
+      line.push_back(p != nullptr ? short_number((p->seconds + p->gather_seconds) * 1e3) : "-");
+    }
+    best_of.rows.push_back(std::move(line));
+  }
+  if (last != nullptr) result += sentence(rows, *last, codecs);
+  return result + paragraph("Fastest with so many ranks, gather included:") + table(best_of);
+}
+
+Html times(const std::vector<ComparedScheme>& rows) {
+  Html result;
+  for (const std::string& codec : codecs_of(rows)) {
+    result += chart_over_ranks(rows, codec, "Compositing and gather on this machine", "time, ms",
+                               Source::measured,
+                               [](const ComparedScheme& row) -> std::optional<ChartPoint> {
+                                 if (!row.compose_seconds) return std::nullopt;
+                                 return measured_point(row);
+                               });
+    result += chart_over_ranks(rows, codec, "Compositing alone on this machine", "time, ms",
+                               Source::measured,
+                               [](const ComparedScheme& row) -> std::optional<ChartPoint> {
+                                 if (!row.compose_seconds) return std::nullopt;
+                                 const Spread& s = *row.compose_seconds;
+                                 return ChartPoint{static_cast<double>(row.ranks), s.median * 1e3,
+                                                   s.least * 1e3, s.most * 1e3};
+                               });
+  }
+  return result +
+         paragraph(
+             "Medians; the upright lines are the spread of the repetitions. Times end when "
+             "the last rank is done. More ranks than cores share the cores.");
+}
+
+Html bytes(const std::vector<ComparedScheme>& rows) {
+  Html result;
+  const auto of = [](std::uint64_t composite::Counts::*amount) {
+    return [amount](const ComparedScheme& row) -> std::optional<ChartPoint> {
+      const double value = static_cast<double>(row.counts.*amount) / 1e6;
+      return ChartPoint{static_cast<double>(row.ranks), value, value, value};
+    };
+  };
+  for (const std::string& codec : codecs_of(rows)) {
+    result += chart_over_ranks(rows, codec, "Bytes that all ranks send", "MB", Source::counted,
+                               of(&composite::Counts::bytes_total));
+    result += chart_over_ranks(rows, codec, "Most bytes that a rank receives", "MB",
+                               Source::counted, of(&composite::Counts::bytes_received_max));
+    result += chart_over_ranks(rows, codec, "Most pixels that a rank composites", "Mpixel",
+                               Source::counted, of(&composite::Counts::pixels_composited_max));
+  }
+  return result;
+}
+
+Html predictions(const std::vector<ComparedScheme>& rows) {
+  Html result;
+  for (const std::string& network : networks_of(rows))
+    for (const std::string& codec : codecs_of(rows))
+      result += chart_over_ranks(rows, codec, "Compositing over " + network, "time, ms",
+                                 Source::predicted,
+                                 [&](const ComparedScheme& row) -> std::optional<ChartPoint> {
+                                   const Predicted* p = prediction(row, network);
+                                   if (p == nullptr) return std::nullopt;
+                                   const double ms = p->seconds * 1e3;
+                                   return ChartPoint{static_cast<double>(row.ranks), ms, ms, ms};
+                                 });
+  if (result.empty()) return paragraph("Nothing is predicted of these layers.");
+  return result + paragraph(
+                      "Predicted: the schemes' own code runs on a simulated machine whose ranks "
+                      "have a core each. On this machine by a model that was fitted to the times "
+                      "measured on the other numbers of ranks.");
+}
+
+constexpr const char* kActs[] = {"composite", "send", "wait and receive", "gather"};
+
+Timeline timeline_of(const ShownScheme& shown) {
+  Timeline result;
+  result.title = "What each rank did";
+  result.kinds.assign(std::begin(kActs), std::end(kActs));
+  for (std::size_t rank = 0; rank < shown.ledger.ranks.size(); ++rank) {
+    Lane lane{fmt::format("rank {}", rank), {}};
+    double last = -1;
+    for (const comm::Event& event : shown.ledger.ranks[rank]) {
+      const bool gather = event.phase == comm::Phase::gather;
+      // Between two calls the rank cuts and merges pixels.
+      if (last >= 0 && event.begin > last)
+        lane.spans.push_back({gather ? 3 : 0, last, event.begin, ""});
+      if (event.end > event.begin) {
+        const bool sends = event.kind == comm::Event::Kind::send;
+        const bool message = sends || event.kind == comm::Event::Kind::receive;
+        lane.spans.push_back(
+            {gather  ? 3
+             : sends ? 1
+                     : 2,
+             event.begin, event.end,
+             message ? fmt::format("{} rank {}, {} bytes, round {}", sends ? "to" : "from",
+                                   event.peer, event.amount, event.round)
+                     : std::string()});
+      }
+      last = event.end;
+    }
+    result.lanes.push_back(std::move(lane));
+  }
+  return result;
+}
+
+// Of each round of compositing, and of the gather, what ranks sent each other.
+std::vector<Html> byte_matrices(const ShownScheme& shown) {
+  const int ranks = static_cast<int>(shown.ledger.ranks.size());
+  std::map<std::pair<bool, int>, std::vector<double>> rounds;
+  double most = 0;
+  for (int rank = 0; rank < ranks; ++rank)
+    for (const comm::Event& event : shown.ledger.ranks[static_cast<std::size_t>(rank)]) {
+      if (event.kind != comm::Event::Kind::send || event.peer == rank) continue;
+      const bool gather = event.phase == comm::Phase::gather;
+      if (!gather && event.phase != comm::Phase::compose) continue;
+      std::vector<double>& sent = rounds[{gather, gather ? 0 : event.round}];
+      sent.resize(static_cast<std::size_t>(ranks) * ranks);
+      double& here = sent[static_cast<std::size_t>(rank) * ranks + event.peer];
+      here += static_cast<double>(event.amount);
+      most = std::max(most, here);
+    }
+  std::vector<Html> result;
+  for (auto& [key, sent] : rounds) {
+    Matrix m;
+    m.title = key.first ? "Gather" : fmt::format("Round {}", key.second);
+    m.row_name = "from rank";
+    m.column_name = "to rank";
+    m.unit = "bytes";
+    m.rows = m.columns = ranks;
+    m.values = std::move(sent);
+    result.push_back(matrix(m, most));
+  }
+  return result;
+}
+
+Html one_run(const ShownScheme& shown) {
+  const std::size_t ranks = shown.ledger.ranks.size();
+  Html result =
+      paragraph(fmt::format("One run of {} with codec {} on {} ranks, as it was recorded.",
+                            shown.scheme, shown.codec, ranks));
+  result += picture(shown.picture, "The picture");
+  result += heading("What each rank had drawn");
+  std::vector<Html> partial, pieces;
+  for (std::size_t k = 0; k < ranks; ++k) {
+    partial.push_back(picture(shown.partial[k], fmt::format("rank {}", k)));
+    pieces.push_back(picture(shown.pieces[k], fmt::format("rank {}", k)));
+  }
+  result += beside(partial) + heading("What each rank owned in the end") + beside(pieces);
+  result += heading("Bytes between ranks") + beside(byte_matrices(shown));
+  return result + timeline(timeline_of(shown));
+}
+
+Html all_rows(const CompareRequest& request, const std::vector<ComparedScheme>& rows) {
+  const std::vector<std::vector<std::string>> text = comparison_table(rows);
+  Table result;
+  for (std::size_t i = 0; i < text[0].size(); ++i) {
+    const std::string& name = text[0][i];
+    Column column{name, i != 1 && i != 2, i > 2, Source::counted};
+    if (name.ends_with("predicted")) {
+      column.source = Source::predicted;
+      column.name = name.substr(0, name.find(','));
+    } else if (name.ends_with(" ms")) {
+      column.source = Source::measured;
+    }
+    result.columns.push_back(std::move(column));
+  }
+  result.rows.assign(text.begin() + 1, text.end());
+  return table(result) +
+         paragraph("MB sent and received and Mpixel max are of the rank that has most. Size " +
+                   request.render.size + ".");
+}
+
+}  // namespace
+
+std::string compose_report(const Session& session, const CompareRequest& request,
+                           const Prepared& prepared, const ComposeComparison& comparison) {
+  const std::vector<ComparedScheme>& rows = comparison.rows;
+  Page result;
+  const std::filesystem::path file(request.render.scene.file.path);
+  result.title = fmt::format("Compositing {}, {}", file.filename().string(), request.render.size);
+  result.unfinished = comparison.unfinished;
+  result.answer = answer(rows);
+  result.tabs.push_back({"Times", times(rows)});
+  result.tabs.push_back({"Bytes", bytes(rows)});
+  result.tabs.push_back({"Predictions", predictions(rows)});
+  if (comparison.shown) result.tabs.push_back({"One run", one_run(*comparison.shown)});
+  result.tabs.push_back({"All figures", all_rows(request, rows)});
+  result.data = comparison_statistics(request, prepared, comparison);
+  result.provenance = provenance(session);
+  return page(result);
+}
+
+}  // namespace delray::apps

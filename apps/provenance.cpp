@@ -1,0 +1,40 @@
+#include "apps/provenance.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "apps/statistics.h"
+
+namespace delray::apps {
+namespace {
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> provenance(const Session& session) {
+  utsname system{};
+  uname(&system);
+  return {{"command", session.command_line},
+          {"version", "delray " DELRAY_VERSION ", compiled by " __VERSION__},
+          {"machine", fmt::format("{}, {} hardware threads", processor(),
+                                  std::thread::hardware_concurrency())},
+          {"system", fmt::format("{} {}", system.sysname, system.release)},
+          {"ranks", session.under_mpi ? "processes of mpirun" : "threads of one process"},
+          {"date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}};
+}
+
+}  // namespace delray::apps

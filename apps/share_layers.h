@@ -1,0 +1,34 @@
+// Layers of what a rank has drawn, for one composition after the other.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "composite/scheme.h"
+#include "raster/render.h"
+
+namespace delray::apps {
+
+// The layers of repeated runs, in the same memory: fresh memory takes long to write to.
+class ShareLayers {
+ public:
+  // REQUIRES: the share outlives this.
+  ShareLayers(const raster::Share& share, const std::string& codec)
+      : share_(share), codec_(codec) {}
+
+  // A copy of the share.
+  std::unique_ptr<composite::Layer> make();
+  // The image of a part, only the part's ranges of which are final.
+  image::Image8 image_of(composite::Part&& part) const;
+  void recycle(image::Image8&& image) { spare_ = std::move(image); }
+
+ private:
+  const raster::Share& share_;
+  std::string codec_;
+  image::Image8 spare_;
+};
+
+// Whether layers are lists of surfaces, whatever the codec.
+bool is_transparent(const raster::Share& share);
+
+}  // namespace delray::apps

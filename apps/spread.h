@@ -1,0 +1,16 @@
+// Times of repeated runs.
+#pragma once
+
+#include <vector>
+
+namespace delray::apps {
+
+struct Spread {
+  double median = 0, least = 0, most = 0;
+  int runs = 0;
+};
+
+// The upper median. REQUIRES: at least one value.
+Spread spread_of(std::vector<double> values);
+
+}  // namespace delray::apps

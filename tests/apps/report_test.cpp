@@ -1,0 +1,133 @@
+// Charts, tables and pages, looked at as text.
+#include "apps/report/page.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "apps/report/axis.h"
+#include "apps/report/chart.h"
+#include "apps/report/matrix.h"
+#include "apps/report/table.h"
+#include "apps/report/timeline.h"
+
+namespace delray::apps::report {
+namespace {
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t result = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+    ++result;
+  return result;
+}
+
+bool has_bad_number(std::string html) {
+  for (std::size_t at; (at = html.find("dominant")) != std::string::npos;) html.erase(at, 8);
+  return html.find("nan") != std::string::npos || html.find("inf") != std::string::npos;
+}
+
+TEST(ReportHtml, EscapesWhatCouldEndTextOrAttributes) {
+  EXPECT_EQ(escaped("a<b>&\"c\""), "a&lt;b&gt;&amp;&quot;c&quot;");
+}
+
+TEST(ReportHtml, ShortensNumbers) {
+  EXPECT_EQ(short_number(0.053124), "0.05312");
+  EXPECT_EQ(short_number(2048), "2048");
+  EXPECT_EQ(short_number(20480), "20.48 k");
+  EXPECT_EQ(short_number(-1234567), "-1.235 M");
+  EXPECT_EQ(short_number(3e9), "3 G");
+  EXPECT_EQ(short_number(std::numeric_limits<double>::infinity()), "-");
+}
+
+TEST(ReportAxis, LinearTicksAreRoundAndInside) {
+  for (const double most : {1e-9, 0.3, 7.0, 99.0, 12345.0, 1e12}) {
+    const std::vector<double> values = {most / 3, most};
+    const Axis axis(values, Scale::linear);
+    EXPECT_EQ(axis.position(0), 0);
+    EXPECT_EQ(axis.position(most), 1);
+    const std::vector<Tick> ticks = axis.ticks();
+    EXPECT_GE(ticks.size(), 3U) << most;
+    EXPECT_LE(ticks.size(), 11U) << most;
+    for (const Tick& tick : ticks) {
+      EXPECT_GE(axis.position(tick.value), -1e-9);
+      EXPECT_LE(axis.position(tick.value), 1 + 1e-9);
+    }
+  }
+}
+
+TEST(ReportAxis, LogarithmicTicksCoverWhatThereIs) {
+  const std::vector<double> decades = {0.02, 3, 4000, -1, 0, std::nan("")};
+  const Axis axis(decades, Scale::logarithmic);
+  EXPECT_NEAR(axis.position(0.02), 0, 1e-12);
+  EXPECT_NEAR(axis.position(4000), 1, 1e-12);
+  EXPECT_NEAR(axis.position(std::sqrt(0.02 * 4000)), 0.5, 1e-12);
+  for (const std::vector<double>& values :
+       {decades, {5.0}, {}, {1.1, 1.2}, {1e-8, 1e+12}, {3.0, 300.0}}) {
+    const std::vector<Tick> ticks = Axis(values, Scale::logarithmic).ticks();
+    EXPECT_GE(ticks.size(), 2U);
+    EXPECT_LE(ticks.size(), 12U);
+  }
+}
+
+TEST(ReportCharts, DrawEveryPointThatCanBeShown) {
+  LineChart chart;
+  chart.title = "a < b";
+  chart.x_scale = chart.y_scale = Scale::logarithmic;
+  chart.series = {{"one", Source::measured, {{1, 2}, {2, 3, 2.5, 4}, {4, std::nan("")}, {8, -1}}},
+                  {"two", Source::predicted, {{1, 5}}},
+                  {"none", Source::counted, {}}};
+  const Html html = line_chart(chart);
+  EXPECT_EQ(count(html, "<circle"), 3U);
+  EXPECT_EQ(count(html, "<button"), 3U);
+  EXPECT_NE(html.find("a &lt; b"), std::string::npos);
+  EXPECT_NE(html.find("3 (measured, 2.5 to 4)"), std::string::npos);
+  EXPECT_FALSE(has_bad_number(html));
+}
+
+TEST(ReportCharts, AreWholeWithoutData) {
+  for (const Html& html : {line_chart({}), bar_chart({}), timeline({}), matrix({})}) {
+    EXPECT_FALSE(has_bad_number(html)) << html;
+    EXPECT_EQ(count(html, "<svg"), count(html, "</svg>"));
+    EXPECT_EQ(count(html, "<figure"), count(html, "</figure>"));
+  }
+}
+
+TEST(ReportCharts, BarsMatricesAndTimelinesTellTheirNumbers) {
+  const Html bars =
+      bar_chart({"t", "bytes", Source::counted, {{"r0", 3, "x", true}, {"r1", 4, ""}}, 3.5});
+  EXPECT_EQ(count(bars, "<rect class=\"bar"), 2U);
+  EXPECT_NE(bars.find("r0: 3 bytes (counted); x"), std::string::npos);
+  const Html cells = matrix({"m", "from", "to", "bytes", Source::counted, 2, 2, {0, 7, 0, 9}});
+  EXPECT_EQ(count(cells, "class=\"cell\""), 2U);
+  EXPECT_NE(cells.find("from 1, to 1: 9 bytes (counted)"), std::string::npos);
+  const Html lanes = timeline(
+      {"t", Source::measured, {"work", "wait"}, {{"rank 0", {{0, 1, 1.5, ""}, {1, 1.5, 3, "q"}}}}});
+  EXPECT_NE(lanes.find("rank 0: wait 1500 ms (measured); q"), std::string::npos);
+}
+
+TEST(ReportPage, HoldsAllAndNothingEndsItsScriptsEarly) {
+  Page page;
+  page.title = "A & B";
+  page.answer = paragraph("use it");
+  page.unfinished = true;
+  Table rows;
+  rows.columns = {{"name", false}, {"n"}};
+  rows.rows = {{"</script>", "1"}};
+  page.tabs = {{"First", table(rows)}, {"Second", picture(image::Image8(3, 2), "small")}};
+  page.data = {{"schema", "delray.test/1"}, {"rows", {{{"text", "</script><b>"}}}}};
+  page.provenance = {{"command", "delray <x>"}};
+  const Html html = report::page(page);
+  EXPECT_EQ(count(html, "<script"), 2U);
+  EXPECT_EQ(count(html, "</script>"), 2U);
+  EXPECT_EQ(count(html, "<section"), 2U);
+  EXPECT_NE(html.find("was interrupted"), std::string::npos);
+  EXPECT_NE(html.find("delray &lt;x&gt;"), std::string::npos);
+  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+  // Nothing from elsewhere.
+  EXPECT_EQ(html.find("http"), std::string::npos);
+  EXPECT_EQ(html.find("src=\"/"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace delray::apps::report
