@@ -11,42 +11,6 @@
 namespace delray::raytrace {
 namespace {
 
-void set_lane(RayPacket& packet, int i, const Ray& ray) {
-  packet.far[i] = ray.far;
-  packet.normal_x[i] = ray.normal_x;
-  packet.normal_y[i] = ray.normal_y;
-  packet.normal_z[i] = ray.normal_z;
-  packet.u[i] = ray.u;
-  packet.v[i] = ray.v;
-  packet.triangle[i] = ray.triangle;
-  packet.geometry[i] = ray.geometry;
-  packet.instance[i] = ray.instance;
-}
-
-template <class Packet>
-Ray lane_of(const Packet& packet, int i) {
-  Ray ray;
-  ray.origin_x = packet.origin_x[i];
-  ray.origin_y = packet.origin_y[i];
-  ray.origin_z = packet.origin_z[i];
-  ray.near = packet.near[i];
-  ray.direction_x = packet.direction_x[i];
-  ray.direction_y = packet.direction_y[i];
-  ray.direction_z = packet.direction_z[i];
-  ray.far = packet.far[i];
-  return ray;
-}
-
-void intersect(const EmbreeScene& embree, RayGroup& group) {
-  if (group.coherent) return embree.intersect(group.active, group.packet);
-  for (int i = 0; i < kPacketRays; ++i) {
-    if (group.active.ray[i] == 0) continue;
-    Ray ray = lane_of(group.packet, i);
-    embree.intersect(ray);
-    set_lane(group.packet, i, ray);
-  }
-}
-
 void occlude(const Tracer& tracer, ShadowGroup& group) {
   const shading::LaneMask active = active_lanes(group.active);
   SeeThrough passed[kPacketRays];
@@ -75,7 +39,9 @@ void occlude(const Tracer& tracer, ShadowGroup& group) {
 }  // namespace
 
 void answer(const Tracer& tracer, Wave& wave) {
-  for (RayGroup& group : wave.rays) intersect(tracer.embree, group);
+  for (RayGroup& group : wave.rays) {
+    tracer.embree.intersect(group.active, group.packet, group.coherent);
+  }
   for (RayGroup& group : wave.rays) find_points(tracer.placements, group);
   for (ShadowGroup& group : wave.shadows) occlude(tracer, group);
 }
@@ -83,16 +49,20 @@ void answer(const Tracer& tracer, Wave& wave) {
 Layer layer_of(const Tracer& tracer, const Hit& hit, const glm::vec3& direction,
                bool through_glass) {
   const Placement& placement = tracer.placements[hit.placement];
+  const scenes::Material& material = tracer.shader.materials[placement.material];
+  if (!through_glass) {
+    const CoveragePoint at = coverage_point(placement, hit);
+    const float alpha = shading::coverage(tracer.shader, material, at.uv, {}, at.alpha);
+    return {hit.distance, hit.placement, hit.triangle, glm::vec3(1.0F - alpha)};
+  }
   const Intersection at = intersection(placement, hit, direction, {0.0F});
   const glm::vec3 view = -direction;
   const shading::Surface s =
       shading::evaluate(tracer.shader, tracer.shader.materials[placement.material], at.point, view);
-  const glm::vec3 beside(1.0F - s.alpha);
-  if (!through_glass) return {hit.distance, hit.placement, hit.triangle, beside};
   const float share = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
   const float reflected = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior).reflected;
   return {hit.distance, hit.placement, hit.triangle,
-          beside + s.base_colour * (s.alpha * share * (1.0F - reflected))};
+          glm::vec3(1.0F - s.alpha) + s.base_colour * (s.alpha * share * (1.0F - reflected))};
 }
 
 glm::vec3 left_by(std::span<Layer> layers) {

@@ -6,8 +6,7 @@
 
 namespace delray::raytrace {
 
-// Answers all questions of the wave. Coherent groups are traced as packets, rays to nearest hits of
-// the others one by one: every ray by the same kernel of Embree, whatever it shares a group with.
+// Answers all questions of the wave, group by group as packets.
 void answer(const Tracer& tracer, Wave& wave);
 
 // One thing that can be seen through and is in the way of light.

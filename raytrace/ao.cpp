@@ -19,9 +19,9 @@ class AmbientOcclusion final : public LitWalk {
   }
 
  private:
-  void shade(RayGroup& group, RayLanes& lanes) override {
+  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& /*shown*/) override {
     const LaneMask seen = look_at(group, lanes, surfaces_);
-    if (seen == 0) return;
+    if (seen == 0) return 0;
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       Sampler numbers = sampler(lanes.pixel_of(i));
@@ -34,6 +34,7 @@ class AmbientOcclusion final : public LitWalk {
       white_.set(i, glm::vec3(glm::dot(direction, up) > 0.0F ? 1.0F : 0.0F));
     }
     ask_shadows(group, lanes, seen, surfaces_, directions_, reach_, white_, false);
+    return 0;
   }
 
   shading::Surfaces surfaces_;

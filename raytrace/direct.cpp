@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "raytrace/internal/lane_sums.h"
 #include "raytrace/internal/lit_walk.h"
 #include "raytrace/internal/same_material.h"
 
@@ -15,35 +16,34 @@ class Direct final : public LitWalk {
   using LitWalk::LitWalk;
 
  private:
-  void shade(RayGroup& group, RayLanes& lanes) override {
-    if (!setting_.options.shadows) return shade_unshadowed(group, lanes);
+  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
+    if (!setting_.options.shadows) return shade_unshadowed(group, lanes, shown);
     const LaneMask seen = look_at(group, lanes, surfaces_);
-    if (seen == 0) return;
+    if (seen == 0) return 0;
     const shading::BatchShader& shader = setting_.shader;
-    shading::Vectors16& colour = shaded_.colour;
-    add(lanes, seen, surfaces_.emission);
-    shading::ambient_diffuse(shader, surfaces_, group.view, seen, colour);
-    add(lanes, seen, colour);
-    shading::ambient_specular(shader, surfaces_, group.view, seen, colour);
-    add(lanes, seen, colour);
-    shading::ambient_transmitted(shader, surfaces_, group.view, seen, colour);
-    add(lanes, seen, colour);
+    copy_lanes(surfaces_.emission, seen, shown.colour);
+    shading::ambient_diffuse(shader, surfaces_, group.view, seen, colour_);
+    add_lanes(colour_, seen, shown.colour);
+    shading::ambient_specular(shader, surfaces_, group.view, seen, colour_);
+    add_lanes(colour_, seen, shown.colour);
+    shading::ambient_transmitted(shader, surfaces_, group.view, seen, colour_);
+    add_lanes(colour_, seen, shown.colour);
     ask_lights(group, lanes, seen, surfaces_);
+    return seen;
   }
 
-  void shade_unshadowed(RayGroup& group, RayLanes& lanes) {
+  LaneMask shade_unshadowed(const RayGroup& group, RayLanes& lanes, shading::Shaded& shown) {
     for (LaneMask rest = group.hits; rest != 0;) {
       const LaneMask same = same_material(group, rest);
       shading::shade(setting_.shader, group.material[std::countr_zero(rest)], group.points,
-                     group.view, same, {}, shaded_);
+                     group.view, same, {}, shown);
       rest &= ~same;
     }
-    const LaneMask seen = see(group, lanes, shaded_.alpha);
-    if (seen != 0) add(lanes, seen, shaded_.colour);
+    return see(group, lanes, shown.alpha);
   }
 
   shading::Surfaces surfaces_;
-  shading::Shaded shaded_;
+  shading::Vectors16 colour_;
 };
 
 }  // namespace

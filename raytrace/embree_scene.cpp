@@ -271,12 +271,12 @@ void EmbreeScene::intersect(Ray& ray) const {
 #endif
 }
 
-void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet) const {
+void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const {
   Query query;
-  start(query, true);
+  start(query, coherent);
   auto* rays = reinterpret_cast<RTCRayHit16*>(&packet);
 #if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments = intersect_arguments(query, true);
+  RTCIntersectArguments arguments = intersect_arguments(query, coherent);
   rtcIntersect16(active.ray, state_->top.get(), rays, &arguments);
 #else
   rtcIntersect16(active.ray, state_->top.get(), &query.context, rays);

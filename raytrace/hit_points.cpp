@@ -199,6 +199,35 @@ void find_placement_points(const Placement& placement, shading::LaneMask mask, R
   }
 }
 
+// Sets hits, and the number of the placement of each lane. Returns whether it is the same for all
+// that hit.
+bool find_hits(RayGroup& group, std::uint32_t* placements) {
+  const IntTag d;
+  const auto ints = [](std::uint32_t* p) { return reinterpret_cast<std::int32_t*>(p); };
+  RayPacket& packet = group.packet;
+  const I none = set(-1);
+  shading::LaneMask hits = 0;
+  for (int i = 0; i < kPacketRays; i += lanes()) {
+    const I instance = hn::Load(d, ints(packet.instance) + i);
+    const I placement =
+        hn::IfThenElse(hn::Eq(instance, none), hn::Load(d, ints(packet.geometry) + i), instance);
+    hn::Store(placement, d, ints(placements) + i);
+    const auto hit = hn::And(hn::Ne(hn::Load(d, ints(packet.triangle) + i), none),
+                             hn::Ne(hn::Load(d, group.active.ray + i), set(0)));
+    hits |= bits_of(hn::RebindMask(FloatTag(), hit), i);
+  }
+  group.hits = hits;
+  if (hits == 0) return true;
+  const I first =
+      set(static_cast<std::int32_t>(placements[hwy::Num0BitsBelowLS1Bit_Nonzero32(hits)]));
+  shading::LaneMask same = 0;
+  for (int i = 0; i < kPacketRays; i += lanes()) {
+    const auto equal = hn::Eq(hn::Load(d, ints(placements) + i), first);
+    same |= bits_of(hn::RebindMask(FloatTag(), equal), i);
+  }
+  return (hits & ~same) == 0;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raytrace
 HWY_AFTER_NAMESPACE();
@@ -208,6 +237,7 @@ namespace delray::raytrace {
 namespace {
 
 HWY_EXPORT(find_placement_points);
+HWY_EXPORT(find_hits);
 
 // From so many lanes on vectors are faster than lane by lane.
 constexpr int kFewestLanes = 3;
@@ -227,25 +257,18 @@ void find_point(const Placement& placement, int i, RayGroup& group) {
 }  // namespace
 
 void find_points(std::span<const Placement> placements, RayGroup& group) {
-  const RayPacket& packet = group.packet;
-  std::uint32_t placement[kPacketRays];
-  shading::LaneMask hits = 0;
+  alignas(64) std::uint32_t placement[kPacketRays];
+  const bool one = HWY_DYNAMIC_DISPATCH(find_hits)(group, placement);
+  shading::LaneMask hits = group.hits;
   group.points.coloured = false;
-  for (int i = 0; i < kPacketRays; ++i) {
-    placement[i] = packet.instance[i] != kMiss ? packet.instance[i] : packet.geometry[i];
-    hits |= group.active.ray[i] != 0 && packet.triangle[i] != kMiss ? 1U << i : 0U;
-  }
-  group.hits = hits;
-  std::uint32_t last = kMiss;
-  for (shading::LaneMask rest = hits; rest != 0; rest &= rest - 1) {
-    const std::uint32_t number = placement[std::countr_zero(rest)];
-    if (number != last && !placements[number].mesh->colours.empty()) group.points.coloured = true;
-    last = number;
+  for (shading::LaneMask rest = hits; rest != 0; rest = one ? 0 : rest & (rest - 1)) {
+    const scenes::Mesh& mesh = *placements[placement[std::countr_zero(rest)]].mesh;
+    group.points.coloured = group.points.coloured || !mesh.colours.empty();
   }
   while (hits != 0) {
     const std::uint32_t number = placement[std::countr_zero(hits)];
-    shading::LaneMask same = 0;
-    for (int i = 0; i < kPacketRays; ++i) same |= placement[i] == number ? 1U << i : 0U;
+    shading::LaneMask same = one ? hits : 0;
+    for (int i = 0; !one && i < kPacketRays; ++i) same |= placement[i] == number ? 1U << i : 0U;
     same &= hits;
     hits &= ~same;
     const Placement& where = placements[number];

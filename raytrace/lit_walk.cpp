@@ -7,16 +7,13 @@
 
 #include "image/image.h"
 #include "raytrace/internal/ask.h"
+#include "raytrace/internal/lane_sums.h"
 #include "raytrace/internal/same_material.h"
 
 namespace delray::raytrace {
 namespace {
 
 using shading::LaneMask;
-
-void add_masked(const shading::Floats16& from, LaneMask mask, shading::Floats16& to) {
-  for (int i = 0; i < kPacketRays; ++i) to[i] += (mask >> i & 1) != 0 ? from[i] : 0.0F;
-}
 
 void multiply(const shading::Vectors16& by, shading::Vectors16& v) {
   for (int i = 0; i < kPacketRays; ++i) {
@@ -46,41 +43,50 @@ void LitWalk::look() {
   asked_.clear();
   asked_lights_.clear();
   used_ = kPacketRays;
-  for (std::size_t g = 0; g < wave_.shadows.size(); ++g) {
-    add_light(wave_.shadows[g], answered_lights_[g]);
-  }
+  add_lights();
   for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
     RayGroup& group = wave_.rays[g];
-    add_environment(group, answered_[g]);
-    if (group.hits != 0) shade(group, answered_[g]);
+    source_ = g;
+    // Once for each ray, as two rays of one sample may or may not share a group.
+    LaneMask shown = show_environment(group, answered_[g]);
+    if (group.hits != 0) shown |= shade(group, answered_[g], shown_);
+    if (shown != 0) add(answered_[g], shown, shown_.colour);
   }
 }
 
-void LitWalk::add_light(const ShadowGroup& group, const Light& light) {
-  const auto arriving = [&](int i) {
-    const glm::vec3 reflected = light.reflected.get(i);
-    return (group.dimmed >> i & 1) != 0 ? reflected * group.left.get(i) : reflected;
-  };
-  if (light.whole && group.dimmed == 0) {
-    SampleBlock& block = samples_[light.block];
-    add_masked(light.reflected.x, group.lit, block.colour.x);
-    add_masked(light.reflected.y, group.lit, block.colour.y);
-    add_masked(light.reflected.z, group.lit, block.colour.z);
-    return;
-  }
-  for (LaneMask rest = group.lit; rest != 0; rest &= rest - 1) {
-    const int i = std::countr_zero(rest);
-    const std::uint32_t pixel =
-        light.whole ? light.block * kPacketRays + static_cast<std::uint32_t>(i) : light.pixel[i];
-    SampleBlock& block = samples_[pixel / kPacketRays];
-    const int lane = static_cast<int>(pixel % kPacketRays);
-    block.colour.set(lane, block.colour.get(lane) + arriving(i));
+// A ray's lights are summed before they are added to its sample, so that it makes no difference
+// which rays share a group.
+void LitWalk::add_lights() {
+  for (std::size_t g = 0; g < wave_.shadows.size();) {
+    const Light& first = answered_lights_[g];
+    sum_ = {};
+    LaneMask lit = 0;
+    for (; g < wave_.shadows.size() && answered_lights_[g].source == first.source; ++g) {
+      const ShadowGroup& group = wave_.shadows[g];
+      shading::Vectors16& reflected = answered_lights_[g].reflected;
+      for (LaneMask rest = group.dimmed; rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        reflected.set(i, reflected.get(i) * group.left.get(i));
+      }
+      add_lanes(reflected, group.lit, sum_);
+      lit |= group.lit;
+    }
+    if (first.whole) {
+      add_lanes(sum_, lit, samples_[first.block].colour);
+      continue;
+    }
+    for (LaneMask rest = lit; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      SampleBlock& block = samples_[first.pixel[i] / kPacketRays];
+      const int lane = static_cast<int>(first.pixel[i] % kPacketRays);
+      block.colour.set(lane, block.colour.get(lane) + sum_.get(i));
+    }
   }
 }
 
-void LitWalk::add_environment(const RayGroup& group, const RayLanes& lanes) {
+LaneMask LitWalk::show_environment(const RayGroup& group, const RayLanes& lanes) {
   LaneMask missed = active_lanes(group.active) & ~group.hits;
-  if (missed == 0) return;
+  if (missed == 0) return 0;
   if (setting_.options.background == TraceOptions::Background::transparent) {
     // Primary rays make the picture transparent.
     for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
@@ -91,17 +97,11 @@ void LitWalk::add_environment(const RayGroup& group, const RayLanes& lanes) {
           1.0F - lanes.weight_of(i).x;
       missed &= ~(1U << i);
     }
-    if (missed == 0) return;
   }
-  if (setting_.shader.shader->environment.black) return;
-  shading::Vectors16 directions, radiance;
-  for (int i = 0; i < kPacketRays; ++i) {
-    directions.x[i] = -group.view.x[i];
-    directions.y[i] = -group.view.y[i];
-    directions.z[i] = -group.view.z[i];
-  }
-  shading::environment_radiance(setting_.shader, directions, 0.0F, missed, radiance);
-  add(lanes, missed, radiance);
+  if (missed == 0 || setting_.shader.shader->environment.black) return 0;
+  negate_lanes(group.view, directions_);
+  shading::environment_radiance(setting_.shader, directions_, 0.0F, missed, shown_.colour);
+  return missed;
 }
 
 LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces) {
@@ -125,10 +125,7 @@ LaneMask LitWalk::see(const RayGroup& group, RayLanes& lanes, const shading::Flo
   const LaneMask hidden = layered != 0 ? look_through(group, lanes, layered, alpha) : 0;
   const LaneMask seen = group.hits & ~hidden;
   if (lanes.whole) {  // the first that these pixels see
-    shading::Floats16& depth = samples_[lanes.block].depth;
-    for (int i = 0; i < kPacketRays; ++i) {
-      depth[i] = (seen >> i & 1) != 0 ? group.packet.far[i] : image::kEmptyDepth;
-    }
+    choose_lanes(group.packet.far, image::kEmptyDepth, seen, samples_[lanes.block].depth);
     return seen;
   }
   for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
@@ -186,9 +183,7 @@ void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
 void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16& radiance) {
   if (lanes.whole && !lanes.weighted) {
     SampleBlock& block = samples_[lanes.block];
-    add_masked(radiance.x, mask, block.colour.x);
-    add_masked(radiance.y, mask, block.colour.y);
-    add_masked(radiance.z, mask, block.colour.z);
+    add_lanes(radiance, mask, block.colour);
     return;
   }
   for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
@@ -202,14 +197,14 @@ void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16
 
 void LitWalk::ask_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
                          const shading::Surfaces& surfaces) {
-  shading::Arriving arriving;
+  shading::Arriving& arriving = arriving_;
   for (std::size_t l = 0; l < setting_.shader.lights.size(); ++l) {
     const LaneMask reached =
         shading::reflect_light(setting_.shader, l, surfaces, group.view, mask, arriving);
     if (reached == 0) continue;
     for (int i = 0; i < kPacketRays; ++i) arriving.distance[i] *= kShadowReach;
     ask_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
-                arriving.reflected, group.coherent);
+                arriving.reflected, true);
   }
 }
 
@@ -219,6 +214,7 @@ void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask
                           bool coherent) {
   rays_.shadow += static_cast<std::uint64_t>(std::popcount(mask));
   Light& light = asked_lights_.add();
+  light.source = source_;
   light.whole = lanes.whole;
   light.block = lanes.block;
   if (!lanes.whole) std::copy_n(lanes.pixel, kPacketRays, light.pixel);
@@ -247,7 +243,9 @@ void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask
 
 void LitWalk::ask(const NextRay& ray) {
   if (used_ == kPacketRays) {
-    clear_lanes(next_.rays.add());
+    RayGroup& fresh = next_.rays.add();
+    clear_lanes(fresh);
+    fresh.coherent = true;  // neighbours' rays are mirrored and refracted alike
     RayLanes& lanes = asked_.add();
     lanes.whole = false;
     lanes.weighted = true;

@@ -6,6 +6,7 @@
 #include "image/image.h"
 #include "raytrace/bsdf.h"
 #include "raytrace/internal/ask.h"
+#include "raytrace/internal/lane_sums.h"
 #include "raytrace/internal/same_material.h"
 #include "raytrace/light_table.h"
 #include "shading/batch.h"
@@ -30,6 +31,8 @@ enum Dimension : std::uint32_t {
 
 // What a path tracer knows of the rays of a group besides.
 struct PathLanes {
+  bool whole = true;          // the primary rays of `block`: the rest is not set
+  std::uint32_t block = 0;    // of samples()
   shading::Vectors16 weight;  // what the sample makes of radiance along the ray
   shading::Floats16 pdf;      // with which the direction was drawn; 0: no other way finds it
   alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * sample block + lane in it
@@ -58,13 +61,8 @@ class Path final : public Walk {
     used_ = used_lights_ = kPacketRays;
     for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
       PathLanes& lanes = asked_.add();
-      for (int i = 0; i < kPacketRays; ++i) {
-        lanes.weight.set(i, glm::vec3(1.0F));
-        lanes.pdf[i] = 0.0F;
-        lanes.pixel[i] = block * kPacketRays + static_cast<std::uint32_t>(i);
-        lanes.bounce[i] = lanes.vertex[i] = 0;
-        lanes.placement[i] = lanes.triangle[i] = kMiss;
-      }
+      lanes.whole = true;
+      lanes.block = block;
     }
   }
 
@@ -78,8 +76,20 @@ class Path final : public Walk {
       add_light(wave_.shadows[g], answered_lights_[g]);
     }
     for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
-      add_sky(wave_.rays[g], answered_[g]);
-      if (wave_.rays[g].hits != 0) look_at(wave_.rays[g], answered_[g]);
+      PathLanes& lanes = answered_[g];
+      if (lanes.whole && wave_.rays[g].hits != 0) spell_out(lanes);
+      add_sky(wave_.rays[g], lanes);
+      if (wave_.rays[g].hits != 0) look_at(wave_.rays[g], lanes);
+    }
+  }
+
+  static void spell_out(PathLanes& lanes) {
+    for (int i = 0; i < kPacketRays; ++i) {
+      lanes.weight.set(i, glm::vec3(1.0F));
+      lanes.pdf[i] = 0.0F;
+      lanes.pixel[i] = lanes.block * kPacketRays + static_cast<std::uint32_t>(i);
+      lanes.bounce[i] = lanes.vertex[i] = 0;
+      lanes.placement[i] = lanes.triangle[i] = kMiss;
     }
   }
 
@@ -101,7 +111,13 @@ class Path final : public Walk {
   void add_sky(const RayGroup& group, const PathLanes& lanes) {
     LaneMask missed = active_lanes(group.active) & ~group.hits;
     if (missed == 0) return;
-    if (setting_.options.background == TraceOptions::Background::transparent) {
+    const bool transparent = setting_.options.background == TraceOptions::Background::transparent;
+    if (lanes.whole && transparent) {
+      SampleBlock& block = samples_[lanes.block];
+      choose_lanes(block.alpha.lane, 0.0F, ~missed, block.alpha);
+      return;
+    }
+    if (transparent) {
       for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
         if (lanes.bounce[i] != 0) continue;
@@ -111,12 +127,9 @@ class Path final : public Walk {
       }
     }
     if (missed == 0 || setting_.shader.shader->environment.black) return;
-    for (int i = 0; i < kPacketRays; ++i) {
-      directions_.x[i] = -group.view.x[i];
-      directions_.y[i] = -group.view.y[i];
-      directions_.z[i] = -group.view.z[i];
-    }
+    negate_lanes(group.view, directions_);
     shading::environment_radiance(setting_.shader, directions_, 0.0F, missed, colour_);
+    if (lanes.whole) return add_lanes(colour_, missed, samples_[lanes.block].colour);
     for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       float share = 1.0F;
@@ -237,7 +250,7 @@ class Path final : public Walk {
   std::pair<PathLanes*, int> lane_for_ray() {
     if (used_ == kPacketRays) {
       clear_lanes(next_.rays.add());
-      asked_.add();
+      asked_.add().whole = false;
       used_ = 0;
     }
     return {&asked_.back(), used_++};

@@ -72,8 +72,11 @@ inline Hit hit_of(const RayPacket& packet, int i) {
 // What a shadow ray passed on its way that does not stop it altogether, in no particular order.
 struct SeeThrough {
   static constexpr int kMost = 12;  // beyond that many layers nothing is seen
+  SeeThrough() {}                   // thousands a second: hits are left as they are
   int count = 0;
-  Hit hits[kMost];
+  union {
+    Hit hits[kMost];
+  };
 };
 
 }  // namespace delray::raytrace

@@ -35,19 +35,10 @@ enum : std::uint32_t { kPosition, kLens, kFirstFree };
 
 }  // namespace
 
-// Keys of pixels take some time, and many integrators can do without.
 void Walk::ask_primary_rays() {
   const bool lens = setting_.view.lens_radius > 0.0F;
   const bool jittered = positions_ == Positions::random && setting_.samples > 1;
-  if (lens || positions_ == Positions::random) {
-    for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
-      for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide) {
-        for (int i = 0; i < kPacketRays; ++i) {
-          keys_.push_back(pixel_key(setting_.options.seed, x + i % kBlockSide, y + i / kBlockSide));
-        }
-      }
-    }
-  }
+  keys_.assign(static_cast<std::size_t>(task_.blocks()) * kPacketRays, 0);
   PrimaryPlaces places;
   std::size_t block = 0;
   for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
@@ -55,13 +46,14 @@ void Walk::ask_primary_rays() {
     block = 0;
     for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
       for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide, ++block) {
-        const std::uint64_t* keys = keys_.data() + block * kPacketRays;
+        const auto first = static_cast<std::uint32_t>(block * kPacketRays);
         const auto sample = static_cast<std::uint32_t>(s);
-        for (int i = 0; jittered && i < kPacketRays; ++i) {
-          places.set_position(i, sobol_pair(keys[i], sample, kPosition));
+        for (std::uint32_t i = 0; jittered && i < kPacketRays; ++i) {
+          places.set_position(static_cast<int>(i), sobol_pair(key(first + i), sample, kPosition));
         }
-        for (int i = 0; lens && i < kPacketRays; ++i) {
-          places.set_lens(i, disc_point(sobol_pair(keys[i], sample, kLens)));
+        for (std::uint32_t i = 0; lens && i < kPacketRays; ++i) {
+          places.set_lens(static_cast<int>(i),
+                          disc_point(sobol_pair(key(first + i), sample, kLens)));
         }
         const shading::LaneMask mask = inside(task_.pixels, x, y);
         set_primary_rays(setting_.view, x, y, places, mask, next_.rays.add());
@@ -71,9 +63,22 @@ void Walk::ask_primary_rays() {
   }
 }
 
-Sampler Walk::sampler(std::uint32_t pixel) const {
+std::uint64_t Walk::key(std::uint32_t pixel) {
+  std::uint64_t& key = keys_[pixel];
+  if (key == 0) {
+    const auto block = static_cast<int>(pixel / kPacketRays);
+    const auto lane = static_cast<int>(pixel % kPacketRays);
+    const int columns = task_.columns();
+    key = pixel_key(setting_.options.seed,
+                    task_.pixels.x0 + block % columns * kBlockSide + lane % kBlockSide,
+                    task_.pixels.y0 + block / columns * kBlockSide + lane / kBlockSide);
+  }
+  return key;
+}
+
+Sampler Walk::sampler(std::uint32_t pixel) {
   const auto pixels = static_cast<std::uint32_t>(keys_.size());
-  return {keys_[pixel % pixels], static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels,
+  return {key(pixel % pixels), static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels,
           kFirstFree};
 }
 
@@ -85,7 +90,6 @@ void Walk::start(const Task& task) {
   next_.clear();
   samples_.resize(static_cast<std::size_t>(task.blocks()) * static_cast<std::size_t>(task.samples));
   for (SampleBlock& block : samples_) clear(block);
-  keys_.clear();
   ask_primary_rays();
   begin();
   std::swap(wave_, next_);

@@ -103,7 +103,7 @@ class Walk {
   virtual void look() = 0;
 
   // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
-  Sampler sampler(std::uint32_t pixel) const;
+  Sampler sampler(std::uint32_t pixel);
 
   Setting setting_;
   Task task_;
@@ -113,9 +113,11 @@ class Walk {
 
  private:
   void ask_primary_rays();
+  std::uint64_t key(std::uint32_t pixel);
 
   Positions positions_;
-  std::vector<std::uint64_t> keys_;  // of the task's pixels, 16 for each block
+  std::vector<std::uint64_t>
+      keys_;  // of the task's pixels, 16 for each block; 0: not yet asked for
 };
 
 }  // namespace delray::raytrace

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "raytrace/internal/ask.h"
+#include "raytrace/internal/lane_sums.h"
 #include "raytrace/internal/lit_walk.h"
 #include "raytrace/optics.h"
 #include "shading/shade.h"
@@ -21,13 +22,13 @@ class Whitted final : public LitWalk {
   using LitWalk::LitWalk;
 
  private:
-  void shade(RayGroup& group, RayLanes& lanes) override {
+  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
     const LaneMask seen = look_at(group, lanes, surfaces_);
-    if (seen == 0) return;
-    shading::Vectors16 colour;
-    add(lanes, seen, surfaces_.emission);
+    if (seen == 0) return 0;
+    shading::Vectors16 &sum = shown.colour, &colour = colour_;
+    copy_lanes(surfaces_.emission, seen, sum);
     shading::ambient_diffuse(setting_.shader, surfaces_, group.view, seen, colour);
-    add(lanes, seen, colour);
+    add_lanes(colour, seen, sum);
     ask_lights(group, lanes, seen, surfaces_);
 
     // How much of the blurred reflection of the environment each lane shows.
@@ -50,12 +51,13 @@ class Whitted final : public LitWalk {
         colour.y[i] *= blurred[i];
         colour.z[i] *= blurred[i];
       }
-      add(lanes, some, colour);
+      add_lanes(colour, some, sum);
     }
     if (ended != 0) {
       shading::ambient_transmitted(setting_.shader, surfaces_, group.view, ended, colour);
-      add(lanes, ended, colour);
+      add_lanes(colour, ended, sum);
     }
+    return seen;
   }
 
   // Asks for the mirrored and the refracted ray of a lane. Returns the part of the reflection that
@@ -105,6 +107,7 @@ class Whitted final : public LitWalk {
   }
 
   shading::Surfaces surfaces_;
+  shading::Vectors16 colour_;
 };
 
 }  // namespace

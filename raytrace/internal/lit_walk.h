@@ -45,8 +45,9 @@ class LitWalk : public Walk {
       : Walk(setting, positions) {}
 
  protected:
-  // Adds what the surfaces that a group's rays met show, and asks for more.
-  virtual void shade(RayGroup& group, RayLanes& lanes) = 0;
+  // Writes what the surfaces that a group's rays met show to their lanes of `shown`, and asks for
+  // more. Returns those lanes. REQUIRES: group.hits != 0.
+  virtual shading::LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) = 0;
 
   // Sets `surfaces` of a group's hits, and does what see() does.
   shading::LaneMask look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces);
@@ -54,9 +55,6 @@ class LitWalk : public Walk {
   // Given Surface::alpha of the hits: asks for rays behind layers, multiplies weights by alpha,
   // notes depths. Returns the lanes that show anything.
   shading::LaneMask see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha);
-
-  // Adds what leaves surfaces towards the lanes' rays to their samples.
-  void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
 
   // Asks for shadow rays to every light that matters, one group of rays for each.
   void ask_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
@@ -78,6 +76,7 @@ class LitWalk : public Walk {
  private:
   // What shadow rays will add to samples if all of the light arrives.
   struct Light {
+    std::size_t source = 0;  // the group whose hits they start from
     bool whole = true;
     std::uint32_t block = 0;
     alignas(64) std::uint32_t pixel[kPacketRays];
@@ -86,14 +85,19 @@ class LitWalk : public Walk {
 
   void begin() final;
   void look() final;
-  void add_light(const ShadowGroup& group, const Light& light);
-  void add_environment(const RayGroup& group, const RayLanes& lanes);
+  void add_lights();
+  void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
+  shading::LaneMask show_environment(const RayGroup& group, const RayLanes& lanes);
   shading::LaneMask look_through(const RayGroup& group, RayLanes& lanes, shading::LaneMask layered,
                                  const shading::Floats16& alpha);
   void ask_behind(const RayGroup& group, const RayLanes& lanes, int i, const glm::vec3& weight);
 
   Groups<RayLanes> asked_, answered_;  // of next_.rays and wave_.rays
   Groups<Light> asked_lights_, answered_lights_;
+  shading::Vectors16 directions_, sum_;
+  shading::Shaded shown_;
+  shading::Arriving arriving_;
+  std::size_t source_ = 0;  // the group that is looked at
   int used_ = kPacketRays;  // lanes of the last group of next_.rays
 };
 

@@ -64,7 +64,7 @@ TEST(EmbreeScene, PacketsAgreeWithSingleRays) {
       packet.mask[i] = 0xFFFFFFFFU;
       packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
     }
-    tracer.embree.intersect(active, packet);
+    tracer.embree.intersect(active, packet, true);
     for (int i = 0; i < kPacketRays; ++i) {
       Ray one = ray({packet.origin_x[i], packet.origin_y[i], 5}, {0, 0, -1});
       tracer.embree.intersect(one);

@@ -1,0 +1,223 @@
+#include "raytrace/path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/generate.h"
+#include "tests/raytrace/small_scenes.h"
+
+namespace delray::raytrace {
+namespace {
+
+RenderOptions path_options(int side, int samples) {
+  RenderOptions options = small(side, side);
+  options.integrator = "path";
+  options.samples = samples;
+  return options;
+}
+
+glm::dvec3 mean(const Result& result) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < result.image.pixels(); ++i) {
+    const image::RgbaF& p = result.image.colour[i];
+    sum += glm::dvec3(p.r, p.g, p.b);
+  }
+  return sum / static_cast<double>(result.image.pixels());
+}
+
+scenes::Camera inside() {
+  scenes::Camera camera;
+  camera.eye = {0.2F, 0.1F, 0};
+  camera.at = {0, 0, -1};
+  camera.vertical_fov = 60;
+  return camera;
+}
+
+TEST(Path, ClosedLambertianSphereReturnsItsAlbedoSeries) {
+  for (const float albedo : {0.3F, 0.8F}) {
+    scenes::Scene scene;
+    scenes::Material& wall = add(scene, sphere(24));
+    wall.base_colour = {albedo, albedo * 0.5F, 0, 1};
+    wall.ior = 1.0F;
+    wall.emission = {0.5F, 0.5F, 0.5F};
+    RenderOptions options = path_options(24, 32);
+    for (const int depth : {0, 1, 40}) {
+      options.trace.depth = depth;
+      const glm::dvec3 found = mean(render_alone(scene, inside(), options));
+      for (int k = 0; k < 3; ++k) {
+        const double a = wall.base_colour[k];
+        const double expected = 0.5 * (1 - std::pow(a, depth + 1)) / (1 - a);
+        EXPECT_NEAR(found[k], expected, 0.005 * expected) << albedo << " " << depth << " " << k;
+      }
+    }
+  }
+}
+
+TEST(Path, EnergyNeverGrows) {
+  for (const float metallic : {0.0F, 1.0F}) {
+    for (const float roughness : {0.0F, 0.3F, 1.0F}) {
+      for (const float transmission : {0.0F, 1.0F}) {
+        scenes::Scene scene;
+        scenes::Material& ball = add(scene, sphere(24));
+        ball.base_colour = glm::vec4(1);
+        ball.metallic = metallic;
+        ball.roughness = roughness;
+        ball.transmission = transmission;
+        scene.environment.zenith = scene.environment.horizon = scene.environment.ground =
+            glm::vec3(1);
+        scenes::Camera camera;
+        camera.eye = {0, 0, 3};
+        camera.vertical_fov = 20;  // within the ball
+        RenderOptions options = path_options(12, 64);
+        options.trace.depth = 12;
+        const double found = mean(render_alone(scene, camera, options)).x;
+        EXPECT_LE(found, 1.01) << metallic << " " << roughness << " " << transmission;
+        EXPECT_GE(found, roughness < 1 ? 0.6 : 0.25)
+            << metallic << " " << roughness << " " << transmission;
+      }
+    }
+  }
+}
+
+TEST(Path, LightsOfNoSizeLightExactly) {
+  scenes::Scene scene;
+  scenes::Material& floor = add(scene, quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}));
+  floor.base_colour = glm::vec4(0.5F, 0.5F, 0.5F, 1);
+  floor.ior = 1.0F;
+  scenes::Light light;
+  light.kind = scenes::Light::Kind::point;
+  light.position = {0, 2, 0};
+  light.colour = glm::vec3(4);
+  scene.lights.push_back(light);
+  scenes::Camera camera;
+  camera.eye = {0, 4, 0.01F};
+  camera.vertical_fov = 1;
+  const Result result = render_alone(scene, camera, path_options(4, 4));
+  EXPECT_NEAR(mean(result).x, 4.0 / 4.0 * 0.5 / M_PI, 1e-3);
+}
+
+TEST(Path, CutOutsAndVeilsLetThroughWhatTheyShould) {
+  scenes::Scene scene;
+  scenes::Material& back = add(scene, quad({-20, -20, -1}, {40, 0, 0}, {0, 40, 0}));
+  back.base_colour = {0, 0, 0, 1};
+  back.ior = 1;
+  back.emission = {0, 0, 1};
+  scenes::Material& veil = add(scene, quad({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}));
+  veil.base_colour = {0, 0, 0, 0.25F};
+  veil.ior = 1;
+  veil.emission = {1, 0, 0};
+  veil.alpha = scenes::Material::Alpha::blend;
+  scenes::Camera camera;
+  camera.eye = {0, 0, 5};
+  const glm::dvec3 found = mean(render_alone(scene, camera, path_options(16, 64)));
+  EXPECT_NEAR(found.x, 0.25, 0.005);
+  EXPECT_NEAR(found.z, 0.75, 0.005);
+}
+
+// Mean squared difference of pixels.
+double difference(const Result& a, const Result& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.image.pixels(); ++i) {
+    const image::RgbaF &p = a.image.colour[i], &q = b.image.colour[i];
+    sum += (p.r - q.r) * (p.r - q.r) + (p.g - q.g) * (p.g - q.g) + (p.b - q.b) * (p.b - q.b);
+  }
+  return sum / static_cast<double>(a.image.pixels());
+}
+
+// Errors of independent samples: (variance / few + variance / many). A biased picture does not come
+// closer with more samples.
+TEST(Path, CornellBoxConvergesToItsReference) {
+  const scenes::Scene scene = scenes::generate("gen:cornell");
+  ASSERT_FALSE(scene.cameras.empty());
+  RenderOptions options = path_options(8, 4096);
+  options.trace.depth = 6;
+  options.trace.seed = 1;
+  const Result reference = render_alone(scene, scene.cameras[0], options);
+  options.trace.seed = 2;
+  options.samples = 16;
+  const double few = difference(render_alone(scene, scene.cameras[0], options), reference);
+  options.samples = 256;
+  const Result more = render_alone(scene, scene.cameras[0], options);
+  EXPECT_LT(difference(more, reference), few / 8);
+  EXPECT_GT(few, 0.0);
+  const glm::dvec3 a = mean(more), b = mean(reference);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 0.02 * b[k]);
+}
+
+TEST(Path, TransparentBackgroundShowsInAlpha) {
+  scenes::Scene scene;
+  add(scene, quad({0, -50, 0}, {50, 0, 0}, {0, 100, 0}));
+  scene.environment.horizon = {1, 1, 1};
+  scenes::Camera camera;
+  camera.eye = {0, 0, 5};
+  RenderOptions options = path_options(6, 4);
+  options.trace.background = TraceOptions::Background::transparent;
+  const Result result = render_alone(scene, camera, options);
+  EXPECT_EQ(pixel(result, 1, 2), (image::RgbaF{0, 0, 0, 0}));
+  EXPECT_EQ(pixel(result, 4, 2).a, 1.0F);
+}
+
+TEST(Ao, OpenPlainIsWhiteClosedBoxIsBlackEdgeIsHalf) {
+  scenes::Scene scene;
+  add(scene, quad({-1000, 0, 1000}, {2000, 0, 0}, {0, 0, -2000}));
+  scenes::Camera camera;
+  camera.eye = {0, 0.05F, 2};
+  camera.at = {0, 0, 0};
+  camera.vertical_fov = 1;
+  RenderOptions options = path_options(8, 64);
+  options.integrator = "ao";
+  EXPECT_EQ(mean(render_alone(scene, camera, options)).x, 1.0);
+  add(scene, quad({-1000, 0, -0.001F}, {2000, 0, 0}, {0, 1000, 0}));  // a wall right behind
+  camera.eye = {0, 0.5F, 0.5F};
+  camera.vertical_fov = 0.01F;
+  EXPECT_NEAR(mean(render_alone(scene, camera, options)).x, 0.5, 0.02);
+  options.trace.reach = 1e-4F;  // shorter than the way to the wall
+  EXPECT_NEAR(mean(render_alone(scene, camera, options)).x, 1.0, 0.02);
+  add(scene, sphere(), placed(100, {0, 0, 0}));
+  options.trace.reach = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(mean(render_alone(scene, camera, options)).x, 0.0);
+}
+
+TEST(Direct, WithoutShadowsNothingStandsInTheWayOfLight) {
+  scenes::Scene scene;
+  add(scene, quad({-20, -20, 0}, {40, 0, 0}, {0, 40, 0})).ior = 1.0F;
+  add(scene, quad({-20, -20, 8}, {40, 0, 0}, {0, 40, 0}));  // behind the camera
+  scenes::Light light;
+  scene.lights.push_back(light);
+  scenes::Camera camera;
+  camera.eye = {0, 0, 5};
+  RenderOptions options = small(8, 8);
+  options.integrator = "direct";
+  const Result shadowed = render_alone(scene, camera, options);
+  EXPECT_EQ(pixel(shadowed, 4, 4).g, 0.0F);
+  EXPECT_EQ(shadowed.statistics.rays.shadow, 64U);
+  options.trace.shadows = false;
+  const Result lit = render_alone(scene, camera, options);
+  EXPECT_NEAR(pixel(lit, 4, 4).g, 0.8F / static_cast<float>(M_PI), 1e-5);
+  EXPECT_EQ(lit.statistics.rays.shadow, 0U);
+  EXPECT_NEAR(depth(lit, 4, 4), 5.0F, 1e-5);
+}
+
+TEST(Lens, WhatIsAtTheFocusIsSharp) {
+  scenes::Scene scene;
+  scenes::Material& half = add(scene, quad({0, -50, 0}, {50, 0, 0}, {0, 100, 0}));
+  half.emission = {1, 1, 1};
+  half.base_colour = {0, 0, 0, 1};
+  half.ior = 1;
+  scenes::Camera camera;
+  camera.eye = {0, 0, 5};
+  camera.aperture = 1;
+  RenderOptions options = small(16, 16);
+  options.samples = 16;
+  const Result sharp = render_alone(scene, camera, options);
+  EXPECT_EQ(pixel(sharp, 7, 8).r, 0.0F);
+  EXPECT_NEAR(pixel(sharp, 8, 8).r, 1.0F, 1e-5);
+  camera.focus = 2.5F;
+  const Result blurred = render_alone(scene, camera, options);
+  EXPECT_GT(pixel(blurred, 7, 8).r, 0.1F);
+  EXPECT_LT(pixel(blurred, 8, 8).r, 0.9F);
+}
+
+}  // namespace
+}  // namespace delray::raytrace
