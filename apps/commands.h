@@ -12,5 +12,8 @@ void add_verify(CLI::App& program, Session& session);
 void add_render(CLI::App& program, Session& session);
 void add_compose(CLI::App& program, Session& session);
 void add_compare(CLI::App& program, Session& session);
+// These tell of all the others.
+void add_completion(CLI::App& program, Session& session);
+void add_manual(CLI::App& program, Session& session);
 
 }  // namespace delray::apps

@@ -46,6 +46,8 @@ int main(int argc, char** argv) {
   add_render(program, session);
   add_compose(program, session);
   add_compare(program, session);
+  add_completion(program, session);
+  add_manual(program, session);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,19 @@
+// What a shell needs to complete the words of a command line.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "apps/command_text.h"
+
+namespace delray::apps {
+
+struct Shell {
+  const char* name;
+  const char* description;  // how to use the script
+  std::string (*completion)(const CommandText& program);
+};
+
+std::span<const Shell> shells();
+
+}  // namespace delray::apps
