@@ -39,9 +39,15 @@ void occlude(const Tracer& tracer, ShadowGroup& group) {
 }  // namespace
 
 void answer(const Tracer& tracer, Wave& wave) {
+  const RayGroup* before = nullptr;
   for (RayGroup& group : wave.rays) {
     tracer.embree.intersect(group.active, group.packet, group.coherent);
+    if (!tracer.large) continue;
+    fetch_corners(tracer.placements, group);
+    if (before != nullptr) fetch_vertices(tracer.placements, *before);
+    before = &group;
   }
+  if (before != nullptr) fetch_vertices(tracer.placements, *before);
   for (RayGroup& group : wave.rays) find_points(tracer.placements, group);
   for (ShadowGroup& group : wave.shadows) occlude(tracer, group);
 }

@@ -254,7 +254,37 @@ void find_point(const Placement& placement, int i, RayGroup& group) {
   group.material[i] = placement.material;
 }
 
+// Calls f(placement, triangle) for the hits.
+template <class F>
+void for_hits(std::span<const Placement> placements, const RayGroup& group, F&& f) {
+  const RayPacket& packet = group.packet;
+  for (int i = 0; i < kPacketRays; ++i) {
+    if (group.active.ray[i] == 0 || packet.triangle[i] == kMiss) continue;
+    const Hit hit = hit_of(packet, i);
+    f(placements[hit.placement], hit.triangle);
+  }
+}
+
 }  // namespace
+
+void fetch_corners(std::span<const Placement> placements, const RayGroup& group) {
+  for_hits(placements, group, [](const Placement& placement, std::uint32_t triangle) {
+    __builtin_prefetch(&placement.mesh->triangles[triangle]);
+  });
+}
+
+void fetch_vertices(std::span<const Placement> placements, const RayGroup& group) {
+  for_hits(placements, group, [](const Placement& placement, std::uint32_t triangle) {
+    const scenes::Mesh& mesh = *placement.mesh;
+    const glm::uvec3 corners = mesh.triangles[triangle];
+    for (int k = 0; k < 3; ++k) {
+      __builtin_prefetch(placement.positions + corners[k]);
+      if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[corners[k]]);
+      if (!mesh.colours.empty()) __builtin_prefetch(&mesh.colours[corners[k]]);
+      if (placement.textured && !mesh.uvs.empty()) __builtin_prefetch(&mesh.uvs[corners[k]]);
+    }
+  });
+}
 
 void find_points(std::span<const Placement> placements, RayGroup& group) {
   alignas(64) std::uint32_t placement[kPacketRays];

@@ -12,4 +12,10 @@ namespace delray::raytrace {
 // last bit. Lanes that hit the same placement are computed together by vectors.
 void find_points(std::span<const Placement> placements, RayGroup& group);
 
+// Neighbouring hits in a large scene lie far apart in memory. Who has something else to do before
+// find_points() calls these first, one after the other, with some time in between: they fetch the
+// corners' numbers of the triangles that were hit, then what is known of those vertices.
+void fetch_corners(std::span<const Placement> placements, const RayGroup& group);
+void fetch_vertices(std::span<const Placement> placements, const RayGroup& group);
+
 }  // namespace delray::raytrace
