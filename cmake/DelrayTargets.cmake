@@ -31,6 +31,12 @@ if(DELRAY_SANITIZE)
   endif()
 endif()
 
+# The instruction sets that Highway compiles for. Not for SSSE3: processors without SSE4, the last of
+# 2013, get the code for SSE2. Not for vectors of a length that the compiler does not know, which
+# cannot be members of structures: machines that have them have NEON too.
+add_compile_definitions(
+  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE|HWY_SVE_256|HWY_SVE2|HWY_SVE2_128)")
+
 # What most sources include, parsed once for all libraries; nothing that brings in <string>, of which
 # GCC 12 warns where it does not come straight from a system header.
 set(DELRAY_COMMON_HEADERS <algorithm> <array> <cstdint> <cstring> <functional> <optional> <span>

@@ -3,7 +3,6 @@
 #include <bit>
 
 #include "raytrace/intersection.h"
-#include "shading/targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/hit_points.cpp"

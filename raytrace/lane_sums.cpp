@@ -1,7 +1,5 @@
 #include "raytrace/internal/lane_sums.h"
 
-#include "shading/targets.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/lane_sums.cpp"
 #include <hwy/foreach_target.h>

@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "shading/targets.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/primary_rays.cpp"
 #include <hwy/foreach_target.h>

@@ -2,8 +2,6 @@
 
 #include <cassert>
 
-#include "shading/targets.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/batch.cpp"
 #include <hwy/foreach_target.h>

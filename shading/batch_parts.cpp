@@ -2,8 +2,6 @@
 
 #include "shading/batch.h"
 
-#include "shading/targets.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/batch_parts.cpp"
 #include <hwy/foreach_target.h>
