@@ -1,7 +1,8 @@
-# delray_library(<folder> [DEPENDS <target>...] [PRIVATE_DEPENDS <target>...])
+# delray_library(<folder> [FIRST <source>...] [ALONE <source>...] [DEPENDS <target>...]
+#                [PRIVATE_DEPENDS <target>...])
 #
 # One static library per folder, made of every .cpp in it, known as delray::<folder>. Adding a source
-# file needs no change here or there.
+# file needs no change here or there. For FIRST and ALONE see delray_compile_together.
 include_guard()
 
 set(CMAKE_CXX_STANDARD 20)
@@ -23,6 +24,12 @@ add_library(delray_warnings INTERFACE)
 target_compile_options(delray_warnings INTERFACE -Wall -Wextra -Wshadow
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false on std::string + (PR105329)
                        $<$<BOOL:${DELRAY_WERROR}>:-Werror>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
+   AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+  # False as well, once <string> is precompiled.
+  target_compile_options(delray_warnings INTERFACE -Wno-array-bounds -Wno-stringop-overflow
+                                                   -Wno-stringop-overread)
+endif()
 if(DELRAY_SANITIZE)
   add_compile_options(-fsanitize=${DELRAY_SANITIZE} -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${DELRAY_SANITIZE})
@@ -37,10 +44,11 @@ endif()
 add_compile_definitions(
   "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SVE|HWY_SVE_256|HWY_SVE2|HWY_SVE2_128)")
 
-# What most sources include, parsed once for all libraries; nothing that brings in <string>, of which
-# GCC 12 warns where it does not come straight from a system header.
-set(DELRAY_COMMON_HEADERS <algorithm> <array> <cstdint> <cstring> <functional> <optional> <span>
-                          <vector> <glm/glm.hpp>)
+# What many sources include, parsed once for all libraries.
+set(DELRAY_COMMON_HEADERS
+    <algorithm> <array> <atomic> <bit> <cassert> <charconv> <chrono> <cmath> <cstddef> <cstdint> <cstring>
+    <deque> <exception> <filesystem> <functional> <limits> <map> <memory> <mutex> <numeric> <optional>
+    <span> <stdexcept> <string> <string_view> <thread> <tuple> <utility> <vector> <glm/glm.hpp>)
 if(NOT TARGET delray_headers)
   add_library(delray_headers STATIC ${CMAKE_CURRENT_LIST_DIR}/common_headers.cpp)
   target_compile_options(delray_headers PRIVATE -ffp-contract=off)
@@ -48,8 +56,58 @@ if(NOT TARGET delray_headers)
   target_precompile_headers(delray_headers PRIVATE ${DELRAY_COMMON_HEADERS})
 endif()
 
+# delray_compile_together(<target> [FIRST <source>...] [ALONE <source>...])
+#
+# Half of the time of a small source goes into headers, so six of a target are compiled in one go: first
+# those of FIRST, so that users of a heavy header share it, then the others by name. No two of them
+# declare the same name at the start of a line, so private names need not differ between files. Alone are
+# those of ALONE, which take long by themselves, and those that Highway compiles once per instruction set.
+# -DDELRAY_TOGETHER=OFF compiles each alone; with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources
+# show what they fail to include.
+option(DELRAY_TOGETHER "Compile several sources in one go" ON)
+function(delray_compile_together target)
+  cmake_parse_arguments(ARG "" "" "FIRST;ALONE" ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_MODE GROUP)
+  if(DELRAY_TOGETHER AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # takes sources for headers
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  list(TRANSFORM ARG_FIRST PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  list(TRANSFORM ARG_ALONE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  list(PREPEND sources ${ARG_FIRST})
+  list(REMOVE_DUPLICATES sources)
+  list(REMOVE_ITEM sources ${ARG_ALONE})
+  foreach(source IN LISTS sources)
+    file(READ ${source} text)
+    if(text MATCHES "\n#define HWY_TARGET_INCLUDE")
+      continue()
+    endif()
+    # A name is a line's word before its first bracket, colon, = or semicolon. Names of structures and
+    # constants within functions count too, as they would hide those of others.
+    string(REGEX MATCHALL " k[A-Z][A-Za-z0-9]* = " constants "${text}")
+    string(REGEX REPLACE "( : )|[][;={]" "(" text "${text}")
+    string(REGEX MATCHALL "\n( *(static )?(constexpr|struct|enum class)|[A-Za-z])[^\n(]*[ &*][A-Za-z0-9_]+ ?[(]"
+           names "${text}")
+    list(APPEND names ${constants})
+    list(TRANSFORM names REPLACE ".*[ &*]([A-Za-z0-9_]+) ?[(=] ?$" "\\1")
+    set(group 0)
+    while(TRUE)  # the first group with room and without any of these names
+      set(others ${names})
+      list(REMOVE_ITEM others ${names_${group}})
+      list(LENGTH sources_${group} size)
+      if(size LESS 6 AND "${others}" STREQUAL "${names}")
+        break()
+      endif()
+      math(EXPR group "${group} + 1")
+    endwhile()
+    list(APPEND names_${group} ${names})
+    list(APPEND sources_${group} ${source})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+endfunction()
+
 function(delray_library folder)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "FIRST;ALONE;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   set(target delray_${folder})
   if(sources)
@@ -58,6 +116,7 @@ function(delray_library folder)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:delray_warnings>
                                             ${ARG_PRIVATE_DEPENDS})
     target_precompile_headers(${target} REUSE_FROM delray_headers)
+    delray_compile_together(${target} FIRST ${ARG_FIRST} ALONE ${ARG_ALONE})
     set(scope PUBLIC)
   else()
     add_library(${target} INTERFACE)

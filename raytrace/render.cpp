@@ -70,7 +70,7 @@ class Walks {
 };
 
 // What all tiles of a frame have in common.
-struct Frame {
+struct TiledFrame {
   const Tracer& tracer;
   const RenderOptions& options;
   const Setting& setting;
@@ -103,7 +103,7 @@ void add_samples(const Walk& walk, const Task& task, float weight, const Rect& t
   }
 }
 
-TilePixels trace_tile(const Frame& frame, const Rect& tile) {
+TilePixels trace_tile(const TiledFrame& frame, const Rect& tile) {
   const FlushToZero flush;
   const double start = thread_seconds();
   TilePixels pixels;
@@ -175,7 +175,7 @@ void unpack(const comm::Buffer& message, std::span<const Rect> tiles,
   }
 }
 
-std::vector<TilePixels> trace(const Frame& frame) {
+std::vector<TilePixels> trace(const TiledFrame& frame) {
   std::vector<TilePixels> traced(frame.mine.size());
   parallel::Progress* progress = frame.options.progress;
   if (progress != nullptr) progress->start(frame.mine.size());
@@ -187,7 +187,7 @@ std::vector<TilePixels> trace(const Frame& frame) {
 }
 
 // Everything to rank 0, whose own tiles go straight into the image.
-void collect(comm::Communicator& communicator, const Frame& frame,
+void collect(comm::Communicator& communicator, const TiledFrame& frame,
              std::span<const TilePixels> traced, RankStatistics mine, const Schedule& dealt,
              Result& result) {
   const bool root = communicator.rank() == 0;
@@ -233,12 +233,13 @@ Result render(comm::Communicator& communicator, const Tracer& tracer, const scen
   const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
   const Setting setting{shader, tracer.lights, view, options.trace, options.samples};
   Walks walks(chosen, setting);
-  const Frame frame{tracer,
-                    options,
-                    setting,
-                    walks,
-                    tiles(width, height),
-                    tiles_of_rank(dealt, width, height, communicator.rank(), communicator.size())};
+  const TiledFrame frame{
+      tracer,
+      options,
+      setting,
+      walks,
+      tiles(width, height),
+      tiles_of_rank(dealt, width, height, communicator.rank(), communicator.size())};
 
   communicator.mark(comm::Phase::trace, 0);
   const std::vector<TilePixels> traced = trace(frame);
