@@ -13,7 +13,8 @@ namespace delray::comm {
 namespace internal {
 // Memory for messages, not initialised. Large blocks are kept when they are given back, up to 256
 // MiB in all, and handed out again: fresh memory from the system takes several times as long to
-// write to as a message takes on its way between two processes. Any thread.
+// write to as a message takes on its way between two processes. Under MPI they are of memory that
+// other processes of the machine see (internal/shared_memory.h). Any thread.
 std::byte* take_memory(std::size_t size);
 void give_back_memory(std::byte* memory, std::size_t size) noexcept;
 }  // namespace internal
@@ -72,6 +73,22 @@ class Buffer {
   // size() unless it stands for another message.
   std::size_t counted_bytes() const { return counted_; }
   bool empty() const { return size_ == 0; }
+
+  // For communicators, which hand over memory between buffers of several processes. Memory of so
+  // many bytes as take_memory gives, to be given back in the end.
+  static Buffer of_memory(std::byte* memory, std::size_t size) {
+    Buffer buffer;
+    buffer.bytes_ = memory;
+    buffer.size_ = buffer.counted_ = size;
+    return buffer;
+  }
+  // The memory is the caller's now, the buffer empty.
+  std::byte* release() {
+    size_ = counted_ = 0;
+    return std::exchange(bytes_, nullptr);
+  }
+  // Whether memory of so many bytes is a block of internal::block_pool().
+  static bool is_pooled(std::size_t size);
 
   // The bytes as values of T. REQUIRES: size() is a multiple of sizeof(T).
   template <class T>

@@ -8,7 +8,9 @@
 #include <deque>
 #include <exception>
 #include <numeric>
+#include <optional>
 #include <thread>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,8 @@
 #include "comm/internal/message_queue.h"
 #include "comm/internal/mpi_end.h"
 #include "comm/internal/mpi_header.h"
+#include "comm/internal/shared_memory.h"
+#include "comm/internal/shared_message.h"
 
 namespace delray::comm {
 namespace {
@@ -26,6 +30,7 @@ using Clock = std::chrono::steady_clock;
 // Tags of MPI messages beyond those of the interface. Every MPI allows tags to 32767.
 constexpr int kTagLong = 32000;   // announces a message that travels in pieces
 constexpr int kTagPiece = 32001;  // a piece of the announced message
+using internal::kTagShared;
 static_assert(kEndOfReservedTags <= kTagLong);
 
 struct LongMessage {
@@ -59,7 +64,14 @@ struct Engine {
   std::deque<Transfer> unfinished;
   std::size_t next_sweep = 64;
   // Communicators destroyed by an exception: others may still send into them.
-  std::vector<MPI_Comm> retired;
+  struct Retired {
+    MPI_Comm communicator;
+    std::vector<int> world_ranks;
+  };
+  std::vector<Retired> retired;
+  // By rank in `root`: processes of this machine that share memory.
+  std::unordered_map<int, internal::SharedMemory> neighbours;
+  bool all_are_neighbours = false;
 
   void finish_some() {
     std::erase_if(unfinished, [](Transfer& transfer) { return completed(transfer.requests); });
@@ -85,11 +97,24 @@ struct Engine {
 // ends look, it takes long to sleep.
 class Patience {
  public:
-  explicit Patience(const Engine& engine) : looks_(engine.cores_are_scarce ? kSpins : 0) {}
+  explicit Patience(const Engine& engine)
+      : engine_(engine), looks_(engine.cores_are_scarce ? kSpins : 0) {}
 
-  void pause(bool on_their_way = false) {
+  // How often others have rung for this process. To be read before one looks.
+  std::uint32_t rings() const { return engine_.neighbours.empty() ? 0 : internal::rings(); }
+
+  void pause(bool on_their_way = false, std::optional<std::uint32_t> rings_seen = std::nullopt) {
     ++looks_;
     if (looks_ <= kSpins) return;
+    if (rings_seen && !on_their_way && !engine_.neighbours.empty()) {
+      if (looks_ <= kSpins + kYieldsBeforeSleep) {
+        sched_yield();
+      } else {
+        internal::sleep_until_rung(*rings_seen,
+                                   engine_.all_are_neighbours ? kLongSleep : kShortSleep);
+      }
+      return;
+    }
     const int rest = looks_ - kSpins - (on_their_way ? kYieldsOnTheWay : kYields);
     if (rest <= 0) {
       sched_yield();
@@ -102,6 +127,10 @@ class Patience {
  private:
   // A look and a yield take about a microsecond where nobody else wants the core.
   static constexpr int kSpins = 1000, kYields = 1000, kYieldsOnTheWay = 100000;
+  // Where those who send ring: for all messages, or but for those from other machines.
+  static constexpr int kYieldsBeforeSleep = 4;
+  static constexpr std::chrono::microseconds kLongSleep{1000}, kShortSleep{50};
+  const Engine& engine_;
   int looks_;
 };
 
@@ -130,7 +159,7 @@ class MpiCommunicator final : public Communicator {
         [[maybe_unused]] auto* leaked = new std::shared_ptr<Engine>(engine_);
       }
     } else if (unwinding) {
-      engine_->retired.push_back(communicator_);
+      engine_->retired.push_back({communicator_, std::move(world_ranks_)});
     } else {
       MPI_Comm_free(&communicator_);
     }
@@ -151,6 +180,14 @@ class MpiCommunicator final : public Communicator {
     }
     engine_->reap();
     const std::size_t piece = engine_->options.piece_bytes;
+    if (message.size() < piece && engine_->neighbours.count(world_ranks_[to]) > 0) {
+      const std::size_t bytes = message.size();
+      if (const auto place = internal::lend(message)) {
+        const internal::SharedMessage announcement{tag, *place, bytes};
+        start_send(to, kTagShared, Buffer::of_value(announcement), sizeof announcement);
+        return;
+      }
+    }
     if (message.size() < piece) {
       start_send(to, tag, std::move(message), piece);
       return;
@@ -220,6 +257,8 @@ class MpiCommunicator final : public Communicator {
                 communicator_, &outgoing.requests.emplace_back());
       begin += count;
     } while (begin < outgoing.buffer.size());
+    const auto neighbour = engine_->neighbours.find(world_ranks_[to]);
+    if (neighbour != engine_->neighbours.end()) internal::ring(neighbour->second);
   }
 
   // Moves everything that has come into the queue. Order per source is kept: MPI does not let a
@@ -233,6 +272,8 @@ class MpiCommunicator final : public Communicator {
       if (!found) return;
       if (status.MPI_TAG == kTagLong) {
         pull_long(handle, status.MPI_SOURCE);
+      } else if (status.MPI_TAG == kTagShared) {
+        pull_shared(handle, status.MPI_SOURCE);
       } else {
         int bytes = 0;
         MPI_Get_count(&status, MPI_BYTE, &bytes);
@@ -246,6 +287,15 @@ class MpiCommunicator final : public Communicator {
         queue_.push(status.MPI_SOURCE, status.MPI_TAG, 0, std::move(incoming));
       }
     }
+  }
+
+  void pull_shared(MPI_Message& handle, int source) {
+    internal::SharedMessage announcement{};
+    MPI_Mrecv(&announcement, sizeof announcement, MPI_BYTE, &handle, MPI_STATUS_IGNORE);
+    const internal::SharedMemory& neighbour = engine_->neighbours.at(world_ranks_[source]);
+    if (!internal::can_reach(neighbour)) engine_->end("the memory of a neighbour is out of reach");
+    Transfer incoming{internal::borrow(neighbour, announcement.place, announcement.bytes), {}};
+    queue_.push(source, static_cast<Tag>(announcement.tag), 0, std::move(incoming));
   }
 
   void pull_long(MPI_Message& handle, int source) {
@@ -274,6 +324,7 @@ class MpiCommunicator final : public Communicator {
     Clock::time_point begin{};
     Patience patience(*engine_);
     for (bool first = true;; first = false) {
+      const std::uint32_t rings_seen = patience.rings();
       pull();
       if (Message* message = find(from, tag, whole)) return message;
       if (deadline.wait <= std::chrono::nanoseconds{0}) return nullptr;
@@ -286,7 +337,7 @@ class MpiCommunicator final : public Communicator {
                      std::to_string(std::chrono::duration<double>(longest).count()) +
                      " s for a message from " + internal::describe_pattern(from, tag));
       }
-      patience.pause(!engine_->unfinished.empty());
+      patience.pause(!engine_->unfinished.empty(), rings_seen);
     }
   }
 
@@ -302,9 +353,9 @@ class MpiCommunicator final : public Communicator {
   // until all have said that theirs are out (the idea of NBX: Hoefler, Siebert and Lumsdaine 2010).
   void drain() {
     std::vector<std::unique_ptr<MpiCommunicator>> retired;
-    for (const MPI_Comm communicator : std::exchange(engine_->retired, {})) {
+    for (auto& [communicator, world_ranks] : std::exchange(engine_->retired, {})) {
       retired.push_back(
-          std::make_unique<MpiCommunicator>(engine_, communicator, std::vector<int>()));
+          std::make_unique<MpiCommunicator>(engine_, communicator, std::move(world_ranks)));
     }
     MPI_Request everybody = MPI_REQUEST_NULL;
     bool finished_mine = false;
@@ -338,14 +389,39 @@ class MpiCommunicator final : public Communicator {
   internal::MessageQueue<Transfer> queue_;
 };
 
-// More processes on this machine than cores that this one may use.
-bool cores_are_scarce(MPI_Comm communicator) {
+// Shares memory with the processes of this machine, `local`, if each can reach that of the next.
+void share_memory(Engine& engine, MPI_Comm local, int processes) {
+  struct Neighbour {
+    std::int64_t rank;
+    internal::SharedMemory memory;
+  };
+  const Neighbour mine{engine.root_rank, internal::share_memory()};
+  std::vector<Neighbour> neighbours(static_cast<std::size_t>(processes));
+  MPI_Allgather(&mine, sizeof mine, MPI_BYTE, neighbours.data(), sizeof mine, MPI_BYTE, local);
+  int rank = 0;
+  MPI_Comm_rank(local, &rank);
+  int reached =
+      internal::can_reach(neighbours[static_cast<std::size_t>((rank + 1) % processes)].memory);
+  MPI_Allreduce(MPI_IN_PLACE, &reached, 1, MPI_INT, MPI_MIN, local);
+  if (!reached) return;
+  for (const Neighbour& neighbour : neighbours) {
+    if (neighbour.rank != engine.root_rank) {
+      engine.neighbours.emplace(static_cast<int>(neighbour.rank), neighbour.memory);
+    }
+  }
+  int all = 1;
+  MPI_Comm_size(engine.root, &all);
+  engine.all_are_neighbours = processes == all;
+}
+
+void look_at_this_machine(Engine& engine) {
   MPI_Comm local = MPI_COMM_NULL;
-  MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
+  MPI_Comm_split_type(engine.root, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
   int processes = 1;
   MPI_Comm_size(local, &processes);
+  engine.cores_are_scarce = processes > static_cast<int>(std::thread::hardware_concurrency());
+  if (processes > 1 && engine.options.share_memory) share_memory(engine, local, processes);
   MPI_Comm_free(&local);
-  return processes > static_cast<int>(std::thread::hardware_concurrency());
 }
 
 }  // namespace
@@ -357,7 +433,7 @@ std::unique_ptr<Communicator> make_mpi_communicator(const void* mpi_communicator
   engine->options = options;
   MPI_Comm_dup(*static_cast<const MPI_Comm*>(mpi_communicator), &engine->root);
   MPI_Comm_rank(engine->root, &engine->root_rank);
-  engine->cores_are_scarce = cores_are_scarce(engine->root);
+  look_at_this_machine(*engine);
   int size = 0;
   MPI_Comm_size(engine->root, &size);
   std::vector<int> world_ranks(size);

@@ -15,6 +15,10 @@ struct MpiOptions {
   std::chrono::nanoseconds timeout = std::chrono::nanoseconds::max();
   // A message of this size or more travels in pieces of it. REQUIRES: 1 <= piece_bytes < 2^31.
   std::size_t piece_bytes = std::size_t{1} << 30;
+  // Processes of one machine hand over messages of 64 KiB and more in memory that they share; only
+  // where they are travels through MPI. Where the system does not let them, MPI copies as usual.
+  // Alike on all ranks.
+  bool share_memory = true;
 };
 
 // Whether a launcher (mpirun, mpiexec, srun) started this process, and as which rank (0 when none

@@ -1,9 +1,19 @@
 #include "composite/internal/exchange.h"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
 namespace delray::composite::internal {
+namespace {
+
+void merge_message(comm::Communicator& communicator, Layer& layer, PixelRange pixels, int from) {
+  const Side side = from < communicator.rank() ? Side::lower : Side::higher;
+  const comm::Buffer message = communicator.receive(from, kTagCompose);
+  communicator.work(comm::Work::pixels_composited, layer.merge(pixels, message, side));
+}
+
+}  // namespace
 
 void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to,
           int samples_per_pixel) {
@@ -13,24 +23,37 @@ void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int 
 
 void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from,
            int samples_per_pixel) {
-  const Side side = from < communicator.rank() ? Side::lower : Side::higher;
-  for_each_message(range, samples_per_pixel, [&](PixelRange piece) {
-    const comm::Buffer pixels = communicator.receive(from, kTagCompose);
-    communicator.work(comm::Work::pixels_composited, layer.merge(piece, pixels, side));
-  });
+  for_each_message(range, samples_per_pixel,
+                   [&](PixelRange piece) { merge_message(communicator, layer, piece, from); });
 }
 
+// A few messages are sent ahead of those that are merged, not all: what is on its way between ranks
+// of one machine is then still in its caches when it is merged.
 PixelRange exchange(comm::Communicator& communicator, Layer& layer, PixelRange range,
                     const Group& group, int samples_per_pixel) {
+  constexpr int kMessagesAhead = 8;  // of one rank to all others
   const int me = group.member_of(communicator.rank());
   const auto piece = [&](int i) { return piece_of(range, i, group.count, samples_per_pixel); };
-  for_each_outwards(me, group.count, [&](int member) {
-    send(communicator, layer, piece(member), group.rank_of(member), samples_per_pixel);
-  });
-  for_each_outwards(me, group.count, [&](int member) {
-    merge(communicator, layer, piece(me), group.rank_of(member), samples_per_pixel);
-  });
-  return piece(me);
+  const PixelRange mine = piece(me);
+  int most = 0;
+  for (int member = 0; member < group.count; ++member) {
+    most = std::max(most, messages_of(piece(member)));
+  }
+  const int ahead = std::max(1, kMessagesAhead / std::max(1, group.count - 1));
+  for (int i = 0; i < most + ahead; ++i) {
+    for_each_outwards(me, group.count, [&](int member) {
+      const PixelRange pixels = message_of(piece(member), i, samples_per_pixel);
+      if (pixels.size() == 0) return;
+      communicator.send(group.rank_of(member), kTagCompose, layer.cut(pixels));
+    });
+    const PixelRange pixels =
+        i < ahead ? PixelRange{} : message_of(mine, i - ahead, samples_per_pixel);
+    if (pixels.size() == 0) continue;
+    for_each_outwards(me, group.count, [&](int member) {
+      merge_message(communicator, layer, pixels, group.rank_of(member));
+    });
+  }
+  return mine;
 }
 
 PixelRange swap(comm::Communicator& members, Layer& layer, PixelRange range, int samples_per_pixel,
@@ -39,11 +62,8 @@ PixelRange swap(comm::Communicator& members, Layer& layer, PixelRange range, int
   const int me = members.rank();
   for (int distance = 1; distance < members.size(); distance *= 2) {
     members.mark(comm::Phase::compose, round++);
-    const int kept = me & distance ? 1 : 0;
-    send(members, layer, half_of(range, 1 - kept, samples_per_pixel), me ^ distance,
-         samples_per_pixel);
-    range = half_of(range, kept, samples_per_pixel);
-    merge(members, layer, range, me ^ distance, samples_per_pixel);
+    const Group pair{me & ~distance, distance, 2};
+    range = exchange(members, layer, range, pair, samples_per_pixel);
   }
   return range;
 }

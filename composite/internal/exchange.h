@@ -14,12 +14,20 @@ namespace delray::composite::internal {
 // (Measured between two MPI processes: half the time of one message.)
 inline constexpr std::uint64_t kPixelsOfMessage = std::uint64_t{1} << 16;
 
+inline int messages_of(PixelRange range) {
+  return range.size() == 0 ? 0 : static_cast<int>(range.size() / kPixelsOfMessage) + 1;
+}
+// What message i is of; nothing from messages_of(range) on, and before where there are fewer pixels
+// than messages.
+inline PixelRange message_of(PixelRange range, int i, int samples_per_pixel) {
+  const int count = messages_of(range);
+  return i < count ? piece_of(range, i, count, samples_per_pixel) : PixelRange{};
+}
+
 template <class F>
 void for_each_message(PixelRange range, int samples_per_pixel, F&& f) {
-  if (range.size() == 0) return;
-  const int count = static_cast<int>(range.size() / kPixelsOfMessage) + 1;
-  for (int i = 0; i < count; ++i) {
-    if (const PixelRange piece = piece_of(range, i, count, samples_per_pixel); piece.size() > 0) {
+  for (int i = 0; i < messages_of(range); ++i) {
+    if (const PixelRange piece = message_of(range, i, samples_per_pixel); piece.size() > 0) {
       f(piece);
     }
   }

@@ -221,6 +221,28 @@ TEST_P(CommunicatorTest, NeverBlocksOnLargeMessages) {
   });
 }
 
+TEST_P(CommunicatorTest, LetsMessagesBeKeptAndSentOn) {
+  for_ranks(2, [](Communicator& communicator) {
+    constexpr std::size_t kBytes = 150'000;
+    const int rank = communicator.rank(), size = communicator.size();
+    const auto seed = [&](int from, int i) { return static_cast<std::uint64_t>(10 * from + i); };
+    std::vector<Buffer> kept;
+    for (int i = 0; i < 10; ++i) {
+      communicator.send((rank + 1) % size, kData, pattern(kBytes, seed(rank, i)));
+      Buffer taken = communicator.receive((rank + size - 1) % size, kData);
+      if (i % 2 == 0) {
+        communicator.send((rank + 1) % size, kOther, std::move(taken));
+        taken = communicator.receive((rank + size - 1) % size, kOther);
+      }
+      kept.push_back(std::move(taken));
+    }
+    for (int i = 0; i < 10; ++i) {
+      const int from = (rank + 2 * size - (i % 2 == 0 ? 2 : 1)) % size;
+      EXPECT_TRUE(is_pattern(kept[static_cast<std::size_t>(i)], kBytes, seed(from, i))) << i;
+    }
+  });
+}
+
 TEST_P(CommunicatorTest, DeliversSizesAroundAPiece) {
   for_ranks(2, [](Communicator& c) {
     const int next = (c.rank() + 1) % c.size(), previous = (c.rank() + c.size() - 1) % c.size();

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "comm/collectives.h"
+#include "comm/internal/shared_message.h"
 #include "comm/ledger.h"
 #include "comm/mpi.h"
 #include "comm/recording.h"
@@ -49,7 +50,14 @@ int MPI_Ssend(const void* data, int values, MPI_Datatype type, int to, int tag, 
 }
 int MPI_Isend(const void* data, int values, MPI_Datatype type, int to, int tag, MPI_Comm all,
               MPI_Request* request) {
-  count(values, type);
+  if (tag == delray::comm::internal::kTagShared) {
+    delray::comm::internal::SharedMessage message{};
+    std::memcpy(&message, data, sizeof message);
+    sent_by_mpi.messages += 1;
+    sent_by_mpi.bytes += message.bytes;
+  } else {
+    count(values, type);
+  }
   return PMPI_Isend(data, values, type, to, tag, all, request);
 }
 int MPI_Issend(const void* data, int values, MPI_Datatype type, int to, int tag, MPI_Comm all,

@@ -1,0 +1,57 @@
+#include "comm/internal/block_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <set>
+#include <vector>
+
+namespace delray::comm::internal {
+namespace {
+
+constexpr std::size_t kBytes = 100'000;
+constexpr std::int64_t kProcess = 7;
+
+struct alignas(64) Line {
+  std::byte bytes[64];
+};
+
+class SharedBlocks : public ::testing::Test {
+ protected:
+  SharedBlocks() {
+    pool_.share(kProcess, std::as_writable_bytes(std::span(lines_)));
+    other_.share(kProcess + 1, std::as_writable_bytes(std::span(other_lines_)));
+  }
+
+  std::vector<Line> lines_{16'384}, other_lines_{64};  // 1 MiB, 4 KiB
+  BlockPool pool_, other_;
+};
+
+TEST_F(SharedBlocks, AreNotUsedAgainBeforeTheyAreBack) {
+  Block* const lent = pool_.take(kBytes);
+  ASSERT_TRUE(pool_.is_shared(*lent));
+  const std::size_t place = pool_.lend(lent);
+  EXPECT_EQ(static_cast<void*>(reinterpret_cast<std::byte*>(lines_.data()) + place), lent);
+  Block* const next = pool_.take(kBytes);
+  EXPECT_NE(next, lent);
+  EXPECT_FALSE(other_.is_shared(*lent));
+  other_.give_back(lent);
+  EXPECT_EQ(pool_.take(kBytes), lent);
+  pool_.give_back(next);
+  EXPECT_EQ(pool_.take(kBytes), next);
+}
+
+TEST_F(SharedBlocks, AreFollowedByThoseOfTheHeap) {
+  std::set<Block*> shared;
+  Block* block = pool_.take(kBytes);
+  for (; pool_.is_shared(*block); block = pool_.take(kBytes)) shared.insert(block);
+  EXPECT_GE(shared.size(), 8U);
+  EXPECT_LE(shared.size(), 10U);
+  std::fill_n(block->memory(), kBytes, std::byte{1});
+  pool_.give_back(block);
+  pool_.give_back(*shared.begin());
+  EXPECT_EQ(pool_.take(kBytes), *shared.begin());
+}
+
+}  // namespace
+}  // namespace delray::comm::internal
