@@ -20,6 +20,8 @@ if(DELRAY_CCACHE)
       CCACHE_SLOPPINESS=pch_defines,time_macros ${DELRAY_CCACHE})
 endif()
 
+option(DELRAY_TOGETHER "Compile several sources in one go" ON)
+
 add_library(delray_warnings INTERFACE)
 target_compile_options(delray_warnings INTERFACE -Wall -Wextra -Wshadow
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12: false on std::string + (PR105329)
@@ -29,6 +31,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   # False as well, once <string> is precompiled.
   target_compile_options(delray_warnings INTERFACE -Wno-array-bounds -Wno-stringop-overflow
                                                    -Wno-stringop-overread)
+endif()
+if(DELRAY_TOGETHER AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  # It takes names of one source to be hidden by those in headers of another.
+  target_compile_options(delray_warnings INTERFACE -Wno-shadow)
 endif()
 if(DELRAY_SANITIZE)
   add_compile_options(-fsanitize=${DELRAY_SANITIZE} -fno-omit-frame-pointer -g1)
@@ -64,7 +70,6 @@ endif()
 # those of ALONE, which take long by themselves, and those that Highway compiles once per instruction set.
 # -DDELRAY_TOGETHER=OFF compiles each alone; with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources
 # show what they fail to include.
-option(DELRAY_TOGETHER "Compile several sources in one go" ON)
 function(delray_compile_together target)
   cmake_parse_arguments(ARG "" "" "FIRST;ALONE" ${ARGN})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_MODE GROUP)
