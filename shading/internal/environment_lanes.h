@@ -10,8 +10,8 @@
 
 #include "shading/environment.h"
 #include "shading/internal/gradient.h"
-#include "shading/lanes.h"
 #include "shading/internal/texture_lanes.h"
+#include "shading/lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

@@ -8,8 +8,8 @@
 
 #include "shading/batch_shader.h"
 #include "shading/internal/brdf_lanes.h"
-#include "shading/lanes.h"
 #include "shading/internal/texture_lanes.h"
+#include "shading/lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {
