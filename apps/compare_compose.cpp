@@ -61,16 +61,12 @@ class Comparison {
  public:
   Comparison(const Session& session, const CompareRequest& request, const Prepared& prepared,
              parallel::Progress& progress)
-      : session_(session),
-        request_(request),
-        prepared_(prepared),
-        progress_(progress),
-        drawing_(&progress) {}
+      : session_(session), request_(request), prepared_(prepared), steps_(progress) {}
 
   ComposeComparison run() {
     // Each scheme, codec and number of ranks is measured or counted, then predicted.
     const std::size_t variants = schemes_of(request_).size() * request_.codecs.size();
-    progress_.start(2 * variants * (session_.under_mpi ? 1 : request_.ranks.size()));
+    steps_.start(2 * variants * (session_.under_mpi ? 1 : request_.ranks.size()));
     try {
       if (session_.under_mpi) {
         measure_processes();
@@ -118,28 +114,17 @@ class Comparison {
     for (const std::string& codec : codecs_of(share)) {
       for (const std::string& scheme : schemes_of(request_)) {
         // All ranks stop before the same scheme.
-        const bool stop = communicator.rank() == 0 && progress_.stop_requested();
+        const bool stop = communicator.rank() == 0 && steps_.stop_requested();
         if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0)
           throw parallel::Interrupted{};
         const MeasuredScheme measured =
             measure_scheme(communicator, share, scheme, codec, repeats(ranks), request_, prepared_);
         if (communicator.rank() != 0) continue;
         append(scheme, codec, ranks, measured);
-        count_step();
+        steps_.done();
       }
     }
     if (!request_.output.empty() && ranks == shown_ranks()) show_fastest(communicator, share);
-  }
-
-  // Stops are asked for in measure_all and predict, where nothing is lost by them.
-  void count_step() {
-    try {
-      progress_.advance();
-    } catch (const parallel::Interrupted&) {
-    }
-  }
-  void stop_if_asked() const {
-    if (progress_.stop_requested()) throw parallel::Interrupted{};
   }
 
   // Of the runs that are measured, few enough ranks that their pictures can be looked at.
@@ -169,7 +154,7 @@ class Comparison {
   void measure_threads(int ranks) {
     std::vector<raster::Share> shares;
     parallel::Arena(parallel::arena_threads()).execute([&] {
-      ShareDrawer drawer(request_, prepared_, &drawing_);
+      ShareDrawer drawer(request_, prepared_, steps_.inside());
       composite::MaskMaker maker;
       for (int rank = 0; rank < ranks; ++rank) {
         shares.push_back(drawer.draw(rank, ranks));
@@ -189,7 +174,7 @@ class Comparison {
       session_ranks_ = communicator.size();
       communicator.mark(comm::Phase::rasterize, 0);
       const raster::Share share = comm::all_or_none(communicator, comm::Phase::rasterize, [&] {
-        ShareDrawer drawer(request_, prepared_, &drawing_);
+        ShareDrawer drawer(request_, prepared_, steps_.inside());
         if (communicator.rank() == 0 && communicator.size() <= kMostMeasuredRanks) {
           masks_[communicator.size()] = drawer.masks(communicator.size());
         }
@@ -202,7 +187,7 @@ class Comparison {
   const std::vector<ImageMasks>& masks(int ranks) {
     if (masks_.count(ranks) == 0) {
       parallel::Arena(parallel::arena_threads()).execute([&] {
-        masks_[ranks] = ShareDrawer(request_, prepared_, &drawing_).masks(ranks);
+        masks_[ranks] = ShareDrawer(request_, prepared_, steps_.inside()).masks(ranks);
       });
     }
     return masks_[ranks];
@@ -230,8 +215,8 @@ class Comparison {
         }
         for (ComparedScheme& row : rows_) {
           if (row.codec != codec || row.ranks != ranks) continue;
-          stop_if_asked();
-          count_step();
+          steps_.stop_if_asked();
+          steps_.done();
           for (const auto& [name, machine] : machines) {
             const composite::Simulated run = simulate(row.scheme, hollow(images, codec), machine);
             row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
@@ -257,8 +242,8 @@ class Comparison {
 
   void count_simulated(const std::string& codec, int ranks, const std::vector<ImageMasks>& images) {
     for (const std::string& scheme : schemes_of(request_)) {
-      stop_if_asked();
-      count_step();
+      steps_.stop_if_asked();
+      steps_.done();
       const composite::Simulated run =
           simulate(scheme, hollow(images, codec), {comm::networks()[0].network, {}});
       ComparedScheme row;
@@ -300,8 +285,7 @@ class Comparison {
   const Session& session_;
   const CompareRequest& request_;
   const Prepared& prepared_;
-  parallel::Progress& progress_;
-  parallel::Progress drawing_;
+  Steps steps_;
   int session_ranks_ = 0;  // processes of mpirun
   ComposeComparison result_;
   std::map<int, std::vector<ImageMasks>> masks_;  // by number of ranks

@@ -7,22 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/render_frames.h"
-#include "apps/session.h"
+#include "apps/scene_comparison.h"
 #include "apps/spread.h"
-#include "apps/statistics.h"
 #include "composite/simulate.h"
 
 namespace delray::apps {
 
-struct CompareRequest {
-  RenderRequest render;  // scene, camera, size, threads
-  std::vector<int> ranks = {2, 3, 4, 8, 16, 64};
+struct CompareRequest : SceneComparison {
   std::vector<std::string> codecs = {"active"};
   std::vector<std::string> schemes;  // empty: all
-  bool quick = false;
-  bool list = false;
-  std::string output, statistics;
 };
 
 // How long a scheme would take.

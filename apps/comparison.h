@@ -1,20 +1,69 @@
-// How a comparison of compositing schemes is told: as JSON and as text.
+// What every `delray compare` has in common: its options, its steps, how what it found is told.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "apps/compare_compose.h"
+#include "apps/session.h"
 #include "apps/statistics.h"
+#include "parallel/progress.h"
 
 namespace delray::apps {
 
-// `delray.compare.compose/1`.
-Json comparison_statistics(const CompareRequest& request, const Prepared& prepared,
-                           const ComposeComparison& comparison);
-// A heading and a line for each row, with a column for each network that any row has.
-std::vector<std::vector<std::string>> comparison_table(const std::vector<ComparedScheme>& rows);
-// For people, on stdout.
-void print_comparison(const std::vector<ComparedScheme>& rows);
+struct ComparisonOptions {
+  std::string output;      // the page; empty: none
+  std::string statistics;  // --stats
+  bool quick = false;
+  bool list = false;
+};
+
+// Adds -o, --quick, --stats and --list with what the last ones do here.
+void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
+                            const std::string& listed);
+// Throws UsageError.
+void check(const ComparisonOptions& options);
+
+// A heading, then lines of as many texts.
+using TextTable = std::vector<std::vector<std::string>>;
+// On stdout, numbers aligned to the right.
+void print_aligned(const TextTable& table);
+
+// Runs of a comparison. A stop that was asked for is heard between two of them, where it loses
+// nothing.
+class Steps {
+ public:
+  explicit Steps(parallel::Progress& progress) : progress_(progress), inside_(&progress) {}
+
+  void start(std::uint64_t steps) { progress_.start(steps); }
+  // A run is finished; goes on whatever was asked for.
+  void done() {
+    try {
+      progress_.advance();
+    } catch (const parallel::Interrupted&) {
+    }
+  }
+  bool stop_requested() const { return progress_.stop_requested(); }
+  // Throws parallel::Interrupted.
+  void stop_if_asked() const {
+    if (stop_requested()) throw parallel::Interrupted{};
+  }
+  // For what a single run does.
+  parallel::Progress* inside() { return &inside_; }
+
+ private:
+  parallel::Progress& progress_;
+  parallel::Progress inside_;
+};
+
+struct Found {
+  TextTable table;                    // for people
+  Json statistics;                    // for scripts
+  bool unfinished = false;            // told to stop before the end
+  std::function<std::string()> page;  // made only where it is asked for
+};
+
+// Writes what was asked for and gives the exit code.
+int tell(const ComparisonOptions& options, Found&& found);
 
 }  // namespace delray::apps

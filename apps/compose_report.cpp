@@ -8,11 +8,12 @@
 #include <map>
 #include <optional>
 
-#include "apps/comparison.h"
+#include "apps/compose_figures.h"
 #include "apps/provenance.h"
 #include "apps/report/chart.h"
 #include "apps/report/matrix.h"
 #include "apps/report/page.h"
+#include "apps/report/series.h"
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 #include "apps/shown_scheme.h"
@@ -37,13 +38,6 @@ std::string name_of(const ComparedScheme& row, bool with_codec) {
   return with_codec ? row.scheme + ", " + row.codec : row.scheme;
 }
 
-template <class F>
-auto unique_of(const std::vector<ComparedScheme>& rows, F&& of) {
-  std::vector<std::decay_t<decltype(of(rows[0]))>> result;
-  for (const ComparedScheme& row : rows)
-    if (std::find(result.begin(), result.end(), of(row)) == result.end()) result.push_back(of(row));
-  return result;
-}
 std::vector<std::string> codecs_of(const std::vector<ComparedScheme>& rows) {
   return unique_of(rows, [](const ComparedScheme& row) { return row.codec; });
 }
@@ -56,16 +50,11 @@ using PointOf = std::function<std::optional<ChartPoint>(const ComparedScheme&)>;
 // A line for each scheme with the codec.
 std::vector<Series> series_of(const std::vector<ComparedScheme>& rows, const std::string& codec,
                               Source source, const PointOf& point) {
-  std::vector<Series> result;
-  for (const std::string& scheme :
-       unique_of(rows, [](const ComparedScheme& row) { return row.scheme; })) {
-    Series series{scheme, source, {}};
-    for (const ComparedScheme& row : rows)
-      if (row.scheme == scheme && row.codec == codec)
-        if (const std::optional<ChartPoint> at = point(row)) series.points.push_back(*at);
-    if (!series.points.empty()) result.push_back(std::move(series));
-  }
-  return result;
+  std::vector<ComparedScheme> of_codec;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_codec),
+               [&](const ComparedScheme& row) { return row.codec == codec; });
+  return series_by(
+      of_codec, [](const ComparedScheme& row) { return row.scheme; }, source, point);
 }
 
 Html chart_over_ranks(const std::vector<ComparedScheme>& rows, const std::string& codec,
@@ -320,7 +309,7 @@ Html one_run(const ShownScheme& shown) {
 }
 
 Html all_rows(const CompareRequest& request, const std::vector<ComparedScheme>& rows) {
-  const std::vector<std::vector<std::string>> text = comparison_table(rows);
+  const std::vector<std::vector<std::string>> text = compose_table(rows);
   Table result;
   for (std::size_t i = 0; i < text[0].size(); ++i) {
     const std::string& name = text[0][i];
@@ -354,7 +343,7 @@ std::string compose_report(const Session& session, const CompareRequest& request
   result.tabs.push_back({"Predictions", predictions(rows)});
   if (comparison.shown) result.tabs.push_back({"One run", one_run(*comparison.shown)});
   result.tabs.push_back({"All figures", all_rows(request, rows)});
-  result.data = comparison_statistics(request, prepared, comparison);
+  result.data = compose_statistics(request, prepared, comparison);
   result.provenance = provenance(session);
   return page(result);
 }

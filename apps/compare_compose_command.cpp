@@ -1,0 +1,63 @@
+// delray compare compose: the command line.
+#include <CLI/CLI.hpp>
+
+#include "apps/compare_commands.h"
+#include "apps/compare_compose.h"
+#include "apps/compose_figures.h"
+#include "apps/compose_report.h"
+#include "apps/list.h"
+#include "comm/network.h"
+#include "composite/codec.h"
+#include "composite/scheme.h"
+
+namespace delray::apps {
+namespace {
+
+int list() {
+  print_table(composite::schemes());
+  print_table(composite::codecs());
+  print_table(comm::networks());
+  return kDone;
+}
+
+int run(Session& session, const CLI::App& command, CompareRequest request) {
+  if (request.list) return list();
+  for (const std::string& codec : request.codecs) find_entry(composite::codecs(), codec, "--codec");
+  for (const std::string& scheme : request.schemes)
+    if (composite::find_scheme(scheme) == nullptr)
+      find_entry(composite::schemes(), scheme, "--compose");
+  return run_scene_comparison(
+      session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
+        const auto comparison = std::make_shared<const ComposeComparison>(
+            compare_compose(session, request, prepared, progress));
+        return Found{
+            compose_table(comparison->rows), compose_statistics(request, prepared, *comparison),
+            comparison->unfinished,
+            [&, comparison] { return compose_report(session, request, prepared, *comparison); }};
+      });
+}
+
+}  // namespace
+
+void add_compare_compose(CLI::App& compare, Session& session) {
+  CLI::App* command =
+      compare.add_subcommand("compose", "every compositing scheme: counted, measured, predicted");
+  const auto request = std::make_shared<CompareRequest>();
+  request->ranks = {2, 3, 4, 8, 16, 64};
+  add_scene_comparison_options(*command, *request,
+                               "(default 2,3,4,8,16,64); more than 64 are simulated");
+  command
+      ->add_option("--codec", request->codecs,
+                   "how pixels travel, separated by commas (default active)")
+      ->delimiter(',');
+  command->add_option("--compose", request->schemes, "schemes, separated by spaces (default all)");
+  add_comparison_options(*command, *request, "measure once each", "schemes, codecs, networks");
+  add_common_options(*command, session,
+                     "compare compose model.glb --ranks 2,4,8,1024 --codec active,dense\n"
+                     "compare compose gen:terrain:1000000 --size 1920x1080 --stats compose.json");
+  command->callback([&session, request, command] {
+    session.run = [&session, request, command] { return run(session, *command, *request); };
+  });
+}
+
+}  // namespace delray::apps

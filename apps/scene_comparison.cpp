@@ -1,0 +1,53 @@
+#include "apps/scene_comparison.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/progress_bar.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+void check_scene(const CLI::App& command, const Session& session, SceneComparison& options) {
+  if (options.render.scene.file.path.empty())
+    throw UsageError(fmt::format("compare {}: SCENE is missing", command.get_name()));
+  check(options);
+  parse_size(options.render);
+  options.render.behind = parse_background(options.render.background);
+  if (session.under_mpi && command.count("--ranks") > 0)
+    throw UsageError("--ranks: under mpirun the ranks are its processes");
+  std::sort(options.ranks.begin(), options.ranks.end());
+  options.ranks.erase(std::unique(options.ranks.begin(), options.ranks.end()), options.ranks.end());
+}
+
+}  // namespace
+
+void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
+                                  const std::string& ranks) {
+  add_scene_options(command, options.render.scene);
+  command.add_option("--size", options.render.size, "WIDTHxHEIGHT (default 1280x720)");
+  add_camera_options(command, options.render.camera);
+  command.add_option("--ranks", options.ranks, "how many, separated by commas " + ranks)
+      ->delimiter(',')
+      ->check(CLI::Range(1, 4096));
+  command.add_option("--threads", options.render.launch.threads, "workers per rank (default 1)")
+      ->check(CLI::Range(1, 4096));
+}
+
+int run_scene_comparison(
+    Session& session, const CLI::App& command, SceneComparison& options,
+    const std::function<Found(const Prepared& prepared, parallel::Progress& progress)>& compare) {
+  check_scene(command, session, options);
+  const ProgressBar bar(session, "compare");
+  const parallel::AllowThreads allowed(parallel::arena_threads());
+  const auto prepared = parallel::Arena(parallel::arena_threads()).execute([&] {
+    return prepare(options.render, &session.progress);
+  });
+  Found found = compare(*prepared, session.progress);
+  return session.first_process ? tell(options, std::move(found)) : int{kDone};
+}
+
+}  // namespace delray::apps
