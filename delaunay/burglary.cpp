@@ -64,6 +64,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   Triangulation result = run.finish();
   if (repaired) return result;
   if (kCounted) ++options.statistics->synchronization.rebuilds;
+  if (options.makers != nullptr) options.makers->clear();
   return rebuild(points, options);
 }
 

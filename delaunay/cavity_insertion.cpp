@@ -68,8 +68,8 @@ Triangulation run(PointView<double> points, const Options& options) {
   const std::uint64_t distinct = insert(input, options, options.statistics);
   watch.lap();
   const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
-  Triangulation result =
-      extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads);
+  Triangulation result = extract(std::move(mesh), std::span(rows.data(), rows.size()),
+                                 options.threads, options.threads > 1 ? options.makers : nullptr);
   result.distinct = distinct;
   seconds.extract = watch.lap();
   return result;

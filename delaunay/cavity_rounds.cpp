@@ -10,6 +10,7 @@
 #include "delaunay/internal/cavity_inserter.h"
 #include "delaunay/internal/regions.h"
 #include "delaunay/internal/slot_pool.h"
+#include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay::internal {
@@ -38,10 +39,12 @@ class Together {
       : input_(input),
         vertices_(input.order.vertices.data()),
         pool_(input.used, input.mesh.size()),
-        threads_(static_cast<std::size_t>(options.threads)) {
+        threads_(static_cast<std::size_t>(options.threads)),
+        makers_(options.makers) {
     for (std::size_t t = 0; t < threads_; ++t) {
       kernels_.emplace_back(input.mesh, vertices_, input.tests, pool_, options.progress, timed);
     }
+    if (makers_ != nullptr) makers_->assign(input.mesh.size(), 0);
     const glm::dvec3 size = input.range.high * 0.5 - input.range.low * 0.5;
     std::iota(axes_.begin(), axes_.end(), 0);
     std::sort(axes_.begin(), axes_.end(), [&](int i, int j) { return size[i] > size[j]; });
@@ -81,6 +84,13 @@ class Together {
   void grow_mesh() {
     grow(input_.mesh);
     pool_.extend(input_.mesh.size());
+    if (makers_ != nullptr) makers_->resize(input_.mesh.size(), 0);
+  }
+  // Before the calling thread inserts with a kernel.
+  void note_makers(Kernel& inserter) const {
+    if (makers_ == nullptr) return;
+    const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
+    inserter.kernel().note_makers(makers_->data(), thread);
   }
 
   // Cuts the region of `sample` into `parts`.
@@ -182,6 +192,7 @@ class Together {
     std::vector<std::uint8_t> has_room(parts), has_inserted(parts);
     parallel::parallel_for(0, parts, 1, [&](std::size_t t) {
       const std::uint64_t before = kernels_[t].inserted();
+      note_makers(kernels_[t]);
       has_room[t] = insert_region(kernels_[t], regions[t], starts[t], waiting, done) ? 1 : 0;
       has_inserted[t] = kernels_[t].inserted() > before ? 1 : 0;
     });
@@ -201,8 +212,12 @@ class Together {
     Kernel& inserter = kernels_.front();
     inserter.kernel().set_region({});
     inserter.kernel().start_at(some_simplex_);
+    note_makers(inserter);
     for (const VertexNumber vertex : waiting) {
-      while (inserter.insert(vertex) == Insertion::kFull) grow_mesh();
+      while (inserter.insert(vertex) == Insertion::kFull) {
+        grow_mesh();
+        note_makers(inserter);
+      }
     }
     some_simplex_ = inserter.kernel().last_simplex();
   }
@@ -211,6 +226,7 @@ class Together {
   SpaceVertex* vertices_;
   SlotPool pool_;
   std::size_t threads_;
+  std::vector<std::uint16_t>* makers_;  // by slot; null if nobody wants to know
   std::deque<Kernel> kernels_;
   std::array<int, 3> axes_;         // longest extent first
   SimplexNumber some_simplex_ = 0;  // finite and alive

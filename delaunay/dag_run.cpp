@@ -119,6 +119,7 @@ Triangulation DagRun<D>::leaves() const {
   if (is_flat()) return result;
   struct Share {
     std::vector<std::uint32_t> vertices;
+    std::vector<std::uint16_t> makers;
     std::uint64_t ghosts = 0;
   };
   const auto threads = static_cast<std::size_t>(options.threads);
@@ -135,6 +136,9 @@ Triangulation DagRun<D>::leaves() const {
       for (unsigned k = 0; k <= D; ++k) {
         own.vertices.push_back(rows_[dag_.vertex(corner_of(node, k))]);
       }
+      if (options.makers != nullptr) {
+        own.makers.push_back(static_cast<std::uint16_t>(dag_.maker(node)));
+      }
     }
     shares[i] = std::move(own);
   });
@@ -150,6 +154,11 @@ Triangulation DagRun<D>::leaves() const {
   for (std::size_t i = 1; i < shares.size(); ++i) {
     result.vertices.insert(result.vertices.end(), shares[i].vertices.begin(),
                            shares[i].vertices.end());
+  }
+  if (options.makers != nullptr) {
+    for (const Share& share : shares) {
+      options.makers->insert(options.makers->end(), share.makers.begin(), share.makers.end());
+    }
   }
   result.hull_facets = ghosts;
   return result;

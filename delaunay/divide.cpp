@@ -6,6 +6,7 @@
 #include <bit>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "delaunay/conflict.h"
 #include "delaunay/internal/cell_order.h"
@@ -41,12 +42,16 @@ class Divider {
         hulls_{order.points.data(), mesh},
         filter_({order.points.data(), order.points.size()}, order.box, options.threads),
         progress_(options.progress),
-        parallel_(options.threads > 1) {}
+        parallel_(options.threads > 1),
+        makers_(parallel_ ? options.makers : nullptr) {
+    if (makers_ != nullptr) makers_->assign(mesh.size(), 0);
+  }
 
   // Triangulates points [first, last), whose triangles are [2 first, 2 last - 2): merging two
   // ranges needs two triangles more than they have, and those lie between them.
   Part divide(std::size_t first, std::size_t last, const CellGrid& grid) {
     if (!parallel_ || last - first <= kPointsPerTask) {
+      note_makers(first, last);
       return timed([&] { return divide_alone(first, last, grid); });
     }
     const std::uint32_t low = grid.number(points_[first]), high = grid.number(points_[last - 1]);
@@ -56,7 +61,10 @@ class Divider {
     parallel::parallel_for(0, 2, 1, [&](std::size_t half) {
       halves[half] = half == 0 ? divide(first, split, grid) : divide(split, last, grid);
     });
-    return timed([&] { return merge(halves[0], halves[1], split, split_by_y(low, high)); });
+    const Part whole =
+        timed([&] { return merge(halves[0], halves[1], split, split_by_y(low, high)); });
+    note_seam_makers(split);
+    return whole;
   }
 
   // Summed over threads.
@@ -74,6 +82,29 @@ class Divider {
     const Part part = f();
     seconds_.fetch_add(watch.lap(), std::memory_order_relaxed);
     return part;
+  }
+
+  // All triangles of a range are the calling thread's.
+  void note_makers(std::size_t first, std::size_t last) const {
+    if (makers_ == nullptr) return;
+    const auto begin = makers_->begin() + static_cast<std::ptrdiff_t>(2 * first);
+    const auto end = makers_->begin() + static_cast<std::ptrdiff_t>(2 * last - 2);
+    std::fill(begin, end, static_cast<std::uint16_t>(parallel::arena_thread()));
+  }
+  // The same of those that a merge has made: they have vertices on both sides of `split`, and lie
+  // in a row from one of the two slots before it to the other.
+  void note_seam_makers(std::size_t split) const {
+    if (makers_ == nullptr) return;
+    const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
+    const Mesh<2>& mesh = hulls_.mesh;
+    CornerNumber entry = mesh.neighbour(static_cast<SimplexNumber>(2 * split - 2), 2);
+    while (!mesh.is_ghost(simplex_of(entry))) {
+      (*makers_)[simplex_of(entry)] = thread;
+      // The other edge with an end on either side is opposite the vertex on the apex's side.
+      const CornerNumber one = next_corner(entry), other = previous_corner(entry);
+      const bool is_apex_first = mesh.vertex(entry) < split;
+      entry = mesh.neighbour((mesh.vertex(one) < split) == is_apex_first ? one : other);
+    }
   }
 
   static std::uint32_t first_of_upper_half(std::uint32_t low, std::uint32_t high) {
@@ -301,6 +332,7 @@ class Divider {
   SeamFilter filter_;
   parallel::Progress* progress_;
   bool parallel_;
+  std::vector<std::uint16_t>* makers_;  // by slot; null if nobody wants to know
   std::atomic<double> seconds_ = 0;
 };
 
@@ -319,7 +351,8 @@ Triangulation run(PointView<double> points, const Options& options) {
   }
   watch.lap();
   order.points = {};
-  Triangulation result = extract(std::move(mesh), {order.rows.data(), n}, options.threads);
+  Triangulation result = extract(std::move(mesh), {order.rows.data(), n}, options.threads,
+                                 n >= 2 && options.threads > 1 ? options.makers : nullptr);
   seconds.extract = watch.lap();
   if (options.statistics != nullptr) *options.statistics = seconds;
   return result;

@@ -20,7 +20,8 @@ constexpr std::size_t kPiece = std::size_t{1} << (D == 2 ? 18 : 16);
 // Piece by piece, so that the mesh goes as the result comes, and in order, so that the result does
 // not depend on the number of threads.
 template <int D>
-Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads) {
+Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                      std::vector<std::uint16_t>* makers) {
   constexpr std::size_t kCorners = Mesh<D>::kCorners;
   Mesh<D> own = std::move(mesh);
   Triangulation result;
@@ -29,11 +30,12 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
   result.vertices.reserve(kCorners * own.size());
   prefer_huge_pages(result.vertices.data(), kCorners * own.size() * sizeof(VertexNumber));
 
-  std::size_t ghosts = 0;
+  std::size_t ghosts = 0, made = 0;
   std::atomic<std::size_t> next_taken = 0, next_appended = 0;
   const std::size_t pieces = (own.size() + kPiece<D> - 1) / kPiece<D>;
   const auto work = [&] {
     Array<VertexNumber> packed(kCorners * std::min(kPiece<D>, own.size()));
+    std::vector<std::uint16_t> own_makers;
     for (std::size_t piece; (piece = next_taken++) < pieces;) {
       const std::size_t first = piece * kPiece<D>, last = std::min(own.size(), first + kPiece<D>);
       std::size_t count = 0, own_ghosts = 0;
@@ -44,11 +46,18 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
           continue;
         }
         for (unsigned k = 0; k < kCorners; ++k) packed[count++] = rows[own.vertex(simplex, k)];
+        if (makers != nullptr) own_makers.push_back((*makers)[simplex]);
       }
       own.discard(first, last);
       // Pieces are taken in order, so whoever has the one before is at work on it.
       for (std::size_t i; (i = next_appended) != piece;) next_appended.wait(i);
       result.vertices.insert(result.vertices.end(), packed.data(), packed.data() + count);
+      if (makers != nullptr) {
+        // Their slots are those of this piece and of pieces before it, which nobody reads any more.
+        std::ranges::copy(own_makers, makers->begin() + static_cast<std::ptrdiff_t>(made));
+        made += own_makers.size();
+        own_makers.clear();
+      }
       ghosts += own_ghosts;
       ++next_appended;
       next_appended.notify_all();
@@ -60,12 +69,15 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
   } else {
     parallel::parallel_for(0, workers, 1, [&](std::size_t) { work(); });
   }
+  if (makers != nullptr) makers->resize(made);
   // Of collinear points only ghosts are left, and those bound nothing.
   if (!result.vertices.empty()) result.hull_facets = ghosts;
   return result;
 }
 
-template Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads);
-template Triangulation extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads);
+template Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                               std::vector<std::uint16_t>* makers);
+template Triangulation extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                               std::vector<std::uint16_t>* makers);
 
 }  // namespace delray::delaunay::internal

@@ -14,7 +14,12 @@ Triangulation triangulate(PointView<double> points, const Options& options) {
   }
   if (resolved.statistics != nullptr) *resolved.statistics = {};
   if (resolved.progress != nullptr) resolved.progress->start(points.size());
-  return method_of(resolved).triangulate(points, resolved);
+  if (resolved.makers == nullptr) return method_of(resolved).triangulate(points, resolved);
+  resolved.makers->clear();
+  Triangulation result = method_of(resolved).triangulate(points, resolved);
+  // A thread that was alone leaves that to be said here.
+  resolved.makers->resize(result.size(), 0);
+  return result;
 }
 
 }  // namespace delray::delaunay

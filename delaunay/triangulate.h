@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "delaunay/points.h"
 #include "delaunay/triangulation.h"
@@ -52,6 +53,9 @@ struct Options {
   Statistics* statistics = nullptr;  // filled in if not null
   parallel::Progress* progress =
       nullptr;  // started with the number of points and advanced, if not null
+  // If not null, gets for simplex i of the result the number of the thread that made it, below
+  // `threads`.
+  std::vector<std::uint16_t>* makers = nullptr;
 };
 
 // The triangulation that the perturbed lifting of conflict.h defines: whatever the options are, the

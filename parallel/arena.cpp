@@ -27,5 +27,6 @@ AllowThreads::AllowThreads(int threads)
 AllowThreads::~AllowThreads() = default;
 
 int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
+int arena_thread() { return std::max(0, tbb::this_task_arena::current_thread_index()); }
 
 }  // namespace delray::parallel

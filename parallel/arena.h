@@ -58,5 +58,7 @@ class AllowThreads {
 
 // The number of threads of the arena that the caller is in.
 int arena_threads();
+// The number of the calling thread in that arena, from 0 to arena_threads() - 1.
+int arena_thread();
 
 }  // namespace delray::parallel

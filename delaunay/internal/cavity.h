@@ -59,6 +59,13 @@ class Cavity {
   void start_at(SimplexNumber simplex) { last_simplex_ = simplex; }
   SimplexNumber last_simplex() const { return last_simplex_; }
 
+  // From now on the slots of simplices that it makes get this value in `makers`, which has one for
+  // every slot. Null: it notes nothing.
+  void note_makers(std::uint16_t* makers, std::uint16_t maker) {
+    makers_ = makers;
+    maker_ = maker;
+  }
+
   // Finds the simplex that the vertex lies in. After kEqual, `place` has that simplex.
   Insertion locate(VertexNumber vertex, SimplexNumber& place);
   // REQUIRES: locate() gave kDone and that place for the vertex.
@@ -155,6 +162,8 @@ class Cavity {
   const TestFourSpheres test_four_;
   Region region_;
   SimplexNumber next_ = 0, last_ = 0, last_simplex_ = 0;
+  std::uint16_t* makers_ = nullptr;  // by slot
+  std::uint16_t maker_ = 0;
   std::vector<SimplexNumber> free_;
   std::vector<Simplex> cavity_;       // the first cavity_size_
   std::vector<SimplexNumber> slots_;  // of these
@@ -459,6 +468,9 @@ Insertion Cavity<Region>::insert(VertexNumber vertex, SimplexNumber place) {
     connect();
   } else {
     connect_by_sorting();
+  }
+  if (makers_ != nullptr) {
+    for (std::size_t i = 0; i < side_count_; ++i) makers_[sides_[i].number] = maker_;
   }
   return Insertion::kDone;
 }

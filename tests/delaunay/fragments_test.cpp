@@ -1,0 +1,125 @@
+// Who made which simplex, and what lies together.
+#include "delaunay/fragments.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "delaunay/generate.h"
+#include "delaunay/methods.h"
+#include "delaunay/triangulate.h"
+#include "parallel/arena.h"
+
+namespace delray::delaunay {
+namespace {
+
+Triangulation of(const PointCloud& points, const Options& options) {
+  return triangulate(view(points.positions), options);
+}
+
+// By joining simplices that have a facet in common.
+std::uint64_t fragments_by_facets(const Triangulation& mesh,
+                                  const std::vector<std::uint16_t>& makers) {
+  std::vector<std::size_t> root(mesh.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](std::size_t i) {
+    while (root[i] != i) i = root[i];
+    return i;
+  };
+  const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
+  std::map<std::vector<std::uint32_t>, std::size_t> simplex_of_facet;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for (std::size_t without = 0; without < corners; ++without) {
+      std::vector<std::uint32_t> facet;
+      for (std::size_t k = 0; k < corners; ++k)
+        if (k != without) facet.push_back(mesh.vertices[corners * i + k]);
+      std::sort(facet.begin(), facet.end());
+      const auto [at, is_first] = simplex_of_facet.emplace(facet, i);
+      if (!is_first && makers[at->second] == makers[i]) root[find(i)] = find(at->second);
+    }
+  }
+  std::uint64_t fragments = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) fragments += root[i] == i ? 1 : 0;
+  return fragments;
+}
+
+TEST(Fragments, AreSetsOfOneMakerJoinedByFacets) {
+  for (const int dim : {2, 3}) {
+    const PointCloud points = generate_points("gauss", 200, dim, 5);
+    Options options;
+    options.dim = dim;
+    const Triangulation mesh = of(points, options);
+    for (std::uint32_t seed = 0; seed < 8; ++seed) {
+      std::mt19937 random(seed);
+      std::vector<std::uint16_t> makers(mesh.size());
+      // The first of many makers makes most.
+      for (std::uint16_t& maker : makers)
+        maker = static_cast<std::uint16_t>(random() % (seed + 1) * (random() % 2));
+      EXPECT_EQ(count_fragments(mesh, makers, points.size()), fragments_by_facets(mesh, makers))
+          << dim << "D, seed " << seed;
+    }
+  }
+  EXPECT_EQ(count_fragments({}, {}, 0), 0U);
+}
+
+TEST(Makers, AreNotedForEverySimplexByEveryMethod) {
+  const parallel::AllowThreads allowed(3);
+  for (const int dim : {2, 3}) {
+    // Enough for several tasks of divide and conquer, and for several regions of cavities.
+    const PointCloud points = generate_points("cluster", dim == 2 ? 30000 : 4000, dim, 11);
+    Options options;
+    options.dim = dim;
+    const Hash128 expected = hash(of(points, options));
+    for (const Method& method : methods()) {
+      if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
+      for (const int threads : {1, 3}) {
+        SCOPED_TRACE(std::to_string(dim) + "D " + std::string(method.name) + ", " +
+                     std::to_string(threads) + " threads");
+        std::vector<std::uint16_t> makers = {9};  // what was there goes
+        Statistics statistics;
+        options.method = method.name;
+        options.threads = threads;
+        options.makers = &makers;
+        options.statistics = &statistics;
+        const Triangulation mesh = of(points, options);
+        ASSERT_EQ(hash(mesh), expected);
+        ASSERT_EQ(makers.size(), mesh.size());
+        EXPECT_LT(*std::ranges::max_element(makers), threads);
+        const std::uint64_t fragments = count_fragments(mesh, makers, points.size());
+        const std::uint64_t counted = statistics.synchronization.fragments;
+        // Makers in another order than the simplices would leave few that lie together.
+        if (counted > 0) {
+          EXPECT_EQ(fragments, counted);
+        } else {
+          EXPECT_LT(fragments, threads == 1 ? 2 : mesh.size() / 20);
+        }
+      }
+    }
+  }
+}
+
+TEST(Makers, AreNoneWithoutSimplices) {
+  const PointCloud points = generate_points("uniform", 20000, 2, 3);
+  PointCloud line = points;
+  for (glm::dvec3& p : line.positions) p.y = p.x;
+  for (const Method& method : methods()) {
+    for (const int dim : method.dims) {
+      std::vector<std::uint16_t> makers = {1, 2, 3};
+      Options options;
+      options.dim = dim;
+      options.method = method.name;
+      options.threads = 2;
+      options.makers = &makers;
+      EXPECT_EQ(of(line, options).size(), 0U);
+      EXPECT_TRUE(makers.empty()) << method.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace delray::delaunay
