@@ -13,6 +13,7 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "comm/internal/block_pool.h"
 
@@ -75,28 +76,55 @@ const Own& own() {
   return mine;
 }
 
-// Another process's memory where this one sees it; null if it cannot. Kept to the end, since
-// buffers in it may be.
-std::byte* reach(const SharedMemory& other) {
-  struct Known {
-    std::mutex mutex;
-    std::map<std::pair<std::int64_t, std::uint64_t>, std::byte*> memories;
-  };
-  static Known& known = *new Known;
-  const std::scoped_lock lock(known.mutex);
-  const auto [at, is_new] = known.memories.try_emplace({other.process, other.token}, nullptr);
-  if (!is_new || other.file < 0) return at->second;
+// Another process's memory where this one sees it.
+struct Reached {
+  std::byte* memory = nullptr;  // null: out of reach
+  std::vector<bool> is_mapped;  // by unit of kUnit bytes
+};
+constexpr std::size_t kPage = 4096, kUnit = 16 * kPage;
+
+// Has pages come into this process's page table. Vector loops that read only what they select must
+// not meet one that is not there: the processor then skips the bytes, slowly, and the page stays
+// out.
+void touch(Reached& reached, std::size_t begin, std::size_t end) {
+  for (std::size_t unit = begin / kUnit; unit * kUnit < end; ++unit) {
+    if (reached.is_mapped[unit]) continue;
+    reached.is_mapped[unit] = true;
+    for (std::size_t at = unit * kUnit; at < (unit + 1) * kUnit; at += kPage) {
+      static_cast<void>(*static_cast<const volatile std::byte*>(reached.memory + at));
+    }
+  }
+}
+
+Reached reach_now(const SharedMemory& other) {
+  if (other.file < 0) return {};
   const std::string path =
       "/proc/" + std::to_string(other.process) + "/fd/" + std::to_string(other.file);
   const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (file < 0) return nullptr;
+  if (file < 0) return {};
+  Reached reached;
   std::uint64_t token = 0;
   // The same number may be another process's to this one.
   if (pread(file, &token, sizeof token, 0) == sizeof token && token == other.token) {
-    at->second = map(file);
+    reached = {map(file), std::vector<bool>(kBytes / kUnit)};
   }
   close(file);
-  return at->second;
+  return reached;
+}
+
+// Of all processes that were ever asked for, kept to the end, since buffers in it may be. With the
+// bytes [begin, end) of it in the page table.
+std::byte* reach(const SharedMemory& other, std::size_t begin = 0, std::size_t end = 0) {
+  struct Known {
+    std::mutex mutex;
+    std::map<std::pair<std::int64_t, std::uint64_t>, Reached> memories;
+  };
+  static Known& known = *new Known;
+  const std::scoped_lock lock(known.mutex);
+  const auto [at, is_new] = known.memories.try_emplace({other.process, other.token});
+  if (is_new) at->second = reach_now(other);
+  if (at->second.memory != nullptr) touch(at->second, begin, end);
+  return at->second.memory;
 }
 
 }  // namespace
@@ -114,10 +142,10 @@ std::optional<std::uint64_t> lend(Buffer& message) {
 }
 
 Buffer borrow(const SharedMemory& other, std::uint64_t offset, std::size_t bytes) {
-  std::byte* const memory = reach(other);
+  const std::size_t begin = kBeginningBytes + offset;
+  std::byte* const memory = reach(other, begin, begin + sizeof(Block) + bytes);
   assert(memory != nullptr);
-  return Buffer::of_memory(reinterpret_cast<Block*>(memory + kBeginningBytes + offset)->memory(),
-                           bytes);
+  return Buffer::of_memory(reinterpret_cast<Block*>(memory + begin)->memory(), bytes);
 }
 
 std::uint32_t rings() { return beginning_of(own().memory).rings.load(); }
