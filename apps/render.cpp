@@ -18,10 +18,10 @@
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "loadbalance/partition.h"
+#include "loadbalance/schedule.h"
 #include "parallel/arena.h"
 #include "raster/strategies.h"
 #include "raytrace/integrator.h"
-#include "raytrace/tiles.h"
 
 namespace delray::apps {
 namespace {
@@ -32,7 +32,7 @@ int print_lists() {
   print_table(composite::schemes());
   print_table(composite::codecs());
   print_table(raytrace::integrators());
-  print_table(raytrace::schedules());
+  print_table(loadbalance::schedules());
   return kDone;
 }
 

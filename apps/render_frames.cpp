@@ -58,6 +58,12 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   options.trace.background = raytrace::TraceOptions::Background::transparent;
   options.integrator = request.integrator;
   options.schedule = request.schedule;
+  options.tile = request.block;
+  options.partition = request.partition;
+  options.costs =
+      request.costs == "measured" ? raytrace::CostSource::seconds : raytrace::CostSource::rays;
+  options.regions_per_rank = request.regions_per_rank;
+  options.keep_factor = request.keep_factor;
   options.progress = progress;
   return options;
 }
@@ -95,7 +101,11 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
 FrameRenderer::FrameRenderer(const Prepared& prepared, const RenderRequest& request,
                              parallel::Progress* progress)
     : prepared_(prepared), request_(request), progress_(progress) {
-  if (request.kind == Engine::raster) raster_.emplace(prepared.scene, prepared.shader);
+  if (request.kind == Engine::raster) {
+    raster_.emplace(prepared.scene, prepared.shader);
+  } else {
+    raytrace_.emplace(*prepared.tracer);
+  }
 }
 
 Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera) {
@@ -106,8 +116,8 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
     frame.picture = std::move(result.picture);
     frame.statistics = std::move(result.statistics);
   } else {
-    raytrace::Result result = raytrace::render(communicator, *prepared_.tracer, camera,
-                                               raytrace_options(request_, progress_));
+    raytrace::Result result =
+        raytrace_->render(communicator, camera, raytrace_options(request_, progress_));
     frame.picture = std::move(result.image);
     frame.statistics = std::move(result.statistics);
   }

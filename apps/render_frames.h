@@ -55,7 +55,8 @@ class FrameRenderer {
   const Prepared& prepared_;
   const RenderRequest& request_;
   parallel::Progress* progress_;
-  std::optional<raster::Renderer> raster_;
+  std::optional<raster::Renderer> raster_;  // one of the two
+  std::optional<raytrace::Renderer> raytrace_;
 };
 
 // The last of some frames from the same camera.

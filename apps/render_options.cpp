@@ -14,12 +14,12 @@
 #include "loadbalance/schedule.h"
 #include "raster/strategies.h"
 #include "raytrace/integrator.h"
-#include "raytrace/tiles.h"
 
 namespace delray::apps {
 namespace {
 
 constexpr int kLargestSide = 32768;
+constexpr int kTile = 32;  // pixels, the side of a ray tracer's block
 
 // Throws UsageError if one of the options was given.
 void refuse(const CLI::App& command, std::initializer_list<const char*> options,
@@ -76,12 +76,26 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
 void check_raytrace(const CLI::App& command, RenderRequest& request) {
   if (request.schedule.empty()) request.schedule = "interlaced";
   refuse(command,
-         {"--strategy", "--partition", "--compose", "--codec", "--shading", "--shade", "--blend",
-          "--samples", "--travel", "--costs", "--regions", "--keep", "--block", "--groups",
-          "--geometry-ranks", "--redistribute"},
+         {"--strategy", "--compose", "--codec", "--shading", "--shade", "--blend", "--samples",
+          "--travel", "--groups", "--geometry-ranks", "--redistribute"},
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
-  find_entry(raytrace::schedules(), request.schedule, "--schedule");
+  find_entry(loadbalance::schedules(), request.schedule, "--schedule");
+  if (command.count("--block") == 0) request.block = kTile;
+  if (request.block % raytrace::kTaskSide != 0) {
+    throw UsageError(
+        fmt::format("--block: the ray tracer's are a multiple of {} pixels", raytrace::kTaskSide));
+  }
+  if (command.count("--partition") == 0) {
+    refuse(command, {"--costs", "--regions", "--keep"}, "no --partition");
+    request.partition.clear();
+    return;
+  }
+  find_entry(loadbalance::partitioners(), request.partition, "--partition");
+  if (request.schedule != "static" && !request.schedule.ends_with("stealing")) {
+    refuse(command, {"--partition"},
+           fmt::format("--schedule {}, which begins with no shares", request.schedule));
+  }
 }
 
 }  // namespace
@@ -131,7 +145,10 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   add_launch_options(command, request.launch);
   const std::string raster = "Rasterizer";
   command.add_option("--strategy", request.strategy, "how ranks share the work")->group(raster);
-  command.add_option("--partition", request.partition, "of the screen, sort-first")->group(raster);
+  command
+      .add_option("--partition", request.partition,
+                  "of the screen: sort-first, sort-middle; what ray tracing ranks begin with")
+      ->group(raster);
   command.add_option("--compose", request.scheme, "compositing scheme, sort-last")->group(raster);
   command.add_option("--shading", request.lighting, "phong (default) or gouraud")
       ->check(CLI::IsMember({"phong", "gouraud"}))
@@ -160,7 +177,8 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raster);
   command
       .add_option("--costs", request.costs,
-                  "what partitions go by: model (default), or measured in the last frame")
+                  "what partitions go by: model (default; rays counted in the last frame), or "
+                  "measured in the last frame")
       ->check(CLI::IsMember({"model", "measured"}))
       ->group(raster);
   command
@@ -175,7 +193,8 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raster);
   command
       .add_option("--block", request.block,
-                  "pixels, the side of a block that --schedule hands out (default 64)")
+                  "pixels, the side of a block that --schedule hands out (default 64; 32, a "
+                  "multiple of 16, with rays)")
       ->check(CLI::Range(1, 4096))
       ->group(raster);
   command
@@ -205,7 +224,8 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raytrace);
   command
       .add_option("--schedule", request.schedule,
-                  "how ranks share the tiles; sort-first: blocks that change rank meanwhile")
+                  "how ranks share blocks of the picture; sort-first: blocks that change rank "
+                  "meanwhile")
       ->group(raytrace);
   command.add_option("--data", request.data, "how ranks share the scene")
       ->check(CLI::IsMember({"replicated"}))

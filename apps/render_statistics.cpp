@@ -51,6 +51,11 @@ Json options_of(const RenderRequest& request, int ranks) {
     options["spp"] = request.samples;
     options["depth"] = request.depth;
     options["schedule"] = request.schedule;
+    options["block"] = request.block;
+    options["partition"] = request.partition;
+    options["costs"] = request.costs;
+    options["regions"] = request.regions_per_rank;
+    options["keep"] = request.keep_factor;
     options["data"] = request.data;
   }
   return options;
@@ -99,15 +104,38 @@ Json embree_of(const raytrace::Statistics& s) {
   return {{"version", s.embree_version}, {"isa", s.embree_isa}};
 }
 
-std::uint64_t steals_of(const raster::RankStatistics& rank) { return rank.steals; }
-double idle_of(const raster::RankStatistics& rank) { return rank.idle; }
-template <class Rank>
-std::uint64_t steals_of(const Rank&) {
-  return 0;
+// What only the ray tracer counts.
+Json raytrace_of(const raytrace::Statistics& s) {
+  Json counts = {{"imbalance_rays", s.imbalance_rays}, {"structure_bytes", s.structure_bytes}};
+  if (s.partition) {
+    counts["partition"] = {{"predicted_imbalance", s.partition->predicted},
+                           {"measured", s.partition->measured},
+                           {"kept", s.partition->kept}};
+  }
+  return counts;
 }
-template <class Rank>
-double idle_of(const Rank&) {
-  return 0;
+Json raytrace_of(const raster::Statistics&) { return nullptr; }
+
+Json of_rays(const raytrace::RayCounts& rays) {
+  return {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}};
+}
+
+// What a rank of either engine has more than the other.
+void add_own(const raster::RankStatistics& rank, Json& row) {
+  row["tasks_stolen"] = rank.blocks_stolen;
+}
+void add_own(const raytrace::RankStatistics& rank, Json& row) {
+  constexpr const char* kKinds[] = {"work", "serve", "wait"};
+  row["tasks_stolen"] = rank.tasks_stolen;
+  row["rays"] = of_rays(rank.rays);
+  Json& timeline = row["timeline"] = Json::array();
+  for (const loadbalance::Interval& interval : rank.timeline) {
+    timeline.push_back({{"thread", interval.thread},
+                        {"kind", kKinds[static_cast<std::size_t>(interval.kind)]},
+                        {"tasks", interval.tasks},
+                        {"begin", interval.begin},
+                        {"end", interval.end}});
+  }
 }
 
 // In-process ranks share the memory of the process: each is told its peak.
@@ -118,12 +146,14 @@ Json ranks_of(const Ranks& ranks) {
     rows.push_back({{"rank", i},
                     {"busy", ranks[i].busy},
                     {"tasks", ranks[i].tasks},
-                    {"steals", steals_of(ranks[i])},
-                    {"idle", idle_of(ranks[i])},
+                    {"requests", ranks[i].requests},
+                    {"steals", ranks[i].steals},
+                    {"idle", ranks[i].idle},
                     {"bytes_sent", ranks[i].bytes_sent},
                     {"bytes_received", ranks[i].bytes_received},
                     {"messages", ranks[i].messages},
                     {"peak_rss", peak_memory()}});
+    add_own(ranks[i], rows.back());
   }
   return rows;
 }
@@ -144,7 +174,6 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
                        const std::string& hash, double write_seconds) {
   return std::visit(
       [&](const auto& s) -> Json {
-        const raytrace::RayCounts rays = rays_of(s);
         return {
             {"schema", "delray.render/1"},
             {"scene",
@@ -162,9 +191,9 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
               {"write", write_seconds}}},
             {"embree", embree_of(s)},
             {"phases", phases_of(s)},
-            {"rays",
-             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}}},
+            {"rays", of_rays(rays_of(s))},
             {"raster", raster_of(s)},
+            {"raytrace", raytrace_of(s)},
             {"imbalance", imbalance_of(s.ranks)},
             {"ranks", ranks_of(s.ranks)},
         };

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "comm/collectives.h"
-#include "loadbalance/region_index.h"
+#include "loadbalance/owned_blocks.h"
 #include "loadbalance/schedule.h"
 #include "loadbalance/task_grid.h"
 #include "parallel/arena.h"
@@ -70,7 +70,7 @@ Bins bin_clusters(const Rank& rank, const DrawList& list, const PreparedFrame& f
   return bins;
 }
 
-// The blocks whose middle lies in one of the rank's regions. Collective.
+// The blocks of the rank's regions. Collective.
 std::vector<loadbalance::TaskRange> blocks_of_regions(Rank& rank,
                                                       const loadbalance::Blocks& blocks) {
   const auto [begin, end] = rank.own_primitives();
@@ -79,24 +79,7 @@ std::vector<loadbalance::TaskRange> blocks_of_regions(Rank& rank,
   ScreenPartition& screen = rank.memory.screen;
   const auto boxes = screen.boxes_of(
       rank, groups_of(pieces_of(rank.scene, rank.first_primitives, begin, end), triangles));
-  const loadbalance::Partition& partition = screen.cut(rank, boxes, rank.ranks());
-  const loadbalance::RegionIndex index(partition);
-  std::vector<loadbalance::TaskRange> mine;
-  for (std::uint32_t block = 0; block < blocks.grid().count(); ++block) {
-    const geometry::Rect pixels = blocks.block(block);
-    const int x = (pixels.x0 + pixels.x1) / 2, y = (pixels.y0 + pixels.y1) / 2;
-    bool is_mine = false;
-    index.for_each_region({x, y, x + 1, y + 1},
-                          [&](const loadbalance::Region& region, const auto&) {
-                            is_mine = region.owner == rank.number();
-                          });
-    if (!is_mine) continue;
-    if (!mine.empty() && mine.back().last == block)
-      ++mine.back().last;
-    else
-      mine.push_back({block, block + 1});
-  }
-  return mine;
+  return loadbalance::owned_blocks(screen.cut(rank, boxes, rank.ranks()), blocks, rank.number());
 }
 
 // Who has rendered which block: all of it on rank 0, a rank's own elsewhere.

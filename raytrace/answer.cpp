@@ -28,8 +28,8 @@ void occlude(const Tracer& tracer, ShadowGroup& group) {
     Layer layers[SeeThrough::kMost];
     const auto count = static_cast<std::size_t>(passed[i].count);
     for (std::size_t k = 0; k < count; ++k) {
-      layers[k] =
-          layer_of(tracer, passed[i].hits[k], direction, (group.through_glass >> i & 1) != 0);
+      layers[k] = layer_of(tracer.placements, tracer.shader, passed[i].hits[k], direction,
+                           (group.through_glass >> i & 1) != 0);
     }
     group.dimmed |= 1U << i;
     group.left.set(i, left_by({layers, count}));
@@ -52,19 +52,18 @@ void answer(const Tracer& tracer, Wave& wave) {
   for (ShadowGroup& group : wave.shadows) occlude(tracer, group);
 }
 
-Layer layer_of(const Tracer& tracer, const Hit& hit, const glm::vec3& direction,
-               bool through_glass) {
-  const Placement& placement = tracer.placements[hit.placement];
-  const scenes::Material& material = tracer.shader.materials[placement.material];
+Layer layer_of(std::span<const Placement> placements, const shading::Shader& shader, const Hit& hit,
+               const glm::vec3& direction, bool through_glass) {
+  const Placement& placement = placements[hit.placement];
+  const scenes::Material& material = shader.materials[placement.material];
   if (!through_glass) {
     const CoveragePoint at = coverage_point(placement, hit);
-    const float alpha = shading::coverage(tracer.shader, material, at.uv, {}, at.alpha);
+    const float alpha = shading::coverage(shader, material, at.uv, {}, at.alpha);
     return {hit.distance, hit.placement, hit.triangle, glm::vec3(1.0F - alpha)};
   }
   const Intersection at = intersection(placement, hit, direction, {0.0F});
   const glm::vec3 view = -direction;
-  const shading::Surface s =
-      shading::evaluate(tracer.shader, tracer.shader.materials[placement.material], at.point, view);
+  const shading::Surface s = shading::evaluate(shader, material, at.point, view);
   const float share = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
   const float reflected = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior).reflected;
   return {hit.distance, hit.placement, hit.triangle,

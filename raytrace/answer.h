@@ -17,8 +17,8 @@ struct Layer {
 };
 
 // The layer of a hit. `direction` is the unit direction of the shadow ray.
-Layer layer_of(const Tracer& tracer, const Hit& hit, const glm::vec3& direction,
-               bool through_glass);
+Layer layer_of(std::span<const Placement> placements, const shading::Shader& shader, const Hit& hit,
+               const glm::vec3& direction, bool through_glass);
 
 // What layers leave of the light together, multiplied in ascending order of (distance, placement,
 // triangle), into which they are sorted.

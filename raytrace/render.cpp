@@ -1,269 +1,218 @@
 #include "raytrace/render.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
-#include <cstring>
-#include <memory>
-#include <mutex>
+#include <stdexcept>
 #include <utility>
 
-#include "comm/collectives.h"
-#include "geometry/rect.h"
-#include "parallel/parallel_for.h"
-#include "raytrace/answer.h"
-#include "raytrace/flush_to_zero.h"
-#include "raytrace/tiles.h"
+#include "comm/recording.h"
+#include "loadbalance/partition.h"
+#include "parallel/arena.h"
+#include "raytrace/internal/collect_tiles.h"
+#include "raytrace/internal/ray_traffic.h"
+#include "raytrace/internal/sample_tile.h"
+#include "raytrace/internal/serving_communicator.h"
+#include "raytrace/internal/tile_shares.h"
 
 namespace delray::raytrace {
 namespace {
-
-using geometry::Rect;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Processor time of this thread: ranks may share a core, and waiting is no work.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+void check(const RenderOptions& options) {
+  if (loadbalance::find_schedule(options.schedule) == nullptr)
+    throw std::invalid_argument("there is no schedule '" + options.schedule + "'");
+  if (!options.partition.empty() && loadbalance::find_partitioner(options.partition) == nullptr)
+    throw std::invalid_argument("there is no partition '" + options.partition + "'");
+  if (options.tile < 1 || options.tile % kTaskSide != 0)
+    throw std::invalid_argument("the side of a tile is a multiple of " + std::to_string(kTaskSide) +
+                                " pixels");
 }
 
-// A tile's pixels, row by row.
-struct TilePixels {
-  std::vector<image::RgbaF> colour;
-  std::vector<float> depth;
-  RayCounts rays;
-  double busy = 0.0;
+std::uint64_t sum(const RayCounts& rays) { return rays.primary + rays.shadow + rays.secondary; }
+
+// The tiles that this rank gets, and what the schedule says of it.
+struct Traced {
+  std::vector<TilePixels> tiles;
+  loadbalance::RankReport report;
+  TrafficCounts traffic = {};
+  double busy = 0.0;  // seconds of processor time
 };
 
-// Walks that are at rest between the tiles of a frame: one for each thread, in the end.
-class Walks {
- public:
-  Walks(const Integrator& integrator, const Setting& setting)
-      : integrator_(integrator), setting_(setting) {}
-
-  std::unique_ptr<Walk> take() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!resting_.empty()) {
-        std::unique_ptr<Walk> walk = std::move(resting_.back());
-        resting_.pop_back();
-        return walk;
-      }
-    }
-    return integrator_.make(setting_);
-  }
-  void give(std::unique_ptr<Walk> walk) {
-    const std::lock_guard lock(mutex_);
-    resting_.push_back(std::move(walk));
-  }
-
- private:
-  const Integrator& integrator_;
-  const Setting& setting_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Walk>> resting_;
-};
-
-// What all tiles of a frame have in common.
-struct TiledFrame {
-  const Tracer& tracer;
-  const RenderOptions& options;
-  const Setting& setting;
-  Walks& walks;
-  std::vector<Rect> tiles;
-  std::vector<std::uint32_t> mine;
-};
-
-// Rays of so many pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
-constexpr int kTaskSide = 16;
-static_assert(kTileSide % kTaskSide == 0 && kTaskSide % kBlockSide == 0);
-
-void add_samples(const Walk& walk, const Task& task, float weight, const Rect& tile,
-                 TilePixels& pixels) {
-  const SampleBlock* block = walk.samples().data();
-  for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
-    for (int x = task.pixels.x0; x < task.pixels.x1; x += kBlockSide, ++block) {
-      for (int i = 0; i < kPacketRays; ++i) {
-        const int column = x + i % kBlockSide, row = y + i / kBlockSide;
-        if (column >= task.pixels.x1 || row >= task.pixels.y1) continue;
-        const auto at =
-            static_cast<std::size_t>(row - tile.y0) * static_cast<std::size_t>(tile.width()) +
-            static_cast<std::size_t>(column - tile.x0);
-        image::RgbaF& sum = pixels.colour[at];
-        sum = {sum.r + block->colour.x[i] * weight, sum.g + block->colour.y[i] * weight,
-               sum.b + block->colour.z[i] * weight, sum.a + block->alpha[i] * weight};
-        pixels.depth[at] = std::min(pixels.depth[at], block->depth[i]);
-      }
-    }
-  }
-}
-
-TilePixels trace_tile(const TiledFrame& frame, const Rect& tile) {
-  const FlushToZero flush;
-  const double start = thread_seconds();
-  TilePixels pixels;
-  pixels.colour.resize(static_cast<std::size_t>(tile.area()));
-  pixels.depth.assign(pixels.colour.size(), image::kEmptyDepth);
-  const float weight = 1.0F / static_cast<float>(frame.options.samples);
-  std::unique_ptr<Walk> walk = frame.walks.take();
-  for (int y = tile.y0; y < tile.y1; y += kTaskSide) {
-    for (int x = tile.x0; x < tile.x1; x += kTaskSide) {
-      Task task;
-      task.pixels = geometry::intersection(tile, {x, y, x + kTaskSide, y + kTaskSide});
-      for (int s = 0; s < frame.options.samples; ++s) {
-        task.first_sample = s;
-        for (walk->start(task); !walk->done(); walk->go_on()) answer(frame.tracer, walk->wave());
-        add_samples(*walk, task, weight, tile, pixels);
-        pixels.rays += walk->rays();
-      }
-    }
-  }
-  frame.walks.give(std::move(walk));
-  pixels.busy = thread_seconds() - start;
-  return pixels;
-}
-
-void put(const Rect& tile, const image::RgbaF* colour, const float* depth, image::ImageF& image) {
-  const auto width = static_cast<std::size_t>(tile.width());
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const std::size_t to = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(tile.x0);
-    const std::size_t from = static_cast<std::size_t>(y - tile.y0) * width;
-    std::copy_n(colour + from, width, image.colour.data() + to);
-    std::copy_n(depth + from, width, image.depth.data() + to);
-  }
-}
-
-// A rank's message: statistics, then the colours of all its tiles, then their depths.
-comm::Buffer pack(const RankStatistics& statistics, std::span<const TilePixels> traced) {
-  std::size_t pixels = 0;
-  for (const TilePixels& tile : traced) pixels += tile.depth.size();
-  comm::Buffer message(sizeof(RankStatistics) + pixels * (sizeof(image::RgbaF) + sizeof(float)));
-  std::memcpy(message.data(), &statistics, sizeof(RankStatistics));
-  std::byte* colour = message.data() + sizeof(RankStatistics);
-  std::byte* depth = colour + pixels * sizeof(image::RgbaF);
-  for (const TilePixels& tile : traced) {
-    if (tile.depth.empty()) continue;
-    const std::size_t n = tile.depth.size();
-    std::memcpy(colour, tile.colour.data(), n * sizeof(image::RgbaF));
-    std::memcpy(depth, tile.depth.data(), n * sizeof(float));
-    colour += n * sizeof(image::RgbaF);
-    depth += n * sizeof(float);
-  }
-  return message;
-}
-
-void unpack(const comm::Buffer& message, std::span<const Rect> tiles,
-            std::span<const std::uint32_t> numbers, image::ImageF& image) {
-  std::size_t pixels = 0;
-  for (const std::uint32_t number : numbers) {
-    pixels += static_cast<std::size_t>(tiles[number].area());
-  }
-  // The statistics are a multiple of 8 bytes, so both planes are aligned where they lie.
-  const auto* colour =
-      reinterpret_cast<const image::RgbaF*>(message.data() + sizeof(RankStatistics));
-  const auto* depth = reinterpret_cast<const float*>(colour + pixels);
-  for (const std::uint32_t number : numbers) {
-    put(tiles[number], colour, depth, image);
-    colour += tiles[number].area();
-    depth += tiles[number].area();
-  }
-}
-
-std::vector<TilePixels> trace(const TiledFrame& frame) {
-  std::vector<TilePixels> traced(frame.mine.size());
-  parallel::Progress* progress = frame.options.progress;
-  if (progress != nullptr) progress->start(frame.mine.size());
-  parallel::parallel_for(0, traced.size(), 1, [&](std::size_t i) {
-    traced[i] = trace_tile(frame, frame.tiles[frame.mine[i]]);
+Traced trace(comm::Communicator& communicator, const Frame& frame,
+             const loadbalance::ScheduleOptions& how) {
+  parallel::Progress* const progress = frame.options.progress;
+  // Ranks of one process may have one progress in common.
+  if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
+  std::vector<std::vector<TilePixels>> by_thread(static_cast<std::size_t>(how.threads));
+  const auto trace_tile = [&](std::uint32_t tile, int thread) {
+    const TilePixels& done = by_thread[thread].emplace_back(sample_tile(frame, tile));
+    if (thread == 0) communicator.work(comm::Work::rays, sum(done.rays));
     if (progress != nullptr) progress->advance();
-  });
+  };
+  Traced traced;
+  traced.report = loadbalance::find_schedule(frame.options.schedule)
+                      ->run(communicator, frame.tiles.grid(), how, trace_tile);
+  for (std::size_t thread = 0; thread < by_thread.size(); ++thread) {
+    for (TilePixels& tile : by_thread[thread]) {
+      if (thread > 0) communicator.work(comm::Work::rays, sum(tile.rays));
+      traced.busy += tile.busy;
+      traced.tiles.push_back(std::move(tile));
+    }
+  }
   return traced;
 }
 
-// Everything to rank 0, whose own tiles go straight into the image.
-void collect(comm::Communicator& communicator, const TiledFrame& frame,
-             std::span<const TilePixels> traced, RankStatistics mine, const Schedule& dealt,
-             Result& result) {
-  const bool root = communicator.rank() == 0;
-  comm::Buffer message;
-  if (!root) {
-    mine.messages = 1;
-    message = pack(mine, traced);
-    mine.bytes_sent = message.size();
-    std::memcpy(message.data(), &mine, sizeof(mine));
+// The same where the scene is shared out: the rank's threads work together at several tiles.
+Traced trace(comm::Communicator& communicator, const Frame& frame, SharedScene& scene,
+             const Distribution& distribution, loadbalance::ScheduleOptions how) {
+  parallel::Progress* const progress = frame.options.progress;
+  if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
+  RayTraffic traffic(communicator, scene, distribution, frame.walks, frame.tiles,
+                     frame.options.samples);
+  ServingCommunicator serving(communicator, traffic);
+  how.threads = 1;
+  Traced traced;
+  traced.report = loadbalance::find_schedule(frame.options.schedule)
+                      ->run(serving, frame.tiles.grid(), how, [&](std::uint32_t tile, int) {
+                        traffic.add(tile);
+                        if (progress != nullptr) progress->advance();
+                      });
+  traffic.finish();
+  traced.tiles = std::move(traffic.tiles());
+  traced.traffic = traffic.counts();
+  traced.busy = traffic.busy();
+  return traced;
+}
+
+RankStatistics statistics_of(Traced& traced, const comm::Totals& totals) {
+  RankStatistics mine;
+  for (const TilePixels& tile : traced.tiles) mine.rays += tile.rays;
+  mine.busy = traced.busy;
+  mine.rays_sent = traced.traffic.rays_sent;
+  mine.answers_sent = traced.traffic.answers_sent;
+  mine.tests = traced.traffic.tests;
+  mine.clusters_fetched = traced.traffic.clusters_fetched;
+  mine.clusters_fetched_bytes = traced.traffic.cluster_bytes;
+  mine.clusters_moved = traced.traffic.clusters_moved;
+  mine.tasks = traced.tiles.size();
+  mine.idle = traced.report.idle;
+  mine.requests = traced.report.requests;
+  mine.steals = traced.report.steals;
+  mine.tasks_stolen = traced.report.tasks_stolen;
+  mine.bytes_sent = totals.bytes_sent;
+  mine.bytes_received = totals.bytes_received;
+  mine.messages = totals.messages_sent;
+  mine.timeline = std::move(traced.report.timeline);
+  return mine;
+}
+
+void summarize(std::vector<RankStatistics>&& ranks, Statistics& statistics) {
+  std::vector<double> rays;
+  for (const RankStatistics& rank : ranks) {
+    statistics.rays += rank.rays;
+    rays.push_back(static_cast<double>(sum(rank.rays)));
   }
-  const std::vector<comm::Buffer> messages = comm::gather(communicator, 0, std::move(message));
-  if (!root) return;
-  result.image = image::ImageF(frame.setting.view.width, frame.setting.view.height);
-  parallel::parallel_for(0, traced.size(), 16, [&](std::size_t i) {
-    put(frame.tiles[frame.mine[i]], traced[i].colour.data(), traced[i].depth.data(), result.image);
-  });
-  std::vector<RankStatistics>& ranks = result.statistics.ranks;
-  ranks.assign(static_cast<std::size_t>(communicator.size()), mine);
-  for (int rank = 1; rank < communicator.size(); ++rank) {
-    const comm::Buffer& from = messages[rank];
-    std::memcpy(&ranks[rank], from.data(), sizeof(RankStatistics));
-    ranks[0].bytes_received += from.size();
-    unpack(from, frame.tiles,
-           tiles_of_rank(dealt, frame.setting.view.width, frame.setting.view.height, rank,
-                         communicator.size()),
-           result.image);
-  }
-  for (const RankStatistics& rank : ranks) result.statistics.rays += rank.rays;
+  statistics.imbalance_rays = loadbalance::imbalance(rays);
+  statistics.ranks = std::move(ranks);
 }
 
 }  // namespace
 
-Result render(comm::Communicator& communicator, const Tracer& tracer, const scenes::Camera& camera,
-              const RenderOptions& options) {
+struct Renderer::Memory {
+  const Tracer* tracer;  // or
+  SharedScene* scene;    // with
+  const Distribution* distribution;
+  TileShares shares = {};
+
+  const shading::Shader& shader() const { return tracer ? tracer->shader : scene->shader(); }
+  const LightTable& lights() const { return tracer ? tracer->lights : scene->lights(); }
+};
+
+Renderer::Renderer(const Tracer& tracer) : memory_(new Memory{&tracer, nullptr, nullptr}) {}
+Renderer::Renderer(SharedScene& scene, const Distribution& distribution)
+    : memory_(new Memory{nullptr, &scene, &distribution}) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
+                        const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const Schedule& dealt = schedule(options.schedule);
-  const Integrator& chosen = integrator(options.integrator);
+  check(options);
+  const Tracer* const tracer = memory_->tracer;
   const int width = std::max(0, options.width), height = std::max(0, options.height);
   scenes::View view;
   if (width > 0 && height > 0) view = scenes::make_view(camera, width, height);
   view.width = width;
   view.height = height;
-  const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
-  const Setting setting{shader, tracer.lights, view, options.trace, options.samples};
-  Walks walks(chosen, setting);
-  const TiledFrame frame{
-      tracer,
-      options,
-      setting,
-      walks,
-      tiles(width, height),
-      tiles_of_rank(dealt, width, height, communicator.rank(), communicator.size())};
-
-  communicator.mark(comm::Phase::trace, 0);
-  const std::vector<TilePixels> traced = trace(frame);
-  RankStatistics mine;
-  mine.tasks = traced.size();
-  for (const TilePixels& tile : traced) {
-    mine.busy += tile.busy;
-    mine.rays += tile.rays;
-  }
-  communicator.work(comm::Work::rays, mine.rays.primary + mine.rays.shadow + mine.rays.secondary);
-
+  const shading::BatchShader shader = shading::make_batch_shader(memory_->shader());
+  const Setting setting{shader, memory_->lights(), view, options.trace, options.samples};
+  Walks walks(integrator(options.integrator), setting);
+  const Frame frame{
+      tracer, options, setting, walks, {{0, 0, width, height}, options.tile, options.tile}};
+  const bool root = communicator.rank() == 0;
+  std::vector<comm::Event> events;
+  comm::Recording recording(communicator, events);
   Result result;
   Statistics& statistics = result.statistics;
+
+  recording.mark(comm::Phase::redistribute, 0);
+  loadbalance::ScheduleOptions how;
+  how.threads = parallel::arena_threads();
+  // A tile of few rays is done sooner than a request is answered by a master at work: several at
+  // once then, asked for before the last ones are begun, while there are many for each rank.
+  constexpr std::uint32_t kBatches = 32;  // for each rank, at least
+  how.batch = std::max(
+      static_cast<std::uint32_t>(how.threads),
+      frame.tiles.grid().count() / (kBatches * static_cast<std::uint32_t>(communicator.size())));
+  how.ahead = std::max(1U, how.batch / 2);
+  if (!options.partition.empty()) {
+    how.initial = memory_->shares.next(recording, frame.tiles, options);
+    if (root) statistics.partition = memory_->shares.statistics();
+  }
+
+  recording.mark(comm::Phase::trace, 0);
+  Traced traced = tracer != nullptr
+                      ? trace(recording, frame, how)
+                      : trace(recording, frame, *memory_->scene, *memory_->distribution, how);
   statistics.trace_seconds = seconds_since(start);
-  communicator.mark(comm::Phase::gather, 0);
-  collect(communicator, frame, traced, mine, dealt, result);
-  statistics.build_seconds = tracer.build_seconds;
+
+  recording.mark(comm::Phase::gather, 0);
+  if (root) result.image = image::ImageF(width, height);
+  const std::vector<TileCost> costs =
+      collect_tiles(recording, frame.tiles, traced.tiles, result.image);
+  if (root) memory_->shares.learn(frame.tiles, costs, options.costs);
   statistics.frame_seconds = seconds_since(start);
   statistics.gather_seconds = statistics.frame_seconds - statistics.trace_seconds;
-  statistics.degenerate = tracer.degenerate;
-  statistics.structure_bytes = tracer.embree.memory();
-  statistics.embree_version = tracer.embree.version();
-  statistics.embree_isa = tracer.embree.isa();
+
+  const comm::Totals totals = comm::totals(events, communicator.world_rank(communicator.rank()));
+  RankStatistics mine = statistics_of(traced, totals);
+  if (tracer != nullptr) {
+    statistics.build_seconds = tracer->build_seconds;
+    statistics.degenerate = tracer->degenerate;
+    statistics.structure_bytes = tracer->embree.memory();
+    statistics.embree_version = tracer->embree.version();
+    statistics.embree_isa = tracer->embree.isa();
+  } else {
+    const SharedScene& scene = *memory_->scene;
+    statistics.build_seconds = scene.build_seconds();
+    statistics.degenerate = scene.degenerate();
+    statistics.structure_bytes = scene.bytes();
+    statistics.embree_version = scene.embree_version();
+    statistics.embree_isa = scene.embree_isa();
+    mine.clusters_dropped = scene.evicted();
+    mine.geometry_bytes = scene.most_bytes();
+  }
+  summarize(gather_statistics(communicator, mine), statistics);
   return result;
+}
+
+Result render(comm::Communicator& communicator, const Tracer& tracer, const scenes::Camera& camera,
+              const RenderOptions& options) {
+  return Renderer(tracer).render(communicator, camera, options);
 }
 
 Result render(comm::Communicator& communicator, const scenes::Scene& scene,

@@ -1,44 +1,91 @@
-// Pictures by ray tracing over ranks and threads; every rank has the whole scene.
+// Pictures by ray tracing over ranks and threads, whether every rank has the whole scene or each a
+// part of it.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "comm/communicator.h"
 #include "image/image.h"
+#include "loadbalance/schedule.h"
 #include "parallel/progress.h"
+#include "raytrace/distribution.h"
 #include "raytrace/integrator.h"
 #include "raytrace/tracer.h"
 #include "scenes/camera.h"
-#include "scenes/scene.h"
 
 namespace delray::raytrace {
+
+// What tiles are taken to cost, by the last frame: the rays that were sent for them, which is the
+// same whoever traced them, or the processor time that they took.
+enum class CostSource : std::uint8_t { rays, seconds };
+
+// Pixels are walked through in squares of this side, cut from the frame's left upper corner on
+// however large tiles are, since rays that share a group are summed up together.
+inline constexpr int kTaskSide = 16;
 
 struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 1;  // per pixel; 1: in its centre
   TraceOptions trace;
   std::string integrator = "whitted";
+  // Of loadbalance::schedules(): tiles are handed out to ranks and threads.
   std::string schedule = "interlaced";
+  // Pixels, the side of a tile; a multiple of kTaskSide, so that no walk goes over two tiles.
+  // Large enough that a tile takes a good part of a millisecond, small enough that there are many
+  // for each rank.
+  int tile = 32;
+  // Of loadbalance::partitioners(), over what the tiles cost in the last frame of a Renderer: with
+  // the schedules that begin with shares (static and both kinds of stealing) a rank begins with the
+  // tiles of its region. Empty: with as many consecutive ones.
+  std::string partition;
+  CostSource costs = CostSource::rays;
+  int regions_per_rank = 1;
+  // A partition is kept from frame to frame for as long as no rank would have to do more than so
+  // many times an equal share.
+  double keep_factor = 1.2;
   BuildOptions build;                      // where a tracer is made
-  parallel::Progress* progress = nullptr;  // steps are this rank's tiles
+  parallel::Progress* progress = nullptr;  // steps are tiles
 };
 
-// Of one rank and frame.
-struct RankStatistics {
+// Of one rank and frame, counted but for the times.
+struct RankCounts {
   double busy = 0.0;  // seconds of processor time that its threads spent on tiles
+  double idle = 0.0;  // seconds that they waited for tiles
   std::uint64_t tasks = 0;
   RayCounts rays;
-  std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // of pixels, counted as sent
+  std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
+  std::uint64_t requests = 0, steals = 0, tasks_stolen = 0;        // of the schedule
+  // Of a scene that is shared out: rays sent to other ranks and answers sent back; rays against
+  // clusters; clusters that came from another rank, with their bytes, and that were dropped again
+  // or moved to a neighbour for good; the most bytes of geometry and acceleration structures at any
+  // time.
+  std::uint64_t rays_sent = 0, answers_sent = 0, tests = 0, clusters_fetched = 0,
+                clusters_fetched_bytes = 0, clusters_dropped = 0, clusters_moved = 0,
+                geometry_bytes = 0;
+};
+struct RankStatistics : RankCounts {
+  std::vector<loadbalance::Interval> timeline;  // by thread, then time, on the rank's clock
+};
+
+// What rank 0 has cut the frame into.
+struct PartitionStatistics {
+  double predicted = 1;   // imbalance that the last frame's costs foretell
+  bool measured = false;  // whether there was a last frame; equal costs otherwise
+  bool kept = false;      // from the last frame
 };
 
 struct Statistics {
   double build_seconds = 0.0, frame_seconds = 0.0;
   double trace_seconds = 0.0, gather_seconds = 0.0;  // of rank 0; shading is part of trace
   RayCounts rays;                                    // of all ranks
-  std::uint64_t degenerate = 0;                      // triangles that can never be hit
-  std::uint64_t structure_bytes = 0;                 // of the acceleration structure
+  double imbalance_rays = 1;          // max over mean of the rays that ranks sent; 1 without any
+  std::uint64_t degenerate = 0;       // triangles that can never be hit
+  std::uint64_t structure_bytes = 0;  // of the acceleration structure
+  std::optional<PartitionStatistics> partition;
   std::vector<RankStatistics> ranks;
   std::string embree_version, embree_isa;
 };
@@ -49,12 +96,38 @@ struct Result {
   Statistics statistics;
 };
 
-// Collective. Same bytes for every number of ranks and threads (and the same Embree instruction
-// set). Works in the caller's arena; with no width or height the image is empty. Of several samples
-// colours are averaged and the least depth is kept. Throws std::invalid_argument for unknown names,
-// parallel::Interrupted when the progress is told to stop.
-//
-// REQUIRES: samples >= 1, depth >= 0; the same scene, camera and options on every rank.
+// Renders frames of one scene, each with shares of tiles by what they cost in the one before. One
+// per rank.
+class Renderer {
+ public:
+  // Refers to the tracer, which several ranks may share.
+  explicit Renderer(const Tracer& tracer);
+  // Refers to this rank's part of a scene that is shared out. Once clusters have gone round by
+  // `ring` no other distribution finds them. REQUIRES: !distribution.replicated.
+  Renderer(SharedScene& scene, const Distribution& distribution);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  // Collective. Same bytes for every schedule, partition, size of tiles, distribution and number of
+  // ranks and
+  // threads (and the same Embree instruction set). Works in as many threads as the caller's arena
+  // has; with no width or height the image is empty. Of several samples colours are averaged and
+  // the least depth is kept. Throws std::invalid_argument for names that are in no table and for
+  // sizes of tiles that are no multiple of kTaskSide; parallel::Interrupted when the progress is
+  // told to stop.
+  //
+  // REQUIRES: samples >= 1, depth >= 0, regions_per_rank >= 1, keep_factor >= 1; the same scene,
+  // camera and options on every rank.
+  Result render(comm::Communicator& communicator, const scenes::Camera& camera,
+                const RenderOptions& options);
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+// One frame.
 Result render(comm::Communicator& communicator, const Tracer& tracer, const scenes::Camera& camera,
               const RenderOptions& options);
 

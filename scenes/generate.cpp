@@ -25,7 +25,9 @@ constexpr std::array kGenerators = {
     Generator{"city", "blocks of buildings, high in the middle, between streets", 1'000'000,
               &internal::generate_city},
     Generator{"field", "a thousand instances of four detailed models on a plain", 13'000'000,
-              &internal::generate_field}};
+              &internal::generate_field},
+    Generator{"corner", "glass spheres in a corner of the picture: uneven work for rays", 100'000,
+              &internal::generate_corner}};
 
 [[noreturn]] void refuse(std::string_view name, const std::string& why) {
   std::string message =

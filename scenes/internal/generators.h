@@ -24,4 +24,8 @@ Scene generate_city(std::uint64_t triangles, std::uint64_t seed);
 // Up to 1008 instances of four detailed models on a plain, most of them far away or hidden.
 Scene generate_field(std::uint64_t triangles, std::uint64_t seed);
 
+// A heap of glass spheres in the top left corner of the picture, next to nothing elsewhere: work
+// for rays that is spread as unevenly as can be. The seed places the spheres.
+Scene generate_corner(std::uint64_t triangles, std::uint64_t seed);
+
 }  // namespace delray::scenes::internal

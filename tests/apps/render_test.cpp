@@ -49,6 +49,24 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
   const std::string hash = statistics(base + "--threads 1", folder)["image"]["hash"];
   EXPECT_EQ(statistics(base + "--ranks 3 --threads 2", folder)["image"]["hash"], hash);
   EXPECT_EQ(statistics(mpirun(4) + base, folder)["image"]["hash"], hash);
+  for (const std::string options :
+       {"--ranks 4 --schedule demand --block 16",
+        "--ranks 3 --schedule stealing --partition mahd --costs measured --frames 2",
+        "--ranks 2 --threads 2 --schedule guided"}) {
+    const json stats = statistics(base + options, folder);
+    EXPECT_EQ(stats["image"]["hash"], hash) << options;
+    EXPECT_EQ(stats["raytrace"].contains("partition"),
+              options.find("--partition") != std::string::npos);
+    std::uint64_t tasks = 0, rays = 0;
+    for (const json& rank : stats["ranks"]) {
+      tasks += rank["tasks"].get<std::uint64_t>();
+      rays += rank["rays"]["primary"].get<std::uint64_t>();
+      EXPECT_TRUE(rank["requests"].is_number());
+      for (const json& interval : rank["timeline"]) EXPECT_GE(interval["end"], interval["begin"]);
+    }
+    EXPECT_EQ(tasks, options.find("--block") != std::string::npos ? 24U : 6U);
+    EXPECT_EQ(rays, stats["rays"]["primary"].get<std::uint64_t>());
+  }
 }
 
 TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {

@@ -173,8 +173,17 @@ TEST(Render, UnknownNamesAreRefused) {
   scenes::Scene scene;
   RenderOptions options = small(8, 8);
   options.integrator = "nonsense";
-  EXPECT_THROW(integrator(options.integrator), std::invalid_argument);
+  EXPECT_THROW(render_alone(scene, scenes::Camera{}, options), comm::RankFailure);
   EXPECT_EQ(std::string(integrator("whitted").name), "whitted");
+  const auto refused = [&](auto change) {
+    RenderOptions other = small(8, 8);
+    change(other);
+    EXPECT_THROW(render_alone(scene, scenes::Camera{}, other), comm::RankFailure);
+  };
+  refused([](RenderOptions& o) { o.schedule = "nonsense"; });
+  refused([](RenderOptions& o) { o.partition = "nonsense"; });
+  refused([](RenderOptions& o) { o.tile = 24; });
+  refused([](RenderOptions& o) { o.tile = 0; });
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+// How rays and geometry come together where no rank has the whole scene.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "raytrace/shared_scene.h"
+
+namespace delray::raytrace {
+
+// What a rank that has put rays aside for a cluster of another rank may do.
+enum class Meeting : std::uint8_t { wait, send_rays, fetch_cluster };
+
+// What there is to know for that.
+struct WaitingList {
+  std::uint32_t cluster = 0;
+  std::uint64_t rays = 0, ray_bytes = 0;  // that wait
+  std::uint64_t cluster_bytes = 0;        // that would travel instead
+  bool hungry = false;                    // the rank has nothing else to do
+};
+
+struct Distribution {
+  const char* name;
+  const char* description;
+  // Null: rays go round all ranks instead, each of which tests them against what it has.
+  Meeting (*meet)(const WaitingList& waiting);
+  // Whether every rank has the whole scene, and nothing of this takes place.
+  bool replicated = false;
+};
+
+// The table: command line, tests and benchmarks iterate over it.
+std::span<const Distribution> distributions();
+const Distribution* find_distribution(std::string_view name);  // nullptr when there is none
+
+}  // namespace delray::raytrace

@@ -1,0 +1,16 @@
+// What the table of distributions is made of.
+#pragma once
+
+#include "raytrace/distribution.h"
+
+namespace delray::raytrace {
+
+// Rays that wait for one cluster and go to its owner in one message: enough that the message is
+// worth its latency.
+inline constexpr std::uint64_t kBatchRays = 256;
+
+Meeting meet_by_ray(const WaitingList& waiting);
+Meeting meet_by_object(const WaitingList& waiting);
+Meeting meet_by_either(const WaitingList& waiting);
+
+}  // namespace delray::raytrace

@@ -1,0 +1,199 @@
+#include "raytrace/shared_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "comm/collectives.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::raytrace {
+namespace {
+
+// Clusters for each rank, at least, and triangles of one, at least and at most: enough that a cache
+// of a tenth of the scene holds many, and large enough that a ray meets few.
+constexpr std::uint64_t kClusters = 64, kFewestTriangles = 64, kMostTriangles = 1 << 14;
+
+std::uint32_t triangles_of_cluster(std::uint64_t all, int ranks) {
+  const std::uint64_t share = all / (kClusters * static_cast<std::uint64_t>(ranks));
+  return static_cast<std::uint32_t>(std::clamp(share, kFewestTriangles, kMostTriangles));
+}
+
+// What every rank knows of a cluster.
+struct Known {
+  std::uint64_t packed_bytes = 0;
+  std::uint32_t boxes = 0;
+  std::uint32_t instanced = 0;
+};
+
+std::uint64_t scattered(std::uint64_t x) {  // the finaliser of SplitMix64
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31);
+}
+
+// Every rank's clusters to the ranks that chance chooses. Collective.
+std::vector<ClusterData> dealt_at_random(comm::Communicator& communicator,
+                                         std::vector<ClusterData>&& mine, std::uint64_t seed) {
+  std::vector<comm::Parcel> parcels;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    const std::uint64_t key =
+        scattered(seed ^ scattered(i * 65537 + static_cast<std::uint64_t>(communicator.rank())));
+    const auto to = static_cast<int>(key % static_cast<std::uint64_t>(communicator.size()));
+    parcels.push_back({to, pack(mine[i])});
+    mine[i] = {};
+  }
+  std::vector<ClusterData> dealt;
+  for (comm::Parcel& parcel : comm::exchange(communicator, std::move(parcels))) {
+    dealt.push_back(unpack_cluster({parcel.message.data(), parcel.message.size()}));
+    parcel.message = {};
+  }
+  return dealt;
+}
+
+}  // namespace
+
+SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Scene& scene,
+                              const ShareOptions& options) {
+  shading::Shader shader = shading::make_shader(scene);
+  std::vector<ClusterData> mine;
+  {
+    const std::vector<Placement> placements = place(scene, shader, options.build.share_meshes);
+    const std::uint64_t all = stored_triangles(placements);
+    const auto ranks = static_cast<std::uint64_t>(communicator.size());
+    const auto rank = static_cast<std::uint64_t>(communicator.rank());
+    const std::uint32_t most = options.most_triangles > 0
+                                   ? options.most_triangles
+                                   : triangles_of_cluster(all, communicator.size());
+    mine = cut_clusters(placements, all * rank / ranks, all * (rank + 1) / ranks, most);
+  }
+  LightTable lights(scene, shader);
+  return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
+}
+
+SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shader,
+                         LightTable lights, std::vector<ClusterData>&& mine,
+                         const ShareOptions& options)
+    : shader_(std::move(shader)), lights_(std::move(lights)), build_(options.build) {
+  const auto start = std::chrono::steady_clock::now();
+  if (options.deal == ShareOptions::Deal::random)
+    mine = dealt_at_random(communicator, std::move(mine), options.seed);
+
+  // What there is to know of this rank's clusters, then their boxes.
+  std::vector<Known> known;
+  std::vector<geometry::Box3> boxes;
+  for (const ClusterData& cluster : mine) {
+    const std::vector<geometry::Box3> more = boxes_of(cluster);
+    const bool instanced = std::any_of(cluster.placements.begin(), cluster.placements.end(),
+                                       [](const Placement& p) { return p.instanced; });
+    known.push_back(
+        {cluster.bytes(), static_cast<std::uint32_t>(more.size()), instanced ? 1U : 0U});
+    boxes.insert(boxes.end(), more.begin(), more.end());
+  }
+  const std::uint64_t count = known.size();
+  comm::Buffer message(sizeof(count) + known.size() * sizeof(Known) +
+                       boxes.size() * sizeof(geometry::Box3));
+  std::memcpy(message.data(), &count, sizeof(count));
+  if (!known.empty())
+    std::memcpy(message.data() + sizeof(count), known.data(), known.size() * sizeof(Known));
+  if (!boxes.empty())
+    std::memcpy(message.data() + sizeof(count) + known.size() * sizeof(Known), boxes.data(),
+                boxes.size() * sizeof(geometry::Box3));
+
+  std::vector<ClusterBox> all_boxes;
+  std::uint32_t first_mine = 0;
+  const std::vector<comm::Buffer> messages = comm::all_gather(communicator, std::move(message));
+  for (int rank = 0; rank < communicator.size(); ++rank) {
+    const std::byte* at = messages[rank].data();
+    std::uint64_t clusters = 0;
+    std::memcpy(&clusters, at, sizeof(clusters));
+    at += sizeof(clusters);
+    const std::byte* box_at = at + clusters * sizeof(Known);
+    if (rank == communicator.rank()) first_mine = static_cast<std::uint32_t>(owners_.size());
+    for (std::uint64_t i = 0; i < clusters; ++i) {
+      Known each;
+      std::memcpy(&each, at + i * sizeof(Known), sizeof(Known));
+      const auto number = static_cast<std::uint32_t>(owners_.size());
+      for (std::uint32_t b = 0; b < each.boxes; ++b, box_at += sizeof(geometry::Box3)) {
+        ClusterBox& box = all_boxes.emplace_back();
+        std::memcpy(&box.box, box_at, sizeof(geometry::Box3));
+        box.cluster = number;
+      }
+      owners_.push_back(rank);
+      packed_bytes_.push_back(each.packed_bytes);
+      has_instances_ = has_instances_ || each.instanced != 0;
+    }
+  }
+  tree_ = ClusterTree(std::move(all_boxes));
+
+  std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
+  std::vector<std::uint64_t> degenerate(mine.size());
+  parallel::parallel_for(0, mine.size(), 1, [&](std::size_t i) {
+    ready[i] = std::make_shared<const Cluster>(std::move(mine[i]), build_);
+    degenerate[i] = count_degenerate(ready[i]->placements());
+  });
+  for (std::size_t i = 0; i < ready.size(); ++i) {
+    own_bytes_ += ready[i]->bytes();
+    degenerate_ += degenerate[i];
+    if (version_.empty()) version_ = ready[i]->embree().version(), isa_ = ready[i]->embree().isa();
+    owned_.emplace(first_mine + static_cast<std::uint32_t>(i), std::move(ready[i]));
+  }
+  const std::uint64_t all_bytes = comm::all_reduce_value(communicator, own_bytes_, std::plus<>());
+  cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
+  degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
+  if (version_.empty()) {
+    const EmbreeScene nothing({}, build_);
+    version_ = nothing.version(), isa_ = nothing.isa();
+  }
+  note_bytes();
+  build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::shared_ptr<const Cluster> SharedScene::find(std::uint32_t cluster) {
+  if (const auto own = owned_.find(cluster); own != owned_.end()) return own->second;
+  const auto cached = cached_.find(cluster);
+  if (cached == cached_.end()) return nullptr;
+  uses_.splice(uses_.begin(), uses_, cached->second.use);
+  return cached->second.cluster;
+}
+
+std::shared_ptr<const Cluster> SharedScene::put(std::uint32_t cluster, ClusterData&& data) {
+  auto ready = std::make_shared<const Cluster>(std::move(data), build_);
+  cached_bytes_ += ready->bytes();
+  uses_.push_front(cluster);
+  cached_.emplace(cluster, Cached{ready, uses_.begin()});
+  drop_old();
+  note_bytes();
+  return ready;
+}
+
+std::shared_ptr<const Cluster> SharedScene::give_away(std::uint32_t cluster) {
+  const auto own = owned_.find(cluster);
+  std::shared_ptr<const Cluster> given = std::move(own->second);
+  owned_.erase(own);
+  own_bytes_ -= given->bytes();
+  return given;
+}
+
+void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
+  auto ready = std::make_shared<const Cluster>(std::move(data), build_);
+  own_bytes_ += ready->bytes();
+  owned_.emplace(cluster, std::move(ready));
+  note_bytes();
+}
+
+void SharedScene::drop_old() {
+  while (cached_bytes_ > cache_limit_ && uses_.size() > 1) {
+    const auto oldest = cached_.find(uses_.back());
+    cached_bytes_ -= oldest->second.cluster->bytes();
+    cached_.erase(oldest);
+    uses_.pop_back();
+    ++evicted_;
+  }
+}
+
+void SharedScene::note_bytes() { most_bytes_ = std::max(most_bytes_, bytes()); }
+
+}  // namespace delray::raytrace

@@ -1,0 +1,101 @@
+// A scene whose geometry is shared out over ranks; materials, textures, lights and environment are
+// on all of them.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "comm/communicator.h"
+#include "raytrace/cluster.h"
+#include "raytrace/cluster_tree.h"
+#include "raytrace/light_table.h"
+#include "scenes/scene.h"
+#include "shading/shader.h"
+
+namespace delray::raytrace {
+
+struct ShareOptions {
+  // Which ranks clusters go to: neighbours to one, so that a ray changes rank seldom, or dealt out
+  // at random, so that every rank has some of what the picture shows (Jevans 1989).
+  enum class Deal : std::uint8_t { neighbours, random } deal = Deal::neighbours;
+  std::uint64_t seed = 1;  // of random
+  // Bytes that other ranks' clusters may take on this one, with their acceleration structures, but
+  // for one cluster that is always kept; 0: a tenth of what all ranks have together.
+  std::uint64_t cache_bytes = 0;
+  std::uint32_t most_triangles = 0;  // of a cluster; 0: by the number of triangles
+  BuildOptions build;
+};
+
+// What a rank has of the geometry, all ranks know of each other, and clusters that came from
+// others. One per rank; parallel only where it says so.
+class SharedScene {
+ public:
+  // Collective. Every rank cuts an equal part of the triangles, in their order in the scene, into
+  // clusters; `scene` has to be complete on every rank, and may be destroyed afterwards.
+  static SharedScene make(comm::Communicator& communicator, const scenes::Scene& scene,
+                          const ShareOptions& options);
+  // Collective. The clusters are this rank's part, shader and lights are those of the whole scene.
+  SharedScene(comm::Communicator& communicator, shading::Shader shader, LightTable lights,
+              std::vector<ClusterData>&& mine, const ShareOptions& options);
+
+  const shading::Shader& shader() const { return shader_; }
+  const LightTable& lights() const { return lights_; }
+  const ClusterTree& tree() const { return tree_; }
+  std::uint32_t clusters() const { return static_cast<std::uint32_t>(owners_.size()); }
+  int owner(std::uint32_t cluster) const { return owners_[cluster]; }
+  std::uint64_t packed_bytes(std::uint32_t cluster) const { return packed_bytes_[cluster]; }
+  // Whether any placement of the whole scene is an Embree instance, or can be seen through.
+  bool has_instances() const { return has_instances_; }
+
+  // The cluster where it is at hand, on this rank; null where not. A use of what came from another
+  // rank keeps it longest.
+  std::shared_ptr<const Cluster> find(std::uint32_t cluster);
+  // Parallel. Makes what came from another rank ready for rays, and drops what was not used for
+  // longest while there is too much.
+  std::shared_ptr<const Cluster> put(std::uint32_t cluster, ClusterData&& data);
+  // Owned clusters that change rank for good.
+  std::shared_ptr<const Cluster> give_away(std::uint32_t cluster);
+  void take_over(std::uint32_t cluster, ClusterData&& data);
+  bool owns(std::uint32_t cluster) const { return owned_.contains(cluster); }
+  const std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>>& owned() const {
+    return owned_;
+  }
+
+  // Bytes of geometry, acceleration structures and the tree: now, and the most there ever were.
+  std::uint64_t bytes() const { return own_bytes_ + cached_bytes_ + tree_.bytes(); }
+  std::uint64_t most_bytes() const { return most_bytes_; }
+  std::uint64_t cache_bytes() const { return cache_limit_; }
+  std::uint64_t evicted() const { return evicted_; }
+  double build_seconds() const { return build_seconds_; }
+  std::string embree_version() const { return version_; }
+  std::string embree_isa() const { return isa_; }
+  std::uint64_t degenerate() const { return degenerate_; }
+
+ private:
+  void note_bytes();
+  void drop_old();
+
+  struct Cached {
+    std::shared_ptr<const Cluster> cluster;
+    std::list<std::uint32_t>::iterator use;
+  };
+  shading::Shader shader_;
+  LightTable lights_;
+  BuildOptions build_;
+  ClusterTree tree_;
+  std::vector<int> owners_;                  // by cluster
+  std::vector<std::uint64_t> packed_bytes_;  // by cluster
+  std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>> owned_;
+  std::unordered_map<std::uint32_t, Cached> cached_;
+  std::list<std::uint32_t> uses_;  // cached clusters, what was used last at the front
+  std::uint64_t own_bytes_ = 0, cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
+  bool has_instances_ = false;
+  double build_seconds_ = 0.0;
+  std::string version_, isa_;
+  std::uint64_t degenerate_ = 0;
+};
+
+}  // namespace delray::raytrace
