@@ -21,6 +21,7 @@
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
 #include "raster/strategies.h"
+#include "raytrace/distribution.h"
 #include "raytrace/integrator.h"
 
 namespace delray::apps {
@@ -32,6 +33,7 @@ int print_lists() {
   print_table(composite::schemes());
   print_table(composite::codecs());
   print_table(raytrace::integrators());
+  print_table(raytrace::distributions());
   print_table(loadbalance::schedules());
   return kDone;
 }
@@ -45,8 +47,7 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
   spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", request.output, request.width,
-               request.height, scenes::triangle_count(prepared.scene),
-               statistics["seconds"]["frame"].get<double>());
+               request.height, prepared.triangles, statistics["seconds"]["frame"].get<double>());
 }
 
 // Rank 0: statistics of an animation, whose files are there.

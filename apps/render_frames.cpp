@@ -3,6 +3,7 @@
 #include "apps/animation.h"
 #include "apps/statistics.h"
 #include "comm/collectives.h"
+#include "scenes/generate.h"
 
 namespace delray::apps {
 namespace {
@@ -68,13 +69,55 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   return options;
 }
 
+// Whether no rank need ever have the whole scene: the generator makes parts, and nothing asks for
+// the bounds of all.
+bool comes_in_parts(const RenderRequest& request) {
+  if (request.kind != Engine::raytrace || request.data == "replicated" ||
+      !request.scene.colour_by.empty() || !request.camera.view.empty())
+    return false;
+  try {
+    return scenes::has_parts(request.scene.file.path);
+  } catch (const std::invalid_argument&) {
+    return false;  // loading says what is wrong
+  }
+}
+
+raytrace::SharedScene share(comm::Communicator& communicator, const Prepared& prepared,
+                            const RenderRequest& request, const raytrace::ShareOptions& options) {
+  if (!prepared.in_parts) return raytrace::SharedScene::make(communicator, prepared.scene, options);
+  return raytrace::SharedScene::make(
+      communicator,
+      scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size()),
+      options);
+}
+
+raytrace::ShareOptions share_options(const RenderRequest& request) {
+  constexpr double kMebibyte = 1 << 20;
+  raytrace::ShareOptions options;
+  options.deal = request.deal == "random" ? raytrace::ShareOptions::Deal::random
+                                          : raytrace::ShareOptions::Deal::neighbours;
+  options.cache_bytes = static_cast<std::uint64_t>(request.cache_mebibytes * kMebibyte);
+  return options;
+}
+
 }  // namespace
 
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
                                         parallel::Progress* progress) {
   auto prepared = std::make_shared<Prepared>();
   Stopwatch watch;
-  prepared->scene = load_scene(request.scene, progress);
+  prepared->in_parts = comes_in_parts(request);
+  if (prepared->in_parts) {
+    constexpr int kParts = 1 << 30;  // of which the first is nothing but camera and lights
+    scenes::ScenePart part = scenes::generate_part(request.scene.file.path, 0, kParts);
+    prepared->triangles = part.triangles;
+    prepared->vertices = part.vertices;
+    prepared->scene = std::move(part.scene);
+  } else {
+    prepared->scene = load_scene(request.scene, progress);
+    prepared->triangles = scenes::triangle_count(prepared->scene);
+    prepared->vertices = scenes::vertex_count(prepared->scene);
+  }
   prepared->camera =
       choose_camera(request.camera, prepared->scene,
                     static_cast<float>(request.width) / static_cast<float>(request.height));
@@ -87,7 +130,7 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   }
   complete(prepared->scene, prepared->camera);
   prepared->load_seconds = watch.lap();
-  if (request.kind == Engine::raster) {
+  if (request.kind == Engine::raster || request.data != "replicated") {
     prepared->shader =
         std::make_shared<const shading::Shader>(shading::make_shader(prepared->scene));
   } else {
@@ -103,7 +146,7 @@ FrameRenderer::FrameRenderer(const Prepared& prepared, const RenderRequest& requ
     : prepared_(prepared), request_(request), progress_(progress) {
   if (request.kind == Engine::raster) {
     raster_.emplace(prepared.scene, prepared.shader);
-  } else {
+  } else if (prepared.tracer) {
     raytrace_.emplace(*prepared.tracer);
   }
 }
@@ -116,6 +159,10 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
     frame.picture = std::move(result.picture);
     frame.statistics = std::move(result.statistics);
   } else {
+    if (!raytrace_) {
+      shared_.emplace(share(communicator, prepared_, request_, share_options(request_)));
+      raytrace_.emplace(*shared_, *raytrace::find_distribution(request_.data));
+    }
     raytrace::Result result =
         raytrace_->render(communicator, camera, raytrace_options(request_, progress_));
     frame.picture = std::move(result.image);

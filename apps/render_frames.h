@@ -19,8 +19,11 @@ struct Prepared {
   scenes::Camera camera;
   std::vector<scenes::Camera> cameras;             // of an animation; empty for a single picture
   Background background;                           // not automatic any more
-  std::shared_ptr<const shading::Shader> shader;   // rasterizer
-  std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer
+  std::shared_ptr<const shading::Shader> shader;   // rasterizer; ray tracer without a tracer
+  std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
+  // Ranks make parts of the geometry for themselves, and `scene` has none.
+  bool in_parts = false;
+  std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
   double load_seconds = 0, build_seconds = 0;
 
   const shading::Shader& shading() const { return tracer ? tracer->shader : *shader; }
@@ -57,6 +60,7 @@ class FrameRenderer {
   parallel::Progress* progress_;
   std::optional<raster::Renderer> raster_;  // one of the two
   std::optional<raytrace::Renderer> raytrace_;
+  std::optional<raytrace::SharedScene> shared_;  // of the last, with some --data
 };
 
 // The last of some frames from the same camera.

@@ -13,6 +13,7 @@
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
 #include "raster/strategies.h"
+#include "raytrace/distribution.h"
 #include "raytrace/integrator.h"
 
 namespace delray::apps {
@@ -32,7 +33,8 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
 }
 
 void check_raster(const CLI::App& command, const RenderRequest& request) {
-  refuse(command, {"--integrator", "--spp", "--depth", "--data"}, "--engine raster");
+  refuse(command, {"--integrator", "--spp", "--depth", "--data", "--deal", "--cache"},
+         "--engine raster");
   find_entry(raster::strategies(), request.strategy, "--strategy");
   find_entry(loadbalance::partitioners(), request.partition, "--partition");
   if (composite::find_scheme(request.scheme) == nullptr) {  // which knows radix-k:4,2 too
@@ -81,6 +83,10 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
   find_entry(loadbalance::schedules(), request.schedule, "--schedule");
+  find_entry(raytrace::distributions(), request.data, "--data");
+  if (request.data == "replicated") refuse(command, {"--deal", "--cache"}, "--data replicated");
+  if (request.data == "ray" || request.data == "ring")
+    refuse(command, {"--cache"}, "--data " + request.data + ": rays travel");
   if (command.count("--block") == 0) request.block = kTile;
   if (request.block % raytrace::kTaskSide != 0) {
     throw UsageError(
@@ -227,8 +233,19 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
                   "how ranks share blocks of the picture; sort-first: blocks that change rank "
                   "meanwhile")
       ->group(raytrace);
-  command.add_option("--data", request.data, "how ranks share the scene")
-      ->check(CLI::IsMember({"replicated"}))
+  command
+      .add_option("--data", request.data,
+                  "how ranks share the scene: replicated (default), object, ray, ring or hybrid")
+      ->group(raytrace);
+  command
+      .add_option("--deal", request.deal,
+                  "clusters of a shared scene: neighbours to one rank (default), or at random")
+      ->check(CLI::IsMember({"neighbours", "random"}))
+      ->group(raytrace);
+  command
+      .add_option("--cache", request.cache_mebibytes,
+                  "MiB of other ranks' clusters that a rank keeps (default a tenth of the scene)")
+      ->check(CLI::Range(1e-3, 1e9))
       ->group(raytrace);
   command.add_option("--stats", request.statistics, "write statistics as JSON; - for stdout");
   command.add_flag("--list", request.list,

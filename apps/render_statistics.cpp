@@ -57,6 +57,8 @@ Json options_of(const RenderRequest& request, int ranks) {
     options["regions"] = request.regions_per_rank;
     options["keep"] = request.keep_factor;
     options["data"] = request.data;
+    options["deal"] = request.deal;
+    options["cache"] = request.cache_mebibytes;
   }
   return options;
 }
@@ -128,6 +130,14 @@ void add_own(const raytrace::RankStatistics& rank, Json& row) {
   constexpr const char* kKinds[] = {"work", "serve", "wait"};
   row["tasks_stolen"] = rank.tasks_stolen;
   row["rays"] = of_rays(rank.rays);
+  row["data"] = {{"rays_sent", rank.rays_sent},
+                 {"answers_sent", rank.answers_sent},
+                 {"tests", rank.tests},
+                 {"clusters_fetched", rank.clusters_fetched},
+                 {"clusters_fetched_bytes", rank.clusters_fetched_bytes},
+                 {"clusters_dropped", rank.clusters_dropped},
+                 {"clusters_moved", rank.clusters_moved},
+                 {"geometry_bytes", rank.geometry_bytes}};
   Json& timeline = row["timeline"] = Json::array();
   for (const loadbalance::Interval& interval : rank.timeline) {
     timeline.push_back({{"thread", interval.thread},
@@ -178,8 +188,8 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"schema", "delray.render/1"},
             {"scene",
              {{"file", request.scene.file.path},
-              {"triangles", scenes::triangle_count(prepared.scene)},
-              {"vertices", scenes::vertex_count(prepared.scene)},
+              {"triangles", prepared.triangles},
+              {"vertices", prepared.vertices},
               {"instances", prepared.scene.instances.size()}}},
             {"options", options_of(request, static_cast<int>(s.ranks.size()))},
             {"image", {{"width", request.width}, {"height", request.height}, {"hash", hash}}},

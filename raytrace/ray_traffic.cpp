@@ -486,7 +486,7 @@ void RayTraffic::look_at_waiting(bool hungry) {
     const std::uint32_t number = at->first;
     Waiting& waiting = at->second;
     // What is at hand by now waits for the next turn.
-    if (fetching_.contains(number) || scene_.owner(number) == communicator_.rank()) {
+    if (fetching_.contains(number) || scene_.find(number) != nullptr) {
       ++at;
       continue;
     }

@@ -73,6 +73,32 @@ SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Sc
   return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
 }
 
+SharedScene SharedScene::make(comm::Communicator& communicator, scenes::ScenePart&& part,
+                              const ShareOptions& options) {
+  shading::Shader shader = shading::make_shader(part.scene);
+  geometry::Box3 box = scenes::bounds(part.scene);
+  std::vector<ClusterData> mine;
+  {
+    const std::vector<Placement> placements = place(part.scene, shader, options.build.share_meshes);
+    const std::uint32_t most = options.most_triangles > 0
+                                   ? options.most_triangles
+                                   : triangles_of_cluster(part.triangles, communicator.size());
+    mine = cut_clusters(placements, 0, stored_triangles(placements), most, part.first_triangle);
+  }
+  box = comm::all_reduce_value(communicator, box, [](geometry::Box3 a, const geometry::Box3& b) {
+    a.include(b);
+    return a;
+  });
+  // How strong lights are beside each other goes by how large the whole scene is: for that its
+  // diagonal stands for it.
+  scenes::Scene& rest = part.scene;
+  rest.meshes.assign(1, {});
+  rest.instances.assign(1, {});
+  if (!box.empty()) rest.meshes[0].positions = {box.low, box.high};
+  LightTable lights(rest, shader);
+  return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
+}
+
 SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shader,
                          LightTable lights, std::vector<ClusterData>&& mine,
                          const ShareOptions& options)

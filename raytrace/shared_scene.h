@@ -12,6 +12,7 @@
 #include "raytrace/cluster.h"
 #include "raytrace/cluster_tree.h"
 #include "raytrace/light_table.h"
+#include "scenes/generate.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 
@@ -36,6 +37,10 @@ class SharedScene {
   // Collective. Every rank cuts an equal part of the triangles, in their order in the scene, into
   // clusters; `scene` has to be complete on every rank, and may be destroyed afterwards.
   static SharedScene make(comm::Communicator& communicator, const scenes::Scene& scene,
+                          const ShareOptions& options);
+  // Collective. Of a part that no other rank has; all parts together are the whole scene, and no
+  // rank ever has more than its own. Nothing in a part may glow.
+  static SharedScene make(comm::Communicator& communicator, scenes::ScenePart&& part,
                           const ShareOptions& options);
   // Collective. The clusters are this rank's part, shader and lights are those of the whole scene.
   SharedScene(comm::Communicator& communicator, shading::Shader shader, LightTable lights,

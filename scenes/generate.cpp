@@ -17,7 +17,7 @@ constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // 3e9 corners still ha
 
 constexpr std::array kGenerators = {
     Generator{"terrain", "fractal height field with lakes, woods and snow", 1'000'000,
-              &internal::generate_terrain},
+              &internal::generate_terrain, &internal::generate_terrain_part},
     Generator{"cornell", "the Cornell box: two blocks under an area light", 32,
               &internal::generate_cornell},
     Generator{"spheres", "reflective and refractive spheres over a chequered plane", 500'000,
@@ -53,6 +53,29 @@ std::uint64_t number(std::string_view name, std::string_view text) {
   return value;
 }
 
+struct Wanted {
+  const Generator* generator = nullptr;
+  std::uint64_t triangles = 0, seed = kDefaultSeed;
+};
+
+Wanted parsed(std::string_view name) {
+  if (!name.starts_with(kPrefix)) refuse(name, "does not start with gen:");
+  std::string_view rest = name.substr(kPrefix.size());
+  const std::string_view kind = next_field(rest), triangles = next_field(rest),
+                         seed = next_field(rest);
+  if (!rest.empty()) refuse(name, "has too many parts");
+  for (const Generator& g : kGenerators) {
+    if (kind != g.name) continue;
+    Wanted wanted{&g};
+    wanted.triangles = triangles.empty() ? g.default_triangles : number(name, triangles);
+    if (wanted.triangles < 1 || wanted.triangles > kMostTriangles)
+      refuse(name, "triangles must be from 1 to 1e9");
+    if (!seed.empty()) wanted.seed = number(name, seed);
+    return wanted;
+  }
+  refuse(name, "there is no such kind of scene");
+}
+
 }  // namespace
 
 std::span<const Generator> generators() { return kGenerators; }
@@ -60,20 +83,20 @@ std::span<const Generator> generators() { return kGenerators; }
 bool is_generated(std::string_view name) { return name.starts_with(kPrefix); }
 
 Scene generate(std::string_view name) {
-  if (!is_generated(name)) refuse(name, "does not start with gen:");
-  std::string_view rest = name.substr(kPrefix.size());
-  const std::string_view kind = next_field(rest), triangles = next_field(rest),
-                         seed = next_field(rest);
-  if (!rest.empty()) refuse(name, "has too many parts");
-  for (const Generator& g : kGenerators) {
-    if (kind != g.name) continue;
-    const std::uint64_t count = triangles.empty() ? g.default_triangles : number(name, triangles);
-    if (count < 1 || count > kMostTriangles) refuse(name, "triangles must be from 1 to 1e9");
-    Scene scene = g.generate(count, seed.empty() ? kDefaultSeed : number(name, seed));
-    for (Mesh& mesh : scene.meshes) internal::order_for_locality(mesh);
-    return scene;
-  }
-  refuse(name, "there is no such kind of scene");
+  const Wanted wanted = parsed(name);
+  Scene scene = wanted.generator->generate(wanted.triangles, wanted.seed);
+  for (Mesh& mesh : scene.meshes) internal::order_for_locality(mesh);
+  return scene;
+}
+
+bool has_parts(std::string_view name) {
+  return is_generated(name) && parsed(name).generator->generate_part != nullptr;
+}
+
+ScenePart generate_part(std::string_view name, int part, int parts) {
+  const Wanted wanted = parsed(name);
+  // Generators with parts number triangles so that order_for_locality leaves them as they are.
+  return wanted.generator->generate_part(wanted.triangles, wanted.seed, part, parts);
 }
 
 }  // namespace delray::scenes

@@ -9,19 +9,36 @@
 
 namespace delray::scenes {
 
+// A run of the triangles of a whole scene, in their order there, with vertices of its own and all
+// that is no geometry.
+struct ScenePart {
+  Scene scene;                                // one mesh, placed once
+  std::uint32_t first_triangle = 0;           // of the whole mesh
+  std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
+};
+
 struct Generator {
   const char* name;
   const char* description;
   std::uint64_t default_triangles;
   // About `triangles` triangles, the same for the same seed on every machine.
   Scene (*generate)(std::uint64_t triangles, std::uint64_t seed);
+  // Part `part` of `parts` in the memory that it takes alone; null where there is no such way.
+  // REQUIRES: 0 <= part < parts.
+  ScenePart (*generate_part)(std::uint64_t triangles, std::uint64_t seed, int part,
+                             int parts) = nullptr;
 };
 
-// terrain, cornell, spheres, city, field.
+// terrain, cornell, spheres, city, field, corner.
 std::span<const Generator> generators();
 
 // "gen:KIND[:TRIANGLES[:SEED]]" -> the scene. Throws std::invalid_argument naming the legal kinds.
 Scene generate(std::string_view name);
 bool is_generated(std::string_view name);  // starts with "gen:"
+
+// The same in parts. Throws as generate.
+bool has_parts(std::string_view name);
+// REQUIRES: has_parts(name), 0 <= part < parts.
+ScenePart generate_part(std::string_view name, int part, int parts);
 
 }  // namespace delray::scenes

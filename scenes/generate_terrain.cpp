@@ -49,60 +49,70 @@ glm::vec4 colour_at(std::uint64_t seed, const glm::vec3& p, const glm::vec3& nor
   return {colour, 1.0F};
 }
 
-// The n x n vertices, and the cells between them, are numbered column by column in strips of a few
-// rows, so that what is close together in the terrain is so in memory too.
+// The vertices in `columns` x `rows`, and the cells between them, are numbered column by column in
+// strips of a few rows, so that what is close together in the terrain is so in memory too.
 class Strips {
  public:
   static constexpr std::size_t kRows = 8;
 
-  explicit Strips(std::size_t n) : n_(n) {}
+  Strips(std::size_t columns, std::size_t rows) : columns_(columns), rows_(rows) {}
   // Of element i of row j.
   std::size_t number(std::size_t i, std::size_t j) const {
     const std::size_t first = j / kRows * kRows;
-    return first * n_ + i * std::min(kRows, n_ - first) + (j - first);
+    return first * columns_ + i * std::min(kRows, rows_ - first) + (j - first);
   }
   // Calls f(i, j) for every element.
   template <class F>
   void for_each(F&& f) const {
-    parallel::parallel_for(0, n_, kRowsPerBlock, [&](std::size_t j) {
-      for (std::size_t i = 0; i < n_; ++i) f(i, j);
+    parallel::parallel_for(0, rows_, kRowsPerBlock, [&](std::size_t j) {
+      for (std::size_t i = 0; i < columns_; ++i) f(i, j);
     });
   }
 
  private:
-  std::size_t n_;
+  std::size_t columns_, rows_;
 };
 
-Mesh height_field(std::uint32_t n, std::uint64_t seed) {
+// Of n x n vertices those on the borders of the rows of cells from `first` to `last`, and these
+// cells, with numbers of their own. REQUIRES: first is a multiple of Strips::kRows.
+Mesh height_field(std::uint32_t n, std::uint64_t seed, std::size_t first, std::size_t last) {
   Mesh mesh;
   mesh.name = "terrain";
-  const std::size_t vertices = std::size_t{n} * n;
+  const std::size_t rows = last - first + 1;
+  const std::size_t vertices = n * rows;
   mesh.positions.resize(vertices);
   mesh.normals.resize(vertices);
   mesh.colours.resize(vertices);
   const float spacing = 2.0F / static_cast<float>(n - 1);
   int octaves = 4;  // the last one has waves of a few cells
   while (octaves < 12 && (1U << octaves) * 4 < n) ++octaves;
-  const Strips points(n);
-  points.for_each([&](std::size_t i, std::size_t j) {
+  const auto position = [&](std::size_t i, std::size_t row) {
     const float x = -1.0F + static_cast<float>(i) * spacing;
-    const float z = -1.0F + static_cast<float>(j) * spacing;
-    const float y = height_at(seed, glm::vec2(x, z) * 1.15F, octaves);
-    mesh.positions[points.number(i, j)] = {x, y, z};
-  });
+    const float z = -1.0F + static_cast<float>(row) * spacing;
+    return glm::vec3(x, height_at(seed, glm::vec2(x, z) * 1.15F, octaves), z);
+  };
+  const Strips points(n, rows);
   points.for_each([&](std::size_t i, std::size_t j) {
+    mesh.positions[points.number(i, j)] = position(i, first + j);
+  });
+  // Beside a part there may be more of the terrain.
+  const auto neighbour = [&](std::size_t i, std::size_t row) {
+    return row >= first && row <= last ? mesh.positions[points.number(i, row - first)]
+                                       : position(i, row);
+  };
+  points.for_each([&](std::size_t i, std::size_t j) {
+    const std::size_t row = first + j;
     const std::size_t left = i == 0 ? i : i - 1, right = std::min<std::size_t>(i + 1, n - 1);
-    const std::size_t below = j == 0 ? j : j - 1, above = std::min<std::size_t>(j + 1, n - 1);
-    const glm::vec3 x =
-        mesh.positions[points.number(right, j)] - mesh.positions[points.number(left, j)];
-    const glm::vec3 z =
-        mesh.positions[points.number(i, above)] - mesh.positions[points.number(i, below)];
+    const std::size_t below = row == 0 ? row : row - 1,
+                      above = std::min<std::size_t>(row + 1, n - 1);
+    const glm::vec3 x = neighbour(right, row) - neighbour(left, row);
+    const glm::vec3 z = neighbour(i, above) - neighbour(i, below);
     const std::size_t v = points.number(i, j);
     mesh.normals[v] = glm::normalize(glm::cross(z, x));
     mesh.colours[v] = colour_at(seed, mesh.positions[v], mesh.normals[v]);
   });
-  const Strips cells(n - 1);
-  mesh.triangles.resize(std::size_t{2} * (n - 1) * (n - 1));
+  const Strips cells(n - 1, rows - 1);
+  mesh.triangles.resize(std::size_t{2} * (n - 1) * (rows - 1));
   cells.for_each([&](std::size_t i, std::size_t j) {
     const auto corner = [&](std::size_t right, std::size_t above) {
       return static_cast<std::uint32_t>(points.number(i + right, j + above));
@@ -115,14 +125,16 @@ Mesh height_field(std::uint32_t n, std::uint64_t seed) {
   return mesh;
 }
 
-}  // namespace
-
-Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed) {
+// Vertices along a side.
+std::uint32_t side_of(std::uint64_t triangles) {
   const double cells = std::sqrt(static_cast<double>(std::max<std::uint64_t>(triangles, 2)) / 2);
-  const auto n = static_cast<std::uint32_t>(std::lround(std::max(1.0, cells))) + 1;
+  return static_cast<std::uint32_t>(std::lround(std::max(1.0, cells))) + 1;
+}
+
+Scene terrain_of(Mesh&& mesh) {
   Scene scene;
   scene.materials.push_back(matte("terrain", glm::vec3(1.0F), 0.9F));
-  add_mesh(scene, height_field(n, seed));
+  add_mesh(scene, std::move(mesh));
 
   Light sun;
   sun.colour = glm::vec3(1.0F, 0.93F, 0.82F) * 2.9F;
@@ -136,6 +148,30 @@ Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed) {
   camera.at = {0.0F, 0.0F, 0.10F};
   scene.cameras.push_back(camera);
   return scene;
+}
+
+}  // namespace
+
+Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed) {
+  const std::uint32_t n = side_of(triangles);
+  return terrain_of(height_field(n, seed, 0, n - 1));
+}
+
+ScenePart generate_terrain_part(std::uint64_t triangles, std::uint64_t seed, int part, int parts) {
+  const std::uint32_t n = side_of(triangles);
+  const std::uint64_t strips = (n - 1 + Strips::kRows - 1) / Strips::kRows;
+  const auto begin = [&](int k) {
+    const std::uint64_t strip =
+        strips * static_cast<std::uint64_t>(k) / static_cast<std::uint64_t>(parts);
+    return std::min<std::uint64_t>(strip * Strips::kRows, n - 1);
+  };
+  const std::uint64_t first = begin(part), last = begin(part + 1);
+  ScenePart result;
+  result.scene = terrain_of(first < last ? height_field(n, seed, first, last) : Mesh());
+  result.first_triangle = static_cast<std::uint32_t>(2 * first * (n - 1));
+  result.triangles = std::uint64_t{2} * (n - 1) * (n - 1);
+  result.vertices = std::uint64_t{n} * n;
+  return result;
 }
 
 }  // namespace delray::scenes::internal

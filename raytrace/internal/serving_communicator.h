@@ -1,6 +1,7 @@
 // A communicator that serves rays of other ranks while its caller waits for something else.
 #pragma once
 
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,7 +44,10 @@ class ServingCommunicator final : public comm::Communicator {
   }
   void mark(comm::Phase phase, int round) override { inner_.mark(phase, round); }
   void work(comm::Work kind, std::uint64_t amount) override { inner_.work(kind, amount); }
-  [[noreturn]] void abort(std::string why) override { inner_.abort(std::move(why)); }
+  [[noreturn]] void abort(std::string why) override {
+    inner_.abort(std::move(why));
+    std::abort();
+  }
 
  private:
   comm::Communicator& inner_;

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 
+#include "scenes/generate.h"
 #include "scenes/scene.h"
 
 namespace delray::scenes::internal {
 
 // A fractal height field, y up, 2 units wide, coloured by height and slope.
 Scene generate_terrain(std::uint64_t triangles, std::uint64_t seed);
+
+ScenePart generate_terrain_part(std::uint64_t triangles, std::uint64_t seed, int part, int parts);
 
 // The Cornell box (Goral et al. 1984) with its area light and two blocks. Every rectangle is cut
 // into squares of cells to reach the number of triangles; the seed changes nothing.

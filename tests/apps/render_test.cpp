@@ -49,10 +49,13 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
   const std::string hash = statistics(base + "--threads 1", folder)["image"]["hash"];
   EXPECT_EQ(statistics(base + "--ranks 3 --threads 2", folder)["image"]["hash"], hash);
   EXPECT_EQ(statistics(mpirun(4) + base, folder)["image"]["hash"], hash);
+  EXPECT_EQ(statistics(mpirun(4) + base + "--data ray", folder)["image"]["hash"], hash);
   for (const std::string options :
        {"--ranks 4 --schedule demand --block 16",
         "--ranks 3 --schedule stealing --partition mahd --costs measured --frames 2",
-        "--ranks 2 --threads 2 --schedule guided"}) {
+        "--ranks 2 --threads 2 --schedule guided",
+        "--ranks 3 --data ray --deal random --schedule demand", "--ranks 2 --data ring",
+        "--ranks 4 --data object --cache 0.1", "--ranks 2 --data hybrid --frames 2"}) {
     const json stats = statistics(base + options, folder);
     EXPECT_EQ(stats["image"]["hash"], hash) << options;
     EXPECT_EQ(stats["raytrace"].contains("partition"),

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
 #include "comm/collectives.h"
 #include "comm/mpi.h"
@@ -34,21 +35,31 @@ int wrong_pictures(comm::Communicator& communicator, bool full) {
     expected = raytrace::render(alone, tracer, camera, options);
   });
   int turn = 0, wrong = 0;
+  const auto look_at = [&](const raytrace::Result& result, const std::string& what) {
+    const std::size_t pixels = expected.image.pixels();
+    if (communicator.rank() != 0 ||
+        (result.image.pixels() == pixels &&
+         std::memcmp(result.image.colour.data(), expected.image.colour.data(),
+                     pixels * sizeof(image::RgbaF)) == 0))
+      return;
+    ++wrong;
+    std::printf("%s, %d ranks\n", what.c_str(), communicator.size());
+  };
   for (const loadbalance::Schedule& schedule : loadbalance::schedules()) {
     for (int threads = 1; threads <= 2; ++threads) {
-      if (++turn % 3 != 0 && !full) continue;
-      options.schedule = schedule.name;
-      parallel::Arena arena(threads);
-      const raytrace::Result result =
-          arena.execute([&] { return raytrace::render(communicator, tracer, camera, options); });
-      if (communicator.rank() != 0) continue;
-      const std::size_t pixels = expected.image.pixels();
-      if (result.image.pixels() == pixels &&
-          std::memcmp(result.image.colour.data(), expected.image.colour.data(),
-                      pixels * sizeof(image::RgbaF)) == 0)
-        continue;
-      ++wrong;
-      std::printf("%s, %d ranks x %d\n", schedule.name, communicator.size(), threads);
+      for (const raytrace::Distribution& distribution : raytrace::distributions()) {
+        if (++turn % 7 != 0 && !full) continue;
+        options.schedule = schedule.name;
+        parallel::Arena arena(threads);
+        look_at(arena.execute([&] {
+          if (distribution.replicated)
+            return raytrace::render(communicator, tracer, camera, options);
+          raytrace::SharedScene shared = raytrace::SharedScene::make(communicator, scene, {});
+          return raytrace::Renderer(shared, distribution).render(communicator, camera, options);
+        }),
+                std::string(schedule.name) + ", " + distribution.name + ", " +
+                    std::to_string(threads) + " threads");
+      }
     }
   }
   return wrong;

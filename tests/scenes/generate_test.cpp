@@ -150,5 +150,36 @@ TEST(Generate, RefusesWhatItDoesNotKnow) {
   }
 }
 
+TEST(GeneratedParts, AreTheWholeScene) {
+  const std::string name = "gen:terrain:30000:5";
+  ASSERT_TRUE(has_parts(name));
+  EXPECT_FALSE(has_parts("gen:city"));
+  EXPECT_FALSE(has_parts("a.glb"));
+  const Scene whole = generate(name);
+  const Mesh& mesh = whole.meshes[0];
+  for (const int parts : {1, 3, 8, 200}) {
+    std::size_t next = 0;
+    for (int part = 0; part < parts; ++part) {
+      const ScenePart mine = generate_part(name, part, parts);
+      EXPECT_EQ(mine.triangles, mesh.triangles.size());
+      EXPECT_EQ(mine.vertices, mesh.positions.size());
+      EXPECT_EQ(mine.scene.lights.size(), whole.lights.size());
+      const Mesh& piece = mine.scene.meshes[0];
+      if (!piece.triangles.empty()) {
+        EXPECT_EQ(mine.first_triangle, next);
+      }
+      for (const glm::uvec3& t : piece.triangles) {
+        const glm::uvec3& same = mesh.triangles.at(next++);
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_EQ(piece.positions[t[k]], mesh.positions[same[k]]);
+          ASSERT_EQ(piece.normals[t[k]], mesh.normals[same[k]]);
+          ASSERT_EQ(piece.colours[t[k]], mesh.colours[same[k]]);
+        }
+      }
+    }
+    EXPECT_EQ(next, mesh.triangles.size()) << parts;
+  }
+}
+
 }  // namespace
 }  // namespace delray::scenes
