@@ -24,7 +24,7 @@ namespace delray::raytrace {
 enum class CostSource : std::uint8_t { rays, seconds };
 
 // Pixels are walked through in squares of this side, cut from the frame's left upper corner on
-// however large tiles are, since rays that share a group are summed up together.
+// however large tiles are: rays of so many stay in the cache between tracing and shading.
 inline constexpr int kTaskSide = 16;
 
 struct RenderOptions {
