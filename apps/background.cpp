@@ -37,7 +37,8 @@ void blend(Rgba8& pixel, const RgbaF& behind) {
 
 template <class Colour>
 void put_behind_picture(image::BasicImage<Colour>& picture, const Background& background,
-                        const shading::Shader& shader, const scenes::View& view) {
+                        const shading::Shader& shader, const scenes::View& view,
+                        const glm::ivec2& corner) {
   if (background.kind == Background::Kind::transparent) return;
   using Kind = Background::Kind;
   const auto width = static_cast<std::size_t>(picture.width);
@@ -45,13 +46,15 @@ void put_behind_picture(image::BasicImage<Colour>& picture, const Background& ba
   parallel::parallel_for(0, height, kRows, [&](std::size_t y) {
     RgbaF behind = background.colour;
     if (background.kind == Kind::studio) {
-      const float t = (static_cast<float>(y) + 0.5F) / static_cast<float>(height);
+      const float t = (static_cast<float>(y) + static_cast<float>(corner.y) + 0.5F) /
+                      static_cast<float>(view.height);
       behind = opaque(kStudioTop * (1.0F - t) + kStudioBottom * t);
     }
     for (std::size_t x = 0; x < width; ++x) {
       if (background.kind == Kind::environment) {
         const glm::vec3 direction =
-            glm::normalize(view.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F));
+            glm::normalize(view.ray(static_cast<float>(x) + static_cast<float>(corner.x) + 0.5F,
+                                    static_cast<float>(y) + static_cast<float>(corner.y) + 0.5F));
         behind = opaque(radiance(shader.environment, shader.textures, direction));
       }
       blend(picture.colour[y * width + x], behind);
@@ -82,13 +85,13 @@ Background parse_background(const std::string& text) {
 }
 
 void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,
-                const scenes::View& view) {
-  put_behind_picture(picture, background, shader, view);
+                const scenes::View& view, const glm::ivec2& corner) {
+  put_behind_picture(picture, background, shader, view, corner);
 }
 
 void put_behind(image::Image8& picture, const Background& background, const shading::Shader& shader,
-                const scenes::View& view) {
-  put_behind_picture(picture, background, shader, view);
+                const scenes::View& view, const glm::ivec2& corner) {
+  put_behind_picture(picture, background, shader, view, corner);
 }
 
 }  // namespace delray::apps

@@ -23,11 +23,11 @@ struct Background {
 // "auto", "environment", "studio", "transparent", or "#rrggbb" in sRGB. Throws UsageError.
 Background parse_background(const std::string& text);
 
-// Blends the picture over the background, in place; depth stays as it is. Parallel.
-// REQUIRES: the kind is not automatic.
+// Blends the picture over the background, in place; depth stays as it is. `corner` is where in the
+// view's frame the picture's left upper pixel lies. Parallel. REQUIRES: the kind is not automatic.
 void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,
-                const scenes::View& view);
+                const scenes::View& view, const glm::ivec2& corner = {0, 0});
 void put_behind(image::Image8& picture, const Background& background, const shading::Shader& shader,
-                const scenes::View& view);
+                const scenes::View& view, const glm::ivec2& corner = {0, 0});
 
 }  // namespace delray::apps

@@ -43,7 +43,7 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
             Frames& frames) {
   Stopwatch watch;
   put_background_behind(request, prepared, prepared.camera, frames.picture);
-  const std::string hash = write_picture(session, request.output, frames.picture);
+  const std::string hash = write_picture(session, request.output, frames.picture, frames.extras);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
   spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", request.output, request.width,
@@ -104,7 +104,11 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       });
       return;
     }
-    Frames frames = render_frames(communicator, *prepared, request, progress);
+    Frames frames =
+        render_frames(communicator, *prepared, request, progress, [&](Picture&& picture) {
+          put_background_behind(request, *prepared, prepared->camera, picture);
+          write_picture(session, request.output, picture);
+        });
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() == 0) finish(request, session, *prepared, frames);
     });
@@ -119,9 +123,11 @@ void add_render(CLI::App& program, Session& session) {
   CLI::App* command = program.add_subcommand("render", "make a picture of a scene, mesh or points");
   const auto request = std::make_shared<RenderRequest>();
   add_render_options(*command, *request);
-  add_common_options(*command, session,
-                     "render model.glb -o model.png --engine raytrace --spp 16\n"
-                     "render points.las -o relief.png --color-by z --view iso");
+  add_common_options(
+      *command, session,
+      "render model.glb -o model.png --engine raytrace --integrator path --noise 0.01 "
+      "--denoise --tone filmic\n"
+      "render points.las -o relief.png --color-by z --view iso");
   command->callback([&session, request, command] {
     session.run = [&session, request, command] { return run(session, *command, *request); };
   });

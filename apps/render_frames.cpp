@@ -1,6 +1,7 @@
 #include "apps/render_frames.h"
 
 #include "apps/animation.h"
+#include "apps/ray_frame.h"
 #include "apps/statistics.h"
 #include "comm/collectives.h"
 #include "scenes/generate.h"
@@ -16,6 +17,11 @@ bool wants_floats(const RenderRequest& request) {
 bool has_sky(const scenes::Environment& environment) {
   return environment.texture != scenes::kNone ||
          environment.zenith + environment.horizon + environment.ground != glm::vec3(0.0F);
+}
+
+void set_lens(const Practice& practice, scenes::Camera& camera) {
+  camera.aperture = static_cast<float>(practice.aperture);
+  camera.focus = static_cast<float>(practice.focus);
 }
 
 raster::RenderOptions raster_options(const RenderRequest& request) {
@@ -57,6 +63,7 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   options.samples = request.samples;
   options.trace.depth = request.depth;
   options.trace.background = raytrace::TraceOptions::Background::transparent;
+  options.trace.seed = request.practice.seed;
   options.integrator = request.integrator;
   options.schedule = request.schedule;
   options.tile = request.block;
@@ -122,6 +129,8 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
       choose_camera(request.camera, prepared->scene,
                     static_cast<float>(request.width) / static_cast<float>(request.height));
   prepared->cameras = animation_cameras(request, prepared->scene, prepared->camera);
+  for (scenes::Camera& camera : prepared->cameras) set_lens(request.practice, camera);
+  set_lens(request.practice, prepared->camera);
   if (!prepared->cameras.empty()) prepared->camera = prepared->cameras.front();
   prepared->background = request.behind;
   if (prepared->background.kind == Background::Kind::automatic) {
@@ -163,10 +172,11 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
       shared_.emplace(share(communicator, prepared_, request_, share_options(request_)));
       raytrace_.emplace(*shared_, *raytrace::find_distribution(request_.data));
     }
-    raytrace::Result result =
-        raytrace_->render(communicator, camera, raytrace_options(request_, progress_));
-    frame.picture = std::move(result.image);
-    frame.statistics = std::move(result.statistics);
+    RayFrame done = render_rays(communicator, *raytrace_, prepared_, request_, camera,
+                                raytrace_options(request_, progress_), preview_);
+    frame.picture = std::move(done.picture);
+    frame.statistics = std::move(done.statistics);
+    frame.extras = std::move(done.extras);
   }
   return frame;
 }
@@ -181,8 +191,10 @@ std::unique_ptr<raster::FrameInSteps> FrameRenderer::begin(comm::Communicator& c
 }
 
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
-                     const RenderRequest& request, parallel::Progress* progress) {
+                     const RenderRequest& request, parallel::Progress* progress,
+                     const std::function<void(Picture&&)>& preview) {
   FrameRenderer renderer(prepared, request, progress);
+  renderer.set_preview(preview);
   if (request.frames > 1) renderer.render(communicator, prepared.camera);
   Frames frames;
   for (int i = 0; i < request.frames; ++i) {
@@ -192,6 +204,7 @@ Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
     frames.seconds.push_back(watch.lap());
     frames.picture = std::move(frame.picture);
     frames.statistics = std::move(frame.statistics);
+    frames.extras = std::move(frame.extras);
   }
   return frames;
 }

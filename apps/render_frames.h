@@ -1,6 +1,7 @@
 // Frames of a scene on one rank: the part of `delray render` that runs on every rank.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -8,6 +9,7 @@
 
 #include "apps/render_options.h"
 #include "comm/communicator.h"
+#include "image/io.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 
@@ -33,6 +35,14 @@ struct Prepared {
 // arena.
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request, parallel::Progress* progress);
 
+// What a ray traced picture has besides, and how it came about; on rank 0.
+struct Extras {
+  std::vector<image::Channel> channels;
+  int passes = 0;
+  double samples = 0;  // per pixel, on average
+  bool out_of_time = false;
+};
+
 using Picture = std::variant<image::Image8, image::ImageF>;
 using EngineStatistics = std::variant<raster::Statistics, raytrace::Statistics>;
 
@@ -40,6 +50,7 @@ using EngineStatistics = std::variant<raster::Statistics, raytrace::Statistics>;
 struct Frame {
   Picture picture;
   EngineStatistics statistics;
+  Extras extras;
 };
 
 // Either engine, ready for any number of frames. One per rank; refers to what it is given.
@@ -47,6 +58,8 @@ class FrameRenderer {
  public:
   FrameRenderer(const Prepared& prepared, const RenderRequest& request,
                 parallel::Progress* progress);
+  // Is given pictures that are not yet done, as often as the options want it.
+  void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
   // Collective.
   Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
   // The same in steps (raster::Renderer::begin), where engine and strategy have them.
@@ -58,6 +71,7 @@ class FrameRenderer {
   const Prepared& prepared_;
   const RenderRequest& request_;
   parallel::Progress* progress_;
+  std::function<void(Picture&&)> preview_;
   std::optional<raster::Renderer> raster_;  // one of the two
   std::optional<raytrace::Renderer> raytrace_;
   std::optional<raytrace::SharedScene> shared_;  // of the last, with some --data
@@ -67,11 +81,13 @@ class FrameRenderer {
 struct Frames {
   Picture picture;
   EngineStatistics statistics;
+  Extras extras;
   std::vector<double> seconds;  // per frame, from the scene in memory to the picture on rank 0
 };
 
 // Collective. With more than one frame a further one goes before, to warm up.
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
-                     const RenderRequest& request, parallel::Progress* progress);
+                     const RenderRequest& request, parallel::Progress* progress,
+                     const std::function<void(Picture&&)>& preview = {});
 
 }  // namespace delray::apps

@@ -35,6 +35,7 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
 void check_raster(const CLI::App& command, const RenderRequest& request) {
   refuse(command, {"--integrator", "--spp", "--depth", "--data", "--deal", "--cache"},
          "--engine raster");
+  refuse_practice(command);
   find_entry(raster::strategies(), request.strategy, "--strategy");
   find_entry(loadbalance::partitioners(), request.partition, "--partition");
   if (composite::find_scheme(request.scheme) == nullptr) {  // which knows radix-k:4,2 too
@@ -82,6 +83,7 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
           "--travel", "--groups", "--geometry-ranks", "--redistribute"},
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
+  check_practice(command, request);
   find_entry(loadbalance::schedules(), request.schedule, "--schedule");
   find_entry(raytrace::distributions(), request.data, "--data");
   if (request.data == "replicated") refuse(command, {"--deal", "--cache"}, "--data replicated");
@@ -247,6 +249,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
                   "MiB of other ranks' clusters that a rank keeps (default a tenth of the scene)")
       ->check(CLI::Range(1e-3, 1e9))
       ->group(raytrace);
+  add_practice_options(command, request.practice);
   command.add_option("--stats", request.statistics, "write statistics as JSON; - for stdout");
   command.add_flag("--list", request.list,
                    "list strategies, partitions, schemes, integrators, schedules");

@@ -6,6 +6,7 @@
 #include "apps/background.h"
 #include "apps/camera_options.h"
 #include "apps/launch.h"
+#include "apps/practice_options.h"
 #include "apps/scene_input.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
@@ -34,6 +35,7 @@ struct RenderRequest {
   std::string integrator = "whitted", schedule, data = "replicated", deal = "neighbours";
   double cache_mebibytes = 0;  // 0: a tenth of the scene
   int samples = 1, depth = 8;
+  Practice practice;
 
   // Set by check:
   int width = 0, height = 0;

@@ -59,6 +59,17 @@ Json options_of(const RenderRequest& request, int ranks) {
     options["data"] = request.data;
     options["deal"] = request.deal;
     options["cache"] = request.cache_mebibytes;
+    const Practice& practice = request.practice;
+    options["seed"] = practice.seed;
+    options["time"] = practice.seconds;
+    options["noise"] = practice.noise;
+    options["crop"] = practice.crop;
+    options["denoise"] = practice.denoise;
+    options["exposure"] = practice.exposure;
+    options["tone"] = practice.tone;
+    options["show"] = practice.show;
+    options["aperture"] = practice.aperture;
+    options["focus"] = practice.focus;
   }
   return options;
 }
@@ -178,6 +189,14 @@ double imbalance_of(const Ranks& ranks) {
   return sum > 0 ? most * static_cast<double>(ranks.size()) / sum : 1.0;
 }
 
+// Of the picture, or of the part of it that is rendered.
+int width_of(const RenderRequest& request) {
+  return request.kind == Engine::raster ? request.width : request.practice.window.width();
+}
+int height_of(const RenderRequest& request) {
+  return request.kind == Engine::raster ? request.height : request.practice.window.height();
+}
+
 }  // namespace
 
 Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
@@ -192,7 +211,8 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
               {"vertices", prepared.vertices},
               {"instances", prepared.scene.instances.size()}}},
             {"options", options_of(request, static_cast<int>(s.ranks.size()))},
-            {"image", {{"width", request.width}, {"height", request.height}, {"hash", hash}}},
+            {"image",
+             {{"width", width_of(request)}, {"height", height_of(request)}, {"hash", hash}}},
             {"seconds",
              {{"load", prepared.load_seconds},
               {"build", prepared.build_seconds},
@@ -204,6 +224,10 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"rays", of_rays(rays_of(s))},
             {"raster", raster_of(s)},
             {"raytrace", raytrace_of(s)},
+            {"sampling",
+             {{"passes", frames.extras.passes},
+              {"samples", frames.extras.samples},
+              {"out_of_time", frames.extras.out_of_time}}},
             {"imbalance", imbalance_of(s.ranks)},
             {"ranks", ranks_of(s.ranks)},
         };

@@ -8,12 +8,13 @@
 
 namespace delray::apps {
 
-// In place.
+// In place: the background behind it and, for files of 8 bits, light mapped to what a screen shows.
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,
                            const scenes::Camera& camera, Picture& picture);
 
 // Writes the picture to `path`, whole or not at all. Returns the hash of its 8-bit pixels. Throws
 // files::FileError.
-std::string write_picture(const Session& session, const std::string& path, const Picture& picture);
+std::string write_picture(const Session& session, const std::string& path, const Picture& picture,
+                          const Extras& extras = {});
 
 }  // namespace delray::apps

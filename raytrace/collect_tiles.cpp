@@ -12,14 +12,18 @@ namespace {
 using geometry::Rect;
 
 TileCost cost_of(const TilePixels& tile) {
-  return {tile.tile, 0, tile.rays.primary + tile.rays.shadow + tile.rays.secondary, tile.busy};
+  return {tile.tile, static_cast<std::uint32_t>(tile.depth.size()),
+          tile.rays.primary + tile.rays.shadow + tile.rays.secondary, tile.busy};
 }
 
-void put(const Rect& tile, const image::RgbaF* colour, const float* depth, image::ImageF& image) {
+// `window` is what the image shows of the frame.
+void put(const Rect& tile, const image::RgbaF* colour, const float* depth, const Rect& window,
+         image::ImageF& image) {
   const auto width = static_cast<std::size_t>(tile.width());
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const std::size_t to = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(tile.x0);
+    const std::size_t to =
+        static_cast<std::size_t>(y - window.y0) * static_cast<std::size_t>(image.width) +
+        static_cast<std::size_t>(tile.x0 - window.x0);
     const std::size_t from = static_cast<std::size_t>(y - tile.y0) * width;
     std::copy_n(colour + from, width, image.colour.data() + to);
     std::copy_n(depth + from, width, image.depth.data() + to);
@@ -61,14 +65,15 @@ void unpack(const comm::Buffer& message, const loadbalance::Blocks& tiles,
   std::memcpy(&costs[first], at, count * sizeof(TileCost));
   std::size_t pixels = 0;
   for (std::size_t i = first; i < costs.size(); ++i) {
-    pixels += static_cast<std::size_t>(tiles.block(costs[i].tile).area());
+    pixels += costs[i].pixels;
   }
   // What comes before is a multiple of 8 bytes, so both planes are aligned where they lie.
   const auto* colour = reinterpret_cast<const image::RgbaF*>(at + count * sizeof(TileCost));
   const auto* depth = reinterpret_cast<const float*>(colour + pixels);
   for (std::size_t i = first; i < costs.size(); ++i) {
+    if (costs[i].pixels == 0) continue;
     const Rect tile = tiles.block(costs[i].tile);
-    put(tile, colour, depth, image);
+    put(tile, colour, depth, tiles.frame, image);
     colour += tile.area();
     depth += tile.area();
   }
@@ -85,7 +90,8 @@ std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
   std::vector<TileCost> costs;
   if (!root) return costs;
   parallel::parallel_for(0, mine.size(), 16, [&](std::size_t i) {
-    put(tiles.block(mine[i].tile), mine[i].colour.data(), mine[i].depth.data(), image);
+    if (mine[i].depth.empty()) return;
+    put(tiles.block(mine[i].tile), mine[i].colour.data(), mine[i].depth.data(), tiles.frame, image);
   });
   for (const TilePixels& tile : mine) costs.push_back(cost_of(tile));
   for (std::size_t rank = 1; rank < messages.size(); ++rank) {

@@ -40,6 +40,19 @@ float pixel_variance(const PixelSum& sum, std::uint32_t samples) {
   return std::max(0.0F, spread) / static_cast<float>(n - 1);
 }
 
+float noise_in(const Film& film, const Rect& pixels, std::uint32_t samples) {
+  float spread = 0.0F, light = 0.0F;
+  for (int y = pixels.y0; y < pixels.y1; ++y) {
+    for (int x = pixels.x0; x < pixels.x1; ++x) {
+      const PixelSum& sum = film.pixels()[film.pixel(x, y)];
+      spread += pixel_variance(sum, samples);
+      light += luminance(sum.colour) / static_cast<float>(samples);
+    }
+  }
+  const auto count = static_cast<float>(pixels.area());
+  return std::sqrt(spread / count) / (2.0F * std::sqrt(light / count + kDarkest));
+}
+
 }  // namespace
 
 int chunk_size(int first) { return first < 16 ? 4 : first < 64 ? 8 : 16; }
@@ -124,16 +137,13 @@ std::vector<float> noise(const Film& film) {
         continue;
       }
       const Rect cell = film.cell(c);
-      float spread = 0.0F, light = 0.0F;
-      for (int y = cell.y0; y < cell.y1; ++y) {
-        for (int x = cell.x0; x < cell.x1; ++x) {
-          const PixelSum& sum = film.pixels()[film.pixel(x, y)];
-          spread += pixel_variance(sum, samples);
-          light += luminance(sum.colour) / static_cast<float>(samples);
+      constexpr int kHalf = kCellSide / 2;
+      for (int y = cell.y0; y < cell.y1; y += kHalf) {
+        for (int x = cell.x0; x < cell.x1; x += kHalf) {
+          const Rect quarter = geometry::intersection(cell, {x, y, x + kHalf, y + kHalf});
+          own[c] = std::max(own[c], noise_in(film, quarter, samples));
         }
       }
-      const float pixels = static_cast<float>(cell.area());
-      own[c] = std::sqrt(spread / pixels) / (2.0F * std::sqrt(light / pixels + kDarkest));
     }
   });
   std::vector<float> result(own.size());

@@ -15,7 +15,8 @@
 
 namespace delray::raytrace {
 
-inline constexpr int kCellSide = 8;  // pixels: a cell gets more samples or does not
+// Pixels: a cell gets more samples or does not. What is walked through at a time.
+inline constexpr int kCellSide = 16;
 
 // How many samples the chunk has that begins with sample `first`, and how many chunks so many
 // samples are; the last may be cut short. Chunks are powers of two at multiples of their size, as
@@ -95,8 +96,9 @@ std::vector<float> variance(const Film& film);
 
 // How far values on the screen are off, as a standard deviation, 1 being white: the root of the
 // variance over twice the root of the luminance, which is about what coding to sRGB makes of it.
-// For each cell the root mean square over its pixels, or that of a cell beside it where it is
-// larger: noise is a poor witness of itself. Infinite with less than kLeastChunks chunks. Parallel.
+// For each cell the root mean square over the noisiest quarter of it, or that of a cell beside it
+// where it is larger: noise is a poor witness of itself. Infinite with less than kLeastChunks
+// chunks. Parallel.
 inline constexpr int kLeastChunks = 4;
 std::vector<float> noise(const Film& film);
 

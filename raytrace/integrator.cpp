@@ -5,6 +5,7 @@
 
 #include "raytrace/ao.h"
 #include "raytrace/direct.h"
+#include "raytrace/feature_walks.h"
 #include "raytrace/path.h"
 #include "raytrace/whitted.h"
 
@@ -12,8 +13,11 @@ namespace delray::raytrace {
 namespace {
 
 constexpr Integrator kIntegrators[] = {
+    {"albedo", "base colours, without light", make_albedo},
     {"ao", "ambient occlusion: how much of the sky each surface sees", make_ao},
     {"direct", "lights with their shadows, and the environment", make_direct},
+    {"identity", "numbers of instances, materials and triangles, from 1 on", make_identity},
+    {"normal", "unit normals of the shading, x, y, z as red, green, blue", make_normal},
     {"path", "light on all ways, by chance (Kajiya 1986)", make_path},
     {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", make_whitted},
 };

@@ -109,14 +109,12 @@ bool is_decided(const TravellingShadow& shadow) { return shadow.occluded; }
 }  // namespace
 
 RayTraffic::RayTraffic(comm::Communicator& communicator, SharedScene& scene,
-                       const Distribution& distribution, Walks& walks,
-                       const loadbalance::Blocks& tiles, int samples)
+                       const Distribution& distribution, const Frame& frame)
     : communicator_(communicator),
       scene_(scene),
       distribution_(distribution),
-      walks_(walks),
-      blocks_(tiles),
-      samples_(samples),
+      frame_(frame),
+      last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
       ring_(distribution.meet == nullptr),
@@ -124,9 +122,15 @@ RayTraffic::RayTraffic(comm::Communicator& communicator, SharedScene& scene,
       to_answer_(static_cast<std::size_t>(communicator.size())) {}
 
 void RayTraffic::add(std::uint32_t number) {
+  TilePixels pixels = clear_tile(frame_, number);
+  const std::vector<Task> tasks = tasks_of(frame_, pixels.rect);
+  if (tasks.empty()) {
+    done_.push_back(std::move(pixels));
+    return;
+  }
   Tile& tile = *open_tiles_.emplace_back(std::make_unique<Tile>());
-  tile.pixels = clear_tile(blocks_, number);
-  for (const Task& task : tasks_of(tile.pixels.rect)) {
+  tile.pixels = std::move(pixels);
+  for (const Task& task : tasks) {
     if (free_.empty()) {
       free_.push_back(static_cast<std::uint32_t>(strands_.size()));
       strands_.emplace_back();
@@ -134,7 +138,7 @@ void RayTraffic::add(std::uint32_t number) {
     const std::uint32_t index = free_.back();
     free_.pop_back();
     Strand& strand = strands_[index];
-    strand.walk = walks_.take();
+    strand.walk = frame_.walks.take();
     strand.tile = &tile;
     strand.task = task;
     strand.started = false;
@@ -275,13 +279,13 @@ bool RayTraffic::work_at_walks() {
 
 void RayTraffic::end_sample(std::uint32_t index) {
   Strand& strand = strands_[index];
-  add_samples(*strand.walk, strand.task, samples_, strand.tile->pixels);
+  add_samples(*strand.walk, strand.task, samples_of(frame_.options), strand.tile->pixels);
   strand.started = false;
-  if (++strand.task.first_sample < samples_) {
+  if (++strand.task.first_sample < last_sample_) {
     ready_.push_back(index);
     return;
   }
-  walks_.give(std::move(strand.walk));
+  frame_.walks.give(std::move(strand.walk));
   free_.push_back(index);
   --in_flight_;
   Tile* const tile = std::exchange(strand.tile, nullptr);

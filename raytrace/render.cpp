@@ -70,8 +70,7 @@ Traced trace(comm::Communicator& communicator, const Frame& frame, SharedScene& 
              const Distribution& distribution, loadbalance::ScheduleOptions how) {
   parallel::Progress* const progress = frame.options.progress;
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
-  RayTraffic traffic(communicator, scene, distribution, frame.walks, frame.tiles,
-                     frame.options.samples);
+  RayTraffic traffic(communicator, scene, distribution, frame);
   ServingCommunicator serving(communicator, traffic);
   how.threads = 1;
   Traced traced;
@@ -148,11 +147,13 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   if (width > 0 && height > 0) view = scenes::make_view(camera, width, height);
   view.width = width;
   view.height = height;
+  const geometry::Rect whole{0, 0, width, height};
+  const geometry::Rect window = options.part.window.empty() ? whole : options.part.window;
   const shading::BatchShader shader = shading::make_batch_shader(memory_->shader());
-  const Setting setting{shader, memory_->lights(), view, options.trace, options.samples};
+  const Setting setting{shader,        memory_->lights(), view,
+                        options.trace, options.samples,   options.scattered};
   Walks walks(integrator(options.integrator), setting);
-  const Frame frame{
-      tracer, options, setting, walks, {{0, 0, width, height}, options.tile, options.tile}};
+  const Frame frame{tracer, options, setting, walks, {window, options.tile, options.tile}};
   const bool root = communicator.rank() == 0;
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
@@ -181,10 +182,13 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   statistics.trace_seconds = seconds_since(start);
 
   recording.mark(comm::Phase::gather, 0);
-  if (root) result.image = image::ImageF(width, height);
-  const std::vector<TileCost> costs =
-      collect_tiles(recording, frame.tiles, traced.tiles, result.image);
+  if (root) {
+    result.image = image::ImageF(window.width(), window.height());
+    if (!options.part.squares.empty()) image::clear(result.image);
+  }
+  std::vector<TileCost> costs = collect_tiles(recording, frame.tiles, traced.tiles, result.image);
   if (root) memory_->shares.learn(frame.tiles, costs, options.costs);
+  result.tile_costs = std::move(costs);
   statistics.frame_seconds = seconds_since(start);
   statistics.gather_seconds = statistics.frame_seconds - statistics.trace_seconds;
 

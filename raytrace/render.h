@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "comm/communicator.h"
+#include "geometry/rect.h"
 #include "image/image.h"
 #include "loadbalance/schedule.h"
 #include "parallel/progress.h"
@@ -27,11 +29,24 @@ enum class CostSource : std::uint8_t { rays, seconds };
 // however large tiles are: rays of so many stay in the cache between tracing and shading.
 inline constexpr int kTaskSide = 16;
 
+// What a call renders of a picture; all of it unless told otherwise.
+struct Part {
+  geometry::Rect window;  // of the frame, its sides on multiples of kTaskSide or on the frame's;
+                          // empty: the frame
+  int first_sample = 0;
+  int samples = 0;  // from the first on; 0: all others
+  // One for each square of kTaskSide pixels of the window, row by row; only those with 1 are
+  // rendered. Empty: all.
+  std::span<const std::uint8_t> squares;
+};
+
 struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 1;  // per pixel; 1: in its centre
   TraceOptions trace;
+  bool scattered = false;  // Setting::scattered
   std::string integrator = "whitted";
+  Part part;
   // Of loadbalance::schedules(): tiles are handed out to ranks and threads.
   std::string schedule = "interlaced";
   // Pixels, the side of a tile; a multiple of kTaskSide, so that no walk goes over two tiles.
@@ -90,10 +105,20 @@ struct Statistics {
   std::string embree_version, embree_isa;
 };
 
+// What a tile took, whoever traced it.
+struct TileCost {
+  std::uint32_t tile = 0;
+  std::uint32_t pixels = 0;  // that were rendered; 0: none of its squares were
+  std::uint64_t rays = 0;
+  double seconds = 0;
+};
+
 // On rank 0; other ranks get an empty image and no ranks' statistics.
 struct Result {
-  image::ImageF image;  // linear, premultiplied; depth along the view axis
+  image::ImageF image;  // of the window: linear, premultiplied, the mean of the part's samples;
+                        // depth along the view axis
   Statistics statistics;
+  std::vector<TileCost> tile_costs;  // in no particular order; tiles are cut from the window
 };
 
 // Renders frames of one scene, each with shares of tiles by what they cost in the one before. One

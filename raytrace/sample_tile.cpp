@@ -19,21 +19,34 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-TilePixels clear_tile(const loadbalance::Blocks& tiles, std::uint32_t tile) {
+TilePixels clear_tile(const Frame& frame, std::uint32_t tile) {
   TilePixels pixels;
   pixels.tile = tile;
-  pixels.rect = tiles.block(tile);
+  pixels.rect = frame.tiles.block(tile);
+  if (tasks_of(frame, pixels.rect).empty()) return pixels;
   pixels.colour.resize(static_cast<std::size_t>(pixels.rect.area()));
   pixels.depth.assign(pixels.colour.size(), image::kEmptyDepth);
   return pixels;
 }
 
-std::vector<Task> tasks_of(const Rect& tile) {
+int samples_of(const RenderOptions& options) {
+  return options.part.samples > 0 ? options.part.samples
+                                  : options.samples - options.part.first_sample;
+}
+
+std::vector<Task> tasks_of(const Frame& frame, const Rect& tile) {
+  const Part& part = frame.options.part;
+  const Rect& window = frame.tiles.frame;
+  const auto columns = static_cast<std::size_t>((window.width() + kTaskSide - 1) / kTaskSide);
   std::vector<Task> tasks;
   for (int y = tile.y0; y < tile.y1; y += kTaskSide) {
     for (int x = tile.x0; x < tile.x1; x += kTaskSide) {
-      tasks.emplace_back().pixels =
-          geometry::intersection(tile, {x, y, x + kTaskSide, y + kTaskSide});
+      const std::size_t square = static_cast<std::size_t>((y - window.y0) / kTaskSide) * columns +
+                                 static_cast<std::size_t>((x - window.x0) / kTaskSide);
+      if (!part.squares.empty() && part.squares[square] == 0) continue;
+      Task& task = tasks.emplace_back();
+      task.pixels = geometry::intersection(tile, {x, y, x + kTaskSide, y + kTaskSide});
+      task.first_sample = part.first_sample;
     }
   }
   return tasks;
@@ -64,11 +77,11 @@ void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pi
 TilePixels sample_tile(const Frame& frame, std::uint32_t tile) {
   const FlushToZero flush;
   const double start = thread_seconds();
-  TilePixels pixels = clear_tile(frame.tiles, tile);
-  const int samples = frame.options.samples;
+  TilePixels pixels = clear_tile(frame, tile);
+  const int samples = samples_of(frame.options);
   std::unique_ptr<Walk> walk = frame.walks.take();
-  for (Task& task : tasks_of(pixels.rect)) {
-    for (task.first_sample = 0; task.first_sample < samples; ++task.first_sample) {
+  for (Task& task : tasks_of(frame, pixels.rect)) {
+    for (int s = 0; s < samples; ++s, ++task.first_sample) {
       for (walk->start(task); !walk->done(); walk->go_on()) answer(*frame.tracer, walk->wave());
       add_samples(*walk, task, samples, pixels);
     }

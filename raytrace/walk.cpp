@@ -37,7 +37,8 @@ enum : std::uint32_t { kPosition, kLens, kFirstFree };
 
 void Walk::ask_primary_rays() {
   const bool lens = setting_.view.lens_radius > 0.0F;
-  const bool jittered = positions_ == Positions::random && setting_.samples > 1;
+  const bool jittered =
+      (positions_ == Positions::random || setting_.scattered) && setting_.samples > 1;
   keys_.assign(static_cast<std::size_t>(task_.blocks()) * kPacketRays, 0);
   PrimaryPlaces places;
   std::size_t block = 0;

@@ -47,6 +47,9 @@ struct Setting {
   scenes::View view;
   TraceOptions options;
   int samples = 1;  // per pixel, in all tasks together
+  // Samples lie anywhere in their pixels, whatever the integrator: the first few of them are spread
+  // out as evenly as all are.
+  bool scattered = false;
 };
 
 inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)

@@ -9,16 +9,8 @@
 
 namespace delray::raytrace {
 
-// What a tile took, whoever traced it.
-struct TileCost {
-  std::uint32_t tile = 0;
-  std::uint32_t unused = 0;
-  std::uint64_t rays = 0;
-  double seconds = 0;
-};
-
-// Collective: all tiles go into `image` on rank 0, which has the size of the frame there; the
-// result is what each of them took, on rank 0, and nothing elsewhere. A rank's tiles are one
+// Collective: all tiles go into `image` on rank 0, which has the size of the tiles' frame there;
+// the result is what each of them took, on rank 0, and nothing elsewhere. A rank's tiles are one
 // message.
 std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
                                     const loadbalance::Blocks& tiles,

@@ -37,7 +37,7 @@ struct TrafficCounts {
 class RayTraffic {
  public:
   RayTraffic(comm::Communicator& communicator, SharedScene& scene, const Distribution& distribution,
-             Walks& walks, const loadbalance::Blocks& tiles, int samples);
+             const Frame& frame);
 
   // Adds a tile, and works until there is room for another.
   void add(std::uint32_t tile);
@@ -92,9 +92,8 @@ class RayTraffic {
   comm::Communicator& communicator_;
   SharedScene& scene_;
   const Distribution& distribution_;
-  Walks& walks_;
-  const loadbalance::Blocks& blocks_;
-  int samples_;
+  const Frame& frame_;
+  int last_sample_;  // one past it
   Kernels kernels_;
   comm::Termination termination_;
   bool ring_;

@@ -18,12 +18,15 @@ struct TilePixels {
   double busy = 0.0;  // seconds of processor time
 };
 
-// Without samples yet.
-TilePixels clear_tile(const loadbalance::Blocks& tiles, std::uint32_t tile);
+// Without samples yet; without pixels, where none of its squares is rendered.
+TilePixels clear_tile(const Frame& frame, std::uint32_t tile);
 
-// The parts of a tile that are walked through at once, sample 0 of each. Rays of so many pixels are
-// traced, then shaded, and so on: they stay in the cache meanwhile.
-std::vector<Task> tasks_of(const geometry::Rect& tile);
+// The parts of a tile that are walked through at once, the first sample of each. Rays of so many
+// pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
+std::vector<Task> tasks_of(const Frame& frame, const geometry::Rect& tile);
+
+// How many samples a task gets, one after the other.
+int samples_of(const RenderOptions& options);
 
 // What a walk that is done found. Samples of a pixel have to be added in ascending order.
 void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pixels);

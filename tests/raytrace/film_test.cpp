@@ -42,7 +42,7 @@ TEST(Film, ChunksAreAlignedPowersOfTwo) {
 }
 
 TEST(Film, CellsCoverTheWindowOnce) {
-  const Film film({16, 8, 45, 25});
+  const Film film({16, 32, 75, 65});
   EXPECT_EQ(film.columns(), 4);
   EXPECT_EQ(film.rows(), 3);
   std::vector<int> seen(film.pixels().size(), 0);
@@ -80,7 +80,7 @@ TEST(Film, MeanAndVarianceAreThoseOfTheSamples) {
 
 TEST(Film, NoiseIsTheDeviationOnTheScreen) {
   std::mt19937 random(3);
-  Film film({0, 0, 64, 64});
+  Film film({0, 0, 128, 128});
   expose(film, 12, 0.25F, 0.1F, random);
   for (const float n : noise(film)) EXPECT_TRUE(std::isinf(n));  // too few to tell
   expose(film, 52, 0.25F, 0.1F, random);
@@ -92,9 +92,9 @@ TEST(Film, NoiseIsTheDeviationOnTheScreen) {
 
 TEST(Film, OnlyNoisyCellsAndThoseBesideThemGoOn) {
   std::mt19937 random(4);
-  Film film({0, 0, 80, 8});
+  Film film({0, 0, 160, 16});
   expose(film, 64, 0.25F, 0.0F, random);
-  for (int x = 40; x < 44; ++x) film.pixels()[film.pixel(x, 3)].squares += 64.0F;
+  for (int x = 80; x < 84; ++x) film.pixels()[film.pixel(x, 3)].squares += 64.0F;
   const std::vector<std::uint8_t> open = unfinished(film, 1000, 0.01F);
   EXPECT_EQ(open, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 1, 1, 0, 0, 0}));
   EXPECT_EQ(unfinished(film, 64, 0.01F), std::vector<std::uint8_t>(10, 0));
@@ -102,16 +102,16 @@ TEST(Film, OnlyNoisyCellsAndThoseBesideThemGoOn) {
 }
 
 TEST(Film, OnlyTheCellsInAMaskGetSamples) {
-  Film film({0, 0, 20, 8});
-  image::ImageF means(20, 8);
+  Film film({0, 0, 40, 16});
+  image::ImageF means(40, 16);
   image::clear(means, {0.5F, 0.5F, 0.5F, 1.0F});
   film.add(means, 4, std::vector<std::uint8_t>{0, 1, 0});
   EXPECT_EQ(film.samples()[0], 0U);
   EXPECT_EQ(film.samples()[1], 4U);
   const image::ImageF picture = mean(film);
-  EXPECT_EQ(picture.colour[7], image::RgbaF{});
-  EXPECT_EQ(picture.colour[8], (image::RgbaF{0.5F, 0.5F, 0.5F, 1.0F}));
-  EXPECT_EQ(picture.colour[16], image::RgbaF{});
+  EXPECT_EQ(picture.colour[15], image::RgbaF{});
+  EXPECT_EQ(picture.colour[16], (image::RgbaF{0.5F, 0.5F, 0.5F, 1.0F}));
+  EXPECT_EQ(picture.colour[32], image::RgbaF{});
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+// What rays find out besides colour: as channels of a file, and as pictures to look at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/io.h"
+#include "raytrace/progressive.h"
+
+namespace delray::apps {
+
+// "normal, albedo, ..." for --help.
+std::string shown_names();
+
+// Throws UsageError for what is neither "colour" nor one of shown_names.
+void check_shown(const std::string& name);
+
+// Whether features are needed for it.
+bool shows_features(const std::string& name);
+
+// All channels of a rendered window, with the names that they have in a file: normal.X .Y .Z,
+// albedo.R .G .B, id.instance, id.material (-1: nothing), variance, samples, cost.rays,
+// cost.seconds (per pixel).
+std::vector<image::Channel> channels_of(const raytrace::ProgressiveResult& result,
+                                        const geometry::Rect& window);
+
+// A picture of a channel: normals and albedo as colours, ids as colours of their own, numbers by a
+// map from nothing (dark) to the greatest (bright). What nothing covers is transparent; depth is
+// left. Returns that greatest number, 0 where there is none.
+double show(const std::string& name, const raytrace::ProgressiveResult& result,
+            const geometry::Rect& window, image::ImageF& picture);
+
+}  // namespace delray::apps

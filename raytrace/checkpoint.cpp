@@ -1,0 +1,142 @@
+#include "raytrace/checkpoint.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <cstring>
+#include <memory>
+
+#include "files/atomic_file.h"
+#include "files/error.h"
+#include "files/read_file.h"
+
+namespace delray::raytrace {
+namespace {
+
+constexpr std::string_view kMagic = "delray film 1\n";
+constexpr std::size_t kFingerprint = 32, kChecksum = 16;
+
+static_assert(sizeof(PixelSum) == 6 * sizeof(float) && sizeof(CellCost) == 2 * sizeof(float));
+
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(state_.get()); }
+
+  void add(const void* data, std::size_t bytes) {
+    if (bytes > 0) XXH3_128bits_update(state_.get(), data, bytes);
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    const std::uint64_t size = values.size();
+    add(&size, sizeof(size));
+    add(values.data(), values.size() * sizeof(T));
+  }
+  template <class... Numbers>
+  void add_numbers(const Numbers&... numbers) {
+    (add(&numbers, sizeof(numbers)), ...);
+  }
+  std::string digits() const {
+    const XXH128_hash_t value = XXH3_128bits_digest(state_.get());
+    return fmt::format("{:016x}{:016x}", value.high64, value.low64);
+  }
+
+ private:
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+};
+
+void add_material(const scenes::Material& m, Hasher& hasher) {
+  hasher.add_numbers(m.base_colour, m.metallic, m.roughness, m.transmission, m.ior, m.emission,
+                     m.normal_scale, m.alpha, m.alpha_cutoff, m.double_sided, m.base_colour_texture,
+                     m.metallic_roughness_texture, m.normal_texture, m.emission_texture);
+}
+
+template <class T>
+void append(std::string& to, std::span<const T> values) {
+  to.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+template <class T>
+void take(std::string_view& from, std::span<T> values) {
+  if (!values.empty()) std::memcpy(values.data(), from.data(), values.size_bytes());
+  from.remove_prefix(values.size_bytes());
+}
+
+std::string checksum(std::string_view content) {
+  const XXH128_hash_t value = XXH3_128bits(content.data(), content.size());
+  std::string result(kChecksum, '\0');
+  std::memcpy(result.data(), &value, kChecksum);
+  return result;
+}
+
+}  // namespace
+
+std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
+  Hasher hasher;
+  hasher.add(settings.data(), settings.size());
+  for (const scenes::Mesh& mesh : scene.meshes) {
+    hasher.add(mesh.positions);
+    hasher.add(mesh.normals);
+    hasher.add(mesh.uvs);
+    hasher.add(mesh.tangents);
+    hasher.add(mesh.colours);
+    hasher.add(mesh.triangles);
+    hasher.add_numbers(mesh.material);
+  }
+  hasher.add(scene.instances);
+  for (const scenes::Material& material : scene.materials) add_material(material, hasher);
+  for (const scenes::Texture& texture : scene.textures) {
+    hasher.add(texture.texels);
+    hasher.add_numbers(texture.width, texture.height, texture.srgb, texture.wrap_u, texture.wrap_v);
+  }
+  for (const scenes::Light& light : scene.lights) {
+    hasher.add_numbers(light.kind, light.colour, light.position, light.direction, light.edge_u,
+                       light.edge_v);
+  }
+  const scenes::Environment& sky = scene.environment;
+  hasher.add_numbers(sky.texture, sky.up, sky.zenith, sky.horizon, sky.ground);
+  return hasher.digits();
+}
+
+void save_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
+                     const Film& film) {
+  std::string content(kMagic);
+  content += fingerprint;
+  const geometry::Rect& window = film.window();
+  append(content, std::span<const geometry::Rect>(&window, 1));
+  append(content, film.samples());
+  append(content, film.costs());
+  append(content, film.pixels());
+  content += checksum(content);
+  files::write_file(path, content);
+}
+
+Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint) {
+  const auto fail = [&](const char* why) {
+    return files::FileError(files::Cause::input, path.string(), "", why);
+  };
+  const std::string content = files::read_file(path);
+  std::string_view rest = content;
+  constexpr std::size_t kLeast = kMagic.size() + kFingerprint + sizeof(geometry::Rect) + kChecksum;
+  if (!rest.starts_with(kMagic) || rest.size() < kLeast) throw fail("this is no checkpoint");
+  if (checksum(rest.substr(0, rest.size() - kChecksum)) != rest.substr(rest.size() - kChecksum)) {
+    throw fail("the checkpoint is damaged");
+  }
+  rest.remove_suffix(kChecksum);
+  rest.remove_prefix(kMagic.size());
+  if (rest.substr(0, kFingerprint) != fingerprint) {
+    throw fail("the checkpoint is of another scene or of other options");
+  }
+  rest.remove_prefix(kFingerprint);
+  geometry::Rect window;
+  take(rest, std::span<geometry::Rect>(&window, 1));
+  Film film(window);
+  const std::size_t bytes =
+      film.samples().size_bytes() + film.costs().size_bytes() + film.pixels().size_bytes();
+  if (rest.size() != bytes) throw fail("the checkpoint is damaged");
+  take(rest, film.samples());
+  take(rest, film.costs());
+  take(rest, film.pixels());
+  return film;
+}
+
+}  // namespace delray::raytrace

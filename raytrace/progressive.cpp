@@ -1,0 +1,255 @@
+#include "raytrace/progressive.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "comm/collectives.h"
+#include "loadbalance/partition.h"
+
+namespace delray::raytrace {
+namespace {
+
+using geometry::Rect;
+using Clock = std::chrono::steady_clock;
+
+// Samples of features: as many as smooth their edges; more where a lens blurs them.
+constexpr int kFeatureSamples = 4, kLensSamples = 16;
+
+// What rank 0 tells the others to do next. No samples: stop.
+struct Pass {
+  int first = 0, samples = 0;
+  std::vector<std::uint8_t> cells;
+};
+
+Pass broadcast(comm::Communicator& communicator, Pass&& pass) {
+  comm::Buffer message;
+  if (communicator.rank() == 0) {
+    message = comm::Buffer(2 * sizeof(int) + pass.cells.size());
+    std::memcpy(message.data(), &pass.first, sizeof(int));
+    std::memcpy(message.data() + sizeof(int), &pass.samples, sizeof(int));
+    if (!pass.cells.empty()) {
+      std::memcpy(message.data() + 2 * sizeof(int), pass.cells.data(), pass.cells.size());
+    }
+  }
+  message = comm::broadcast(communicator, 0, std::move(message));
+  Pass result;
+  std::memcpy(&result.first, message.data(), sizeof(int));
+  std::memcpy(&result.samples, message.data() + sizeof(int), sizeof(int));
+  const auto* cells = reinterpret_cast<const std::uint8_t*>(message.data()) + 2 * sizeof(int);
+  result.cells.assign(cells, cells + message.size() - 2 * sizeof(int));
+  return result;
+}
+
+// The next chunk of all cells that are not done. Those that were done once stay so, as all cells of
+// a pass get the same samples.
+Pass next_pass(const Film& film, const ProgressiveOptions& options) {
+  Pass pass;
+  std::uint32_t first = 0;
+  for (const std::uint32_t samples : film.samples()) first = std::max(first, samples);
+  pass.first = static_cast<int>(first);
+  pass.cells = unfinished(film, options.frame.samples, options.noise);
+  bool any = false;
+  for (std::size_t c = 0; c < pass.cells.size(); ++c) {
+    if (film.samples()[c] != first) pass.cells[c] = 0;
+    any = any || pass.cells[c] != 0;
+  }
+  if (any) pass.samples = std::min(chunk_size(pass.first), options.frame.samples - pass.first);
+  return pass;
+}
+
+std::uint64_t work(const Film& film, const Pass& pass) {
+  std::uint64_t pixels = 0;
+  for (std::size_t c = 0; c < pass.cells.size(); ++c) {
+    if (pass.cells[c] != 0) pixels += static_cast<std::uint64_t>(film.cell(c).area());
+  }
+  return pixels * static_cast<std::uint64_t>(pass.samples);
+}
+
+static_assert(kCellSide == kTaskSide);
+
+// What the tiles of a pass took, spread evenly over the cells that it was about.
+void add_costs(std::span<const TileCost> costs, const loadbalance::Blocks& tiles, const Pass& pass,
+               Film& film) {
+  std::vector<std::size_t> cells;
+  for (const TileCost& cost : costs) {
+    if (cost.pixels == 0) continue;
+    const Rect tile = tiles.block(cost.tile);
+    cells.clear();
+    std::int64_t pixels = 0;
+    for (int y = tile.y0; y < tile.y1; y += kCellSide) {
+      for (int x = tile.x0; x < tile.x1; x += kCellSide) {
+        const std::size_t c = film.cell_of(x, y);
+        if (pass.cells[c] == 0) continue;
+        cells.push_back(c);
+        pixels += film.cell(c).area();
+      }
+    }
+    for (const std::size_t c : cells) {
+      film.costs()[c].rays += static_cast<float>(cost.rays) / static_cast<float>(pixels);
+      film.costs()[c].seconds += static_cast<float>(cost.seconds) / static_cast<float>(pixels);
+    }
+  }
+}
+
+void add_statistics(Statistics&& pass, Statistics& total) {
+  if (total.ranks.empty() && total.rays == RayCounts{}) {
+    total = std::move(pass);
+    return;
+  }
+  total.frame_seconds += pass.frame_seconds;
+  total.trace_seconds += pass.trace_seconds;
+  total.gather_seconds += pass.gather_seconds;
+  total.rays += pass.rays;
+  total.partition = pass.partition;
+  std::vector<double> rays;
+  for (std::size_t r = 0; r < total.ranks.size(); ++r) {
+    RankStatistics& sum = total.ranks[r];
+    RankStatistics& more = pass.ranks[r];
+    sum.busy += more.busy;
+    sum.idle += more.idle;
+    sum.tasks += more.tasks;
+    sum.rays += more.rays;
+    sum.bytes_sent += more.bytes_sent;
+    sum.bytes_received += more.bytes_received;
+    sum.messages += more.messages;
+    sum.requests += more.requests;
+    sum.steals += more.steals;
+    sum.tasks_stolen += more.tasks_stolen;
+    sum.timeline.insert(sum.timeline.end(), more.timeline.begin(), more.timeline.end());
+    rays.push_back(static_cast<double>(sum.rays.primary + sum.rays.shadow + sum.rays.secondary));
+  }
+  total.imbalance_rays = loadbalance::imbalance(rays);
+}
+
+Features trace_features(comm::Communicator& communicator, Renderer& renderer,
+                        const scenes::Camera& camera, const RenderOptions& frame,
+                        const Rect& window, Statistics& statistics) {
+  RenderOptions options = frame;
+  const int most = camera.aperture > 0.0F ? kLensSamples : kFeatureSamples;
+  options.part.samples = std::min(frame.samples, most);
+  const auto picture = [&](const char* integrator) {
+    options.integrator = integrator;
+    Result result = renderer.render(communicator, camera, options);
+    add_statistics(std::move(result.statistics), statistics);
+    return cut(result.image, options.part.window, window);
+  };
+  const bool root = communicator.rank() == 0;
+  const image::ImageF albedo = picture("albedo");
+  const image::ImageF normal = picture("normal");
+  options.part.samples = 1;
+  const image::ImageF identity = picture("identity");
+  if (!root) return {};
+  Features features(albedo.pixels());
+  for (std::size_t i = 0; i < albedo.pixels(); ++i) {
+    const image::RgbaF &a = albedo.colour[i], &n = normal.colour[i], &id = identity.colour[i];
+    features.albedo[i] = {a.r, a.g, a.b};
+    const glm::vec3 mean(n.r, n.g, n.b);
+    const float length2 = glm::dot(mean, mean);
+    if (length2 > 0.0F) features.normal[i] = mean * (1.0F / std::sqrt(length2));
+    if (id.r > 0.0F) {
+      features.instance[i] = static_cast<std::uint32_t>(id.r) - 1;
+      features.material[i] = static_cast<std::uint32_t>(id.g) - 1;
+    }
+  }
+  return features;
+}
+
+}  // namespace
+
+Rect grown(const Rect& window, const Rect& frame) {
+  const auto up = [](int x) { return (x + kCellSide - 1) / kCellSide * kCellSide; };
+  return geometry::intersection(
+      frame, {window.x0 - window.x0 % kCellSide, window.y0 - window.y0 % kCellSide, up(window.x1),
+              up(window.y1)});
+}
+
+image::ImageF cut(const image::ImageF& picture, const Rect& of, const Rect& window) {
+  if (picture.pixels() == 0) return {};
+  image::ImageF result(window.width(), window.height());
+  const auto width = static_cast<std::size_t>(window.width());
+  for (int y = window.y0; y < window.y1; ++y) {
+    const std::size_t from = static_cast<std::size_t>(y - of.y0) * picture.width +
+                             static_cast<std::size_t>(window.x0 - of.x0);
+    const std::size_t to = static_cast<std::size_t>(y - window.y0) * width;
+    std::copy_n(picture.colour.data() + from, width, result.colour.data() + to);
+    std::copy_n(picture.depth.data() + from, width, result.depth.data() + to);
+  }
+  return result;
+}
+
+ProgressiveResult render_progressively(comm::Communicator& communicator, Renderer& renderer,
+                                       const scenes::Camera& camera,
+                                       const ProgressiveOptions& options) {
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const bool root = communicator.rank() == 0;
+  const Rect frame{0, 0, options.frame.width, options.frame.height};
+  const Rect window = options.window.empty() ? frame : options.window;
+  const Rect film_window = grown(window, frame);
+
+  ProgressiveResult result;
+  if (root) result.film = options.resume != nullptr ? *options.resume : Film(film_window);
+  Film& film = result.film;
+  RenderOptions pass_options = options.frame;
+  pass_options.part.window = film_window;
+  pass_options.scattered = options.noise > 0.0F || std::isfinite(options.seconds);
+  parallel::Progress* const whole = options.frame.progress;
+  parallel::Progress part(whole);
+  try {
+    if (options.features) {
+      result.features =
+          trace_features(communicator, renderer, camera, pass_options, window, result.statistics);
+    }
+    double last_seconds = 0.0;
+    std::uint64_t last_work = 0;
+    while (true) {
+      Pass pass;
+      if (root) {
+        pass = next_pass(film, options);
+        const double expected = last_work == 0
+                                    ? 0.0
+                                    : last_seconds * static_cast<double>(work(film, pass)) /
+                                          static_cast<double>(last_work);
+        if (pass.samples > 0 && last_work > 0 && elapsed() + expected > options.seconds) {
+          pass.samples = 0;
+          result.out_of_time = true;
+        }
+      }
+      pass = broadcast(communicator, std::move(pass));
+      if (pass.samples == 0) break;
+      // A single pass tells by itself how far it is.
+      const bool several = whole != nullptr && pass.samples < options.frame.samples;
+      if (several) pass_options.progress = &part;
+      if (several && root && result.passes == 0) {
+        whole->start(static_cast<std::uint64_t>(options.frame.samples));
+        whole->advance(static_cast<std::uint64_t>(pass.first));
+      }
+      const double before = elapsed();
+      pass_options.part.first_sample = pass.first;
+      pass_options.part.samples = pass.samples;
+      pass_options.part.squares = pass.cells;
+      Result traced = renderer.render(communicator, camera, pass_options);
+      ++result.passes;
+      if (root) {
+        last_work = work(film, pass);
+        film.add(traced.image, pass.samples, pass.cells);
+        add_costs(traced.tile_costs, {film_window, pass_options.tile, pass_options.tile}, pass,
+                  film);
+        if (options.after_pass) options.after_pass(film);
+        last_seconds = elapsed() - before;
+        if (several) whole->advance(static_cast<std::uint64_t>(pass.samples));
+      }
+      add_statistics(std::move(traced.statistics), result.statistics);
+    }
+  } catch (...) {  // of this rank, or of another that ended this one
+    if (root && options.on_interruption) options.on_interruption(film);
+    throw;
+  }
+  if (root) result.image = cut(mean(film), film_window, window);
+  return result;
+}
+
+}  // namespace delray::raytrace

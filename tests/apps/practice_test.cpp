@@ -1,0 +1,134 @@
+// What a user of rays does in practice, with the built program.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "image/io.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using nlohmann::json;
+
+const std::string kBall = "delray render gen:spheres:2000 --engine raytrace --size 80x60 -q ";
+
+json stats_of(const std::string& options, const Folder& folder) {
+  const Ran ran = run(kBall + options + " --stats stats.json", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << options << "\n" << ran.err;
+  return ran.exit_code == 0 ? json::parse(folder.read("stats.json")) : json();
+}
+
+TEST(Practice, AnInterruptedPictureGoesOnToTheSameBytes) {
+  const Folder folder;
+  const std::string picture = "--integrator path --spp 48 -o a.exr ";
+  const json whole = stats_of(picture, folder);
+  // Ctrl-C as soon as there is something to keep.
+  const Ran stopped = run(kBall + picture +
+                              "--checkpoint a.film --checkpoint-every 0 & p=$!; "
+                              "while [ ! -e a.film ]; do sleep 0.01; done; kill -INT $p; wait $p",
+                          folder.path());
+  EXPECT_TRUE(stopped.exit_code == 130 || stopped.exit_code == 0) << stopped.err;
+  const json resumed = stats_of(picture + "--checkpoint a.film --resume --ranks 2", folder);
+  EXPECT_EQ(resumed["image"]["hash"], whole["image"]["hash"]);
+  EXPECT_EQ(resumed["sampling"]["samples"], 48);
+  // Once more: nothing is left to do.
+  const json again = stats_of(picture + "--checkpoint a.film --resume", folder);
+  EXPECT_EQ(again["image"]["hash"], whole["image"]["hash"]);
+  EXPECT_EQ(again["sampling"]["passes"], 0);
+  EXPECT_EQ(
+      run(kBall + picture + "--checkpoint a.film --resume --depth 2", folder.path()).exit_code, 3);
+  EXPECT_EQ(run(kBall + picture + "--checkpoint none.film --resume", folder.path()).exit_code, 3);
+}
+
+TEST(Practice, NoiseAndTimeEndSampling) {
+  const Folder folder;
+  const json noisy = stats_of("--integrator path --noise 0.03 -o a.png", folder);
+  EXPECT_GE(noisy["sampling"]["samples"], 16);
+  EXPECT_LT(noisy["sampling"]["samples"], 2000);
+  EXPECT_FALSE(noisy["sampling"]["out_of_time"]);
+  const json timed = stats_of("--integrator path --time 0.3 -o a.png", folder);
+  EXPECT_TRUE(timed["sampling"]["out_of_time"]);
+  EXPECT_GE(timed["sampling"]["samples"], 4);
+}
+
+TEST(Practice, ACropIsAPartOfThePicture) {
+  const Folder folder;
+  const std::string picture = "--integrator direct --spp 4 --background studio ";
+  stats_of(picture + "-o whole.exr", folder);
+  const json part = stats_of(picture + "--crop 21,13,30,40 -o part.exr", folder);
+  EXPECT_EQ(part["image"]["width"], 30);
+  const image::ImageF whole = image::read_image_float(folder / "whole.exr");
+  const image::ImageF crop = image::read_image_float(folder / "part.exr");
+  ASSERT_EQ(crop.width, 30);
+  ASSERT_EQ(crop.height, 40);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 30; ++x) {
+      ASSERT_EQ(crop.colour[static_cast<std::size_t>(y * 30 + x)],
+                whole.colour[static_cast<std::size_t>((y + 13) * 80 + x + 21)])
+          << x << " " << y;
+    }
+  }
+}
+
+TEST(Practice, ChannelsAreInTheFile) {
+  const Folder folder;
+  stats_of("--integrator path --spp 8 --aovs -o a.exr", folder);
+  const image::Picture picture = image::read_picture(folder / "a.exr");
+  const auto values = [&](const std::string& name) {
+    const auto found = std::find_if(picture.channels.begin(), picture.channels.end(),
+                                    [&](const image::Channel& c) { return c.name == name; });
+    EXPECT_NE(found, picture.channels.end()) << name;
+    return found != picture.channels.end() ? found->values : std::vector<float>(80 * 60, 0.0F);
+  };
+  const std::vector<float> z = values("normal.Z"), samples = values("samples");
+  const std::vector<float> ids = values("id.instance"), rays = values("cost.rays");
+  values("normal.X"), values("albedo.G"), values("id.material"), values("variance");
+  values("cost.seconds");
+  EXPECT_EQ(*std::min_element(samples.begin(), samples.end()), 8.0F);
+  EXPECT_GE(*std::max_element(ids.begin(), ids.end()), 1.0F);
+  EXPECT_GE(*std::min_element(rays.begin(), rays.end()), 8.0F);
+  for (std::size_t i = 0; i < z.size(); ++i) ASSERT_LE(std::abs(z[i]), 1.00001F);
+  const bool told = std::any_of(
+      picture.attributes.begin(), picture.attributes.end(),
+      [](const image::Attribute& a) { return a.name.find("samples") != std::string::npos; });
+  EXPECT_TRUE(told);
+}
+
+TEST(Practice, ExposureTonesAndSmoothingChangeWhatIsSeen) {
+  const Folder folder;
+  const std::string picture = "--integrator path --spp 4 -o a.png ";
+  const auto mean = [&](const std::string& options) {
+    stats_of(picture + options, folder);
+    const image::ImageF shown = image::read_image_float(folder / "a.png");
+    double sum = 0;
+    for (std::size_t i = 0; i < shown.pixels(); ++i) sum += shown.colour[i].g;
+    return sum / static_cast<double>(shown.pixels());
+  };
+  const double plain = mean("");
+  EXPECT_GT(mean("--exposure 1"), plain * 1.2);
+  EXPECT_LT(mean("--exposure -1"), plain * 0.8);
+  EXPECT_NE(mean("--tone filmic"), plain);
+  EXPECT_NEAR(mean("--denoise") / plain, 1.0, 0.05);
+  for (const std::string name : {"normal", "instance", "rays", "variance", "depth"}) {
+    EXPECT_GT(mean("--show " + name), 0.0) << name;
+  }
+  EXPECT_NE(mean("--aperture 0.5 --focus 3"), plain);
+}
+
+TEST(Practice, OptionsWithoutEffectAreRefused) {
+  const Folder folder;
+  for (const std::string options :
+       {"-o a.png --aovs", "-o a.exr --tone filmic", "-o a.png --resume", "-o a.png --focus 2",
+        "-o a.png --checkpoint-every 3", "-o a.png --crop 60,0,30,10", "-o a.png --crop 1,2,3",
+        "-o a.png --tone sepia", "-o a.png --show smell", "-o a.png --show rays --denoise",
+        "-o a.png --turntable 3 --checkpoint a.film", "-o a.png --time 0"}) {
+    EXPECT_EQ(run(kBall + options, folder.path()).exit_code, 2) << options;
+  }
+  EXPECT_EQ(run("delray render gen:cornell -o a.png --denoise", folder.path()).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace delray::tests
