@@ -40,17 +40,24 @@ float pixel_variance(const PixelSum& sum, std::uint32_t samples) {
   return std::max(0.0F, spread) / static_cast<float>(n - 1);
 }
 
-float noise_in(const Film& film, const Rect& pixels, std::uint32_t samples) {
-  float spread = 0.0F, light = 0.0F;
+template <class F>
+float mean_over(const Rect& pixels, F&& f) {
+  float sum = 0.0F;
   for (int y = pixels.y0; y < pixels.y1; ++y) {
-    for (int x = pixels.x0; x < pixels.x1; ++x) {
-      const PixelSum& sum = film.pixels()[film.pixel(x, y)];
-      spread += pixel_variance(sum, samples);
-      light += luminance(sum.colour) / static_cast<float>(samples);
-    }
+    for (int x = pixels.x0; x < pixels.x1; ++x) sum += f(x, y);
   }
-  const auto count = static_cast<float>(pixels.area());
-  return std::sqrt(spread / count) / (2.0F * std::sqrt(light / count + kDarkest));
+  return sum / static_cast<float>(pixels.area());
+}
+
+float noise_in(const Film& film, const Rect& pixels, std::uint32_t samples) {
+  const auto light_of = [&](int x, int y) {
+    return luminance(film.pixels()[film.pixel(x, y)].colour) / static_cast<float>(samples);
+  };
+  const float light = mean_over(pixels, light_of) + kDarkest;
+  return 0.5F * std::sqrt(mean_over(pixels, [&](int x, int y) {
+           const PixelSum& sum = film.pixels()[film.pixel(x, y)];
+           return pixel_variance(sum, samples) / std::max(light, light_of(x, y));
+         }));
 }
 
 }  // namespace

@@ -96,9 +96,9 @@ std::vector<float> variance(const Film& film);
 
 // How far values on the screen are off, as a standard deviation, 1 being white: the root of the
 // variance over twice the root of the luminance, which is about what coding to sRGB makes of it.
-// For each cell the root mean square over the noisiest quarter of it, or that of a cell beside it
-// where it is larger: noise is a poor witness of itself. Infinite with less than kLeastChunks
-// chunks. Parallel.
+// The luminance is the pixel's or, where that is less, that of the pixels around it. For each cell
+// the root mean square over the noisiest quarter of it, or that of a cell beside it where it is
+// larger: noise is a poor witness of itself. Infinite with less than kLeastChunks chunks. Parallel.
 inline constexpr int kLeastChunks = 4;
 std::vector<float> noise(const Film& film);
 

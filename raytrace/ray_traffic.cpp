@@ -109,7 +109,7 @@ bool is_decided(const TravellingShadow& shadow) { return shadow.occluded; }
 }  // namespace
 
 RayTraffic::RayTraffic(comm::Communicator& communicator, SharedScene& scene,
-                       const Distribution& distribution, const Frame& frame)
+                       const Distribution& distribution, const TiledFrame& frame)
     : communicator_(communicator),
       scene_(scene),
       distribution_(distribution),

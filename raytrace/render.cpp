@@ -41,7 +41,7 @@ struct Traced {
   double busy = 0.0;  // seconds of processor time
 };
 
-Traced trace(comm::Communicator& communicator, const Frame& frame,
+Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
              const loadbalance::ScheduleOptions& how) {
   parallel::Progress* const progress = frame.options.progress;
   // Ranks of one process may have one progress in common.
@@ -66,7 +66,7 @@ Traced trace(comm::Communicator& communicator, const Frame& frame,
 }
 
 // The same where the scene is shared out: the rank's threads work together at several tiles.
-Traced trace(comm::Communicator& communicator, const Frame& frame, SharedScene& scene,
+Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedScene& scene,
              const Distribution& distribution, loadbalance::ScheduleOptions how) {
   parallel::Progress* const progress = frame.options.progress;
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
@@ -153,7 +153,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   const Setting setting{shader,        memory_->lights(), view,
                         options.trace, options.samples,   options.scattered};
   Walks walks(integrator(options.integrator), setting);
-  const Frame frame{tracer, options, setting, walks, {window, options.tile, options.tile}};
+  const TiledFrame frame{tracer, options, setting, walks, {window, options.tile, options.tile}};
   const bool root = communicator.rank() == 0;
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);

@@ -19,7 +19,7 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-TilePixels clear_tile(const Frame& frame, std::uint32_t tile) {
+TilePixels clear_tile(const TiledFrame& frame, std::uint32_t tile) {
   TilePixels pixels;
   pixels.tile = tile;
   pixels.rect = frame.tiles.block(tile);
@@ -34,7 +34,7 @@ int samples_of(const RenderOptions& options) {
                                   : options.samples - options.part.first_sample;
 }
 
-std::vector<Task> tasks_of(const Frame& frame, const Rect& tile) {
+std::vector<Task> tasks_of(const TiledFrame& frame, const Rect& tile) {
   const Part& part = frame.options.part;
   const Rect& window = frame.tiles.frame;
   const auto columns = static_cast<std::size_t>((window.width() + kTaskSide - 1) / kTaskSide);
@@ -74,7 +74,7 @@ void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pi
   pixels.rays += walk.rays();
 }
 
-TilePixels sample_tile(const Frame& frame, std::uint32_t tile) {
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile) {
   const FlushToZero flush;
   const double start = thread_seconds();
   TilePixels pixels = clear_tile(frame, tile);

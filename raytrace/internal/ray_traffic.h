@@ -37,7 +37,7 @@ struct TrafficCounts {
 class RayTraffic {
  public:
   RayTraffic(comm::Communicator& communicator, SharedScene& scene, const Distribution& distribution,
-             const Frame& frame);
+             const TiledFrame& frame);
 
   // Adds a tile, and works until there is room for another.
   void add(std::uint32_t tile);
@@ -92,7 +92,7 @@ class RayTraffic {
   comm::Communicator& communicator_;
   SharedScene& scene_;
   const Distribution& distribution_;
-  const Frame& frame_;
+  const TiledFrame& frame_;
   int last_sample_;  // one past it
   Kernels kernels_;
   comm::Termination termination_;

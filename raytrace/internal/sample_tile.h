@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "raytrace/internal/frame.h"
+#include "raytrace/internal/tiled_frame.h"
 
 namespace delray::raytrace {
 
@@ -19,11 +19,11 @@ struct TilePixels {
 };
 
 // Without samples yet; without pixels, where none of its squares is rendered.
-TilePixels clear_tile(const Frame& frame, std::uint32_t tile);
+TilePixels clear_tile(const TiledFrame& frame, std::uint32_t tile);
 
 // The parts of a tile that are walked through at once, the first sample of each. Rays of so many
 // pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
-std::vector<Task> tasks_of(const Frame& frame, const geometry::Rect& tile);
+std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile);
 
 // How many samples a task gets, one after the other.
 int samples_of(const RenderOptions& options);
@@ -32,7 +32,7 @@ int samples_of(const RenderOptions& options);
 void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pixels);
 
 // All samples, on the calling thread.
-TilePixels sample_tile(const Frame& frame, std::uint32_t tile);
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile);
 
 // Processor time of this thread: ranks may share a core, and waiting is no work.
 double thread_seconds();

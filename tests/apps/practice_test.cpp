@@ -13,10 +13,11 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kBall = "delray render gen:spheres:2000 --engine raytrace --size 80x60 -q ";
+const std::string kSmall = " --engine raytrace --size 80x60 -q ";
+const std::string kBall = "delray render gen:spheres:2000" + kSmall;
 
-json stats_of(const std::string& options, const Folder& folder) {
-  const Ran ran = run(kBall + options + " --stats stats.json", folder.path());
+json stats_of(const std::string& options, const Folder& folder, const std::string& what = kBall) {
+  const Ran ran = run(what + options + " --stats stats.json", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << options << "\n" << ran.err;
   return ran.exit_code == 0 ? json::parse(folder.read("stats.json")) : json();
 }
@@ -45,9 +46,10 @@ TEST(Practice, AnInterruptedPictureGoesOnToTheSameBytes) {
 
 TEST(Practice, NoiseAndTimeEndSampling) {
   const Folder folder;
-  const json noisy = stats_of("--integrator path --noise 0.03 -o a.png", folder);
-  EXPECT_GE(noisy["sampling"]["samples"], 16);
-  EXPECT_LT(noisy["sampling"]["samples"], 2000);
+  const json noisy = stats_of("--integrator path --spp 512 --noise 0.1 -o a.png", folder,
+                              "delray render gen:cornell" + kSmall);
+  EXPECT_GT(noisy["sampling"]["samples"], 16);
+  EXPECT_LT(noisy["sampling"]["samples"], 256);
   EXPECT_FALSE(noisy["sampling"]["out_of_time"]);
   const json timed = stats_of("--integrator path --time 0.3 -o a.png", folder);
   EXPECT_TRUE(timed["sampling"]["out_of_time"]);

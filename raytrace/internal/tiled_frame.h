@@ -7,7 +7,7 @@
 
 namespace delray::raytrace {
 
-struct Frame {
+struct TiledFrame {
   const Tracer* tracer;  // null where the scene is shared out over ranks
   const RenderOptions& options;
   const Setting& setting;
