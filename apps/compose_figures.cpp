@@ -71,9 +71,7 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
                         {"bus", named.network.is_bus}});
   }
   return {{"schema", "delray.compare.compose/1"},
-          {"scene",
-           {{"file", request.render.scene.file.path},
-            {"triangles", prepared.triangles}}},
+          {"scene", {{"file", request.render.scene.file.path}, {"triangles", prepared.triangles}}},
           {"options",
            {{"size", request.render.size},
             {"ranks", request.ranks},
