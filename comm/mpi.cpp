@@ -1,6 +1,7 @@
 #include "comm/mpi.h"
 
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cassert>
@@ -419,7 +420,7 @@ void look_at_this_machine(Engine& engine) {
   MPI_Comm_split_type(engine.root, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
   int processes = 1;
   MPI_Comm_size(local, &processes);
-  engine.cores_are_scarce = processes > static_cast<int>(std::thread::hardware_concurrency());
+  engine.cores_are_scarce = processes > sysconf(_SC_NPROCESSORS_ONLN);  // bound to some or not
   if (processes > 1 && engine.options.share_memory) share_memory(engine, local, processes);
   MPI_Comm_free(&local);
 }

@@ -42,12 +42,14 @@ class World {
   World(int ranks, const ThreadsOptions& options)
       : inboxes(ranks), timeout(options.timeout), running_(ranks) {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-    spins = ranks <= cores ? 2000 : 0;
+    spins = ranks <= cores ? 20000 : 0;
   }
 
   std::vector<Inbox> inboxes;  // indexed by world rank
   std::chrono::nanoseconds timeout;
-  int spins;  // how often a rank looks for a message before it sleeps; 0 where cores are scarce
+  // How often a rank looks for a message before it sleeps, some hundred microseconds: being woken
+  // takes a virtual core almost as long. 0 where cores are scarce.
+  int spins;
   Clock::time_point start = Clock::now();
   internal::FirstFailure failure;
 

@@ -2,7 +2,9 @@
 // turns, medians. Run it under mpirun with any number of processes on one machine.
 #include <fmt/format.h>
 #include <mpi.h>
+#include <sched.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -74,8 +76,8 @@ Image8 copy(const Image8& image) {
 }
 
 struct Times {
-  double seconds = 0;    // from the moment the first process is ready until the last is done
-  double processor = 0;  // of all processes together
+  double seconds = 0;    // from the moment the first rank is ready until the last is done
+  double processor = 0;  // of all ranks together
 };
 
 // Until all processes have come here; who waits looks so seldom that it takes no time from those
@@ -89,35 +91,93 @@ void meet() {
   }
 }
 
-// All processes, which share a machine, sleep until one moment.
-void start_together() {
-  meet();
-  constexpr double kUntilAllSleep = 5e-3;
-  double start = MPI_Wtime() + kUntilAllSleep;
-  MPI_Bcast(&start, 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
-  std::this_thread::sleep_for(std::chrono::duration<double>(start - MPI_Wtime()));
+constexpr double kUntilAllAreReady = 5e-3;
+
+double seconds(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+// The same in all processes, which MPI_Wtime is not.
+double now() { return seconds(CLOCK_MONOTONIC); }
+
+// Asleep, so that ranks without a core of their own leave the others alone. Where each has one it
+// is awake some time before: a virtual machine's core that has slept comes back milliseconds late.
+void wait_until(double start, int ranks) {
+  constexpr double kAwake = 2e-3;
+  const double awake = ranks <= sysconf(_SC_NPROCESSORS_ONLN) ? kAwake : 0;
+  std::this_thread::sleep_for(std::chrono::duration<double>(start - awake - now()));
+  while (now() < start) continue;
 }
 
-// On rank 0.
-Times times_of(auto&& work) {
-  const auto used = [] {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  };
-  start_together();
-  double begin = MPI_Wtime(), processor = used();
+// When one rank did its part.
+struct Span {
+  double begin = 0, end = 0, processor = 0;
+};
+
+// REQUIRES: the calling thread does all the work.
+Span span_of(auto&& work) {
+  Span span{now(), 0, seconds(CLOCK_THREAD_CPUTIME_ID)};
   work();
-  double end = MPI_Wtime(), first = 0, last = 0;
-  processor = used() - processor;
+  span.end = now();
+  span.processor = seconds(CLOCK_THREAD_CPUTIME_ID) - span.processor;
+  return span;
+}
+
+// Of MPI processes, which share a machine; the result is rank 0's.
+Times times_of(int ranks, auto&& work) {
   meet();
+  double start = now() + kUntilAllAreReady;
+  MPI_Bcast(&start, 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  wait_until(start, ranks);
+  const Span mine = span_of(work);
+  meet();
+  double first = 0, last = 0;
   Times all;
-  MPI_Reduce(&begin, &first, 1, MPI_DOUBLE, MPI_MIN, 0, MPI_COMM_WORLD);
-  MPI_Reduce(&end, &last, 1, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
-  MPI_Reduce(&processor, &all.processor, 1, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
+  MPI_Reduce(&mine.begin, &first, 1, MPI_DOUBLE, MPI_MIN, 0, MPI_COMM_WORLD);
+  MPI_Reduce(&mine.end, &last, 1, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
+  MPI_Reduce(&mine.processor, &all.processor, 1, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
   all.seconds = last - first;
   return all;
 }
+
+// Of ranks that are threads of this process: work(communicator).
+Times times_of_threads(int ranks, auto&& work) {
+  const double start = now() + kUntilAllAreReady;
+  std::vector<Span> spans(static_cast<std::size_t>(ranks));
+  comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+    wait_until(start, ranks);
+    spans[static_cast<std::size_t>(communicator.rank())] = span_of([&] { work(communicator); });
+  });
+  Times all;
+  double first = spans[0].begin, last = spans[0].end;
+  for (const Span& span : spans) {
+    first = std::min(first, span.begin);
+    last = std::max(last, span.end);
+    all.processor += span.processor;
+  }
+  all.seconds = last - first;
+  return all;
+}
+
+// While it lives the threads that are started may use all cores: mpirun binds two processes to a
+// core each.
+class AllCores {
+ public:
+  AllCores() {
+    sched_getaffinity(0, sizeof bound_, &bound_);
+    cpu_set_t all;
+    CPU_ZERO(&all);
+    for (int i = 0; i < CPU_SETSIZE; ++i) CPU_SET(i, &all);
+    sched_setaffinity(0, sizeof all, &all);
+  }
+  ~AllCores() { sched_setaffinity(0, sizeof bound_, &bound_); }
+  AllCores(const AllCores&) = delete;
+  AllCores& operator=(const AllCores&) = delete;
+
+ private:
+  cpu_set_t bound_;
+};
 
 enum class Side { icet, mpi, in_process };
 
@@ -180,7 +240,7 @@ Image8 run(comm::Communicator& communicator, const Options& options, const std::
     }
     icet.choose(row.method);
     const image::Rgba8* result = nullptr;
-    row.add(times_of([&] {
+    row.add(times_of(ranks, [&] {
       result = icet.compose(image.colour.data(), blended ? nullptr : image.depth.data());
     }));
     if (rank == 0) std::memcpy(image.colour.data(), result, image.pixels() * sizeof *result);
@@ -189,21 +249,20 @@ Image8 run(comm::Communicator& communicator, const Options& options, const std::
   composite::Part part;
   if (row.side == Side::mpi) {
     auto layer = layer_of(row, mine, blended);
-    row.add(times_of([&] { part = compose(communicator, row, std::move(layer)); }));
-  } else {
+    row.add(times_of(ranks, [&] { part = compose(communicator, row, std::move(layer)); }));
+  } else if (rank == 0) {
     std::vector<std::unique_ptr<composite::Layer>> layers;
-    for (int i = 0; i < ranks && rank == 0; ++i) {
+    for (int i = 0; i < ranks; ++i) {
       layers.push_back(layer_of(row, picture(options, kind, i, ranks), blended));
     }
-    row.add(times_of([&] {
-      if (rank != 0) return;
-      comm::run_threads(ranks, 1, [&](comm::Communicator& thread) {
-        auto result =
-            compose(thread, row, std::move(layers[static_cast<std::size_t>(thread.rank())]));
-        if (thread.rank() == 0) part = std::move(result);
-      });
+    const AllCores unbound;
+    row.add(times_of_threads(ranks, [&](comm::Communicator& thread) {
+      auto result =
+          compose(thread, row, std::move(layers[static_cast<std::size_t>(thread.rank())]));
+      if (thread.rank() == 0) part = std::move(result);
     }));
   }
+  if (row.side == Side::in_process) meet();
   return rank == 0 ? composite::take_image<image::Rgba8>(std::move(part)) : Image8();
 }
 
