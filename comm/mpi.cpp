@@ -338,7 +338,8 @@ class MpiCommunicator final : public Communicator {
                      std::to_string(std::chrono::duration<double>(longest).count()) +
                      " s for a message from " + internal::describe_pattern(from, tag));
       }
-      patience.pause(!engine_->unfinished.empty(), rings_seen);
+      const bool is_coming = queue_.find(from, tag) != nullptr;
+      patience.pause(is_coming || !engine_->unfinished.empty(), rings_seen);
     }
   }
 
