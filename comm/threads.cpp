@@ -42,14 +42,14 @@ class World {
   World(int ranks, const ThreadsOptions& options)
       : inboxes(ranks), timeout(options.timeout), running_(ranks) {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-    spins = ranks <= cores ? 20000 : 0;
+    awake = std::chrono::microseconds(ranks <= cores ? 200 : 0);
   }
 
   std::vector<Inbox> inboxes;  // indexed by world rank
   std::chrono::nanoseconds timeout;
-  // How often a rank looks for a message before it sleeps, some hundred microseconds: being woken
-  // takes a virtual core almost as long. 0 where cores are scarce.
-  int spins;
+  // How long a rank looks for a message before it sleeps: being woken takes a virtual core almost
+  // as long. 0 where cores are scarce.
+  std::chrono::nanoseconds awake;
   Clock::time_point start = Clock::now();
   internal::FirstFailure failure;
 
@@ -171,7 +171,7 @@ class ThreadCommunicator final : public Communicator {
     const auto longest = std::min(deadline.wait, world_.timeout);
     Clock::time_point end{};
     bool end_known = false;
-    int spins_left = world_.spins;
+    bool stays_awake = world_.awake.count() > 0;
     for (;;) {
       if (world_.failure.happened()) throw RunEnded{};
       if (auto* message = queue.find(from, tag)) return message;
@@ -188,23 +188,27 @@ class ThreadCommunicator final : public Communicator {
                 " s for a message from " + internal::describe_pattern(from, tag));
         }
       }
-      if (spins_left > 0) {
-        spin(lock, spins_left);
+      if (stays_awake) {
+        stays_awake = spin(lock);
         continue;
       }
       sleep(lock, from, tag, forever, longest == kNever ? nullptr : &end);
     }
   }
 
-  // Sleeping and being woken takes longer than most answers on a machine with enough cores.
-  void spin(std::unique_lock<std::mutex>& lock, int& spins_left) {
+  // Until a message has come or it has taken too long, which is false.
+  bool spin(std::unique_lock<std::mutex>& lock) {
     const std::uint32_t seen = inbox_.deliveries.load(std::memory_order_relaxed);
+    const auto has_come = [&] { return inbox_.deliveries.load(std::memory_order_acquire) != seen; };
     lock.unlock();
-    while (spins_left > 0 && inbox_.deliveries.load(std::memory_order_acquire) == seen) {
-      --spins_left;
-      if (spins_left % 64 == 0) std::this_thread::yield();
-    }
+    const auto end = Clock::now() + world_.awake;
+    bool found = false;
+    do {
+      for (int i = 0; i < 64 && !found; ++i) found = has_come();
+      if (!found) std::this_thread::yield();
+    } while (!found && Clock::now() < end);
     lock.lock();
+    return found;
   }
 
   void sleep(std::unique_lock<std::mutex>& lock, int from, Tag tag, bool forever,

@@ -13,11 +13,13 @@
 #include <cstring>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <thread>
 
 #include "bench/measure.h"
 #include "bench/peers/icet.h"
+#include "comm/collectives.h"
 #include "comm/mpi.h"
 #include "comm/threads.h"
 #include "composite/codec.h"
@@ -142,13 +144,18 @@ Times times_of(int ranks, auto&& work) {
   return all;
 }
 
-// Of ranks that are threads of this process: work(communicator).
-Times times_of_threads(int ranks, auto&& work) {
-  const double start = now() + kUntilAllAreReady;
+// Of ranks that are threads of this process: prepare(communicator), which is not timed, gives what
+// work(communicator, prepared) gets.
+Times times_of_threads(int ranks, auto&& prepare, auto&& work) {
   std::vector<Span> spans(static_cast<std::size_t>(ranks));
   comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
-    wait_until(start, ranks);
-    spans[static_cast<std::size_t>(communicator.rank())] = span_of([&] { work(communicator); });
+    auto prepared = prepare(communicator);
+    comm::barrier(communicator);
+    const comm::Buffer start =
+        comm::broadcast(communicator, 0, comm::Buffer::of_value(now() + kUntilAllAreReady));
+    wait_until(start.as<double>()[0], ranks);
+    spans[static_cast<std::size_t>(communicator.rank())] =
+        span_of([&] { work(communicator, std::move(prepared)); });
   });
   Times all;
   double first = spans[0].begin, last = spans[0].end;
@@ -230,11 +237,12 @@ composite::Part compose(comm::Communicator& communicator, const Row& row,
   return composite::gather(communicator, std::move(part), 0);
 }
 
-// Colours of the picture, on rank 0.
-Image8 run(comm::Communicator& communicator, const Options& options, const std::string& kind,
-           Icet& icet, const Image8& mine, Row& row) {
+// Colours of the picture, on rank 0. `pictures` are those of all ranks there, else of this one.
+Image8 run(comm::Communicator& communicator, const std::string& kind, Icet& icet,
+           std::span<const Image8> pictures, Row& row) {
   const bool blended = kind == "blended";
   const int rank = communicator.rank(), ranks = communicator.size();
+  const Image8& mine = pictures[static_cast<std::size_t>(rank)];
   if (row.side == Side::icet) {
     Image8 image = copy(mine);
     for (std::size_t i = 0; i < image.pixels(); ++i) {
@@ -253,16 +261,16 @@ Image8 run(comm::Communicator& communicator, const Options& options, const std::
     auto layer = layer_of(row, mine, blended);
     row.add(times_of(ranks, [&] { part = compose(communicator, row, std::move(layer)); }));
   } else if (rank == 0) {
-    std::vector<std::unique_ptr<composite::Layer>> layers;
-    for (int i = 0; i < ranks; ++i) {
-      layers.push_back(layer_of(row, picture(options, kind, i, ranks), blended));
-    }
     const AllCores unbound;
-    row.add(times_of_threads(ranks, [&](comm::Communicator& thread) {
-      auto result =
-          compose(thread, row, std::move(layers[static_cast<std::size_t>(thread.rank())]));
-      if (thread.rank() == 0) part = std::move(result);
-    }));
+    row.add(times_of_threads(
+        ranks,
+        [&](comm::Communicator& thread) {
+          return layer_of(row, pictures[static_cast<std::size_t>(thread.rank())], blended);
+        },
+        [&](comm::Communicator& thread, std::unique_ptr<composite::Layer> layer) {
+          auto result = compose(thread, row, std::move(layer));
+          if (thread.rank() == 0) part = std::move(result);
+        }));
   }
   if (row.side == Side::in_process) meet();
   return rank == 0 ? composite::take_image<image::Rgba8>(std::move(part)) : Image8();
@@ -271,13 +279,10 @@ Image8 run(comm::Communicator& communicator, const Options& options, const std::
 using Exact = std::vector<std::array<double, 4>>;  // 0 to 255 each
 
 // The picture that all make: the nearest pixel, or layers in order, blended in double precision.
-Exact exact_picture(const Options& options, const std::string& kind, int ranks) {
-  Exact result;
-  std::vector<float> nearest;
-  for (int rank = 0; rank < ranks; ++rank) {
-    const Image8 layer = picture(options, kind, rank, ranks);
-    result.resize(layer.pixels());
-    nearest.resize(layer.pixels(), image::kEmptyDepth);
+Exact exact_picture(std::span<const Image8> layers, const std::string& kind) {
+  Exact result(layers[0].pixels());
+  std::vector<float> nearest(layers[0].pixels(), image::kEmptyDepth);
+  for (const Image8& layer : layers) {
     for (std::size_t i = 0; i < layer.pixels(); ++i) {
       const image::Rgba8 c = layer.colour[i];
       const double channels[] = {double(c.r), double(c.g), double(c.b), double(c.a)};
@@ -339,15 +344,18 @@ void print(const std::vector<Row>& rows) {
 }
 
 void measure(comm::Communicator& communicator, const Options& options, const std::string& kind) {
-  const Image8 mine = picture(options, kind, communicator.rank(), communicator.size());
+  std::vector<Image8> pictures(static_cast<std::size_t>(communicator.size()));
+  for (int rank = 0; rank < communicator.size(); ++rank) {
+    if (communicator.rank() != 0 && communicator.rank() != rank) continue;
+    pictures[static_cast<std::size_t>(rank)] = picture(options, kind, rank, communicator.size());
+  }
   const IcetKind icet_kind = kind == "blended" ? IcetKind::ordered : IcetKind::nearest;
   Icet icet(options.width, options.height, icet_kind);
   std::vector<Row> rows = rows_of(options, icet_kind);
-  const Exact exact =
-      communicator.rank() == 0 ? exact_picture(options, kind, communicator.size()) : Exact();
+  const Exact exact = communicator.rank() == 0 ? exact_picture(pictures, kind) : Exact();
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     for (Row& row : rows) {
-      const Image8 image = run(communicator, options, kind, icet, mine, row);
+      const Image8 image = run(communicator, kind, icet, pictures, row);
       if (repeat == 0) row.error = largest_error(image, exact);
     }
   }
