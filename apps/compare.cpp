@@ -11,6 +11,7 @@ void add_compare(CLI::App& program, Session& session) {
       program.add_subcommand("compare", "variants of one thing, on an input of your own");
   command->require_subcommand(1);
   add_compare_compose(*command, session);
+  add_compare_triangulate(*command, session);
 }
 
 }  // namespace delray::apps

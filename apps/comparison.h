@@ -36,10 +36,10 @@ class Steps {
   explicit Steps(parallel::Progress& progress) : progress_(progress), inside_(&progress) {}
 
   void start(std::uint64_t steps) { progress_.start(steps); }
-  // A run is finished; goes on whatever was asked for.
-  void done() {
+  // So much is finished; goes on whatever was asked for.
+  void done(std::uint64_t steps = 1) {
     try {
-      progress_.advance();
+      progress_.advance(steps);
     } catch (const parallel::Interrupted&) {
     }
   }

@@ -26,6 +26,7 @@ struct TriangulateOptions {
   delaunay::Options how;
   std::optional<double> max_error;
   int threads = 0;
+  bool makers = false;  // go to the mesh
   bool list = false;
 };
 
@@ -41,10 +42,10 @@ void require_plain(const TriangulateOptions& options) {
   if (how.method != defaults.method || how.location != defaults.location ||
       how.split != defaults.split || how.order != defaults.order ||
       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.threads != 0) {
+      how.seed != defaults.seed || options.threads != 0 || options.makers) {
     throw UsageError(
-        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed "
-        "and threads");
+        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed, "
+        "threads and makers");
   }
 }
 
@@ -124,6 +125,9 @@ int run(Session& session, TriangulateOptions options) {
   if (!options.output.empty() && options.output != "-") {
     delaunay::mesh_writer_for(options.output);
   }
+  if (options.makers && !options.output.ends_with(".vtu")) {
+    throw UsageError("--makers: only a mesh in a .vtu file can tell them");
+  }
   delaunay::Options& how = options.how;
   how.threads = options.threads > 0 ? options.threads : parallel::arena_threads();
   if (options.max_error) {
@@ -146,6 +150,8 @@ int run(Session& session, TriangulateOptions options) {
   seconds.read = watch.lap();
   delaunay::Statistics phases;
   how.statistics = options.statistics.empty() ? nullptr : &phases;
+  std::vector<std::uint16_t> makers;
+  how.makers = options.makers ? &makers : nullptr;
   how.progress = &session.progress;
   delaunay::Triangulation result;
   std::optional<delaunay::SimplifiedTerrain> simplified;
@@ -175,7 +181,7 @@ int run(Session& session, TriangulateOptions options) {
     keep_rows(simplified->kept, points, result);
   }
   watch.lap();
-  if (!options.output.empty()) write_mesh(options.output, points, result);
+  if (!options.output.empty()) write_mesh(options.output, points, result, makers);
   statistics["seconds"]["write"] = watch.lap();
   write_statistics(options.statistics, statistics);
   spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", rows, result.distinct, result.size(),
@@ -216,6 +222,8 @@ void add_triangulate(CLI::App& program, Session& session) {
       ->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->how.seed, "seed of everything random (default 1)");
   command->add_option("--stats", options->statistics, "write statistics as JSON; - for stdout");
+  command->add_flag("--makers", options->makers,
+                    "tell of each simplex which thread made it, as \"thread\" in a .vtu");
   command->add_flag("--list", options->list, "list the methods");
   add_point_options(*command, options->input);
   add_common_options(*command, session,

@@ -86,6 +86,7 @@ std::span<const Method> methods() {
        .locations = {"walk", "hierarchy", "dag"},
        .splits = {},
        .orders = {"brio", "hilbert", "random"},
+       .alone = true,
        .triangulate = internal::insert_all},
       {.name = "batch",
        .description = "threads that locate, and one that inserts what a queue brings it",

@@ -23,6 +23,7 @@ struct Method {
   // What goes with the method, the default first; empty if it leaves no such choice.
   std::vector<std::string_view> locations, splits, orders;
   std::vector<std::string_view> deadlocks = {};
+  bool alone = false;  // works with one thread, whatever the options say
   // REQUIRES: options that resolve() returned.
   Triangulation (*triangulate)(PointView<double> points, const Options& options);
 };

@@ -53,13 +53,13 @@ const MeshWriter& mesh_writer_for(const std::filesystem::path& path) {
 }
 
 void write_mesh(const std::filesystem::path& path, const PointCloud& points,
-                const Triangulation& triangulation) {
+                const Triangulation& triangulation, std::span<const std::uint16_t> makers) {
   const MeshWriter& writer = mesh_writer_for(path);
   if (triangulation.dim == 3 && !writer.tetrahedra) {
     const std::vector<std::uint32_t> facets = hull_facets(triangulation);
     writer.write(path, {points, 3, facets});
   } else {
-    writer.write(path, {points, triangulation.dim + 1, triangulation.vertices});
+    writer.write(path, {points, triangulation.dim + 1, triangulation.vertices, makers});
   }
 }
 

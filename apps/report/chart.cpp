@@ -9,7 +9,7 @@ namespace delray::apps::report {
 namespace {
 
 constexpr double kWidth = 720, kHeight = 400;
-constexpr double kLeft = 76, kRight = 16, kTop = 14, kBottom = 48;
+constexpr double kLeft = 76, kRight = 30, kTop = 14, kBottom = 48;
 constexpr std::size_t kColours = 8;  // more series are dashed
 constexpr std::size_t kMostTicksAtPoints = 12;
 
@@ -18,7 +18,11 @@ struct Place {
 };
 
 // Colour and dash of series i.
-std::string look(std::size_t i) { return fmt::format("c{} d{}", i % kColours, i / kColours % 3); }
+std::string look(const LineChart& chart, std::size_t i) {
+  const int wanted = chart.series[i].look;
+  const std::size_t k = wanted < 0 ? i : static_cast<std::size_t>(wanted);
+  return fmt::format("c{} d{}", k % kColours, k / kColours % 3);
+}
 
 class LinePlot {
  public:
@@ -110,7 +114,7 @@ class LinePlot {
     return fmt::format(
         "<g class=\"series {0}{1}\" data-series=\"{2}\"><path class=\"line\" d=\"{3}\"/>"
         "<path class=\"spread\" d=\"{4}\"/>{5}</g>",
-        look(i), predicted, i, path, spreads, points);
+        look(chart_, i), predicted, i, path, spreads, points);
   }
 
   const LineChart& chart_;
@@ -132,7 +136,8 @@ Html line_chart(const LineChart& chart) {
     legend += fmt::format(
         "<button type=\"button\" class=\"key {}\" data-series=\"{}\" aria-pressed=\"true\">"
         "<svg viewBox=\"0 0 24 8\"><path class=\"line\" d=\"M0 4H24\"/></svg>{}{}</button>",
-        look(i), i, escaped(chart.series[i].name), mixed ? label(chart.series[i].source) : "");
+        look(chart, i), i, escaped(chart.series[i].name),
+        mixed ? label(chart.series[i].source) : "");
   return fmt::format(
       "<figure class=\"chart\"><figcaption>{}{}</figcaption>{}<div class=\"legend\">{}</div>"
       "</figure>\n",

@@ -20,6 +20,7 @@ struct Series {
   std::string name;
   Source source = Source::measured;
   std::vector<ChartPoint> points;  // by ascending x; those that are not finite are left out
+  int look = -1;                   // its colour and dash, from 0; -1: by its place among the series
 };
 
 struct LineChart {

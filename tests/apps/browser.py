@@ -16,6 +16,7 @@ SKIPPED = 77
 REPORTS = [
     ("compose", "compare compose gen:city:3000 --size 160x90 --ranks 2,4,80 --quick"
                 " --compose tree radix-k:2 centralized"),
+    ("triangulate", "compare triangulate {points} --threads 1,3 --quick"),
 ]
 
 
@@ -92,6 +93,7 @@ def check_csv(browser, folder, statistics):
 
 def check(browser, name, command, delray, folder):
     page, statistics = folder / f"{name}.html", folder / f"{name}.json"
+    command = command.format(points=folder / "points.xyz")
     subprocess.run([delray, *command.split(), "-q", "-o", page, "--stats", statistics],
                    check=True, stdout=subprocess.DEVNULL)
     browser.get(page.as_uri())
@@ -123,6 +125,8 @@ def check(browser, name, command, delray, folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        subprocess.run([sys.argv[1], *"generate points cluster -n 900 --dim 2 -q -o".split(),
+                        folder / "points.xyz"], check=True)
         browser = open_browser(folder)
         try:
             for report, command in REPORTS:

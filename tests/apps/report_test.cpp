@@ -9,6 +9,7 @@
 #include "apps/report/axis.h"
 #include "apps/report/chart.h"
 #include "apps/report/matrix.h"
+#include "apps/report/stacked_bars.h"
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 
@@ -86,7 +87,8 @@ TEST(ReportCharts, DrawEveryPointThatCanBeShown) {
 }
 
 TEST(ReportCharts, AreWholeWithoutData) {
-  for (const Html& html : {line_chart({}), bar_chart({}), timeline({}), matrix({})}) {
+  for (const Html& html :
+       {line_chart({}), bar_chart({}), timeline({}), matrix({}), stacked_bars({})}) {
     EXPECT_FALSE(has_bad_number(html)) << html;
     EXPECT_EQ(count(html, "<svg"), count(html, "</svg>"));
     EXPECT_EQ(count(html, "<figure"), count(html, "</figure>"));
@@ -104,6 +106,35 @@ TEST(ReportCharts, BarsMatricesAndTimelinesTellTheirNumbers) {
   const Html lanes = timeline(
       {"t", Source::measured, {"work", "wait"}, {{"rank 0", {{0, 1, 1.5, ""}, {1, 1.5, 3, "q"}}}}});
   EXPECT_NE(lanes.find("rank 0: wait 1500 ms (measured); q"), std::string::npos);
+}
+
+TEST(ReportCharts, SeriesKeepTheirLookWhateverTheirPlace) {
+  LineChart chart;
+  chart.series = {{"one", Source::measured, {{1, 2}}}, {"two", Source::measured, {{1, 3}}, 9}};
+  const Html html = line_chart(chart);
+  EXPECT_EQ(count(html, "class=\"series c0 d0\""), 1U);
+  EXPECT_EQ(count(html, "class=\"series c1 d1\""), 1U);
+  EXPECT_EQ(count(html, "class=\"key c1 d1\""), 1U);
+}
+
+TEST(ReportCharts, StackedBarsShowPartsWhereTheirSumBegins) {
+  StackedBars chart{"t", "ms", Source::measured, false, {"a", "b"}, {{"x", {1, 3}}, {"y", {0, 8}}}};
+  const Html amounts = stacked_bars(chart);
+  EXPECT_EQ(count(amounts, "<rect"), 3U);  // what is 0 is left out
+  EXPECT_NE(amounts.find("x: b 3 ms, 75.0 % (measured)"), std::string::npos);
+  EXPECT_NE(amounts.find("y: b 8 ms, 100.0 % (measured)"), std::string::npos);
+  chart.shares = true;
+  const auto widths = [](const Html& html) {
+    double sum = 0;
+    for (std::size_t at = html.find("<rect"); at != std::string::npos;
+         at = html.find("<rect", at + 1))
+      sum += std::stod(html.substr(html.find("width=\"", at) + 7));
+    return sum;
+  };
+  // All bars are as long as the longest one was.
+  EXPECT_NEAR(widths(stacked_bars(chart)), 2 * widths(amounts) * 8 / 12, 0.1);
+  chart.bars = {{"none", {0, 0}}};
+  EXPECT_FALSE(has_bad_number(stacked_bars(chart)));
 }
 
 TEST(ReportPage, HoldsAllAndNothingEndsItsScriptsEarly) {

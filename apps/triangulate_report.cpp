@@ -1,0 +1,571 @@
+#include "apps/triangulate_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <set>
+
+#include "apps/provenance.h"
+#include "apps/report/chart.h"
+#include "apps/report/page.h"
+#include "apps/report/series.h"
+#include "apps/report/stacked_bars.h"
+#include "apps/report/table.h"
+#include "apps/triangulate_figures.h"
+#include "delaunay/methods.h"
+
+namespace delray::apps {
+namespace {
+
+using namespace report;
+using Row = ComparedTriangulation;
+using Rows = std::vector<ComparedTriangulation>;
+
+constexpr const char* kPhases[] = {"order", "locate", "subdivide", "legalize", "extract"};
+// The report's sequential algorithm.
+constexpr std::string_view kSequential = "insertion, dag";
+
+std::vector<std::size_t> sizes_of(const Rows& rows) {
+  return unique_of(rows, [](const Row& row) { return row.points; });
+}
+// The most points for which there are all rows that there are for the fewest.
+std::size_t most_points(const Rows& rows) {
+  const auto count = [&](std::size_t points) {
+    return std::ranges::count(rows, points, &Row::points);
+  };
+  std::size_t most = rows.front().points;
+  for (const std::size_t points : sizes_of(rows))
+    if (count(points) == count(rows.front().points)) most = points;
+  return most;
+}
+Rows rows_of(const Rows& rows, const std::function<bool(const Row&)>& wanted) {
+  Rows result;
+  std::ranges::copy_if(rows, std::back_inserter(result), wanted);
+  return result;
+}
+
+// Of the numbers of threads that were asked for the largest that does not share cores.
+int threads_of_own(const TriangulateComparison& comparison) {
+  int result = comparison.threads.front();
+  for (const int count : comparison.threads)
+    if (count <= comparison.cores) result = count;
+  return result;
+}
+bool is_alone(const Row& row) {
+  return std::ranges::find(delaunay::methods(), row.how.method, &delaunay::Method::name)->alone;
+}
+
+std::string threads_text(int count) {
+  return fmt::format("{} {}", count, count == 1 ? "thread" : "threads");
+}
+std::string milliseconds(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+const char* simplices_text(int dim) { return dim == 2 ? "triangles" : "tetrahedra"; }
+
+// Not one of the splits that are there beside the one that a method takes without being told.
+bool has_own_split(const Row& row) {
+  delaunay::Options plain;
+  plain.dim = row.how.dim;
+  plain.method = row.how.method;
+  return row.how.split == resolve(plain).split;
+}
+
+using PointOf = std::function<std::optional<ChartPoint>(const Row&)>;
+
+ChartPoint time_at(double x, const Row& row) {
+  return {x, row.seconds.median * 1e3, row.seconds.least * 1e3, row.seconds.most * 1e3};
+}
+// How many times as long `base` takes, over `divisor`.
+ChartPoint ratio_at(double x, const Spread& base, const Spread& seconds, double divisor) {
+  const double scale = base.median / divisor;
+  return {x, scale / seconds.median, scale / seconds.most, scale / seconds.least};
+}
+
+Html chart_of(const std::string& title, const std::string& x_label, const std::string& y_label,
+              Scale y_scale, std::vector<Series> series) {
+  if (series.empty()) return "";
+  LineChart chart;
+  chart.title = title;
+  chart.x_label = x_label;
+  chart.y_label = y_label;
+  chart.x_scale = Scale::logarithmic;
+  chart.y_scale = y_scale;
+  chart.ticks_at_points = true;
+  chart.series = std::move(series);
+  return line_chart(chart);
+}
+// The charts of one comparison: a way to triangulate looks the same in each of them.
+class Charts {
+ public:
+  explicit Charts(const Rows& rows) : names_(unique_of(rows_of(rows, has_own_split), name)) {
+    for (const std::string& other : unique_of(rows, name))
+      if (std::ranges::find(names_, other) == names_.end()) names_.push_back(other);
+  }
+
+  Html over_threads(const Rows& rows, const std::string& title, const std::string& label,
+                    Scale scale, const PointOf& point) const {
+    return chart_of(title, "threads", label, scale, series(rows, Source::measured, point));
+  }
+  Html over_points(const Rows& rows, const std::string& title, const std::string& label,
+                   Scale scale, Source source, const PointOf& point) const {
+    return chart_of(title, "points", label, scale, series(rows, source, point));
+  }
+
+ private:
+  static std::string name(const Row& row) { return name_of(row.how); }
+  std::vector<Series> series(const Rows& rows, Source source, const PointOf& point) const {
+    std::vector<Series> result = series_by(rows, name, source, point);
+    for (Series& one : result)
+      one.look = static_cast<int>(std::ranges::find(names_, one.name) - names_.begin());
+    return result;
+  }
+
+  std::vector<std::string> names_;
+};
+
+const Row* base_of(const Rows& rows, const Row& row) {
+  const auto at = std::ranges::find_if(rows, [&](const Row& other) {
+    return other.points == row.points && other.how.threads == 1 &&
+           other.how.method == row.how.method && other.how.location == row.how.location;
+  });
+  return at == rows.end() ? nullptr : &*at;
+}
+
+// What else is as good, and whether that is certain.
+std::string next_sentence(const Rows& rows, const Row& best) {
+  const Row* next = nullptr;
+  for (const Row& row : rows)
+    if (row.points == best.points && row.how.method != best.how.method &&
+        (next == nullptr || row.seconds.median < next->seconds.median))
+      next = &row;
+  if (next == nullptr) return "";
+  const double times = next->seconds.median / best.seconds.median;
+  const bool apart = next->seconds.least > best.seconds.most;
+  const char* doubt = apart && times > 1.5     ? ""
+                      : best.seconds.runs == 1 ? ", measured once"
+                      : apart                  ? ""
+                                               : ", which other runs may turn round";
+  return fmt::format(" {} with {}, the next method, takes {}{}.", escaped(name_of(next->how)),
+                     threads_text(next->how.threads),
+                     times < 2 ? fmt::format("{:.0f} % more", (times - 1) * 100)
+                               : fmt::format("{:.1f} times as long", times),
+                     doubt);
+}
+
+// What the others do that it does not.
+std::string reason(const Rows& rows, const Row& best) {
+  const auto per_point = [](std::uint64_t count, const Row& row) {
+    return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(row.points, 1));
+  };
+  const Row *locks = nullptr, *history = nullptr;
+  for (const Row& row : rows) {
+    if (row.points != best.points) continue;
+    if (locks == nullptr ||
+        row.statistics.synchronization.lock_calls > locks->statistics.synchronization.lock_calls)
+      locks = &row;
+    if (history == nullptr || row.statistics.dag_nodes > history->statistics.dag_nodes)
+      history = &row;
+  }
+  std::vector<std::string> reasons;
+  const std::uint64_t own_locks = best.statistics.synchronization.lock_calls;
+  const std::uint64_t most_locks = locks->statistics.synchronization.lock_calls;
+  if (own_locks > 0)
+    reasons.push_back(
+        fmt::format("asks for locks {:.3g} times a point", per_point(own_locks, best)));
+  else if (most_locks > 0)
+    reasons.push_back(fmt::format("takes no locks, which {} asks for {:.3g} times a point",
+                                  locks->how.method, per_point(most_locks, *locks)));
+  if (best.statistics.dag_nodes == 0 && history->statistics.dag_nodes > 0)
+    reasons.push_back(fmt::format("keeps no history, of which {} has {:.3g} nodes a point",
+                                  history->how.method,
+                                  per_point(history->statistics.dag_nodes, *history)));
+  if (reasons.empty()) return "";
+  return fmt::format("It {} (counted).", fmt::join(reasons, ", and "));
+}
+
+std::string scaling(const TriangulateComparison& comparison, const Row& best) {
+  if (is_alone(best) || comparison.threads.size() < 2) return "";
+  const Row* base = base_of(comparison.rows, best);
+  if (base == nullptr) return "";
+  if (best.how.threads == 1) {
+    const Row* more = nullptr;
+    for (const Row& row : comparison.rows)
+      if (row.points == best.points && row.how.method == best.how.method && row.how.threads > 1 &&
+          (more == nullptr || row.seconds.median < more->seconds.median))
+        more = &row;
+    if (more == nullptr) return "";
+    return fmt::format(" More threads did not help: {} with {}.",
+                       milliseconds(more->seconds.median), threads_text(more->how.threads));
+  }
+  return fmt::format(" One thread takes {}: that is a speed-up of {:.2f}.",
+                     milliseconds(base->seconds.median),
+                     base->seconds.median / best.seconds.median);
+}
+
+std::string agreement(const TriangulateComparison& comparison, const Row& best) {
+  const Rows same = rows_of(comparison.rows, [&](const Row& r) { return r.points == best.points; });
+  const bool agree = std::ranges::all_of(same, [&](const Row& r) { return r.hash == best.hash; });
+  if (!agree)
+    return "<strong>The ways to triangulate did not give the same simplices: that is a defect, "
+           "please tell us.</strong>";
+  return fmt::format("All {} ways to triangulate gave the same {} {} (counted; hash {}).",
+                     same.size(), best.simplices, simplices_text(comparison.dim), best.hash);
+}
+
+std::string crowded(const TriangulateComparison& comparison) {
+  if (comparison.threads.back() <= comparison.cores) return "";
+  return fmt::format(
+      " This machine runs {} at once: more share the cores, and tell what the locks "
+      "do rather than how fast it goes.",
+      threads_text(comparison.cores));
+}
+
+Html answer(const TriangulateComparison& comparison) {
+  const Rows& rows = comparison.rows;
+  const std::size_t points = most_points(rows);
+  const Row& best = *fastest(rows, points, 0);
+  delaunay::Options automatic;
+  automatic.dim = comparison.dim;
+  const bool is_automatic = resolve(automatic).method == best.how.method;
+  std::string text = fmt::format(
+      "<p>Use {} with {}: {} points in {}D take {} (measured, {}).", strong(name_of(best.how)),
+      strong(threads_text(best.how.threads)), points, comparison.dim,
+      strong(milliseconds(best.seconds.median)),
+      best.seconds.runs > 1
+          ? fmt::format("median of {} runs, {} to {}", best.seconds.runs,
+                        milliseconds(best.seconds.least), milliseconds(best.seconds.most))
+          : "once");
+  text += is_automatic
+              ? " It is what delray triangulate does without being told."
+              : fmt::format(" That is delray triangulate --method {}{}.", best.how.method,
+                            is_alone(best) ? "" : fmt::format(" --threads {}", best.how.threads));
+  text += next_sentence(rows, best) + "</p>\n<p>" + reason(rows, best) + scaling(comparison, best) +
+          "</p>\n<p>" + agreement(comparison, best) + crowded(comparison) + "</p>\n";
+  Table best_of;
+  best_of.columns = {{"points", true, false, {}}};
+  for (const int threads : comparison.threads) {
+    best_of.columns.push_back({threads_text(threads), false, true, Source::measured});
+    best_of.columns.push_back({"ms", true, false, {}});
+  }
+  for (const std::size_t size : sizes_of(rows)) {
+    std::vector<std::string> line = {std::to_string(size)};
+    for (const int threads : comparison.threads) {
+      const Row* row = fastest(rows, size, threads);
+      line.push_back(row != nullptr ? name_of(row->how) : "-");
+      line.push_back(row != nullptr ? short_number(row->seconds.median * 1e3) : "-");
+    }
+    best_of.rows.push_back(std::move(line));
+  }
+  return text + paragraph("Fastest of so many of the points, chosen at random:") + table(best_of);
+}
+
+Html times(const TriangulateComparison& comparison, const Charts& charts) {
+  const Rows rows = rows_of(comparison.rows, has_own_split);
+  const std::size_t points = most_points(rows);
+  const int threads = threads_of_own(comparison);
+  Html result =
+      charts.over_threads(rows_of(rows, [&](const Row& row) { return row.points == points; }),
+                          fmt::format("Time for {} points", points), "time, ms", Scale::logarithmic,
+                          [](const Row& row) { return time_at(row.how.threads, row); });
+  result += charts.over_points(
+      rows_of(rows, [&](const Row& row) { return is_alone(row) || row.how.threads == threads; }),
+      "Time with " + threads_text(threads), "time, ms", Scale::logarithmic, Source::measured,
+      [](const Row& row) { return time_at(static_cast<double>(row.points), row); });
+  return result +
+         paragraph(
+             "Medians; the upright lines are the spread of the repetitions. Times are from "
+             "points in memory to simplices in memory, sorting and extraction included. "
+             "insertion always works with one thread.");
+}
+
+Html speed_ups(const TriangulateComparison& comparison, const Charts& charts) {
+  const Rows all = rows_of(comparison.rows, has_own_split);
+  const std::size_t points = most_points(all);
+  const Rows several = rows_of(all, [](const Row& row) { return !is_alone(row); });
+  const Rows most = rows_of(several, [&](const Row& row) { return row.points == points; });
+  const auto ratio = [&](double x, const Row& row, double divisor) -> std::optional<ChartPoint> {
+    const Row* base = base_of(all, row);
+    if (base == nullptr) return std::nullopt;
+    return ratio_at(x, base->seconds, row.seconds, divisor);
+  };
+  const std::string of = fmt::format(", {} points", points);
+  Html result = charts.over_threads(most, "Speed-up over one thread of the same method" + of,
+                                    "speed-up", Scale::linear,
+                                    [&](const Row& row) { return ratio(row.how.threads, row, 1); });
+  result += charts.over_threads(
+      most, "Efficiency: speed-up over threads" + of, "efficiency", Scale::linear,
+      [&](const Row& row) { return ratio(row.how.threads, row, row.how.threads); });
+  for (const int threads : comparison.threads) {
+    if (threads == 1) continue;
+    const std::string with = ", " + threads_text(threads);
+    const Rows such = rows_of(several, [&](const Row& row) { return row.how.threads == threads; });
+    result += charts.over_points(
+        such, "Speed-up over one thread" + with, "speed-up", Scale::linear, Source::measured,
+        [&](const Row& row) { return ratio(static_cast<double>(row.points), row, 1); });
+  }
+  const auto sequential = std::ranges::find_if(
+      all, [&](const Row& row) { return row.points == points && name_of(row.how) == kSequential; });
+  if (sequential != all.end())
+    result +=
+        charts.over_threads(rows_of(all, [&](const Row& row) { return row.points == points; }),
+                            "Times as fast as the report's sequential algorithm, which is " +
+                                std::string(kSequential) + of,
+                            "times as fast", Scale::logarithmic, [&](const Row& row) {
+                              return ratio_at(row.how.threads, sequential->seconds, row.seconds, 1);
+                            });
+  if (result.empty()) return paragraph("One number of threads tells nothing about speed-up.");
+  return result + paragraph(
+                      "Of measured times; the upright lines are what the spread of the "
+                      "repetitions makes of them." +
+                      crowded(comparison));
+}
+
+StackedBar phases_of(const std::string& name, const Row& row) {
+  const delaunay::Statistics& s = row.statistics;
+  StackedBar bar{name, {s.order, s.locate, s.subdivide, s.legalize, s.extract}};
+  for (double& part : bar.parts) part *= 1e3;
+  return bar;
+}
+StackedBars phase_bars(const std::string& title) {
+  StackedBars chart;
+  chart.title = title;
+  chart.unit = "ms";
+  chart.shares = true;
+  chart.kinds.assign(std::begin(kPhases), std::end(kPhases));
+  return chart;
+}
+
+Html phases(const TriangulateComparison& comparison) {
+  const Rows& rows = comparison.rows;
+  const std::size_t points = most_points(rows);
+  Html result;
+  std::set<int> counts = {1, threads_of_own(comparison)};
+  for (const int threads : counts) {
+    StackedBars chart = phase_bars(
+        fmt::format("Shares of the phases, {}, {} points", threads_text(threads), points));
+    for (const Row& row : rows)
+      if (row.points == points && row.how.threads == threads)
+        chart.bars.push_back(phases_of(name_of(row.how), row));
+    if (!chart.bars.empty()) result += stacked_bars(chart);
+  }
+  for (const std::string& name :
+       unique_of(rows, [](const Row& row) { return is_alone(row) ? name_of(row.how) : ""; })) {
+    if (name.empty()) continue;
+    StackedBars chart = phase_bars("Shares of the phases against points, " + name);
+    for (const Row& row : rows)
+      if (name_of(row.how) == name)
+        chart.bars.push_back(phases_of(fmt::format("{} points", row.points), row));
+    result += stacked_bars(chart);
+  }
+  return result + paragraph(
+                      "Seconds of one run each, summed over threads; who waits for a lock waits in "
+                      "the phase that needs it. divide-and-conquer does everything but sorting and "
+                      "extraction in subdivide, cavity makes its simplices there.");
+}
+
+Html locks(const TriangulateComparison& comparison, const Charts& charts) {
+  const Rows rows = rows_of(comparison.rows, [](const Row& row) {
+    return row.statistics.synchronization.lock_calls > 0;
+  });
+  // A critical section is no lock of a simplex.
+  const Rows several = rows_of(rows, [](const Row& row) {
+    return row.how.threads > 1 && row.statistics.synchronization.free > 0;
+  });
+  if (rows.empty()) return paragraph("None of these methods has locks.");
+  Html result;
+  for (const int threads : unique_of(several, [](const Row& row) { return row.how.threads; })) {
+    const Rows such = rows_of(several, [&](const Row& row) { return row.how.threads == threads; });
+    const auto count = [&](const char* title, const char* label,
+                           std::uint64_t delaunay::Synchronization::*amount, double per_points) {
+      return charts.over_points(such, title + (", " + threads_text(threads)), label, Scale::linear,
+                                Source::counted, [=](const Row& row) {
+                                  const double x = static_cast<double>(row.points);
+                                  const double y =
+                                      static_cast<double>(row.statistics.synchronization.*amount) *
+                                      (per_points > 0 ? per_points / x : 1);
+                                  return ChartPoint{x, y, y, y};
+                                });
+    };
+    result += count("Deadlocks", "deadlocks", &delaunay::Synchronization::deadlocks, 0);
+    result += count("Simplices that another thread had locked", "for a thousand points",
+                    &delaunay::Synchronization::waits, 1000);
+  }
+  Table numbers;
+  numbers.columns = {
+      {"points", true, false, {}}, {"method", false, false, {}}, {"threads", true, false, {}}};
+  for (const char* name : {"MA/N", "AL/N", "F/N", "W/N", "deadlocks", "rollbacks", "burglaries",
+                           "repaired", "rebuilds"})
+    numbers.columns.push_back({name, true, true, Source::counted});
+  for (const Row& row : rows) {
+    const delaunay::Synchronization& s = row.statistics.synchronization;
+    std::vector<std::string> line = {std::to_string(row.points), name_of(row.how),
+                                     std::to_string(row.how.threads)};
+    for (const std::uint64_t count : {s.lock_calls, s.already_locked, s.free, s.waits})
+      line.push_back(
+          fmt::format("{:.4g}", static_cast<double>(count) / static_cast<double>(row.points)));
+    for (const std::uint64_t count :
+         {s.deadlocks, s.rollbacks, s.burglaries, s.repaired, s.rebuilds})
+      line.push_back(std::to_string(count));
+    numbers.rows.push_back(std::move(line));
+  }
+  return result + heading("What the locks did, for each of the N points") + table(numbers) +
+         paragraph(
+             "MA: calls of the locking routine, each for all simplices that the next step "
+             "needs. AL: simplices that the thread held already. F: free ones. W: those that "
+             "another thread held. Of the pessimistic method MA is how often threads entered "
+             "the critical section. Rollbacks are insertions that were undone and tried "
+             "again; repaired and rebuilds are what the burglary and circumcircle methods "
+             "do at the end, where a burglary may have left something wrong.");
+}
+
+Html fragments(const TriangulateComparison& comparison, const Charts& charts) {
+  const int threads = comparison.shown_threads;
+  const Rows rows =
+      rows_of(comparison.rows, [&](const Row& row) { return row.how.threads == threads; });
+  Html result;
+  if (!comparison.pictures.empty()) {
+    result += paragraph(fmt::format(
+        "The {} coloured by the thread that made them, {}{}. Where the colours lie together, "
+        "threads seldom meet.",
+        simplices_text(comparison.dim), threads_text(threads),
+        comparison.dim == 3 ? ", where a plane through the middle cuts them" : ""));
+    result += "<div class=\"legend\">";
+    for (int thread = 0; thread < threads; ++thread)
+      result += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>thread {}</span>",
+                            thread % 8, thread);
+    result += "</div>\n";
+    std::vector<Html> pictures;
+    for (const PictureOfMakers& one : comparison.pictures)
+      pictures.push_back(picture(one.picture, fmt::format("{}, {} points: {} fragments (counted)",
+                                                          one.name, one.points, one.fragments)));
+    result += beside(pictures);
+  }
+  result += charts.over_points(rows, "Fragments, " + threads_text(threads), "fragments",
+                               Scale::logarithmic, Source::counted, [](const Row& row) {
+                                 const auto y = static_cast<double>(row.fragments);
+                                 return ChartPoint{static_cast<double>(row.points), y, y, y};
+                               });
+  const std::size_t points = most_points(comparison.rows);
+  Table table_of;
+  table_of.columns = {{"method", false, false, {}},
+                      {"split", false, false, {}},
+                      {"fragments", true, true, Source::counted},
+                      {"ms", true, true, Source::measured},
+                      {"least", true, true, Source::measured},
+                      {"most", true, true, Source::measured}};
+  for (const Row& row : rows) {
+    if (row.points != points) continue;
+    const auto ms = [](double seconds) { return fmt::format("{:.2f}", seconds * 1e3); };
+    table_of.rows.push_back({row.how.method, row.how.split, std::to_string(row.fragments),
+                             ms(row.seconds.median), ms(row.seconds.least), ms(row.seconds.most)});
+  }
+  result += heading(fmt::format("{} points, {}", points, threads_text(threads))) + table(table_of);
+  StackedBars shares;
+  shares.title =
+      fmt::format("Who made the {} {} of {} points", rows.empty() ? 0 : rows.back().simplices,
+                  simplices_text(comparison.dim), points);
+  shares.unit = simplices_text(comparison.dim);
+  shares.source = Source::counted;
+  shares.shares = true;
+  for (int thread = 0; thread < threads; ++thread)
+    shares.kinds.push_back(fmt::format("thread {}", thread));
+  for (const Row& row : rows) {
+    if (row.points != points) continue;
+    StackedBar bar{name_of(row.how), {}};
+    for (const std::uint64_t count : row.simplices_by_thread)
+      bar.parts.push_back(static_cast<double>(count));
+    shares.bars.push_back(std::move(bar));
+  }
+  if (threads <= 8) result += stacked_bars(shares);
+  return result +
+         paragraph(
+             "A fragment is a connected set of simplices that one thread made: at best there are "
+             "as many as threads. The optimistic method stands there with every way to split the "
+             "points among threads; the others with the one they take without being told. Of the "
+             "batch method one thread makes everything. Threads of divide-and-conquer and cavity "
+             "take their parts as they come.");
+}
+
+Html history(const TriangulateComparison& comparison) {
+  const Rows rows = rows_of(comparison.rows, [&](const Row& row) {
+    return row.statistics.dag_nodes > 0 && row.how.threads <= comparison.cores;
+  });
+  if (rows.empty()) return paragraph("None of these methods keeps a history.");
+  LineChart chart;
+  chart.title = "Time against nodes of the history";
+  chart.x_label = "nodes";
+  chart.y_label = "time, ms";
+  chart.x_scale = chart.y_scale = Scale::logarithmic;
+  chart.series = series_by(
+      rows, [](const Row& row) { return name_of(row.how) + ", " + threads_text(row.how.threads); },
+      Source::measured,
+      [](const Row& row) -> std::optional<ChartPoint> {
+        return time_at(static_cast<double>(row.statistics.dag_nodes), row);
+      });
+  Html result = line_chart(chart);
+  Table numbers;
+  numbers.columns = {{"points", true, false, {}},
+                     {"method", false, false, {}},
+                     {"threads", true, false, {}},
+                     {"nodes", true, true, Source::counted},
+                     {"nodes/point", true, true, Source::counted},
+                     {"bytes/node", true, true, Source::counted},
+                     {"ms", true, true, Source::measured},
+                     {"ns/node", true, true, Source::measured}};
+  for (const Row& row : rows) {
+    const auto nodes = static_cast<double>(row.statistics.dag_nodes);
+    numbers.rows.push_back({std::to_string(row.points), name_of(row.how),
+                            std::to_string(row.how.threads),
+                            std::to_string(row.statistics.dag_nodes),
+                            fmt::format("{:.2f}", nodes / static_cast<double>(row.points)),
+                            std::to_string(row.statistics.dag_node_bytes),
+                            fmt::format("{:.2f}", row.seconds.median * 1e3),
+                            fmt::format("{:.1f}", row.seconds.median * 1e9 / nodes)});
+  }
+  return result + table(numbers) +
+         paragraph(
+             "The history has a node for every simplex that ever was. Points that need more "
+             "flips make more of them, and time goes with nodes rather than with points.");
+}
+
+Html all_rows(const TriangulateComparison& comparison) {
+  const TextTable text = triangulate_table(comparison);
+  Table result;
+  for (const std::string& name : text[0]) {
+    const bool measured = name.ends_with("ms") || name == "speed-up" || name == "efficiency";
+    const bool given = name == "points" || name == "method" || name == "threads";
+    result.columns.push_back(
+        {name, name != "method", !given, measured ? Source::measured : Source::counted});
+  }
+  result.rows.assign(text.begin() + 1, text.end());
+  return table(result) +
+         paragraph("ms is the median; speed-up is over the same method with one thread.");
+}
+
+}  // namespace
+
+std::string triangulate_report(const Session& session, const TriangulateRequest& request,
+                               const TriangulateComparison& comparison) {
+  Page result;
+  const std::filesystem::path file(request.input.path);
+  result.title = fmt::format("Triangulating {}, {} points in {}D", file.filename().string(),
+                             comparison.points, comparison.dim);
+  result.unfinished = comparison.unfinished;
+  result.answer = answer(comparison);
+  const Charts charts(comparison.rows);
+  result.tabs.push_back({"Times", times(comparison, charts)});
+  result.tabs.push_back({"Speed-up", speed_ups(comparison, charts)});
+  result.tabs.push_back({"Fragments", fragments(comparison, charts)});
+  result.tabs.push_back({"Phases", phases(comparison)});
+  result.tabs.push_back({"Locks", locks(comparison, charts)});
+  result.tabs.push_back({"History", history(comparison)});
+  result.tabs.push_back({"All figures", all_rows(comparison)});
+  result.data = triangulate_statistics(request, comparison);
+  result.provenance = provenance(session);
+  result.provenance.emplace_back("seed", std::to_string(request.seed));
+  return page(result);
+}
+
+}  // namespace delray::apps

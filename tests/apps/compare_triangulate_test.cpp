@@ -1,0 +1,177 @@
+// delray compare triangulate: the built program, and the JSON that scripts rely on.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "delaunay/methods.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+void generate(const Folder& folder, const std::string& arguments) {
+  const Ran ran = run("delray generate points " + arguments + " -q", folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+}
+
+std::string hash_of(const Folder& folder, const std::string& arguments) {
+  const Ran ran = run("delray triangulate " + arguments + " --stats - -q", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  return Json::parse(ran.out)["result"]["hash"];
+}
+
+// What every row promises, whatever was compared.
+void check_rows(const Json& json, int dim, const std::set<int>& threads) {
+  std::map<std::size_t, std::set<std::string>> hashes, methods;
+  for (const Json& row : json["rows"]) {
+    SCOPED_TRACE(row.dump());
+    const int own_threads = row["threads"];
+    hashes[row["points"]].insert(row["hash"].get<std::string>());
+    methods[row["points"]].insert(row["method"].get<std::string>());
+    std::uint64_t made = 0;
+    for (const Json& count : row["simplices_by_thread"]) made += count.get<std::uint64_t>();
+    EXPECT_EQ(row["simplices_by_thread"].size(), own_threads);
+    EXPECT_EQ(made, row["simplices"]);
+    EXPECT_GE(row["sync"]["fragments"], 1);
+    EXPECT_LE(row["distinct"], row["points"]);
+    EXPECT_GT(row["spread"]["triangulate"]["least"], 0);
+    EXPECT_LE(row["spread"]["triangulate"]["least"], row["seconds"]["triangulate"]);
+    EXPECT_GE(row["spread"]["triangulate"]["most"], row["seconds"]["triangulate"]);
+    EXPECT_GE(row["spread"]["triangulate"]["runs"], 1);
+    EXPECT_DOUBLE_EQ(row["efficiency"], row["speed_up"].get<double>() / own_threads);
+    if (own_threads == 1) {
+      EXPECT_EQ(row["sync"]["fragments"], 1);
+      EXPECT_EQ(row["speed_up"], 1);
+    } else {
+      EXPECT_TRUE(threads.count(own_threads));
+    }
+    const auto& table = delaunay::methods();
+    const auto method = std::find_if(table.begin(), table.end(),
+                                     [&](const auto& m) { return m.name == row["method"]; });
+    ASSERT_NE(method, table.end());
+    EXPECT_TRUE(std::count(method->dims.begin(), method->dims.end(), dim));
+  }
+  for (const auto& [points, of_points] : hashes) EXPECT_EQ(of_points.size(), 1U) << points;
+  std::set<std::string> expected;
+  for (const delaunay::Method& method : delaunay::methods())
+    if (std::count(method.dims.begin(), method.dims.end(), dim)) expected.emplace(method.name);
+  for (const auto& [points, of_points] : methods) EXPECT_EQ(of_points, expected) << points;
+}
+
+TEST(CompareTriangulate, TellsOfEveryMethodWhatTheInterfaceSays) {
+  const Folder folder;
+  generate(folder, "cluster -n 1000 --dim 2 -o plane.xyz");
+  const Ran ran =
+      run("delray compare triangulate plane.xyz --threads 3,1,3 --quick --stats - -o report.html",
+          folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  EXPECT_EQ(json["schema"], "delray.compare.triangulate/1");
+  EXPECT_EQ(json["input"]["dim"], 2);
+  EXPECT_EQ(json["options"]["threads"], Json({1, 3}));
+  EXPECT_EQ(json["unfinished"], false);
+  check_rows(json, 2, {3});
+  std::set<std::size_t> sizes;
+  std::set<std::string> splits;
+  for (const Json& row : json["rows"]) {
+    sizes.insert(row["points"].get<std::size_t>());
+    if (row["method"] == "optimistic") splits.insert(row["split"].get<std::string>());
+    // One thread makes what the others located.
+    if (row["method"] == "batch") {
+      EXPECT_EQ(row["simplices_by_thread"][0], row["simplices"]);
+    }
+    const bool locks = row["method"] == "optimistic" || row["method"] == "burglary";
+    EXPECT_EQ(row["sync"]["free"] > 0, locks || row["method"] == "circumcircle");
+  }
+  EXPECT_EQ(sizes, (std::set<std::size_t>{125, 250, 500, 1000}));
+  EXPECT_EQ(splits.size(), delaunay::splits().size());
+  EXPECT_EQ(json["rows"].back()["hash"], hash_of(folder, "plane.xyz --dim 2"));
+  const std::string page = folder.read("report.html");
+  for (const char* part : {"Use <strong>", "(measured, ", "(counted; hash ", "Speed-up", "Phases",
+                           "MA/N", "data:image/png;base64,", "fragments (counted)", "thread 2"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(CompareTriangulate, TakesPointsWithAZForPointsInSpaceUnlessTold) {
+  const Folder folder;
+  generate(folder, "gauss -n 300 --dim 3 -o space.xyz");
+  for (const int dim : {3, 2}) {
+    const Ran ran = run("delray compare triangulate space.xyz --threads 2 --quick --stats f.json" +
+                            std::string(dim == 2 ? " --dim 2" : ""),
+                        folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("optimistic, slabs"), std::string::npos) << ran.out;
+    const Json json = Json::parse(folder.read("f.json"));
+    EXPECT_EQ(json["input"]["dim"], dim);
+    EXPECT_EQ(json["rows"].back()["hash"],
+              hash_of(folder, "space.xyz --dim " + std::to_string(dim)));
+    // Nobody measured one thread of these.
+    for (const Json& row : json["rows"])
+      EXPECT_EQ(row["speed_up"].is_null(), row["method"] != "insertion");
+  }
+}
+
+TEST(CompareTriangulate, LivesWithFewPointsAndFlatOnes) {
+  const Folder folder;
+  folder.write("three.xyz", "0 0\n1 0\n0 1\n");
+  folder.write("line.xyz", "0 0\n1 1\n2 2\n3 3\n");
+  for (const std::string name : {"three", "line"}) {
+    const Ran ran = run("delray compare triangulate " + name +
+                            ".xyz --threads 1,2 --quick --stats - -o report.html",
+                        folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const Json json = Json::parse(ran.out);
+    for (const Json& row : json["rows"]) {
+      EXPECT_EQ(row["simplices"], name == "three" ? 1 : 0) << row.dump();
+      EXPECT_EQ(row["sync"]["fragments"], row["simplices"]) << row.dump();
+    }
+    const std::string page = folder.read("report.html");
+    for (const char* no_number : {"\"nan", " nan", "\"-nan", "\"inf", " inf", "Lnan", "Mnan"}) {
+      EXPECT_EQ(page.find(no_number), std::string::npos) << no_number;
+    }
+  }
+}
+
+TEST(CompareTriangulate, WritesWhatIsFinishedWhenInterrupted) {
+  const Folder folder;
+  generate(folder, "uniform -n 20000 --dim 2 -o points.xyz");
+  const Ran ran = run(
+      "delray compare triangulate points.xyz --threads 2 -v -o report.html --stats f.json "
+      ">table 2>log & p=$!; while kill -0 $p && ! grep -q '5000 points' log; do sleep 0.02; done; "
+      "kill -INT $p; wait $p",
+      folder.path());
+  EXPECT_EQ(ran.exit_code, 130) << folder.read("log");
+  const Json json = Json::parse(folder.read("f.json"));
+  EXPECT_EQ(json["unfinished"], true);
+  ASSERT_GE(json["rows"].size(), delaunay::methods().size());
+  EXPECT_EQ(json["rows"].front()["points"], 2500);
+  EXPECT_LT(json["rows"].back()["points"], 20000);
+  EXPECT_NE(folder.read("report.html").find("was interrupted"), std::string::npos);
+  EXPECT_NE(folder.read("log").find("interrupted: what was finished is written"),
+            std::string::npos);
+}
+
+TEST(CompareTriangulate, RefusesWhatItCannotDo) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0\n1 0\n0 1\n");
+  for (const std::string arguments :
+       {"", "p.xyz --method nothing", "p.xyz --dim 3", "p.xyz --method cavity",
+        "p.xyz -o report.png", "p.xyz --terrain-rgb"}) {
+    const Ran ran = run("delray compare triangulate " + arguments, folder.path());
+    EXPECT_EQ(ran.exit_code, 2) << arguments << ran.err;
+    EXPECT_EQ(ran.out, "");
+  }
+  EXPECT_EQ(run("delray compare triangulate missing.xyz", folder.path()).exit_code, 3);
+  const Ran list = run("delray compare triangulate --list", folder.path());
+  EXPECT_NE(list.out.find("circumcircle\t"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace delray::tests
