@@ -1,10 +1,13 @@
 #include "raytrace/embree_scene.h"
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <new>
 #include <stdexcept>
+#include <tuple>
 #include <vector>
 
 #if __has_include(<embree3/rtcore.h>)
@@ -12,6 +15,8 @@
 #else
 #include <embree4/rtcore.h>
 #endif
+
+#include "raytrace/internal/edges.h"
 
 namespace delray::raytrace {
 namespace {
@@ -27,17 +32,27 @@ static_assert(sizeof(ShadowPacket) == sizeof(RTCRay16) &&
               offsetof(ShadowPacket, far) == offsetof(RTCRay16, tfar));
 static_assert(kMiss == RTC_INVALID_GEOMETRY_ID);
 
-// Embree 4 passes flags beside the context, Embree 3 within it.
+// Embree 4 passes flags and filters beside the context, Embree 3 within it.
 #if RTC_VERSION_MAJOR >= 4
 using Context = RTCRayQueryContext;
+constexpr int kFilterOfQuery = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 #else
 using Context = RTCIntersectContext;
+constexpr int kFilterOfQuery = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
-// What occlusion filters find of the query that they belong to.
+// The least of the hits that a ray was asked about.
+struct Nearest {
+  Hit hit;
+  float normal_x, normal_y, normal_z;
+  bool instanced;
+};
+
+// What filters find of the query that they belong to; element i is of the ray with id i.
 struct Query {
   Context context;
-  SeeThrough* passed = nullptr;  // element i is of the ray with id i
+  SeeThrough* passed = nullptr;
+  Nearest* nearest = nullptr;
 };
 
 void start(Query& query, bool coherent) {
@@ -50,12 +65,43 @@ void start(Query& query, bool coherent) {
 #endif
 }
 
+Hit hit_of(const RTCFilterFunctionNArguments* arguments, unsigned i) {
+  const unsigned n = arguments->N;
+  const unsigned instance = RTCHitN_instID(arguments->hit, n, i, 0);
+  return {RTCRayN_tfar(arguments->ray, n, i),
+          instance != kMiss ? instance : RTCHitN_geomID(arguments->hit, n, i),
+          RTCHitN_primID(arguments->hit, n, i), RTCHitN_u(arguments->hit, n, i),
+          RTCHitN_v(arguments->hit, n, i)};
+}
+
+// Refuses every hit, so that Embree reports all, whatever their order, and keeps the least.
+void find_least(const RTCFilterFunctionNArguments* arguments) {
+  const auto* query = reinterpret_cast<const Query*>(arguments->context);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    arguments->valid[i] = 0;
+    const Hit hit = hit_of(arguments, i);
+    Nearest& least = query->nearest[RTCRayN_id(arguments->ray, n, i)];
+    if (std::tie(hit.distance, hit.placement, hit.triangle) >=
+        std::tie(least.hit.distance, least.hit.placement, least.hit.triangle))
+      continue;
+    least = {hit, RTCHitN_Ng_x(arguments->hit, n, i), RTCHitN_Ng_y(arguments->hit, n, i),
+             RTCHitN_Ng_z(arguments->hit, n, i), RTCHitN_instID(arguments->hit, n, i, 0) != kMiss};
+  }
+}
+
 #if RTC_VERSION_MAJOR >= 4
 RTCIntersectArguments intersect_arguments(Query& query, bool coherent) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.context = &query.context;
-  if (coherent) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  int flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  if (query.nearest != nullptr) {
+    arguments.filter = find_least;
+    flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  }
+  arguments.flags = static_cast<RTCRayQueryFlags>(flags);
   return arguments;
 }
 RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
@@ -67,17 +113,16 @@ RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
 }
 #endif
 
+// Beyond what rounding does to distances of triangles that meet in a point.
+float a_little_further(float distance) { return distance + std::abs(distance) * 1e-6F; }
+
 // Notes a hit and lets the ray go on. Embree may report one hit several times.
 void note_and_pass(const RTCFilterFunctionNArguments* arguments) {
   auto* query = reinterpret_cast<Query*>(arguments->context);
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
-    const unsigned instance = RTCHitN_instID(arguments->hit, n, i, 0);
-    const Hit hit{RTCRayN_tfar(arguments->ray, n, i),
-                  instance != kMiss ? instance : RTCHitN_geomID(arguments->hit, n, i),
-                  RTCHitN_primID(arguments->hit, n, i), RTCHitN_u(arguments->hit, n, i),
-                  RTCHitN_v(arguments->hit, n, i)};
+    const Hit hit = hit_of(arguments, i);
     SeeThrough& passed = query->passed[RTCRayN_id(arguments->ray, n, i)];
     bool known = false;
     for (int j = 0; j < passed.count; ++j) {
@@ -150,7 +195,8 @@ Tree new_tree(RTCDevice device, const BuildOptions& options) {
   Tree tree(rtcNewScene(device));
   check(device, "making a scene");
   rtcSetSceneBuildQuality(tree.get(), quality(options.quality));
-  rtcSetSceneFlags(tree.get(), options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  const int robust = options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+  rtcSetSceneFlags(tree.get(), static_cast<RTCSceneFlags>(robust | kFilterOfQuery));
   return tree;
 }
 
@@ -224,6 +270,61 @@ std::string isa_in_use(RTCDevice device) {
 #endif
 }
 
+// With `nearest` hits are found there instead of in the ray or packet.
+void find_hits(RTCScene tree, Ray& ray, Nearest* nearest = nullptr) {
+  Query query;
+  start(query, false);
+  query.nearest = nearest;
+  auto* embree_ray = reinterpret_cast<RTCRayHit*>(&ray);
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments = intersect_arguments(query, false);
+  rtcIntersect1(tree, embree_ray, &arguments);
+#else
+  if (nearest != nullptr) query.context.filter = find_least;
+  rtcIntersect1(tree, &query.context, embree_ray);
+#endif
+}
+
+void find_hits(RTCScene tree, const ActiveRays& active, RayPacket& packet, bool coherent,
+               Nearest* nearest = nullptr) {
+  Query query;
+  start(query, coherent);
+  query.nearest = nearest;
+  auto* rays = reinterpret_cast<RTCRayHit16*>(&packet);
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments = intersect_arguments(query, coherent);
+  rtcIntersect16(active.ray, tree, rays, &arguments);
+#else
+  if (nearest != nullptr) query.context.filter = find_least;
+  rtcIntersect16(active.ray, tree, &query.context, rays);
+#endif
+}
+
+// Decides between triangles that rays hit at the same distance.
+[[gnu::noinline, gnu::cold]] void settle(RTCScene tree, const ActiveRays& edges, RayPacket& packet,
+                                         bool coherent) {
+  RayPacket again = packet;
+  Nearest nearest[kPacketRays];
+  for (int i = 0; i < kPacketRays; ++i) {
+    again.far[i] = a_little_further(packet.far[i]);
+    again.id[i] = static_cast<std::uint32_t>(i);
+    nearest[i] = {};
+    nearest[i].hit.distance = std::numeric_limits<float>::infinity();
+  }
+  find_hits(tree, edges, again, coherent, nearest);
+  for (int i = 0; i < kPacketRays; ++i) {
+    const Nearest& least = nearest[i];
+    if (edges.ray[i] == 0 || least.hit.triangle == kMiss) continue;
+    packet.far[i] = least.hit.distance;
+    packet.normal_x[i] = least.normal_x, packet.normal_y[i] = least.normal_y,
+    packet.normal_z[i] = least.normal_z;
+    packet.u[i] = least.hit.u, packet.v[i] = least.hit.v;
+    packet.triangle[i] = least.hit.triangle;
+    packet.instance[i] = least.instanced ? least.hit.placement : kMiss;
+    packet.geometry[i] = least.instanced ? 0 : least.hit.placement;
+  }
+}
+
 }  // namespace
 
 EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptions& options)
@@ -260,27 +361,27 @@ EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
 EmbreeScene& EmbreeScene::operator=(EmbreeScene&&) noexcept = default;
 
 void EmbreeScene::intersect(Ray& ray) const {
-  Query query;
-  start(query, false);
-  auto* embree_ray = reinterpret_cast<RTCRayHit*>(&ray);
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments = intersect_arguments(query, false);
-  rtcIntersect1(state_->top.get(), embree_ray, &arguments);
-#else
-  rtcIntersect1(state_->top.get(), &query.context, embree_ray);
-#endif
+  find_hits(state_->top.get(), ray);
+  if (ray.triangle == kMiss || !is_on_edge(ray.u, ray.v)) return;
+  Ray again = ray;
+  again.far = a_little_further(ray.far);
+  again.id = 0;
+  Nearest least{};
+  least.hit.distance = std::numeric_limits<float>::infinity();
+  find_hits(state_->top.get(), again, &least);
+  if (least.hit.triangle == kMiss) return;
+  ray.far = least.hit.distance;
+  ray.normal_x = least.normal_x, ray.normal_y = least.normal_y, ray.normal_z = least.normal_z;
+  ray.u = least.hit.u, ray.v = least.hit.v;
+  ray.triangle = least.hit.triangle;
+  ray.instance = least.instanced ? least.hit.placement : kMiss;
+  ray.geometry = least.instanced ? 0 : least.hit.placement;
 }
 
 void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const {
-  Query query;
-  start(query, coherent);
-  auto* rays = reinterpret_cast<RTCRayHit16*>(&packet);
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments = intersect_arguments(query, coherent);
-  rtcIntersect16(active.ray, state_->top.get(), rays, &arguments);
-#else
-  rtcIntersect16(active.ray, state_->top.get(), &query.context, rays);
-#endif
+  find_hits(state_->top.get(), active, packet, coherent);
+  ActiveRays edges;
+  if (find_edges(active, packet, edges)) settle(state_->top.get(), edges, packet, coherent);
 }
 
 bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {

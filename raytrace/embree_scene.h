@@ -31,8 +31,10 @@ class EmbreeScene {
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
 
   // Nearest hits; `coherent`: the rays of a packet stay close to each other, which makes it faster
-  // and changes nothing else. Of several triangles at exactly the same distance any one is taken,
-  // always the same for the same ray and instruction set.
+  // and changes nothing else. Where a ray goes through an edge or a corner and meets several
+  // triangles at exactly the same distance, that of the lowest placement, then triangle, number is
+  // taken: always the same, however the triangles are dealt out to scenes. Of surfaces that lie in
+  // each other any one is taken, always the same for the same scene, ray and instruction set.
   void intersect(Ray& ray) const;
   void intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const;
 

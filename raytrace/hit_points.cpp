@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "raytrace/internal/edges.h"
 #include "raytrace/intersection.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -227,6 +228,23 @@ bool find_hits(RayGroup& group, std::uint32_t* placements) {
   return (hits & ~same) == 0;
 }
 
+bool find_edge_lanes(const ActiveRays& active, const RayPacket& packet, ActiveRays& edges) {
+  const FloatTag d;
+  const IntTag di;
+  bool any = false;
+  for (int i = 0; i < kPacketRays; i += lanes()) {
+    const F u = hn::Load(d, packet.u + i), v = hn::Load(d, packet.v + i);
+    const F least = hn::Min(hn::Min(u, v), set(1.0F) - (u + v));
+    const auto* triangle = reinterpret_cast<const std::int32_t*>(packet.triangle) + i;
+    const auto hit = hn::And(hn::Ne(hn::Load(di, triangle), set(-1)),
+                             hn::RebindMask(di, hn::Lt(least, set(kNearEdge))));
+    const I edge = hn::IfThenElseZero(hit, hn::Load(di, active.ray + i));
+    hn::Store(edge, di, edges.ray + i);
+    any = any || !hn::AllTrue(di, hn::Eq(edge, set(0)));
+  }
+  return any;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raytrace
 HWY_AFTER_NAMESPACE();
@@ -237,6 +255,7 @@ namespace {
 
 HWY_EXPORT(find_placement_points);
 HWY_EXPORT(find_hits);
+HWY_EXPORT(find_edge_lanes);
 
 // From so many lanes on vectors are faster than lane by lane.
 constexpr int kFewestLanes = 3;
@@ -265,6 +284,10 @@ void for_hits(std::span<const Placement> placements, const RayGroup& group, F&& 
 }
 
 }  // namespace
+
+bool find_edges(const ActiveRays& active, const RayPacket& packet, ActiveRays& edges) {
+  return HWY_DYNAMIC_DISPATCH(find_edge_lanes)(active, packet, edges);
+}
 
 void fetch_corners(std::span<const Placement> placements, const RayGroup& group) {
   for_hits(placements, group, [](const Placement& placement, std::uint32_t triangle) {

@@ -26,6 +26,13 @@ HWY_INLINE void put(I v, std::uint32_t* to) {
   hn::Store(v, IntTag(), reinterpret_cast<std::int32_t*>(to));
 }
 
+// No ray runs exactly along an axis: it could pass between boxes that only touch. What a thousandth
+// of a pixel is to a ray is added.
+HWY_INLINE F off_axis(F component, F length) {
+  const F least = length * set(1e-6F);
+  return hn::IfThenElse(hn::Lt(hn::Abs(component), least), least, component);
+}
+
 void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
                    shading::LaneMask mask, RayGroup& group) {
   const IntTag di;
@@ -47,6 +54,8 @@ void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& 
       direction = direction - aside * set(1.0F / view.focus_distance);
     }
     const F length = hn::Sqrt(dot(direction, direction));
+    direction = {off_axis(direction.x, length), off_axis(direction.y, length),
+                 off_axis(direction.z, length)};
     const F3 unit = direction * (set(1.0F) / length);
     put(origin.x, packet.origin_x + i);
     put(origin.y, packet.origin_y + i);

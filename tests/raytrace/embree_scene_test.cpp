@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "raytrace/intersection.h"
@@ -76,6 +79,103 @@ TEST(EmbreeScene, PacketsAgreeWithSingleRays) {
       if (one.triangle == kMiss) continue;
       EXPECT_EQ(hit_of(packet, i).placement, hit_of(one).placement);
       EXPECT_NEAR(packet.far[i], one.far, 1e-5);
+    }
+  }
+}
+
+// A lattice and rays through its corners and the middles of its edges: whoever has all triangles
+// finds what three that have a third of them each find together.
+TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
+#if defined(__x86_64__)
+  const std::vector<std::string> sets = {"", "sse2", "avx2"};
+#else
+  const std::vector<std::string> sets = {""};
+#endif
+  constexpr int kSide = 9;
+  constexpr std::size_t kParts = 3;
+  scenes::Mesh lattice;
+  for (int y = 0; y <= kSide; ++y)
+    for (int x = 0; x <= kSide; ++x) lattice.positions.emplace_back(x, y, 0);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const auto a = static_cast<std::uint32_t>(y * (kSide + 1) + x), b = a + kSide + 1;
+      lattice.triangles.emplace_back(a, a + 1, b + 1);
+      lattice.triangles.emplace_back(b + 1, b, a);
+    }
+  }
+  std::mt19937 random(7);
+  std::shuffle(lattice.triangles.begin(), lattice.triangles.end(), random);
+  const glm::vec3 direction(0.5F, -0.25F, -1);
+  for (const std::string& isa : sets) {
+    for (const bool instanced : {false, true}) {
+      std::vector<std::uint32_t> numbers[kParts];
+      scenes::Mesh part[kParts];
+      for (scenes::Mesh& mesh : part) mesh.positions = lattice.positions;
+      for (std::uint32_t t = 0; t < lattice.triangles.size(); ++t) {
+        const std::size_t to = random() % kParts;
+        numbers[to].push_back(t);
+        part[to].triangles.push_back(lattice.triangles[t]);
+      }
+      const auto tracer_of = [&](const scenes::Mesh& mesh) {
+        scenes::Scene scene;
+        add(scene, mesh);
+        if (instanced) scene.instances.push_back({0, placed(1, {0, 0, -7})});
+        BuildOptions options;
+        options.isa = isa;
+        return make_tracer(scene, options);
+      };
+      const Tracer whole = tracer_of(lattice);
+      const Tracer some[kParts] = {tracer_of(part[0]), tracer_of(part[1]), tracer_of(part[2])};
+      for (int y = 1; y < 2 * kSide; ++y) {
+        for (int block = 0; block < 4; ++block) {
+          const bool coherent = block % 2 == 1;
+          RayPacket packet{};
+          ActiveRays active;
+          for (int i = 0; i < kPacketRays; ++i) {
+            active.ray[i] = -1;
+            packet.origin_x[i] = 0.5F * static_cast<float>(1 + block / 2 + i) - 2.5F;
+            packet.origin_y[i] = 0.5F * static_cast<float>(y) + 1.25F;
+            packet.origin_z[i] = 5;
+            packet.direction_x[i] = direction.x;
+            packet.direction_y[i] = direction.y;
+            packet.direction_z[i] = direction.z;
+            packet.far[i] = std::numeric_limits<float>::infinity();
+            packet.mask[i] = 0xFFFFFFFFU;
+            packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
+          }
+          const RayPacket sent = packet;
+          whole.embree.intersect(active, packet, coherent);
+          Hit least[kPacketRays], least_alone[kPacketRays];
+          const auto take = [&](Hit hit, std::size_t k, Hit& into) {
+            hit.triangle = numbers[k][hit.triangle];
+            if (into.triangle == kMiss ||
+                std::tie(hit.distance, hit.placement, hit.triangle) <
+                    std::tie(into.distance, into.placement, into.triangle))
+              into = hit;
+          };
+          for (std::size_t k = 0; k < kParts; ++k) {
+            RayPacket again = sent;
+            some[k].embree.intersect(active, again, coherent);
+            for (int i = 0; i < kPacketRays; ++i) {
+              if (again.triangle[i] != kMiss) take(hit_of(again, i), k, least[i]);
+              Ray one = ray({sent.origin_x[i], sent.origin_y[i], 5}, direction);
+              some[k].embree.intersect(one);
+              if (one.triangle != kMiss) take(hit_of(one), k, least_alone[i]);
+            }
+          }
+          for (int i = 0; i < kPacketRays; ++i) {
+            Ray one = ray({sent.origin_x[i], sent.origin_y[i], 5}, direction);
+            whole.embree.intersect(one);
+            ASSERT_NE(packet.triangle[i], kMiss);
+            ASSERT_EQ(packet.triangle[i], least[i].triangle) << isa << ' ' << i << ' ' << y;
+            ASSERT_EQ(packet.far[i], least[i].distance);
+            ASSERT_EQ(packet.u[i], least[i].u);
+            ASSERT_EQ(hit_of(packet, i).placement, least[i].placement);
+            ASSERT_EQ(one.triangle, least_alone[i].triangle) << isa << ' ' << i << ' ' << y;
+            ASSERT_EQ(one.far, least_alone[i].distance);
+          }
+        }
+      }
     }
   }
 }
