@@ -82,9 +82,11 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
                    "how many, separated by commas (default 1,2,4,8 as far as there are cores, and "
                    "twice the cores if they are few)")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(1, 4096));
   command->add_option("--method", request->methods, "methods, separated by commas (default all)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--seed", request->seed, "seed of everything random (default 1)");
   add_point_options(*command, request->input);
   add_comparison_options(*command, *request, "time each three times, the slow ones once",

@@ -68,7 +68,7 @@ TEST(CompareTriangulate, TellsOfEveryMethodWhatTheInterfaceSays) {
   const Folder folder;
   generate(folder, "cluster -n 1000 --dim 2 -o plane.xyz");
   const Ran ran =
-      run("delray compare triangulate plane.xyz --threads 3,1,3 --quick --stats - -o report.html",
+      run("delray compare triangulate --quick --stats - -o report.html --threads 3,1,3 plane.xyz",
           folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Json json = Json::parse(ran.out);
