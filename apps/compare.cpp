@@ -12,6 +12,7 @@ void add_compare(CLI::App& program, Session& session) {
   command->require_subcommand(1);
   add_compare_compose(*command, session);
   add_compare_triangulate(*command, session);
+  add_compare_partition(*command, session);
 }
 
 }  // namespace delray::apps

@@ -7,5 +7,6 @@ namespace delray::apps {
 
 void add_compare_compose(CLI::App& compare, Session& session);
 void add_compare_triangulate(CLI::App& compare, Session& session);
+void add_compare_partition(CLI::App& compare, Session& session);
 
 }  // namespace delray::apps

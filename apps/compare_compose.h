@@ -34,9 +34,6 @@ struct ComparedScheme {
   std::vector<Predicted> predicted;
 };
 
-// More ranks than this are simulated only.
-inline constexpr int kMostMeasuredRanks = 64;
-
 struct ShownScheme;
 
 struct ComposeComparison {

@@ -46,6 +46,8 @@ void add_compare_compose(CLI::App& compare, Session& session) {
   request->ranks = {2, 3, 4, 8, 16, 64};
   add_scene_comparison_options(*command, *request,
                                "(default 2,3,4,8,16,64); more than 64 are simulated");
+  command->add_option("--threads", request->render.launch.threads, "workers per rank (default 1)")
+      ->check(CLI::Range(1, 4096));
   command
       ->add_option("--codec", request->codecs,
                    "how pixels travel, separated by commas (default active)")

@@ -49,6 +49,10 @@ void print_aligned(const TextTable& table) {
   }
 }
 
+Json spread_json(const Spread& times) {
+  return {{"least", times.least}, {"most", times.most}, {"runs", times.runs}};
+}
+
 int tell(const ComparisonOptions& options, Found&& found) {
   if (options.statistics != "-") print_aligned(found.table);
   if (!options.output.empty()) files::write_file(options.output, found.page());

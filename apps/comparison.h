@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/session.h"
+#include "apps/spread.h"
 #include "apps/statistics.h"
 #include "parallel/progress.h"
 
@@ -28,6 +29,9 @@ void check(const ComparisonOptions& options);
 using TextTable = std::vector<std::vector<std::string>>;
 // On stdout, numbers aligned to the right.
 void print_aligned(const TextTable& table);
+
+// Least, most and number of the runs; their median stands elsewhere.
+Json spread_json(const Spread& times);
 
 // Runs of a comparison. A stop that was asked for is heard between two of them, where it loses
 // nothing.

@@ -26,8 +26,7 @@ Json median_of(const std::optional<Spread>& times) {
   return times ? Json(times->median) : Json(nullptr);
 }
 Json spread_of(const std::optional<Spread>& times) {
-  if (!times) return nullptr;
-  return {{"least", times->least}, {"most", times->most}, {"runs", times->runs}};
+  return times ? spread_json(*times) : Json(nullptr);
 }
 
 std::string millions(std::uint64_t amount) {
@@ -61,17 +60,8 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
     one["image_hash"] = row.hash.empty() ? Json(nullptr) : Json(row.hash);
     table.push_back(std::move(one));
   }
-  Json networks = Json::array();
-  for (const comm::NamedNetwork& named : comm::networks()) {
-    networks.push_back({{"name", named.name},
-                        {"latency", named.network.latency},
-                        {"overhead", named.network.overhead},
-                        {"seconds_per_byte", named.network.seconds_per_byte},
-                        {"copy_seconds_per_byte", named.network.copy_seconds_per_byte},
-                        {"bus", named.network.is_bus}});
-  }
   return {{"schema", "delray.compare.compose/1"},
-          {"scene", {{"file", request.render.scene.file.path}, {"triangles", prepared.triangles}}},
+          {"scene", scene_json(request, prepared)},
           {"options",
            {{"size", request.render.size},
             {"ranks", request.ranks},
@@ -79,7 +69,7 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
             {"threads", request.render.launch.threads},
             {"quick", request.quick}}},
           {"unfinished", comparison.unfinished},
-          {"networks", std::move(networks)},
+          {"networks", networks_json()},
           {"rows", std::move(table)}};
 }
 

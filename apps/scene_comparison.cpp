@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/progress_bar.h"
+#include "comm/network.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -33,8 +34,6 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
   command.add_option("--ranks", options.ranks, "how many, separated by commas " + ranks)
       ->delimiter(',')
       ->check(CLI::Range(1, 4096));
-  command.add_option("--threads", options.render.launch.threads, "workers per rank (default 1)")
-      ->check(CLI::Range(1, 4096));
 }
 
 int run_scene_comparison(
@@ -48,6 +47,23 @@ int run_scene_comparison(
   });
   Found found = compare(*prepared, session.progress);
   return session.first_process ? tell(options, std::move(found)) : int{kDone};
+}
+
+Json scene_json(const SceneComparison& options, const Prepared& prepared) {
+  return {{"file", options.render.scene.file.path}, {"triangles", prepared.triangles}};
+}
+
+Json networks_json() {
+  Json networks = Json::array();
+  for (const comm::NamedNetwork& named : comm::networks()) {
+    networks.push_back({{"name", named.name},
+                        {"latency", named.network.latency},
+                        {"overhead", named.network.overhead},
+                        {"seconds_per_byte", named.network.seconds_per_byte},
+                        {"copy_seconds_per_byte", named.network.copy_seconds_per_byte},
+                        {"bus", named.network.is_bus}});
+  }
+  return networks;
 }
 
 }  // namespace delray::apps

@@ -11,12 +11,14 @@
 namespace delray::apps {
 
 struct SceneComparison : ComparisonOptions {
-  RenderRequest render;  // scene, camera, size, threads
+  RenderRequest render;  // scene, camera, size
   std::vector<int> ranks;
 };
 
-// Adds SCENE, --size, the camera, --ranks (what it says of its default and of many ranks in
-// `ranks`) and --threads.
+// More ranks than this do not run: they are predicted.
+inline constexpr int kMostMeasuredRanks = 64;
+
+// Adds SCENE, --size, the camera, and --ranks, which says `ranks` of its default and of many.
 void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
                                   const std::string& ranks);
 
@@ -24,5 +26,10 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
 int run_scene_comparison(
     Session& session, const CLI::App& command, SceneComparison& options,
     const std::function<Found(const Prepared& prepared, parallel::Progress& progress)>& compare);
+
+// "scene" of their JSON.
+Json scene_json(const SceneComparison& options, const Prepared& prepared);
+// "networks": what predictions are of.
+Json networks_json();
 
 }  // namespace delray::apps

@@ -292,6 +292,15 @@ Share Renderer::draw_share(int rank, int ranks, const scenes::Camera& camera,
   return sort_last_share(frame.rank);
 }
 
+loadbalance::Costs Renderer::costs(int regions, const scenes::Camera& camera,
+                                   const RenderOptions& wanted) {
+  RenderOptions options = wanted;
+  options.costs = CostSource::model;
+  ShareCommunicator communicator(0, 1);
+  Frame frame(*memory_, memory_->scratch, communicator, camera, options, nullptr);
+  return ScreenPartition().costs(frame.rank, regions);
+}
+
 Result render(comm::Communicator& communicator, const scenes::Scene& scene,
               const scenes::Camera& camera, const RenderOptions& options,
               parallel::Progress* progress) {

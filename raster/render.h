@@ -17,6 +17,7 @@
 #include "composite/deep_image.h"
 #include "image/image.h"
 #include "loadbalance/cost_model.h"
+#include "loadbalance/partition.h"
 #include "parallel/progress.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
@@ -122,6 +123,8 @@ struct PartitionStatistics {
   double overlap = 1;     // owners of a primitive, on average
   double seconds = 0;     // that cutting took on rank 0; 0 when kept
   bool kept = false;      // from the last frame
+  loadbalance::Partition partition;
+  std::vector<double> loads;  // by owner, as the costs foretell
 };
 
 struct Statistics {
@@ -212,6 +215,11 @@ class Renderer {
   // above; only what concerns drawing counts, and supersampling is not allowed.
   Share draw_share(int rank, int ranks, const scenes::Camera& camera, const RenderOptions& options,
                    parallel::Progress* progress = nullptr);
+
+  // What sort-first and sort-middle would cut the screen into so many regions by: boxes around
+  // groups of all primitives and a grid of their costs, by the model. Not collective. `options` as
+  // above; only what concerns drawing counts. REQUIRES: regions >= 1.
+  loadbalance::Costs costs(int regions, const scenes::Camera& camera, const RenderOptions& options);
 
   // Gives the memory of a picture that is no longer needed to the next frame: fresh memory takes
   // longer to write to than a simple scene takes to draw.

@@ -1,6 +1,7 @@
 #include "raster/internal/screen_partition.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <mutex>
 
@@ -19,6 +20,14 @@ namespace {
 
 // What a pixel costs that is drawn, beside one that is seen and shaded.
 constexpr double kDrawn = 0.05;
+
+// On a grid fine enough for so many regions.
+loadbalance::Costs costs_of(const geometry::Rect& frame, int regions,
+                            std::span<const loadbalance::WeightedBox> boxes) {
+  const int side = loadbalance::cost_cell_side(frame, regions);
+  return loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
+                                 (frame.height() + side - 1) / side, boxes);
+}
 
 }  // namespace
 
@@ -128,14 +137,11 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   kind_ = kind;
 
   const geometry::Rect frame = rank.frame();
-  const int side = loadbalance::cost_cell_side(frame, parts * options.regions_per_rank);
   std::vector<loadbalance::WeightedBox> all = loadbalance::gather_boxes(boxes, rank.communicator);
   all.insert(all.end(), large_.begin(), large_.end());
   const bool cuts_here = rank.number() == 0;
   loadbalance::Costs costs;
-  if (cuts_here)
-    costs = loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
-                                    (frame.height() + side - 1) / side, all);
+  if (cuts_here) costs = costs_of(frame, parts * options.regions_per_rank, all);
   if (cuts_here && !samples_.empty() && kept_->last().frame == frame) {
     std::vector<double> seconds;
     for (int k = 0; k < parts; ++k) seconds.push_back(samples_[first_rank + k].seconds);
@@ -150,10 +156,22 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   statistics_->kept = kept_->recomputed() == recomputed;
   if (!statistics_->kept) statistics_->seconds = rank.communicator.seconds() - before;
   statistics_->predicted = loadbalance::imbalance(loadbalance::loads(costs, partition, parts));
-  const loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);
+  loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);
   statistics_->over_share = balance.over_share;
   statistics_->overlap = balance.overlap;
+  statistics_->partition = partition;
+  statistics_->loads = std::move(balance.loads);
   return partition;
+}
+
+loadbalance::Costs ScreenPartition::costs(Rank& rank, int regions) {
+  assert(rank.ranks() == 1);
+  const auto [begin, end] = rank.own_primitives();
+  std::vector<loadbalance::WeightedBox> boxes =
+      boxes_of(rank, groups_of(pieces_of(rank.scene, rank.first_primitives, begin, end),
+                               group_triangles(rank.first_primitives.back(), regions)));
+  boxes.insert(boxes.end(), large_.begin(), large_.end());
+  return costs_of(rank.frame(), regions, boxes);
 }
 
 void ScreenPartition::measure(const Rank& rank) {

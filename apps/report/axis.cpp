@@ -46,12 +46,19 @@ std::vector<Tick> Axis::ticks() const {
   const int first = static_cast<int>(std::floor(std::log10(low_)));
   const int last = static_cast<int>(std::ceil(std::log10(high_)));
   const int stride = std::max(1, static_cast<int>(decades / 7));
-  for (int power = first; power <= last; power += stride)
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      if (decades > 3 && factor != 1) continue;
-      const double value = factor * std::pow(10.0, power);
-      if (value >= low_ * (1 - 1e-9) && value <= high_ * (1 + 1e-9)) add(value);
-    }
+  const auto add_powers = [&](std::initializer_list<double> factors) {
+    result.clear();
+    for (int power = first; power <= last; power += stride)
+      for (const double factor : factors) {
+        const double value = factor * std::pow(10.0, power);
+        if (value >= low_ * (1 - 1e-9) && value <= high_ * (1 + 1e-9)) add(value);
+      }
+  };
+  if (decades > 3)
+    add_powers({1});
+  else
+    add_powers({1, 2, 5});
+  if (result.size() < 3) add_powers({1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8});
   if (result.size() < 2) {
     result.clear();
     add(low_), add(high_);

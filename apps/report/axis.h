@@ -22,8 +22,8 @@ class Axis {
   Axis(std::span<const double> values, Scale scale);
 
   double position(double value) const;
-  // At 1, 2 and 5 times powers of ten, or at powers of ten alone where that would be too many; at
-  // least two.
+  // At 1, 2 and 5 times powers of ten, at powers of ten alone where that would be too many, or
+  // closer together where it would be too few; at least two.
   std::vector<Tick> ticks() const;
   // At the values themselves, each once, where they are few enough to be told apart.
   static std::vector<Tick> ticks_at(std::span<const double> values);

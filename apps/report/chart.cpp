@@ -146,13 +146,14 @@ Html line_chart(const LineChart& chart) {
 }
 
 Html bar_chart(const BarChart& chart) {
-  constexpr double kBarHeight = 18, kNames = 190, kValues = 80;
+  constexpr double kBarHeight = 18, kValues = 80;
+  const double names = chart.name_width;
   const double height = kTop + kBarHeight * static_cast<double>(chart.bars.size()) + kBottom;
   std::vector<double> values = {chart.mark};
   for (const Bar& bar : chart.bars) values.push_back(bar.value);
   const Axis axis(values, Scale::linear);
-  const double room = kWidth - kNames - kValues;
-  const auto at = [&](double value) { return kNames + axis.position(value) * room; };
+  const double room = kWidth - names - kValues;
+  const auto at = [&](double value) { return names + axis.position(value) * room; };
   const double bottom = height - kBottom;
   Html svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
                          height, escaped(chart.title));
@@ -170,8 +171,8 @@ Html bar_chart(const BarChart& chart) {
         "<rect class=\"bar{3}\" x=\"{4}\" y=\"{5:.1f}\" width=\"{6:.1f}\" height=\"{7}\" "
         "tabindex=\"0\"><title>{2}: {8} {9} ({10}){11}</title></rect>"
         "<text class=\"tick\" x=\"{12:.1f}\" y=\"{1:.1f}\" dominant-baseline=\"middle\">{8}</text>",
-        kNames - 6, y + kBarHeight / 2, escaped(bar.name), bar.emphasised ? " emphasised" : "",
-        kNames, y + 2, at(value) - kNames, kBarHeight - 4, short_number(bar.value),
+        names - 6, y + kBarHeight / 2, escaped(bar.name), bar.emphasised ? " emphasised" : "",
+        names, y + 2, at(value) - names, kBarHeight - 4, short_number(bar.value),
         escaped(chart.label), name_of(chart.source),
         bar.note.empty() ? "" : "; " + escaped(bar.note), at(value) + 4);
     y += kBarHeight;
@@ -180,7 +181,7 @@ Html bar_chart(const BarChart& chart) {
     svg += fmt::format("<line class=\"mark\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>",
                        at(chart.mark), kTop, bottom);
   svg += fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                     kNames + room / 2, height - 8, escaped(chart.label));
+                     names + room / 2, height - 8, escaped(chart.label));
   return fmt::format(
       "<figure class=\"chart\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
       "</svg></figure>\n",

@@ -48,6 +48,7 @@ struct BarChart {
   Source source = Source::counted;
   std::vector<Bar> bars;
   double mark = 0;  // a line across all bars, e.g. their mean; 0: none
+  double name_width = 190;
 };
 
 // A figure with one bar below the other, from 0.

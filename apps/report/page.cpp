@@ -39,13 +39,17 @@ std::string embedded(const nlohmann::ordered_json& data) {
 
 }  // namespace
 
-Html picture(const image::Image8& image, const std::string& caption) {
+std::string png_url(const image::Image8& image) {
   const std::vector<std::byte> png =
       image::encode_png(image.width, image.height, image.colour.span());
+  return "data:image/png;base64," + base64(png);
+}
+
+Html picture(const image::Image8& image, const std::string& caption) {
   return fmt::format(
       "<figure class=\"picture\"><img alt=\"{0}\" width=\"{1}\" height=\"{2}\" "
-      "src=\"data:image/png;base64,{3}\"><figcaption>{0}</figcaption></figure>\n",
-      escaped(caption), image.width, image.height, base64(png));
+      "src=\"{3}\"><figcaption>{0}</figcaption></figure>\n",
+      escaped(caption), image.width, image.height, png_url(image));
 }
 
 Html paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }

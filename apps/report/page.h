@@ -28,6 +28,8 @@ struct Page {
 
 Html page(const Page& page);
 
+// The picture itself as the address of an image.
+std::string png_url(const image::Image8& image);
 // A picture with a caption, embedded.
 Html picture(const image::Image8& image, const std::string& caption);
 

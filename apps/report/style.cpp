@@ -63,6 +63,13 @@ text.tick{fill:var(--soft);font-size:11px}
 .mark{stroke:var(--ink);stroke-width:1.5;stroke-dasharray:5 3}
 .cell{fill:var(--c0)}
 .span{stroke:none}
+.backdrop{position:absolute}
+.overlay svg{border:1px solid var(--line)}
+.above{fill:#e66100;background:#e66100}.below{fill:#1a6fdf;background:#1a6fdf}
+.overlay rect:hover{stroke:#fff;stroke-width:3}
+.border{fill:none;stroke:#000;stroke-width:1.5;stroke-opacity:.75;pointer-events:none}
+.legend i:not(.span){display:inline-block;width:.9em;height:.9em;margin-right:.4em;vertical-align:-.1em;
+border:1px solid var(--line)}
 i.span{display:inline-block;width:.9em;height:.9em;margin-right:.4em;vertical-align:-.1em}
 i.c0{background:var(--c0)}i.c1{background:var(--c1)}i.c2{background:var(--c2)}i.c3{background:var(--c3)}
 i.c4{background:var(--c4)}i.c5{background:var(--c5)}i.c6{background:var(--c6)}i.c7{background:var(--c7)}

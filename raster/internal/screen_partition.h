@@ -46,6 +46,9 @@ class ScreenPartition {
   const loadbalance::Partition& cut(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
                                     int parts, int first_rank = 0);
 
+  // The costs of all primitives, to be cut into so many regions. REQUIRES: a single rank.
+  loadbalance::Costs costs(Rank& rank, int regions);
+
   // Of the last cut, on rank 0 where options.report_partition asked for it.
   const std::optional<PartitionStatistics>& statistics() const { return statistics_; }
 

@@ -17,6 +17,8 @@ REPORTS = [
     ("compose", "compare compose gen:city:3000 --size 160x90 --ranks 2,4,80 --quick"
                 " --compose tree radix-k:2 centralized"),
     ("triangulate", "compare triangulate {points} --threads 1,3 --quick"),
+    ("partition", "compare partition gen:city:2000 --size 160x90 --ranks 2,4,80 --regions 1,2"
+                  " --quick --partition mahd graph interlaced"),
 ]
 
 

@@ -10,6 +10,7 @@
 #include "apps/report/chart.h"
 #include "apps/report/matrix.h"
 #include "apps/report/stacked_bars.h"
+#include "apps/report/overlay.h"
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 
@@ -64,11 +65,13 @@ TEST(ReportAxis, LogarithmicTicksCoverWhatThereIs) {
   EXPECT_NEAR(axis.position(4000), 1, 1e-12);
   EXPECT_NEAR(axis.position(std::sqrt(0.02 * 4000)), 0.5, 1e-12);
   for (const std::vector<double>& values :
-       {decades, {5.0}, {}, {1.1, 1.2}, {1e-8, 1e+12}, {3.0, 300.0}}) {
+       {decades, {5.0}, {}, {1.1, 1.2}, {1e-8, 1e+12}, {3.0, 300.0}, {1.2, 3}}) {
     const std::vector<Tick> ticks = Axis(values, Scale::logarithmic).ticks();
     EXPECT_GE(ticks.size(), 2U);
     EXPECT_LE(ticks.size(), 12U);
   }
+  const std::vector<double> narrow = {1.01, 3.5};
+  EXPECT_GE(Axis(narrow, Scale::logarithmic).ticks().size(), 4U);
 }
 
 TEST(ReportCharts, DrawEveryPointThatCanBeShown) {
@@ -135,6 +138,23 @@ TEST(ReportCharts, StackedBarsShowPartsWhereTheirSumBegins) {
   EXPECT_NEAR(widths(stacked_bars(chart)), 2 * widths(amounts) * 8 / 12, 0.1);
   chart.bars = {{"none", {0, 0}}};
   EXPECT_FALSE(has_bad_number(stacked_bars(chart)));
+}
+
+TEST(ReportOverlay, DrawsAreasAndTheBordersBetweenGroups) {
+  Overlay two{"two & more", Source::counted, 8, 4, {}};
+  two.areas = {
+      {{0, 0, 4, 2}, 0, 1.5, "a<b"}, {{0, 2, 4, 4}, 0, 1, "c"}, {{4, 0, 8, 4}, 1, 0.5, "d"}};
+  const Html html = overlay(two, "below");
+  EXPECT_EQ(count(html, "class=\"above\""), 1U);
+  EXPECT_EQ(count(html, "class=\"below\""), 2U);
+  EXPECT_NE(html.find("<title>a&lt;b (counted)</title>"), std::string::npos);
+  EXPECT_NE(html.find("two &amp; more"), std::string::npos);
+  EXPECT_NE(html.find("href=\"#below\""), std::string::npos);
+  // One line from top to bottom, none within the first group.
+  EXPECT_NE(html.find("d=\"M4 0V4\""), std::string::npos) << html;
+  EXPECT_FALSE(has_bad_number(html));
+  EXPECT_FALSE(has_bad_number(overlay({}, "none")));
+  EXPECT_NE(backdrop(image::Image8(3, 2), "below").find("<symbol id=\"below\""), std::string::npos);
 }
 
 TEST(ReportPage, HoldsAllAndNothingEndsItsScriptsEarly) {

@@ -1,0 +1,66 @@
+// delray compare partition: the command line.
+#include <CLI/CLI.hpp>
+
+#include "apps/compare_commands.h"
+#include "apps/compare_partition.h"
+#include "apps/list.h"
+#include "apps/partition_figures.h"
+#include "apps/partition_report.h"
+#include "comm/network.h"
+#include "raster/strategies.h"
+
+namespace delray::apps {
+namespace {
+
+int list() {
+  print_table(loadbalance::partitioners());
+  print_table(raster::strategies());
+  print_table(comm::networks());
+  return kDone;
+}
+
+int run(Session& session, const CLI::App& command, PartitionRequest request) {
+  if (request.list) return list();
+  if (session.under_mpi)
+    throw UsageError("compare partition: its ranks take turns in one process; leave out mpirun");
+  for (const std::string& partition : request.partitions)
+    find_entry(loadbalance::partitioners(), partition, "--partition");
+  return run_scene_comparison(
+      session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
+        const auto comparison = std::make_shared<const PartitionComparison>(
+            compare_partition(request, prepared, progress));
+        return Found{
+            partition_table(comparison->rows), partition_statistics(request, prepared, *comparison),
+            comparison->unfinished,
+            [&, comparison] { return partition_report(session, request, prepared, *comparison); }};
+      });
+}
+
+}  // namespace
+
+void add_compare_partition(CLI::App& compare, Session& session) {
+  CLI::App* command = compare.add_subcommand(
+      "partition", "every partition of the screen, and the strategies that use them");
+  const auto request = std::make_shared<PartitionRequest>();
+  request->ranks = {2, 4, 8, 16, 32, 64, 256};
+  add_scene_comparison_options(*command, *request,
+                               "(default 2,4,8,16,32,64,256); more than 64 are predicted");
+  command
+      ->add_option("--regions", request->regions,
+                   "regions for each rank, separated by commas (default 1,2,4); all but the first "
+                   "for the most ranks up to 16 alone")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 64));
+  command->add_option("--partition", request->partitions,
+                      "partitions, separated by spaces (default all)");
+  add_comparison_options(*command, *request, "three frames each",
+                         "partitions, strategies, networks");
+  add_common_options(*command, session,
+                     "compare partition model.glb -o partition.html\n"
+                     "compare partition gen:city --ranks 16,64,1024 --stats partition.json");
+  command->callback([&session, request, command] {
+    session.run = [&session, request, command] { return run(session, *command, *request); };
+  });
+}
+
+}  // namespace delray::apps

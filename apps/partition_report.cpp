@@ -1,0 +1,408 @@
+#include "apps/partition_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+
+#include "apps/partition_figures.h"
+#include "apps/provenance.h"
+#include "apps/report/chart.h"
+#include "apps/report/overlay.h"
+#include "apps/report/page.h"
+#include "apps/report/series.h"
+#include "apps/report/table.h"
+#include "comm/network.h"
+
+namespace delray::apps {
+namespace {
+
+using namespace report;
+using Rows = std::vector<ComparedPartition>;
+
+constexpr const char* kPicture = "picture";
+
+std::string in_milliseconds(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+
+ChartPoint point(double x, double y) { return {x, y, y, y}; }
+ChartPoint point(double x, const Spread& spread, double unit) {
+  return {x, spread.median * unit, spread.least * unit, spread.most * unit};
+}
+
+Rows with_regions(const Rows& rows, int regions) {
+  Rows result;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(result),
+               [&](const ComparedPartition& row) { return row.regions_per_rank == regions; });
+  return result;
+}
+
+std::vector<int> drawn_ranks(const Rows& rows) {
+  std::vector<int> result;
+  for (const ComparedPartition& row : rows)
+    if (row.drawn && (result.empty() || result.back() != row.ranks)) result.push_back(row.ranks);
+  return result;
+}
+
+const PredictedFrame* over(const DrawnFrames& drawn, std::string_view network) {
+  const auto at = std::find_if(drawn.predicted.begin(), drawn.predicted.end(),
+                               [&](const PredictedFrame& one) { return one.network == network; });
+  return at == drawn.predicted.end() ? nullptr : &*at;
+}
+
+// The strategy that is predicted to take least for a frame after the first.
+const ComparedStrategy* best_strategy(const std::vector<ComparedStrategy>& strategies, int ranks,
+                                      std::string_view network) {
+  const ComparedStrategy* best = nullptr;
+  for (const ComparedStrategy& one : strategies)
+    if (one.ranks == ranks && (best == nullptr || over(one.drawn, network)->seconds <
+                                                      over(best->drawn, network)->seconds))
+      best = &one;
+  return best;
+}
+
+Html sentence(const PartitionComparison& comparison, const ComparedPartition& best) {
+  const DrawnFrames& drawn = *best.drawn;
+  Html text = fmt::format(
+      "<p>For {} ranks cut the screen by {}: the busiest rank does {:.3g} times an equal share of "
+      "the work of one alone (counted), cutting takes {} (measured, median of {} runs, {} to {}), "
+      "and {:.3g} ranks get a primitive on average (counted). One rank alone takes {} for a frame "
+      "(measured).",
+      best.ranks, strong(best.partition), drawn.work_over_share,
+      in_milliseconds(best.cut_seconds.median), best.cut_seconds.runs,
+      in_milliseconds(best.cut_seconds.least), in_milliseconds(best.cut_seconds.most), best.overlap,
+      in_milliseconds(comparison.alone_seconds));
+  const ComparedPartition* anew = nullptr;
+  const ComparedPartition* next = nullptr;
+  for (const ComparedPartition& row : comparison.rows) {
+    if (row.ranks != best.ranks || !row.drawn || row.regions_per_rank != best.regions_per_rank)
+      continue;
+    if (anew == nullptr || row.finish_seconds < anew->finish_seconds) anew = &row;
+    if (&row != &best &&
+        (next == nullptr || row.drawn->work_over_share < next->drawn->work_over_share))
+      next = &row;
+  }
+  if (next != nullptr)
+    text += fmt::format(" Next comes {} with {:.3g}.", escaped(next->partition),
+                        next->drawn->work_over_share);
+  if (anew != &best)
+    text += fmt::format(
+        " Where the screen is cut anew for every frame {} is done first, {} instead of {} "
+        "(predicted).",
+        escaped(anew->partition), in_milliseconds(anew->finish_seconds),
+        in_milliseconds(best.finish_seconds));
+  return text + "</p>\n";
+}
+
+// Over each network, what takes least of all.
+Html fastest_frames(const std::vector<ComparedStrategy>& strategies) {
+  std::vector<std::string> parts;
+  for (const comm::NamedNetwork& named : comm::networks()) {
+    const ComparedStrategy* best = nullptr;
+    for (const ComparedStrategy& one : strategies)
+      if (best == nullptr ||
+          over(one.drawn, named.name)->seconds < over(best->drawn, named.name)->seconds)
+        best = &one;
+    if (best == nullptr) return "";
+    parts.push_back(fmt::format("over {} with {} on {} ranks, {}", named.name,
+                                strong(best->strategy), best->ranks,
+                                in_milliseconds(over(best->drawn, named.name)->seconds)));
+  }
+  Html text = "<p>Frames take least ";
+  for (std::size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? "; " : "") + parts[i];
+  return text + " (predicted).</p>\n";
+}
+
+Html answer(const PartitionComparison& comparison) {
+  const Rows rows = with_regions(comparison.rows, comparison.rows.front().regions_per_rank);
+  Table best_of;
+  best_of.columns = {{"ranks", true, false, {}},
+                     {"partition", false, true, Source::counted},
+                     {"over share", true, true, Source::counted},
+                     {"cut ms", true, true, Source::measured}};
+  for (const comm::NamedNetwork& named : comm::networks())
+    best_of.columns.push_back({named.name, false, true, Source::predicted});
+  const ComparedPartition* last = nullptr;
+  for (const int ranks : drawn_ranks(rows)) {
+    const ComparedPartition* best = best_partition(comparison.rows, ranks);
+    last = best;
+    std::vector<std::string> line = {std::to_string(ranks), best->partition,
+                                     fmt::format("{:.3f}", best->drawn->work_over_share),
+                                     short_number(best->cut_seconds.median * 1e3)};
+    for (const comm::NamedNetwork& named : comm::networks()) {
+      const ComparedStrategy* strategy = best_strategy(comparison.strategies, ranks, named.name);
+      line.push_back(strategy != nullptr
+                         ? fmt::format("{} {}", strategy->strategy,
+                                       in_milliseconds(over(strategy->drawn, named.name)->seconds))
+                         : "-");
+    }
+    best_of.rows.push_back(std::move(line));
+  }
+  Html result;
+  if (last != nullptr) result += sentence(comparison, *last);
+  result += fastest_frames(comparison.strategies);
+  if (best_of.rows.empty())
+    return paragraph("No partition was run: all numbers of ranks are above what is measured.");
+  return result +
+         paragraph(
+             "By number of ranks, the partition with which all have drawn first, and over each "
+             "network "
+             "the strategy whose frames take least:") +
+         table(best_of);
+}
+
+using PointOf = std::function<std::optional<ChartPoint>(const ComparedPartition&)>;
+
+Html chart(const Rows& rows, const std::string& title, const std::string& x, const std::string& y,
+           Source source, Scale scale, const PointOf& of) {
+  LineChart chart;
+  chart.title = title;
+  chart.x_label = x;
+  chart.y_label = y;
+  chart.x_scale = Scale::logarithmic;
+  chart.y_scale = scale;
+  chart.ticks_at_points = true;
+  chart.series = series_by(
+      rows, [](const ComparedPartition& row) { return row.partition; }, source, of);
+  return chart.series.empty() ? Html() : line_chart(chart);
+}
+
+double ranks_of(const ComparedPartition& row) { return static_cast<double>(row.ranks); }
+
+// Points at x(row).
+template <class X>
+PointOf work_imbalance(X x) {
+  return [x](const ComparedPartition& row) -> std::optional<ChartPoint> {
+    if (!row.drawn) return std::nullopt;
+    return point(x(row), row.drawn->work_imbalance);
+  };
+}
+template <class X>
+PointOf predicted_imbalance(X x) {
+  return [x](const ComparedPartition& row) -> std::optional<ChartPoint> {
+    return point(x(row), row.predicted_imbalance);
+  };
+}
+template <class X>
+PointOf time_imbalance(X x) {
+  return [x](const ComparedPartition& row) -> std::optional<ChartPoint> {
+    if (!row.drawn) return std::nullopt;
+    return point(x(row), row.drawn->imbalance, 1);
+  };
+}
+
+Html balance(const PartitionRequest& request, const PartitionComparison& comparison) {
+  const Rows rows = with_regions(comparison.rows, request.regions.front());
+  const auto x_ranks = ranks_of;
+  Html result = beside(
+      {chart(rows, "How even the ranks' work is", "ranks", "most work over mean", Source::counted,
+             Scale::logarithmic, work_imbalance(x_ranks)),
+       chart(rows, "The same as the costs foretell it", "ranks", "largest load over mean",
+             Source::predicted, Scale::logarithmic, predicted_imbalance(x_ranks)),
+       chart(rows, "The same in processor time", "ranks", "busiest rank over mean",
+             Source::measured, Scale::logarithmic, time_imbalance(x_ranks)),
+       chart(rows, "What is lost: unevenness and work that several ranks do", "ranks",
+             "most work over an equal share of one alone", Source::counted, Scale::logarithmic,
+             [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+               if (!row.drawn) return std::nullopt;
+               return point(ranks_of(row), row.drawn->work_over_share);
+             })});
+  if (request.regions.size() > 1) {
+    const int ranks = shown_ranks(request);
+    Rows shown;
+    std::copy_if(comparison.rows.begin(), comparison.rows.end(), std::back_inserter(shown),
+                 [&](const ComparedPartition& row) { return row.ranks == ranks; });
+    std::stable_sort(shown.begin(), shown.end(), [](const auto& a, const auto& b) {
+      return a.regions_per_rank < b.regions_per_rank;
+    });
+    const auto x = [](const ComparedPartition& row) {
+      return static_cast<double>(row.regions_per_rank);
+    };
+    const std::string label = "regions for each rank";
+    result += heading(fmt::format("More regions than ranks, with {} ranks", ranks));
+    result += beside(
+        {chart(shown, "How even the ranks' work is", label, "most work over mean", Source::counted,
+               Scale::logarithmic, work_imbalance(x)),
+         chart(shown, "The same as the costs foretell it", label, "largest load over mean",
+               Source::predicted, Scale::logarithmic, predicted_imbalance(x)),
+         chart(shown, "The same in processor time", label, "busiest rank over mean",
+               Source::measured, Scale::logarithmic, time_imbalance(x)),
+         chart(shown, "Ranks that get a primitive", label, "ranks, on average", Source::counted,
+               Scale::linear, [&](const ComparedPartition& row) -> std::optional<ChartPoint> {
+                 return point(x(row), row.overlap);
+               })});
+  }
+  return result +
+         paragraph(
+             "Measured: processor time of sort-first's ranks, which take turns on one core, so "
+             "that "
+             "none waits for another; medians, the upright lines are the spread of the frames. "
+             "Predicted: from the boxes of groups of primitives and the pixels that they cover, "
+             "before anything is drawn.");
+}
+
+Html shown_partition(const PartitionRequest& request, const ShownPartition& shown) {
+  const auto mean_of = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  const double mean = mean_of(shown.work), predicted_mean = mean_of(shown.predicted);
+  const auto over_mean = [](double value, double of) { return of > 0 ? value / of : 1.0; };
+  const auto told = [&](std::size_t rank) {
+    return fmt::format(
+        "{:.2f} of the mean, predicted {:.2f}; measured {}", over_mean(shown.work[rank], mean),
+        over_mean(shown.predicted[rank], predicted_mean), in_milliseconds(shown.busy[rank]));
+  };
+  Overlay drawn;
+  drawn.title = shown.name;
+  drawn.source = Source::counted;
+  drawn.width = request.render.width;
+  drawn.height = request.render.height;
+  for (const loadbalance::Region& region : shown.partition.regions) {
+    const auto rank = static_cast<std::size_t>(region.owner);
+    drawn.areas.push_back({region.rect, region.owner, over_mean(shown.work[rank], mean),
+                           fmt::format("rank {}: {}", region.owner, told(rank))});
+  }
+  BarChart bars;
+  bars.title = shown.name + ", by rank";
+  bars.label = "work, samples' worth";
+  bars.source = Source::counted;
+  bars.mark = mean;
+  bars.name_width = 70;
+  const auto busiest = std::max_element(shown.work.begin(), shown.work.end());
+  for (std::size_t rank = 0; rank < shown.work.size(); ++rank)
+    bars.bars.push_back({fmt::format("rank {}", rank), shown.work[rank], told(rank),
+                         shown.work.begin() + static_cast<std::ptrdiff_t>(rank) == busiest});
+  return beside({overlay(drawn, kPicture), bar_chart(bars)});
+}
+
+Html regions(const PartitionRequest& request, const PartitionComparison& comparison) {
+  Html result = paragraph(fmt::format(
+      "Each partition of {} ranks over the picture, and the ranks' loads; the broken line is their "
+      "mean.",
+      shown_ranks(request)));
+  result += overlay_key("less than the mean", "even", "more than the mean, at twice it in full");
+  for (const ShownPartition& shown : comparison.shown) result += shown_partition(request, shown);
+  return result;
+}
+
+Html price(const PartitionRequest& request, const PartitionComparison& comparison) {
+  const Rows rows = with_regions(comparison.rows, request.regions.front());
+  Html result = chart(rows, "Overlap: ranks that get a primitive", "ranks", "ranks, on average",
+                      Source::counted, Scale::linear,
+                      [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+                        return point(ranks_of(row), row.overlap);
+                      });
+  result +=
+      chart(rows, "Own time: what cutting takes", "ranks", "time, ms", Source::measured,
+            Scale::logarithmic, [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+              return point(ranks_of(row), row.cut_seconds, 1e3);
+            });
+  const auto bytes = [](std::uint64_t DrawnFrames::*amount) {
+    return [amount](const ComparedPartition& row) -> std::optional<ChartPoint> {
+      if (!row.drawn) return std::nullopt;
+      return point(ranks_of(row), static_cast<double>(*row.drawn.*amount) / 1e6);
+    };
+  };
+  result += chart(rows, "Bytes that ranks send for the first frame", "ranks", "MB", Source::counted,
+                  Scale::linear, bytes(&DrawnFrames::bytes_total));
+  result += chart(rows, "Bytes that ranks send for a frame after it", "ranks", "MB",
+                  Source::counted, Scale::linear, bytes(&DrawnFrames::bytes_next));
+  return result +
+         paragraph(
+             "Primitives are sent in groups; a group goes to every rank whose region its box "
+             "touches. For the first frame they travel, later only what a rank does not have; the "
+             "picture goes to rank 0 every time.");
+}
+
+Html strategies(const PartitionComparison& comparison) {
+  const std::vector<ComparedStrategy>& all = comparison.strategies;
+  const auto lines = [&](const std::string& title, const std::string& label, Source source,
+                         auto&& of) {
+    LineChart chart;
+    chart.title = title;
+    chart.x_label = "ranks";
+    chart.y_label = label;
+    chart.x_scale = chart.y_scale = Scale::logarithmic;
+    chart.ticks_at_points = true;
+    chart.series = series_by(
+        all, [](const ComparedStrategy& row) { return row.strategy; }, source,
+        [&](const ComparedStrategy& row) -> std::optional<ChartPoint> { return of(row); });
+    return line_chart(chart);
+  };
+  const auto x = [](const ComparedStrategy& row) { return static_cast<double>(row.ranks); };
+  if (all.empty()) return paragraph("No strategy was run.");
+  Html result = paragraph(
+      fmt::format("Sort-first and sort-middle with the partition {}, sort-last composited by "
+                  "binary-swap with the codec active.",
+                  comparison.rows.front().partition));
+  for (const comm::NamedNetwork& named : comm::networks()) {
+    result += heading(fmt::format("Over {}: {}", named.name, named.description));
+    result +=
+        beside({lines("A frame after the first", "time, ms", Source::predicted,
+                      [&](const ComparedStrategy& row) {
+                        return point(x(row), over(row.drawn, named.name)->seconds * 1e3);
+                      }),
+                lines("The first frame: primitives travel", "time, ms", Source::predicted,
+                      [&](const ComparedStrategy& row) {
+                        return point(x(row), over(row.drawn, named.name)->first_seconds * 1e3);
+                      })});
+  }
+  result += heading("What goes into it");
+  result += beside(
+      {lines("Busiest rank", "processor time, ms", Source::measured,
+             [&](const ComparedStrategy& row) { return point(x(row), row.drawn.busiest, 1e3); }),
+       lines("Bytes that ranks send for a frame after the first", "MB", Source::counted,
+             [&](const ComparedStrategy& row) {
+               return point(x(row), static_cast<double>(row.drawn.bytes_next) / 1e6);
+             })});
+  return result +
+         paragraph(
+             "Predicted: the ranks run the renderer's own code in turn, in the processor time that "
+             "it takes here, and their messages pass a simulated network of a machine that has a "
+             "core for each rank.");
+}
+
+Html all_rows(const PartitionRequest& request, const Rows& rows) {
+  const TextTable text = partition_table(rows);
+  Table result;
+  for (std::size_t i = 0; i < text[0].size(); ++i) {
+    std::string name = text[0][i];
+    Source source =
+        name.ends_with(" ms") || name == "time max/mean" ? Source::measured : Source::counted;
+    if (name.ends_with("predicted")) {
+      source = Source::predicted;
+      name = name.substr(0, name.find(','));
+    }
+    result.columns.push_back({name, i != 2, i > 2, source});
+  }
+  result.rows.assign(text.begin() + 1, text.end());
+  return table(result) +
+         paragraph(
+             "Primitives in the frame; those that fall to several ranks are shared. Triangles and "
+             "samples are of the rank that has most. Over share: the largest load over an equal "
+             "share of what one rank alone would do. Size " +
+             request.render.size + ".");
+}
+
+}  // namespace
+
+std::string partition_report(const Session& session, const PartitionRequest& request,
+                             const Prepared& prepared, const PartitionComparison& comparison) {
+  Page result;
+  const std::filesystem::path file(request.render.scene.file.path);
+  result.title = fmt::format("Partitions of the screen for {}, {}", file.filename().string(),
+                             request.render.size);
+  result.unfinished = comparison.unfinished;
+  result.answer = backdrop(comparison.picture, kPicture) + answer(comparison);
+  result.tabs.push_back({"Balance", balance(request, comparison)});
+  if (!comparison.shown.empty()) result.tabs.push_back({"Regions", regions(request, comparison)});
+  result.tabs.push_back({"Overlap and cutting", price(request, comparison)});
+  result.tabs.push_back({"Strategies", strategies(comparison)});
+  result.tabs.push_back({"All figures", all_rows(request, comparison.rows)});
+  result.data = partition_statistics(request, prepared, comparison);
+  result.provenance = provenance(session);
+  return page(result);
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,48 @@
+// A communicator through which the simulated machine learns how long code really takes.
+#pragma once
+
+#include <memory>
+
+#include "comm/communicator.h"
+
+namespace delray::comm {
+
+// Passes on to `inner`, as work, the processor time of the calling thread between one call and the
+// next, so that real code runs on the simulated machine in its own time (direct execution:
+// Covington et al. 1988). What the code itself tells of its work is left out: it is in that time.
+// Times, and with them the order of what waits for any message, differ from run to run as measured
+// times do.
+//
+// REQUIRES: ranks run on one thread, as they do in run_simulated, and loops over parallel/ inside
+// of an arena of one thread, entered before. `inner` outlives this and what is split from it.
+class Charged final : public Communicator {
+ public:
+  explicit Charged(Communicator& inner);
+
+  int rank() const override { return inner_.rank(); }
+  int size() const override { return inner_.size(); }
+  int world_rank(int rank) const override { return inner_.world_rank(rank); }
+  double seconds() const override;
+
+  void send(int to, Tag tag, Buffer&& message) override;
+  Buffer receive(int from_or_any, Tag tag_or_any) override;
+  std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) override;
+  std::unique_ptr<Communicator> split(int color, int key) override;
+  void mark(Phase phase, int round) override;
+  void work(Work, std::uint64_t) override {}
+  [[noreturn]] void abort(std::string why) override;
+
+ private:
+  // Processor time of the thread when the rank's code went on.
+  struct Clock {
+    std::int64_t resumed = 0;
+  };
+  class Call;
+  Charged(std::unique_ptr<Communicator> inner, std::shared_ptr<Clock> clock);
+
+  std::unique_ptr<Communicator> owned_;  // null when the caller owns the inner one
+  Communicator& inner_;
+  std::shared_ptr<Clock> clock_;
+};
+
+}  // namespace delray::comm

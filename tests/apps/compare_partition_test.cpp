@@ -1,0 +1,128 @@
+// delray compare partition: the built program, and the JSON that scripts rely on.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "loadbalance/partition.h"
+#include "raster/strategies.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string hash_of_render(const Folder& folder, const std::string& scene_and_size) {
+  const Ran ran = run("delray render " + scene_and_size + " -o a.png --stats - -q", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  return Json::parse(ran.out)["image"]["hash"];
+}
+
+void check_frames(const Json& row, const std::string& hash) {
+  EXPECT_GT(row["seconds"]["busiest"], 0);
+  EXPECT_GE(row["spread"]["busiest"]["most"], row["spread"]["busiest"]["least"]);
+  EXPECT_GE(row["imbalance"], 1);
+  EXPECT_GE(row["work_imbalance"], 1);
+  EXPECT_GT(row["work_over_share"], 0);
+  EXPECT_LE(row["triangles_max"], row["triangles_total"]);
+  EXPECT_LE(row["bytes_next_frame"], row["bytes_total"]);
+  EXPECT_EQ(row["image_hash"], hash);
+  std::set<std::string> networks;
+  for (const Json& predicted : row["predicted"]) {
+    networks.insert(predicted["network"].get<std::string>());
+    EXPECT_EQ(predicted["ranks"], row["ranks"]);
+    EXPECT_GT(predicted["seconds"], 0);
+    EXPECT_GT(predicted["first_seconds"], 0);
+  }
+  EXPECT_EQ(networks.size(), 4U);
+}
+
+TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
+  const Folder folder;
+  const std::string scene = "gen:city:2000 --size 121x80";
+  const Ran ran = run("delray compare partition " + scene +
+                          " --ranks 3,80 --regions 1,2 --quick --stats - -o report.html",
+                      folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  EXPECT_EQ(json["schema"], "delray.compare.partition/1");
+  EXPECT_EQ(json["unfinished"], false);
+  const std::string hash = hash_of_render(folder, scene);
+  const std::size_t partitions = loadbalance::partitioners().size();
+  ASSERT_EQ(json["rows"].size(), 3 * partitions);  // 3 ranks with 1 and 2 regions, 80 ranks
+  std::set<std::string> rows;
+  for (const Json& row : json["rows"]) {
+    SCOPED_TRACE(row.dump());
+    rows.insert(row["partition"].get<std::string>() + std::to_string(row["ranks"].get<int>()) +
+                std::to_string(row["regions_per_rank"].get<int>()));
+    EXPECT_GE(row["overlap"], 1);
+    EXPECT_GE(row["regions"], 1);
+    EXPECT_GE(row["predicted_imbalance"], 1);
+    EXPECT_GE(row["predicted_over_share"].get<double>(), 0.999);
+    EXPECT_LE(row["primitives_shared"], row["primitives"]);
+    EXPECT_GE(row["seconds"]["cut"], 0);
+    if (row["ranks"] <= 64) {
+      check_frames(row, hash);
+    } else {
+      EXPECT_TRUE(row["seconds"]["busiest"].is_null());
+      EXPECT_TRUE(row["predicted"].empty());
+    }
+  }
+  EXPECT_EQ(rows.size(), json["rows"].size());
+  ASSERT_EQ(json["strategies"].size(), raster::strategies().size());
+  for (const Json& row : json["strategies"]) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_EQ(row["image_hash"], hash);
+    EXPECT_EQ(row["predicted"].size(), 4U);
+  }
+  const std::string page = folder.read("report.html");
+  for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
+    EXPECT_NE(page.find(std::string(partitioner.name) + ", by rank"), std::string::npos);
+}
+
+TEST(ComparePartition, CountsAlikeFromRunToRun) {
+  const Folder folder;
+  Json runs[2];
+  for (Json& json : runs) {
+    const Ran ran =
+        run("delray compare partition gen:spheres:500 --size 61x47 --ranks 4 --regions 1 "
+            "--partition mahd graph --quick --stats -",
+            folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    json = Json::parse(ran.out);
+    ASSERT_EQ(json["rows"].size(), 2U);
+  }
+  const std::set<std::string> ratios = {"overlap", "work_over_share", "image_hash"};
+  for (const char* list : {"rows", "strategies"}) {
+    for (std::size_t i = 0; i < runs[0][list].size(); ++i) {
+      for (const auto& [key, value] : runs[0][list][i].items()) {
+        if (!value.is_number_integer() && ratios.count(key) == 0) continue;
+        EXPECT_EQ(runs[1][list][i][key], value) << key;
+      }
+    }
+  }
+}
+
+TEST(ComparePartition, RefusesWhatItCannotDo) {
+  const Folder folder;
+  for (const std::string arguments :
+       {"", "gen:spheres --ranks 2,x", "gen:spheres --partition nothing", "gen:spheres --regions 0",
+        "gen:spheres --threads 2", "gen:spheres -o report.png"}) {
+    const Ran ran = run("delray compare partition " + arguments, folder.path());
+    EXPECT_EQ(ran.exit_code, 2) << arguments << ran.err;
+    EXPECT_EQ(ran.out, "");
+  }
+  EXPECT_EQ(run(mpirun(2) + "delray compare partition gen:spheres", folder.path()).exit_code, 2);
+}
+
+TEST(ComparePartition, ListsPartitionsStrategiesAndNetworks) {
+  const Folder folder;
+  const Ran ran = run("delray compare partition --list", folder.path());
+  EXPECT_EQ(ran.exit_code, 0);
+  for (const char* name : {"mahd\t", "sort-middle\t", "hdr-infiniband\t"})
+    EXPECT_NE(ran.out.find(name), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace delray::tests
