@@ -13,6 +13,7 @@ void add_compare(CLI::App& program, Session& session) {
   add_compare_compose(*command, session);
   add_compare_triangulate(*command, session);
   add_compare_partition(*command, session);
+  add_compare_schedule(*command, session);
 }
 
 }  // namespace delray::apps

@@ -8,5 +8,6 @@ namespace delray::apps {
 void add_compare_compose(CLI::App& compare, Session& session);
 void add_compare_triangulate(CLI::App& compare, Session& session);
 void add_compare_partition(CLI::App& compare, Session& session);
+void add_compare_schedule(CLI::App& compare, Session& session);
 
 }  // namespace delray::apps

@@ -195,7 +195,7 @@ PointOf time_imbalance(X x) {
 Html balance(const PartitionRequest& request, const PartitionComparison& comparison) {
   const Rows rows = with_regions(comparison.rows, request.regions.front());
   const auto x_ranks = ranks_of;
-  Html result = beside(
+  Html result = in_pairs(
       {chart(rows, "How even the ranks' work is", "ranks", "most work over mean", Source::counted,
              Scale::logarithmic, work_imbalance(x_ranks)),
        chart(rows, "The same as the costs foretell it", "ranks", "largest load over mean",
@@ -221,7 +221,7 @@ Html balance(const PartitionRequest& request, const PartitionComparison& compari
     };
     const std::string label = "regions for each rank";
     result += heading(fmt::format("More regions than ranks, with {} ranks", ranks));
-    result += beside(
+    result += in_pairs(
         {chart(shown, "How even the ranks' work is", label, "most work over mean", Source::counted,
                Scale::logarithmic, work_imbalance(x)),
          chart(shown, "The same as the costs foretell it", label, "largest load over mean",
@@ -339,17 +339,17 @@ Html strategies(const PartitionComparison& comparison) {
   for (const comm::NamedNetwork& named : comm::networks()) {
     result += heading(fmt::format("Over {}: {}", named.name, named.description));
     result +=
-        beside({lines("A frame after the first", "time, ms", Source::predicted,
-                      [&](const ComparedStrategy& row) {
-                        return point(x(row), over(row.drawn, named.name)->seconds * 1e3);
-                      }),
-                lines("The first frame: primitives travel", "time, ms", Source::predicted,
-                      [&](const ComparedStrategy& row) {
-                        return point(x(row), over(row.drawn, named.name)->first_seconds * 1e3);
-                      })});
+        in_pairs({lines("A frame after the first", "time, ms", Source::predicted,
+                        [&](const ComparedStrategy& row) {
+                          return point(x(row), over(row.drawn, named.name)->seconds * 1e3);
+                        }),
+                  lines("The first frame: primitives travel", "time, ms", Source::predicted,
+                        [&](const ComparedStrategy& row) {
+                          return point(x(row), over(row.drawn, named.name)->first_seconds * 1e3);
+                        })});
   }
   result += heading("What goes into it");
-  result += beside(
+  result += in_pairs(
       {lines("Busiest rank", "processor time, ms", Source::measured,
              [&](const ComparedStrategy& row) { return point(x(row), row.drawn.busiest, 1e3); }),
        lines("Bytes that ranks send for a frame after the first", "MB", Source::counted,

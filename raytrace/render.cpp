@@ -120,6 +120,18 @@ void summarize(std::vector<RankStatistics>&& ranks, Statistics& statistics) {
 
 }  // namespace
 
+loadbalance::ScheduleOptions tile_schedule(std::uint32_t tiles, int ranks, int threads) {
+  loadbalance::ScheduleOptions how;
+  how.threads = threads;
+  // A tile of few rays is done sooner than a request is answered by a master at work: several at
+  // once then, asked for before the last ones are begun, while there are many for each rank.
+  constexpr std::uint32_t kBatches = 32;  // for each rank, at least
+  how.batch = std::max(static_cast<std::uint32_t>(threads),
+                       tiles / (kBatches * static_cast<std::uint32_t>(ranks)));
+  how.ahead = std::max(1U, how.batch / 2);
+  return how;
+}
+
 struct Renderer::Memory {
   const Tracer* tracer;  // or
   SharedScene* scene;    // with
@@ -161,15 +173,8 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   Statistics& statistics = result.statistics;
 
   recording.mark(comm::Phase::redistribute, 0);
-  loadbalance::ScheduleOptions how;
-  how.threads = parallel::arena_threads();
-  // A tile of few rays is done sooner than a request is answered by a master at work: several at
-  // once then, asked for before the last ones are begun, while there are many for each rank.
-  constexpr std::uint32_t kBatches = 32;  // for each rank, at least
-  how.batch = std::max(
-      static_cast<std::uint32_t>(how.threads),
-      frame.tiles.grid().count() / (kBatches * static_cast<std::uint32_t>(communicator.size())));
-  how.ahead = std::max(1U, how.batch / 2);
+  loadbalance::ScheduleOptions how =
+      tile_schedule(frame.tiles.grid().count(), communicator.size(), parallel::arena_threads());
   if (!options.partition.empty()) {
     how.initial = memory_->shares.next(recording, frame.tiles, options);
     if (root) statistics.partition = memory_->shares.statistics();

@@ -121,6 +121,10 @@ struct Result {
   std::vector<TileCost> tile_costs;  // in no particular order; tiles are cut from the window
 };
 
+// How so many tiles are handed out to ranks with so many threads, but for the shares that they
+// begin with.
+loadbalance::ScheduleOptions tile_schedule(std::uint32_t tiles, int ranks, int threads);
+
 // Renders frames of one scene, each with shares of tiles by what they cost in the one before. One
 // per rank.
 class Renderer {

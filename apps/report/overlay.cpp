@@ -13,9 +13,23 @@ namespace {
 // Cells of so many pixels are told apart by their borders.
 constexpr int kBorderCell = 2;
 
-// By the root, or small differences could not be seen.
-double opacity(double value) {
-  return std::isfinite(value) ? 0.75 * std::sqrt(std::min(1.0, std::abs(value - 1))) : 0;
+// Classes and attributes of an area.
+std::string look_of(const Area& area, Shading shading) {
+  const double value = std::isfinite(area.value) ? area.value : 0;
+  switch (shading) {
+    case Shading::around_one:
+      // By the root, or small differences could not be seen.
+      return fmt::format("class=\"{}\" fill-opacity=\"{:.3f}\"", value > 1 ? "above" : "below",
+                         0.75 * std::sqrt(std::min(1.0, std::abs(value - 1))));
+    case Shading::amount:
+      return fmt::format("class=\"amount\" fill-opacity=\"{:.3f}\"",
+                         0.9 * std::clamp(value, 0.0, 1.0));
+    case Shading::group:
+      // By the golden angle neighbouring numbers look unlike.
+      return fmt::format("class=\"group\" fill=\"hsl({:.0f} 75% {}%)\"",
+                         std::fmod(area.group * 137.508, 360.0), 40 + area.group % 3 * 12);
+  }
+  return "";
 }
 
 // Borders between cells of different groups, neighbouring pieces of a line strung together.
@@ -60,10 +74,9 @@ Html overlay(const Overlay& overlay, const std::string& picture_id) {
   for (const Area& area : overlay.areas) {
     if (area.rect.empty()) continue;
     svg += fmt::format(
-        "<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill-opacity=\"{:.3f}\">"
-        "<title>{} ({})</title></rect>",
-        area.value > 1 ? "above" : "below", area.rect.x0, area.rect.y0, area.rect.width(),
-        area.rect.height(), opacity(area.value), escaped(area.note), name_of(overlay.source));
+        "<rect {} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"><title>{} ({})</title></rect>",
+        look_of(area, overlay.shading), area.rect.x0, area.rect.y0, area.rect.width(),
+        area.rect.height(), escaped(area.note), name_of(overlay.source));
   }
   svg += fmt::format("<path class=\"border\" d=\"{}\"/></svg>", borders(overlay));
   return fmt::format(

@@ -55,11 +55,18 @@ Html picture(const image::Image8& image, const std::string& caption) {
 Html paragraph(const std::string& text) { return "<p>" + escaped(text) + "</p>\n"; }
 Html heading(const std::string& text) { return "<h3>" + escaped(text) + "</h3>\n"; }
 
-Html beside(const std::vector<Html>& figures) {
-  Html result = "<div class=\"beside\">";
+namespace {
+
+Html grid(const char* name, const std::vector<Html>& figures) {
+  Html result = fmt::format("<div class=\"{}\">", name);
   for (const Html& figure : figures) result += figure;
   return result + "</div>\n";
 }
+
+}  // namespace
+
+Html beside(const std::vector<Html>& figures) { return grid("beside", figures); }
+Html in_pairs(const std::vector<Html>& figures) { return grid("beside pairs", figures); }
 
 Html page(const Page& page) {
   Html tabs, panels;

@@ -36,7 +36,8 @@ Html picture(const image::Image8& image, const std::string& caption);
 // Paragraphs and headings.
 Html paragraph(const std::string& text);
 Html heading(const std::string& text);
-// Figures side by side where there is room.
+// Figures side by side where there is room: small ones, or two charts.
 Html beside(const std::vector<Html>& figures);
+Html in_pairs(const std::vector<Html>& figures);
 
 }  // namespace delray::apps::report

@@ -34,6 +34,8 @@ button:focus-visible,[tabindex]:focus-visible{outline:2px solid var(--accent);ou
 section.hidden{display:none}
 section>h2{position:absolute;left:-99rem}
 .beside{display:grid;grid-template-columns:repeat(auto-fit,minmax(20rem,1fr));gap:1rem}
+.pairs{grid-template-columns:repeat(auto-fit,minmax(29rem,1fr))}
+.beside figure{margin:.4rem 0}
 figure{margin:1rem 0;padding:0}
 figcaption{font-weight:600;font-size:.95rem;margin-bottom:.3rem}
 figure svg{display:block;width:100%;height:auto}
@@ -63,9 +65,11 @@ text.tick{fill:var(--soft);font-size:11px}
 .mark{stroke:var(--ink);stroke-width:1.5;stroke-dasharray:5 3}
 .cell{fill:var(--c0)}
 .span{stroke:none}
+.span.idle{fill:var(--line);background:var(--line)}
 .backdrop{position:absolute}
-.overlay svg{border:1px solid var(--line)}
+.overlay rect{shape-rendering:crispEdges}.overlay svg{border:1px solid var(--line)}
 .above{fill:#e66100;background:#e66100}.below{fill:#1a6fdf;background:#1a6fdf}
+.amount{fill:#c01030}.group{fill-opacity:.6}
 .overlay rect:hover{stroke:#fff;stroke-width:3}
 .border{fill:none;stroke:#000;stroke-width:1.5;stroke-opacity:.75;pointer-events:none}
 .legend i:not(.span){display:inline-block;width:.9em;height:.9em;margin-right:.4em;vertical-align:-.1em;

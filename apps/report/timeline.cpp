@@ -23,6 +23,9 @@ Html timeline(const Timeline& timeline) {
   const auto at = [&](double seconds) {
     return kNames + axis.position((seconds - begin) * 1e3) * (kWidth - kNames - kRight);
   };
+  const auto look = [&](int kind) {
+    return kind == timeline.idle ? std::string("idle") : fmt::format("c{}", kind);
+  };
   const double bottom = kTop + kLane * static_cast<double>(timeline.lanes.size());
   Html svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
                          bottom + kBottom, escaped(timeline.title));
@@ -39,10 +42,11 @@ Html timeline(const Timeline& timeline) {
         kNames - 6, y + kLane / 2, escaped(lane.name));
     for (const Span& span : lane.spans)
       svg += fmt::format(
-          "<rect class=\"span c{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\">"
+          "<rect class=\"span {}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\">"
           "<title>{}: {} {} ms ({}){}</title></rect>",
-          span.kind, at(span.begin), y + 2, std::max(0.3, at(span.end) - at(span.begin)), kLane - 4,
-          escaped(lane.name), escaped(timeline.kinds[static_cast<std::size_t>(span.kind)]),
+          look(span.kind), at(span.begin), y + 2, std::max(0.3, at(span.end) - at(span.begin)),
+          kLane - 4, escaped(lane.name),
+          escaped(timeline.kinds[static_cast<std::size_t>(span.kind)]),
           short_number((span.end - span.begin) * 1e3), name_of(timeline.source),
           span.note.empty() ? "" : "; " + escaped(span.note));
     y += kLane;
@@ -52,8 +56,8 @@ Html timeline(const Timeline& timeline) {
       (kNames + kWidth) / 2, bottom + kBottom - 8);
   Html legend;
   for (std::size_t i = 0; i < timeline.kinds.size(); ++i)
-    legend += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>{}</span>", i,
-                          escaped(timeline.kinds[i]));
+    legend += fmt::format("<span class=\"key\"><i class=\"span {}\"></i>{}</span>",
+                          look(static_cast<int>(i)), escaped(timeline.kinds[i]));
   return fmt::format(
       "<figure class=\"timeline\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
       "<div class=\"legend\">{}</div></figure>\n",

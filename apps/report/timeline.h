@@ -24,6 +24,7 @@ struct Timeline {
   Source source = Source::measured;
   std::vector<std::string> kinds;  // at most 8
   std::vector<Lane> lanes;
+  int idle = -1;  // the kind that is pale, if any
 };
 
 // A figure; time starts at 0 at the earliest span, in milliseconds.

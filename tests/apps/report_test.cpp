@@ -109,6 +109,9 @@ TEST(ReportCharts, BarsMatricesAndTimelinesTellTheirNumbers) {
   const Html lanes = timeline(
       {"t", Source::measured, {"work", "wait"}, {{"rank 0", {{0, 1, 1.5, ""}, {1, 1.5, 3, "q"}}}}});
   EXPECT_NE(lanes.find("rank 0: wait 1500 ms (measured); q"), std::string::npos);
+  EXPECT_EQ(lanes.find("idle"), std::string::npos);
+  Timeline waits{"t", Source::counted, {"work", "wait"}, {{"rank 0", {{1, 1.5, 3, ""}}}}, 1};
+  EXPECT_EQ(count(timeline(waits), "span idle"), 2U);  // and in the legend
 }
 
 TEST(ReportCharts, SeriesKeepTheirLookWhateverTheirPlace) {
@@ -152,6 +155,10 @@ TEST(ReportOverlay, DrawsAreasAndTheBordersBetweenGroups) {
   EXPECT_NE(html.find("href=\"#below\""), std::string::npos);
   // One line from top to bottom, none within the first group.
   EXPECT_NE(html.find("d=\"M4 0V4\""), std::string::npos) << html;
+  two.shading = Shading::amount;
+  EXPECT_EQ(count(overlay(two, "below"), "class=\"amount\" fill-opacity=\"0.900\""), 2U);
+  two.shading = Shading::group;
+  EXPECT_EQ(count(overlay(two, "below"), "fill=\"hsl(138 "), 1U);
   EXPECT_FALSE(has_bad_number(html));
   EXPECT_FALSE(has_bad_number(overlay({}, "none")));
   EXPECT_NE(backdrop(image::Image8(3, 2), "below").find("<symbol id=\"below\""), std::string::npos);

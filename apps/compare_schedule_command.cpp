@@ -1,0 +1,77 @@
+// delray compare schedule: the command line.
+#include <CLI/CLI.hpp>
+
+#include "apps/compare_commands.h"
+#include "apps/compare_schedule.h"
+#include "apps/list.h"
+#include "apps/schedule_figures.h"
+#include "apps/schedule_report.h"
+#include "comm/network.h"
+#include "raytrace/integrator.h"
+
+namespace delray::apps {
+namespace {
+
+int list() {
+  print_table(loadbalance::schedules());
+  print_table(raytrace::integrators());
+  print_table(comm::networks());
+  return kDone;
+}
+
+int run(Session& session, const CLI::App& command, ScheduleRequest request) {
+  if (request.list) return list();
+  if (session.under_mpi)
+    throw UsageError("compare schedule: its ranks are simulated in one process; leave out mpirun");
+  for (const std::string& schedule : request.schedules)
+    find_entry(loadbalance::schedules(), schedule, "--schedule");
+  find_entry(raytrace::integrators(), request.render.integrator, "--integrator");
+  find_entry(comm::networks(), request.network, "--network");
+  if (request.tile % raytrace::kTaskSide != 0)
+    throw UsageError("--tile: " + std::to_string(request.tile) + " is no multiple of " +
+                     std::to_string(raytrace::kTaskSide));
+  request.render.kind = Engine::raytrace;
+  return run_scene_comparison(
+      session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
+        const auto comparison = std::make_shared<const ScheduleComparison>(
+            compare_schedule(session, request, prepared, progress));
+        return Found{
+            schedule_table(*comparison), schedule_statistics(request, prepared, *comparison),
+            comparison->unfinished,
+            [&, comparison] { return schedule_report(session, request, prepared, *comparison); }};
+      });
+}
+
+}  // namespace
+
+void add_compare_schedule(CLI::App& compare, Session& session) {
+  CLI::App* command =
+      compare.add_subcommand("schedule", "every schedule handing out the ray tracer's tiles");
+  const auto request = std::make_shared<ScheduleRequest>();
+  request->ranks = {2, 4, 8, 16, 32, 64, 128, 256};
+  add_scene_comparison_options(
+      *command, *request,
+      "(default 2,4,8,16,32,64,128,256); all are simulated, as many as there are cores traced too");
+  command->add_option("--integrator", request->render.integrator, "(default whitted)");
+  command->add_option("--spp", request->render.samples, "rays per pixel (default 1)")
+      ->check(CLI::Range(1, 65536));
+  command->add_option("--depth", request->render.depth, "reflections and refractions (default 8)")
+      ->check(CLI::Range(0, 64));
+  command->add_option("--tile", request->tile, "pixels, the side of a tile (default 32)")
+      ->check(CLI::Range(16, 4096));
+  command->add_option("--schedule", request->schedules,
+                      "schedules, separated by spaces (default all)");
+  command->add_option("--network", request->network,
+                      "the one that is counted and shown (default 10-gigabit-ethernet)");
+  add_comparison_options(*command, *request, "three frames each",
+                         "schedules, integrators, networks");
+  add_common_options(
+      *command, session,
+      "compare schedule model.glb -o schedule.html --spp 4\n"
+      "compare schedule gen:corner --ranks 16,64,1024 --tile 16 --stats schedule.json");
+  command->callback([&session, request, command] {
+    session.run = [&session, request, command] { return run(session, *command, *request); };
+  });
+}
+
+}  // namespace delray::apps
