@@ -9,8 +9,8 @@
 #include "apps/report/axis.h"
 #include "apps/report/chart.h"
 #include "apps/report/matrix.h"
-#include "apps/report/stacked_bars.h"
 #include "apps/report/overlay.h"
+#include "apps/report/stacked_bars.h"
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 
