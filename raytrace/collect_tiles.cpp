@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "comm/collectives.h"
-#include "parallel/parallel_for.h"
 
 namespace delray::raytrace {
 namespace {
@@ -12,8 +11,8 @@ namespace {
 using geometry::Rect;
 
 TileCost cost_of(const TilePixels& tile) {
-  return {tile.tile, static_cast<std::uint32_t>(tile.depth.size()),
-          tile.rays.primary + tile.rays.shadow + tile.rays.secondary, tile.busy};
+  return {tile.tile, tile.pixels, tile.rays.primary + tile.rays.shadow + tile.rays.secondary,
+          tile.busy};
 }
 
 // `window` is what the image shows of the frame.
@@ -33,7 +32,7 @@ void put(const Rect& tile, const image::RgbaF* colour, const float* depth, const
 // How many tiles there are, what each took, then the colours of all, then their depths.
 comm::Buffer pack(std::span<const TilePixels> tiles) {
   std::size_t pixels = 0;
-  for (const TilePixels& tile : tiles) pixels += tile.depth.size();
+  for (const TilePixels& tile : tiles) pixels += tile.pixels;
   const std::uint64_t count = tiles.size();
   comm::Buffer message(sizeof(count) + tiles.size() * sizeof(TileCost) +
                        pixels * (sizeof(image::RgbaF) + sizeof(float)));
@@ -43,10 +42,10 @@ comm::Buffer pack(std::span<const TilePixels> tiles) {
   std::byte* depth = colour + pixels * sizeof(image::RgbaF);
   for (const TilePixels& tile : tiles) {
     const TileCost took = cost_of(tile);
-    const std::size_t n = tile.depth.size();
+    const std::size_t n = tile.pixels;
     std::memcpy(cost, &took, sizeof(took));
-    std::memcpy(colour, tile.colour.data(), n * sizeof(image::RgbaF));
-    std::memcpy(depth, tile.depth.data(), n * sizeof(float));
+    std::memcpy(colour, tile.own_colour.data(), n * sizeof(image::RgbaF));
+    std::memcpy(depth, tile.own_depth.data(), n * sizeof(float));
     cost += sizeof(took);
     colour += n * sizeof(image::RgbaF);
     depth += n * sizeof(float);
@@ -89,10 +88,6 @@ std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
       comm::gather(communicator, 0, root ? comm::Buffer() : pack(mine));
   std::vector<TileCost> costs;
   if (!root) return costs;
-  parallel::parallel_for(0, mine.size(), 16, [&](std::size_t i) {
-    if (mine[i].depth.empty()) return;
-    put(tiles.block(mine[i].tile), mine[i].colour.data(), mine[i].depth.data(), tiles.frame, image);
-  });
   for (const TilePixels& tile : mine) costs.push_back(cost_of(tile));
   for (std::size_t rank = 1; rank < messages.size(); ++rank) {
     unpack(messages[rank], tiles, costs, image);

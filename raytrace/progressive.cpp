@@ -236,6 +236,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
       if (root) {
         last_work = work(film, pass);
         film.add(traced.image, pass.samples, pass.cells);
+        renderer.recycle(std::move(traced.image));
         add_costs(traced.tile_costs, {film_window, pass_options.tile, pass_options.tile}, pass,
                   film);
         if (options.after_pass) options.after_pass(film);

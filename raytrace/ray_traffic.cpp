@@ -122,7 +122,7 @@ RayTraffic::RayTraffic(comm::Communicator& communicator, SharedScene& scene,
       to_answer_(static_cast<std::size_t>(communicator.size())) {}
 
 void RayTraffic::add(std::uint32_t number) {
-  TilePixels pixels = clear_tile(frame_, number);
+  TilePixels pixels = start_tile(frame_, number);
   const std::vector<Task> tasks = tasks_of(frame_, pixels.rect);
   if (tasks.empty()) {
     done_.push_back(std::move(pixels));
@@ -279,7 +279,7 @@ bool RayTraffic::work_at_walks() {
 
 void RayTraffic::end_sample(std::uint32_t index) {
   Strand& strand = strands_[index];
-  add_samples(*strand.walk, strand.task, samples_of(frame_.options), strand.tile->pixels);
+  add_samples(frame_, *strand.walk, strand.task, strand.tile->pixels);
   strand.started = false;
   if (++strand.task.first_sample < last_sample_) {
     ready_.push_back(index);

@@ -137,7 +137,13 @@ struct Renderer::Memory {
   SharedScene* scene;    // with
   const Distribution* distribution;
   TileShares shares = {};
+  image::ImageF last = {};  // given back
 
+  image::ImageF picture(const geometry::Rect& window) {
+    if (last.width == window.width() && last.height == window.height())
+      return std::exchange(last, {});
+    return {window.width(), window.height()};
+  }
   const shading::Shader& shader() const { return tracer ? tracer->shader : scene->shader(); }
   const LightTable& lights() const { return tracer ? tracer->lights : scene->lights(); }
 };
@@ -165,11 +171,20 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   const Setting setting{shader,        memory_->lights(), view,
                         options.trace, options.samples,   options.scattered};
   Walks walks(integrator(options.integrator), setting);
-  const TiledFrame frame{tracer, options, setting, walks, {window, options.tile, options.tile}};
   const bool root = communicator.rank() == 0;
+  Result result;
+  if (root) {
+    result.image = memory_->picture(window);
+    if (!options.part.squares.empty()) image::clear(result.image);
+  }
+  const TiledFrame frame{tracer,
+                         options,
+                         setting,
+                         walks,
+                         {window, options.tile, options.tile},
+                         root ? &result.image : nullptr};
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
-  Result result;
   Statistics& statistics = result.statistics;
 
   recording.mark(comm::Phase::redistribute, 0);
@@ -187,10 +202,6 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   statistics.trace_seconds = seconds_since(start);
 
   recording.mark(comm::Phase::gather, 0);
-  if (root) {
-    result.image = image::ImageF(window.width(), window.height());
-    if (!options.part.squares.empty()) image::clear(result.image);
-  }
   std::vector<TileCost> costs = collect_tiles(recording, frame.tiles, traced.tiles, result.image);
   if (root) memory_->shares.learn(frame.tiles, costs, options.costs);
   result.tile_costs = std::move(costs);
@@ -218,6 +229,8 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   summarize(gather_statistics(communicator, mine), statistics);
   return result;
 }
+
+void Renderer::recycle(image::ImageF&& picture) { memory_->last = std::move(picture); }
 
 Result render(comm::Communicator& communicator, const Tracer& tracer, const scenes::Camera& camera,
               const RenderOptions& options) {

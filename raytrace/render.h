@@ -150,6 +150,8 @@ class Renderer {
   // camera and options on every rank.
   Result render(comm::Communicator& communicator, const scenes::Camera& camera,
                 const RenderOptions& options);
+  // The next picture of the same size is made in the memory of this one.
+  void recycle(image::ImageF&& picture);
 
  private:
   struct Memory;

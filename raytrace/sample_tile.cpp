@@ -19,13 +19,27 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-TilePixels clear_tile(const TiledFrame& frame, std::uint32_t tile) {
+TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile) {
   TilePixels pixels;
   pixels.tile = tile;
   pixels.rect = frame.tiles.block(tile);
   if (tasks_of(frame, pixels.rect).empty()) return pixels;
-  pixels.colour.resize(static_cast<std::size_t>(pixels.rect.area()));
-  pixels.depth.assign(pixels.colour.size(), image::kEmptyDepth);
+  const auto count = static_cast<std::size_t>(pixels.rect.area());
+  pixels.pixels = static_cast<std::uint32_t>(count);
+  if (frame.picture != nullptr) {
+    const Rect& window = frame.tiles.frame;
+    pixels.stride = static_cast<std::size_t>(frame.picture->width);
+    const std::size_t first = static_cast<std::size_t>(pixels.rect.y0 - window.y0) * pixels.stride +
+                              static_cast<std::size_t>(pixels.rect.x0 - window.x0);
+    pixels.colour = frame.picture->colour.data() + first;
+    pixels.depth = frame.picture->depth.data() + first;
+    return pixels;
+  }
+  pixels.stride = static_cast<std::size_t>(pixels.rect.width());
+  pixels.own_colour.resize(count);
+  pixels.own_depth.assign(count, image::kEmptyDepth);
+  pixels.colour = pixels.own_colour.data();
+  pixels.depth = pixels.own_depth.data();
   return pixels;
 }
 
@@ -52,23 +66,39 @@ std::vector<Task> tasks_of(const TiledFrame& frame, const Rect& tile) {
   return tasks;
 }
 
-void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pixels) {
-  const float weight = 1.0F / static_cast<float>(samples);
+namespace {
+
+// Adds `weight` times a block's lanes to the pixels of it that are within so many columns and rows,
+// or overwrites those with it.
+template <bool kFirst>
+void add_block(const SampleBlock& block, float weight, int columns, int rows, image::RgbaF* colour,
+               float* depth, std::size_t stride) {
+  for (int y = 0; y < rows; ++y, colour += stride, depth += stride) {
+    for (int x = 0; x < columns; ++x) {
+      const int i = y * kBlockSide + x;
+      const image::RgbaF sum = kFirst ? image::RgbaF{} : colour[x];
+      colour[x] = {sum.r + block.colour.x[i] * weight, sum.g + block.colour.y[i] * weight,
+                   sum.b + block.colour.z[i] * weight, sum.a + block.alpha[i] * weight};
+      depth[x] = kFirst ? block.depth[i] : std::min(depth[x], block.depth[i]);
+    }
+  }
+}
+
+}  // namespace
+
+void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels) {
+  const float weight = 1.0F / static_cast<float>(samples_of(frame.options));
+  const bool first = task.first_sample == frame.options.part.first_sample;
   const Rect& tile = pixels.rect;
   const SampleBlock* block = walk.samples().data();
   for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
+    const std::size_t row = static_cast<std::size_t>(y - tile.y0) * pixels.stride;
     for (int x = task.pixels.x0; x < task.pixels.x1; x += kBlockSide, ++block) {
-      for (int i = 0; i < kPacketRays; ++i) {
-        const int column = x + i % kBlockSide, row = y + i / kBlockSide;
-        if (column >= task.pixels.x1 || row >= task.pixels.y1) continue;
-        const auto at =
-            static_cast<std::size_t>(row - tile.y0) * static_cast<std::size_t>(tile.width()) +
-            static_cast<std::size_t>(column - tile.x0);
-        image::RgbaF& sum = pixels.colour[at];
-        sum = {sum.r + block->colour.x[i] * weight, sum.g + block->colour.y[i] * weight,
-               sum.b + block->colour.z[i] * weight, sum.a + block->alpha[i] * weight};
-        pixels.depth[at] = std::min(pixels.depth[at], block->depth[i]);
-      }
+      const std::size_t at = row + static_cast<std::size_t>(x - tile.x0);
+      const auto add = first ? add_block<true> : add_block<false>;
+      add(*block, weight, std::min(kBlockSide, task.pixels.x1 - x),
+          std::min(kBlockSide, task.pixels.y1 - y), pixels.colour + at, pixels.depth + at,
+          pixels.stride);
     }
   }
   pixels.rays += walk.rays();
@@ -77,13 +107,13 @@ void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pi
 TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile) {
   const FlushToZero flush;
   const double start = thread_seconds();
-  TilePixels pixels = clear_tile(frame, tile);
+  TilePixels pixels = start_tile(frame, tile);
   const int samples = samples_of(frame.options);
   std::unique_ptr<Walk> walk = frame.walks.take();
   for (Task& task : tasks_of(frame, pixels.rect)) {
     for (int s = 0; s < samples; ++s, ++task.first_sample) {
       for (walk->start(task); !walk->done(); walk->go_on()) answer(*frame.tracer, walk->wave());
-      add_samples(*walk, task, samples, pixels);
+      add_samples(frame, *walk, task, pixels);
     }
   }
   frame.walks.give(std::move(walk));

@@ -186,10 +186,11 @@ void compare(const std::string& name, const Arguments& arguments) {
     std::vector<double> ours, theirs, ratios, processor;
     std::uint64_t rays = 0;
     comm::run_threads(1, threads, [&](comm::Communicator& communicator) {
+      raytrace::Renderer renderer(tracer);
       for (int turn = 0; turn <= arguments.turns; ++turn) {
         const double start = processor_seconds();
-        const raytrace::Statistics statistics =
-            raytrace::render(communicator, tracer, camera, options).statistics;
+        raytrace::Result result = renderer.render(communicator, camera, options);
+        const raytrace::Statistics& statistics = result.statistics;
         rays = statistics.rays.primary + statistics.rays.shadow + statistics.rays.secondary;
         const double middle = processor_seconds();
         const double other = bare ? bare_seconds(*bare, recorded, threads) : 0.0;
@@ -197,6 +198,7 @@ void compare(const std::string& name, const Arguments& arguments) {
         ours.push_back(statistics.frame_seconds);
         theirs.push_back(other);
         ratios.push_back(other / statistics.frame_seconds);
+        renderer.recycle(std::move(result.image));
         processor.push_back((processor_seconds() - middle) / (middle - start));
       }
     });

@@ -9,9 +9,9 @@
 
 namespace delray::raytrace {
 
-// Collective: all tiles go into `image` on rank 0, which has the size of the tiles' frame there;
-// the result is what each of them took, on rank 0, and nothing elsewhere. A rank's tiles are one
-// message.
+// Collective: all tiles go into `image` on rank 0, where that has the size of the tiles' frame and
+// has rank 0's own tiles already; the result is what each of them took, on rank 0, and nothing
+// elsewhere. A rank's tiles are one message.
 std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
                                     const loadbalance::Blocks& tiles,
                                     std::span<const TilePixels> mine, image::ImageF& image);

@@ -8,18 +8,24 @@
 
 namespace delray::raytrace {
 
-// A tile's pixels, row by row, and what they took.
+// A tile's pixels and what they took.
 struct TilePixels {
   std::uint32_t tile = 0;
   geometry::Rect rect;
-  std::vector<image::RgbaF> colour;
-  std::vector<float> depth;
+  std::uint32_t pixels = 0;  // that are rendered; 0: none of its squares are
+  // Where its first pixel is and, `stride` pixels further, the one below: in a picture, or in
+  // memory of its own, row by row.
+  image::RgbaF* colour = nullptr;
+  float* depth = nullptr;
+  std::size_t stride = 0;
+  std::vector<image::RgbaF> own_colour;
+  std::vector<float> own_depth;
   RayCounts rays;
   double busy = 0.0;  // seconds of processor time
 };
 
-// Without samples yet; without pixels, where none of its squares is rendered.
-TilePixels clear_tile(const TiledFrame& frame, std::uint32_t tile);
+// Without samples yet: what is in its pixels is overwritten by the first one.
+TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile);
 
 // The parts of a tile that are walked through at once, the first sample of each. Rays of so many
 // pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
@@ -29,7 +35,7 @@ std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile);
 int samples_of(const RenderOptions& options);
 
 // What a walk that is done found. Samples of a pixel have to be added in ascending order.
-void add_samples(const Walk& walk, const Task& task, int samples, TilePixels& pixels);
+void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels);
 
 // All samples, on the calling thread.
 TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile);

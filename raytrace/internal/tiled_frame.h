@@ -13,6 +13,7 @@ struct TiledFrame {
   const Setting& setting;
   Walks& walks;
   loadbalance::Blocks tiles;  // tile k is task k of the schedule
+  image::ImageF* picture;     // of the window, on rank 0, whose tiles go there; null elsewhere
 };
 
 }  // namespace delray::raytrace
