@@ -93,8 +93,9 @@ TEST(CompareTriangulate, TellsOfEveryMethodWhatTheInterfaceSays) {
   EXPECT_EQ(splits.size(), delaunay::splits().size());
   EXPECT_EQ(json["rows"].back()["hash"], hash_of(folder, "plane.xyz --dim 2"));
   const std::string page = folder.read("report.html");
-  for (const char* part : {"Use <strong>", "(measured, ", "(counted; hash ", "Speed-up", "Phases",
-                           "MA/N", "data:image/png;base64,", "fragments (counted)", "thread 2"}) {
+  for (const char* part : {"Use <strong>", "That is <code>delray triangulate", "(measured, ",
+                           "(counted; hash ", "Speed-up", "Phases", "MA/N",
+                           "data:image/png;base64,", "fragments (counted)", "thread 2"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
 }
