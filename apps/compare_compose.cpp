@@ -47,13 +47,16 @@ HollowImages hollow(const std::vector<ImageMasks>& masks, const std::string& cod
   return {masks, codec == "active", composite::kPixelBytes8};
 }
 
-// What messages cost between threads of this process, before it is fitted.
-comm::Network network_here() {
+int cores_here() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+// What messages cost between so many threads of this process, before it is fitted.
+comm::Network network_here(int ranks) {
   comm::Network network;
-  network.latency = 20e-6;  // of waking a thread that waits
+  // Of waking a thread that waits; those that have a core each stay awake.
+  network.latency = ranks <= cores_here() ? 1e-6 : 20e-6;
   network.overhead = 1e-6;
   network.seconds_per_byte = 0;
-  network.shared_cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  network.shared_cores = cores_here();
   return network;
 }
 
@@ -89,7 +92,7 @@ class Comparison {
   }
 
  private:
-  int repeats(int ranks) const { return request_.quick ? 1 : ranks > 16 ? 3 : 9; }
+  int repeats(int ranks) const { return request_.quick ? 1 : ranks > 16 ? 3 : ranks > 4 ? 9 : 15; }
 
   std::vector<std::string> codecs_of(const raster::Share& share) const {
     return is_transparent(share) ? std::vector<std::string>{"deep"} : request_.codecs;
@@ -200,7 +203,7 @@ class Comparison {
         spdlog::warn("codec {} depends on pixels' values: nothing is predicted", codec);
         continue;
       }
-      const MachineModel here{network_here(), measure_layer_costs(*composite::find_codec(codec))};
+      const composite::LayerCosts costs = measure_layer_costs(*composite::find_codec(codec));
       const std::vector<composite::TimedScheme> samples = samples_of(codec);
       for (const int ranks : ranks_of_rows()) {
         const std::vector<ImageMasks>& images = masks(ranks);
@@ -208,10 +211,11 @@ class Comparison {
         if (ranks > kMostMeasuredRanks) count_simulated(codec, ranks, images);
         std::vector<std::pair<std::string, MachineModel>> machines;
         for (const comm::NamedNetwork& named : comm::networks()) {
-          machines.emplace_back(named.name, MachineModel{named.network, here.costs});
+          machines.emplace_back(named.name, MachineModel{named.network, costs});
         }
         if (ranks <= kMostRanksHere) {
-          machines.emplace_back(kThisMachine, fit_to_others(here, samples, ranks));
+          machines.emplace_back(kThisMachine,
+                                fit_to_others({network_here(ranks), costs}, samples, ranks));
         }
         for (ComparedScheme& row : rows_) {
           if (row.codec != codec || row.ranks != ranks) continue;
@@ -267,13 +271,14 @@ class Comparison {
     return samples;
   }
 
-  // Fitted to what other numbers of ranks took.
+  // Fitted to what other numbers of ranks took; ranks that have a core each and ranks that take
+  // turns tell nothing about each other.
   static MachineModel fit_to_others(const MachineModel& here,
                                     const std::vector<composite::TimedScheme>& samples, int ranks) {
     std::vector<composite::TimedScheme> others;
     for (const composite::TimedScheme& sample : samples) {
       const auto count = static_cast<int>(sample.images.ranks.size());
-      if (count == ranks) continue;
+      if (count == ranks || (count <= cores_here()) != (ranks <= cores_here())) continue;
       // Ranks that share cores as these do tell most.
       const double octaves = std::log2(static_cast<double>(count) / ranks);
       others.push_back(sample);

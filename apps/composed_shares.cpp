@@ -45,7 +45,8 @@ MeasuredScheme measure_scheme(comm::Communicator& communicator, const raster::Sh
     comm::Recording recording(communicator, tally);
     comm::Communicator& used = repeat == 0 ? recording : communicator;
     auto layer = layers.make();
-    comm::barrier(communicator);
+    // The first wait may be long, and who has slept comes out late; the last is over at once.
+    for (int i = 0; i < 3; ++i) comm::barrier(communicator);
     const double begin = communicator.seconds();
     composite::Part part = composite::compose(used, std::move(layer), scheme);
     const double composed = communicator.seconds();

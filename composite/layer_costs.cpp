@@ -4,15 +4,22 @@
 #include <array>
 #include <chrono>
 #include <span>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include "comm/collectives.h"
+#include "comm/threads.h"
 #include "image/image.h"
-#include "parallel/arena.h"
 
 namespace delray::composite {
 namespace {
 
 constexpr int kRepeats = 7;
+constexpr comm::Tag kTagPiece = 64;
+// More tell no more about what cores take from each other.
+constexpr int kMostRanks = 4;
+constexpr std::uint64_t kPixelsAhead = std::uint64_t{1} << 18;  // cut before they are merged
 
 // A disc in the middle of a square that covers this share of it; everything from 1 on.
 image::Image8 picture(int side, double share) {
@@ -32,16 +39,14 @@ image::Image8 picture(int side, double share) {
   return image;
 }
 
-template <class F>
-double median_seconds(F&& f) {
-  std::array<double, kRepeats> seconds{};
-  for (double& one : seconds) {
-    const auto begin = std::chrono::steady_clock::now();
-    f();
-    one = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  }
-  std::nth_element(seconds.begin(), seconds.begin() + kRepeats / 2, seconds.end());
-  return seconds[kRepeats / 2];
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+double median(std::array<double, kRepeats> values) {
+  std::nth_element(values.begin(), values.begin() + kRepeats / 2, values.end());
+  return values[kRepeats / 2];
 }
 
 // `seconds` that a call took for so much of each of three things.
@@ -73,29 +78,76 @@ std::array<double, 3> fit(std::span<const Line> lines) {
   return prices;
 }
 
+struct Exchanged {
+  Line cut, merge;
+};
+
+image::Image8 copy(const image::Image8& image) {
+  image::Image8 result(image.width, image.height);
+  std::copy_n(image.colour.data(), image.pixels(), result.colour.data());
+  std::copy_n(image.depth.data(), image.pixels(), result.depth.data());
+  return result;
+}
+
+// Neighbours exchange halves of their images in pieces, several times, all at once and each time
+// with images that nobody has looked at yet, so that memory, caches and what cores take from each
+// other are as they are in schemes.
+Exchanged exchange(comm::Communicator& communicator, const Codec& codec, const image::Image8& image,
+                   std::uint64_t piece) {
+  const std::uint64_t half = image.pixels() / 2;
+  piece = std::min(piece, half);
+  const std::uint64_t pieces = half / piece, ahead = std::min(kPixelsAhead / piece, pieces);
+  const int me = communicator.rank(), partner = communicator.size() > 1 ? me ^ 1 : me;
+  const auto range = [&](int rank, std::uint64_t i) {
+    const std::uint64_t begin = (rank % 2 == 0 ? half : 0) + i * piece;
+    return PixelRange{begin, begin + piece};
+  };
+  std::array<double, kRepeats> cut{}, merge{};
+  double bytes = 0, composited = 0;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    bytes = composited = 0;
+    const auto layer = codec.make(copy(image));
+    // The first wait may be long; the others are over at once, and all are awake.
+    for (int i = 0; i < 3; ++i) comm::barrier(communicator);
+    for (std::uint64_t first = 0; first < pieces; first += ahead) {
+      const std::uint64_t last = std::min(first + ahead, pieces);
+      std::vector<comm::Buffer> messages;
+      auto begin = Clock::now();
+      for (std::uint64_t i = first; i < last; ++i) messages.push_back(layer->cut(range(me, i)));
+      cut[static_cast<std::size_t>(repeat)] += seconds_since(begin);
+      for (comm::Buffer& message : messages) {
+        bytes += static_cast<double>(message.size());
+        communicator.send(partner, kTagPiece, std::move(message));
+      }
+      for (comm::Buffer& message : messages) message = communicator.receive(partner, kTagPiece);
+      begin = Clock::now();
+      for (std::uint64_t i = first; i < last; ++i) {
+        composited += static_cast<double>(
+            layer->merge(range(partner, i), std::exchange(messages[i - first], {}), Side::higher));
+      }
+      merge[static_cast<std::size_t>(repeat)] += seconds_since(begin);
+    }
+  }
+  const auto calls = static_cast<double>(pieces), all = static_cast<double>(pieces * piece);
+  return {{{calls, all, bytes}, median(cut)}, {{calls, all, composited}, median(merge)}};
+}
+
 }  // namespace
 
 LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels) {
-  std::vector<Line> cuts, merges;
-  parallel::Arena(1).execute([&] {
-    for (const std::uint64_t size : {pixels, pixels / 16, pixels / 1024}) {
-      int side = 1;
-      while (static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) < size) ++side;
-      for (const double share : {0.0, 0.3, 0.7, 1.0}) {
-        const auto sender = codec.make(picture(side, share));
-        const auto receiver = codec.make(picture(side, 0.5));
-        const PixelRange all{0, sender->pixels()};
-        comm::Buffer message;
-        std::uint64_t composited = 0;
-        const double cut = median_seconds([&] {
-          message = {};
-          message = sender->cut(all);
-        });
-        const double merge =
-            median_seconds([&] { composited = receiver->merge(all, message, Side::higher); });
-        const auto range = static_cast<double>(all.size());
-        cuts.push_back({{1, range, static_cast<double>(message.size())}, cut});
-        merges.push_back({{1, range, static_cast<double>(composited)}, merge});
+  std::vector<Line> cuts, merges;  // of rank 0
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int ranks = std::clamp(cores / 2 * 2, 1, kMostRanks);
+  comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+    int side = 1;
+    while (static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) < pixels) ++side;
+    for (const double share : {0.0, 0.3, 0.7, 1.0}) {
+      const image::Image8 image = picture(side, share);
+      for (const std::uint64_t piece : {std::uint64_t{1} << 16, std::uint64_t{1} << 12}) {
+        const Exchanged times = exchange(communicator, codec, image, piece);
+        if (communicator.rank() != 0) continue;
+        cuts.push_back(times.cut);
+        merges.push_back(times.merge);
       }
     }
   });

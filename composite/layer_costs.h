@@ -17,11 +17,12 @@ struct LayerCosts {
   double merge_covered = 0;  // and for each pixel composited
 };
 
-// Of images with 8-bit colours, on this machine and one thread: times cuts and merges of images of
-// up to `pixels` pixels, empty, covered in part and full, and fits the costs to the medians. Some
-// hundred times as long as a cut of a full image. Not the same from run to run.
+// Of images with 8-bit colours, on this machine: threads, as ranks with a core each, exchange
+// images of `pixels` pixels, empty, covered in part and full, piece by piece, and the costs are
+// fitted to the medians. Some hundred times as long as a cut of a full image. Not the same from run
+// to run.
 //
 // REQUIRES: pixels >= 4096.
-LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels = std::uint64_t{1} << 20);
+LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels = std::uint64_t{1} << 21);
 
 }  // namespace delray::composite
