@@ -200,14 +200,20 @@ class Comparison {
   void predict() {
     for (const std::string& codec : request_.codecs) {
       if (!is_simulated(codec)) {
-        spdlog::warn("codec {} depends on pixels' values: nothing is predicted", codec);
+        spdlog::warn(
+            "nothing is predicted of codec {}, whose messages depend on what pixels show: "
+            "only of dense and active",
+            codec);
         continue;
       }
       const composite::LayerCosts costs = measure_layer_costs(*composite::find_codec(codec));
       const std::vector<composite::TimedScheme> samples = samples_of(codec);
       for (const int ranks : ranks_of_rows()) {
         const std::vector<ImageMasks>& images = masks(ranks);
-        if (images.empty()) continue;  // transparent
+        if (images.empty()) {
+          spdlog::warn("nothing is predicted of transparent layers");
+          return;
+        }
         if (ranks > kMostMeasuredRanks) count_simulated(codec, ranks, images);
         std::vector<std::pair<std::string, MachineModel>> machines;
         for (const comm::NamedNetwork& named : comm::networks()) {
