@@ -51,7 +51,8 @@ void add_compare_compose(CLI::App& compare, Session& session) {
   command
       ->add_option("--codec", request->codecs,
                    "how pixels travel, separated by commas (default active)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--compose", request->schemes, "schemes, separated by spaces (default all)");
   add_comparison_options(*command, *request, "measure once each", "schemes, codecs, networks");
   add_common_options(*command, session,

@@ -50,9 +50,13 @@ void add_compare_partition(CLI::App& compare, Session& session) {
                    "regions for each rank, separated by commas (default 1,2,4); all but the first "
                    "for the most ranks up to 16 alone")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(1, 64));
-  command->add_option("--partition", request->partitions,
-                      "partitions, separated by spaces (default all)");
+  command
+      ->add_option("--partition", request->partitions,
+                   "partitions, separated by commas (default all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_comparison_options(*command, *request, "three frames each",
                          "partitions, strategies, networks");
   add_common_options(*command, session,

@@ -59,8 +59,10 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       ->check(CLI::Range(0, 64));
   command->add_option("--tile", request->tile, "pixels, the side of a tile (default 32)")
       ->check(CLI::Range(16, 4096));
-  command->add_option("--schedule", request->schedules,
-                      "schedules, separated by spaces (default all)");
+  command
+      ->add_option("--schedule", request->schedules, "schedules, separated by commas (default all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--network", request->network,
                       "the one that is counted and shown (default 10-gigabit-ethernet)");
   add_comparison_options(*command, *request, "three frames each",

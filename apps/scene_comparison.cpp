@@ -33,6 +33,7 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
   add_camera_options(command, options.render.camera);
   command.add_option("--ranks", options.ranks, "how many, separated by commas " + ranks)
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(1, 4096));
 }
 

@@ -18,9 +18,9 @@ REPORTS = [
                 " --compose tree radix-k:2 centralized"),
     ("triangulate", "compare triangulate {points} --threads 1,3 --quick"),
     ("partition", "compare partition gen:city:2000 --size 160x90 --ranks 2,4,80 --regions 1,2"
-                  " --quick --partition mahd graph interlaced"),
+                  " --quick --partition mahd,graph,interlaced"),
     ("schedule", "compare schedule gen:spheres:500 --size 160x90 --ranks 2,4,80 --tile 16 --quick"
-                 " --schedule static demand stealing"),
+                 " --schedule static,demand,stealing"),
 ]
 
 

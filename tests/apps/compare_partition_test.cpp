@@ -41,9 +41,11 @@ void check_frames(const Json& row, const std::string& hash) {
 TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
   const Folder folder;
   const std::string scene = "gen:city:2000 --size 121x80";
-  const Ran ran = run("delray compare partition " + scene +
-                          " --ranks 3,80 --regions 1,2 --quick --stats - -o report.html",
-                      folder.path());
+  const Ran ran =
+      run("delray compare partition --quick --stats - -o report.html --ranks 3,80 "
+          "--regions 1,2 " +
+              scene,
+          folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Json json = Json::parse(ran.out);
   EXPECT_EQ(json["schema"], "delray.compare.partition/1");
@@ -87,7 +89,7 @@ TEST(ComparePartition, CountsAlikeFromRunToRun) {
   for (Json& json : runs) {
     const Ran ran =
         run("delray compare partition gen:spheres:500 --size 61x47 --ranks 4 --regions 1 "
-            "--partition mahd graph --quick --stats -",
+            "--partition mahd,graph --quick --stats -",
             folder.path());
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     json = Json::parse(ran.out);
