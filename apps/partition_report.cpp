@@ -24,7 +24,9 @@ using Rows = std::vector<ComparedPartition>;
 
 constexpr const char* kPicture = "picture";
 
-std::string in_milliseconds(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+std::string time_of(double seconds) {
+  return seconds < 1 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
+}
 
 ChartPoint point(double x, double y) { return {x, y, y, y}; }
 ChartPoint point(double x, const Spread& spread, double unit) {
@@ -69,10 +71,9 @@ Html sentence(const PartitionComparison& comparison, const ComparedPartition& be
       "the work of one alone (counted), cutting takes {} (measured, median of {} runs, {} to {}), "
       "and {:.3g} ranks get a primitive on average (counted). One rank alone takes {} for a frame "
       "(measured).",
-      best.ranks, strong(best.partition), drawn.work_over_share,
-      in_milliseconds(best.cut_seconds.median), best.cut_seconds.runs,
-      in_milliseconds(best.cut_seconds.least), in_milliseconds(best.cut_seconds.most), best.overlap,
-      in_milliseconds(comparison.alone_seconds));
+      best.ranks, strong(best.partition), drawn.work_over_share, time_of(best.cut_seconds.median),
+      best.cut_seconds.runs, time_of(best.cut_seconds.least), time_of(best.cut_seconds.most),
+      best.overlap, time_of(comparison.alone_seconds));
   const ComparedPartition* anew = nullptr;
   const ComparedPartition* next = nullptr;
   for (const ComparedPartition& row : comparison.rows) {
@@ -90,8 +91,7 @@ Html sentence(const PartitionComparison& comparison, const ComparedPartition& be
     text += fmt::format(
         " Where the screen is cut anew for every frame {} is done first, {} instead of {} "
         "(predicted).",
-        escaped(anew->partition), in_milliseconds(anew->finish_seconds),
-        in_milliseconds(best.finish_seconds));
+        escaped(anew->partition), time_of(anew->finish_seconds), time_of(best.finish_seconds));
   return text + "</p>\n";
 }
 
@@ -107,7 +107,7 @@ Html fastest_frames(const std::vector<ComparedStrategy>& strategies) {
     if (best == nullptr) return "";
     parts.push_back(fmt::format("over {} with {} on {} ranks, {}", named.name,
                                 strong(best->strategy), best->ranks,
-                                in_milliseconds(over(best->drawn, named.name)->seconds)));
+                                time_of(over(best->drawn, named.name)->seconds)));
   }
   Html text = "<p>Frames take least ";
   for (std::size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? "; " : "") + parts[i];
@@ -134,7 +134,7 @@ Html answer(const PartitionComparison& comparison) {
       const ComparedStrategy* strategy = best_strategy(comparison.strategies, ranks, named.name);
       line.push_back(strategy != nullptr
                          ? fmt::format("{} {}", strategy->strategy,
-                                       in_milliseconds(over(strategy->drawn, named.name)->seconds))
+                                       time_of(over(strategy->drawn, named.name)->seconds))
                          : "-");
     }
     best_of.rows.push_back(std::move(line));
@@ -146,9 +146,8 @@ Html answer(const PartitionComparison& comparison) {
     return paragraph("No partition was run: all numbers of ranks are above what is measured.");
   return result +
          paragraph(
-             "By number of ranks, the partition with which all have drawn first, and over each "
-             "network "
-             "the strategy whose frames take least:") +
+             "By number of ranks, the partition that comes closest to equal shares, and over each "
+             "network the strategy whose frames take least:") +
          table(best_of);
 }
 
@@ -235,11 +234,15 @@ Html balance(const PartitionRequest& request, const PartitionComparison& compari
   }
   return result +
          paragraph(
-             "Measured: processor time of sort-first's ranks, which take turns on one core, so "
-             "that "
-             "none waits for another; medians, the upright lines are the spread of the frames. "
-             "Predicted: from the boxes of groups of primitives and the pixels that they cover, "
-             "before anything is drawn.");
+             "Counted: a rank's work is the triangles that it rasterizes and the samples that it "
+             "shades, a triangle at the price of two samples. Measured: processor time of "
+             "sort-first's ranks, which take turns on one core and its caches; medians, the "
+             "upright "
+             "lines are the spread of the frames; where a frame takes a rank less than a "
+             "millisecond, what each rank does once weighs more than its share. Predicted: from "
+             "the "
+             "boxes of groups of primitives and the pixels that they cover, before anything is "
+             "drawn.");
 }
 
 Html shown_partition(const PartitionRequest& request, const ShownPartition& shown) {
@@ -249,9 +252,9 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   const double mean = mean_of(shown.work), predicted_mean = mean_of(shown.predicted);
   const auto over_mean = [](double value, double of) { return of > 0 ? value / of : 1.0; };
   const auto told = [&](std::size_t rank) {
-    return fmt::format(
-        "{:.2f} of the mean, predicted {:.2f}; measured {}", over_mean(shown.work[rank], mean),
-        over_mean(shown.predicted[rank], predicted_mean), in_milliseconds(shown.busy[rank]));
+    return fmt::format("{:.2f} of the mean, predicted {:.2f}; measured {}",
+                       over_mean(shown.work[rank], mean),
+                       over_mean(shown.predicted[rank], predicted_mean), time_of(shown.busy[rank]));
   };
   Overlay drawn;
   drawn.title = shown.name;

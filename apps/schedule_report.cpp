@@ -24,7 +24,9 @@ constexpr const char* kFrame = "frame";
 // Shorter than this part of a timeline nothing can be seen.
 constexpr double kSeen = 1.0 / 1500;
 
-std::string milliseconds_of(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+std::string time_of(double seconds) {
+  return seconds < 1 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
+}
 
 double costliest(const ScheduleComparison& comparison) {
   double most = 0;
@@ -60,9 +62,9 @@ Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison
       "{:.3g} times an equal share of the {} that all take (measured); the rank with most rays "
       "sends "
       "{:.3g} times the mean (counted).",
-      ranks, strong(best.schedule), milliseconds_of(over.seconds), escaped(over.network),
+      ranks, strong(best.schedule), time_of(over.seconds), escaped(over.network),
       comparison.seconds > 0 ? over.seconds * ranks / comparison.seconds : 1.0,
-      milliseconds_of(comparison.seconds), over.ray_imbalance);
+      time_of(comparison.seconds), over.ray_imbalance);
   const ComparedSchedule* next = nullptr;
   for (const ComparedSchedule& row : comparison.rows)
     if (&row != &best && row.ranks == ranks &&
@@ -81,7 +83,7 @@ Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison
          fmt::format(
              "<p>The costliest tile alone takes {} (measured): with tiles of {} pixels no schedule "
              "gains from more than {:.0f} ranks.</p>\n",
-             milliseconds_of(costliest(comparison)), request.tile,
+             time_of(costliest(comparison)), request.tile,
              costliest(comparison) > 0 ? comparison.seconds / costliest(comparison) : 1.0);
 }
 
@@ -96,7 +98,7 @@ Html first_screen(const ScheduleRequest& request, const ScheduleComparison& comp
                                      short_number(least_seconds(comparison, ranks) * 1e3)};
     for (std::size_t i = 0; i < over.size(); ++i) {
       const ComparedSchedule* best = best_schedule(comparison.rows, ranks, i);
-      line.push_back(fmt::format("{} {}", best->schedule, milliseconds_of(best->over[i].seconds)));
+      line.push_back(fmt::format("{} {}", best->schedule, time_of(best->over[i].seconds)));
     }
     best_of.rows.push_back(std::move(line));
   }
@@ -216,14 +218,14 @@ Html tile_costs(const ScheduleRequest& request, const ScheduleComparison& compar
     const auto count = static_cast<double>(tile.rays);
     rays.areas.push_back(
         {tile.pixels, 0, most_rays > 0 ? count / most_rays : 0, fmt::format("{} rays", tile.rays)});
-    seconds.areas.push_back(
-        {tile.pixels, 0, most_seconds > 0 ? tile.seconds.median / most_seconds : 0,
-         fmt::format("{}, {} to {}", milliseconds_of(tile.seconds.median),
-                     milliseconds_of(tile.seconds.least), milliseconds_of(tile.seconds.most))});
+    seconds.areas.push_back({tile.pixels, 0,
+                             most_seconds > 0 ? tile.seconds.median / most_seconds : 0,
+                             fmt::format("{}, {} to {}", time_of(tile.seconds.median),
+                                         time_of(tile.seconds.least), time_of(tile.seconds.most))});
   }
   return in_pairs({overlay(rays, kFrame), overlay(seconds, kFrame)}) +
          paragraph(fmt::format("The darker, the more: up to {} rays and {}.",
-                               short_number(most_rays), milliseconds_of(most_seconds)));
+                               short_number(most_rays), time_of(most_seconds)));
 }
 
 Html tile_owners(const ScheduleRequest& request, const ScheduleComparison& comparison) {
