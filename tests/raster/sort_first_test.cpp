@@ -5,6 +5,7 @@
 
 #include "comm/simulated.h"
 #include "comm/threads.h"
+#include "loadbalance/balance.h"
 #include "parallel/arena.h"
 #include "raster/internal/group_traffic.h"
 #include "raster/render.h"
@@ -160,6 +161,31 @@ TEST(SortFirst, RanksThatAreDoneStealBlocksFromASlowOne) {
       EXPECT_LT(end, 0.25 * without) << schedule;
     }
   }
+}
+
+// Told without ranks: only where their shares meet are primitives grouped in another way.
+TEST(SortFirst, CostsForetellWhatRanksCutBy) {
+  const scenes::Scene scene = scenes::generate("gen:terrain:5000");
+  RenderOptions options = sort_first_options();
+  options.report_partition = true;
+  constexpr int kRanks = 3;
+  Statistics statistics;
+  comm::run_threads(kRanks, 1, [&](comm::Communicator& communicator) {
+    Result result = render(communicator, scene, scene.cameras[0], options);
+    if (communicator.rank() == 0) statistics = std::move(result.statistics);
+  });
+  ASSERT_TRUE(statistics.partition);
+  const PartitionStatistics& told = *statistics.partition;
+  const loadbalance::Costs costs = Renderer(scene).costs(kRanks, scene.cameras[0], options);
+  const loadbalance::PartitionReport foretold =
+      loadbalance::report(*loadbalance::find_partitioner(options.partition), costs, kRanks);
+  EXPECT_EQ(told.partition.frame, costs.frame);
+  EXPECT_EQ(told.partition.regions.size(), foretold.partition.regions.size());
+  EXPECT_NEAR(told.over_share, foretold.balance.over_share, 0.03 * told.over_share);
+  EXPECT_NEAR(told.overlap, foretold.balance.overlap, 0.03 * told.overlap);
+  ASSERT_EQ(told.loads.size(), static_cast<std::size_t>(kRanks));
+  for (int rank = 0; rank < kRanks; ++rank)
+    EXPECT_NEAR(told.loads[rank], foretold.balance.loads[rank], 0.05 * told.loads[rank]);
 }
 
 TEST(SortFirst, ARendererMayServeOneNumberOfRanksAfterAnother) {
