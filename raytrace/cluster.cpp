@@ -193,7 +193,8 @@ ClusterData unpack_cluster(std::span<const std::byte> message) {
   return cluster;
 }
 
-Cluster::Cluster(ClusterData&& data, const BuildOptions& options) : data_(std::move(data)) {
+Cluster::Cluster(ClusterData&& data, const BuildOptions& options, const EmbreeDevice& device)
+    : data_(std::move(data)) {
   for (Placement& placement : data_.placements) {
     const Piece& piece = data_.pieces[placement.mesh_number];
     placement.mesh = &piece.mesh;
@@ -202,7 +203,7 @@ Cluster::Cluster(ClusterData&& data, const BuildOptions& options) : data_(std::m
   for (const Piece& piece : data_.pieces)
     numbers_.insert(numbers_.end(), piece.placements.begin(), piece.placements.end());
   geometry_bytes_ = data_.bytes();
-  embree_ = std::make_unique<EmbreeScene>(data_.placements, options);
+  embree_ = std::make_unique<EmbreeScene>(data_.placements, options, device);
 }
 
 }  // namespace delray::raytrace

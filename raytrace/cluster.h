@@ -41,7 +41,7 @@ ClusterData unpack_cluster(std::span<const std::byte> message);
 // Ready for rays. Immutable; any number of threads.
 class Cluster {
  public:
-  Cluster(ClusterData&& data, const BuildOptions& options);
+  Cluster(ClusterData&& data, const BuildOptions& options, const EmbreeDevice& device);
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;
 

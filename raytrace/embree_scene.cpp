@@ -180,13 +180,20 @@ bool last_vertex_is_readable(const glm::vec3* positions, std::size_t size, std::
 
 }  // namespace
 
-struct EmbreeScene::State {
+struct EmbreeDevice::State {
   std::atomic<std::int64_t> memory{0};
   Device device;
-  std::vector<Tree> meshes;  // element i: of mesh i where it is shared, else null
-  Tree top;
-  std::vector<std::unique_ptr<std::vector<glm::vec3>>> copies;  // of positions that were unreadable
   std::string isa;
+};
+
+struct EmbreeScene::State {
+  EmbreeDevice common;
+  RTCDevice device;  // the same
+  std::uint64_t memory = 0;
+  std::vector<Tree> meshes = {};  // element i: of mesh i where it is shared, else null
+  Tree top = {};
+  std::vector<std::unique_ptr<std::vector<glm::vec3>>> copies =
+      {};  // of positions that were unreadable
 };
 
 namespace {
@@ -212,7 +219,7 @@ void commit(RTCDevice device, RTCScene tree) {
 
 void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
                       const Placement& placement, const BuildOptions& options) {
-  RTCDevice device = state.device.get();
+  RTCDevice device = state.device;
   const scenes::Mesh& mesh = *placement.mesh;
   const glm::vec3* positions = placement.positions;
   const bool moved = !placement.moved.empty();
@@ -239,7 +246,7 @@ void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
 
 void attach_instance(EmbreeScene::State& state, unsigned number, const Placement& placement,
                      const BuildOptions& options) {
-  RTCDevice device = state.device.get();
+  RTCDevice device = state.device;
   Tree& mesh = state.meshes[placement.mesh_number];
   if (!mesh) {
     mesh = new_tree(device, options);
@@ -327,8 +334,7 @@ void find_hits(RTCScene tree, const ActiveRays& active, RayPacket& packet, bool 
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptions& options)
-    : state_(std::make_unique<State>()) {
+EmbreeDevice::EmbreeDevice(const BuildOptions& options) : state_(std::make_shared<State>()) {
   // No "threads=": with oneTBB that would limit every arena of the process.
   std::string configuration = "set_affinity=0";
   if (!options.isa.empty()) configuration += ",isa=" + options.isa;
@@ -337,6 +343,27 @@ EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptio
   RTCDevice device = state_->device.get();
   rtcSetDeviceMemoryMonitorFunction(device, count_memory, &state_->memory);
   state_->isa = isa_in_use(device);
+}
+
+std::uint64_t EmbreeDevice::memory() const {
+  return static_cast<std::uint64_t>(state_->memory.load(std::memory_order_relaxed));
+}
+
+std::string EmbreeDevice::version() const {
+  const auto part = [&](RTCDeviceProperty property) {
+    return std::to_string(rtcGetDeviceProperty(state_->device.get(), property));
+  };
+  return part(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." + part(RTC_DEVICE_PROPERTY_VERSION_MINOR) +
+         "." + part(RTC_DEVICE_PROPERTY_VERSION_PATCH);
+}
+
+std::string EmbreeDevice::isa() const { return state_->isa; }
+
+EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptions& options,
+                         const EmbreeDevice& common)
+    : state_(new State{common, common.state_->device.get()}) {
+  RTCDevice device = state_->device;
+  const std::uint64_t before = common.memory();
 
   std::size_t meshes = 0;
   for (const Placement& p : placements) meshes = std::max<std::size_t>(meshes, p.mesh_number + 1);
@@ -354,6 +381,7 @@ EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptio
     }
   }
   commit(device, state_->top.get());
+  state_->memory = common.memory() - before;
 }
 
 EmbreeScene::~EmbreeScene() = default;
@@ -420,18 +448,8 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
 #endif
 }
 
-std::uint64_t EmbreeScene::memory() const {
-  return static_cast<std::uint64_t>(state_->memory.load(std::memory_order_relaxed));
-}
+std::uint64_t EmbreeScene::memory() const { return state_->memory; }
 
-std::string EmbreeScene::version() const {
-  const auto part = [&](RTCDeviceProperty property) {
-    return std::to_string(rtcGetDeviceProperty(state_->device.get(), property));
-  };
-  return part(RTC_DEVICE_PROPERTY_VERSION_MAJOR) + "." + part(RTC_DEVICE_PROPERTY_VERSION_MINOR) +
-         "." + part(RTC_DEVICE_PROPERTY_VERSION_PATCH);
-}
-
-std::string EmbreeScene::isa() const { return state_->isa; }
+const EmbreeDevice& EmbreeScene::device() const { return state_->common; }
 
 }  // namespace delray::raytrace

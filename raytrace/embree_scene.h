@@ -19,13 +19,35 @@ struct BuildOptions {
   std::string isa;           // sse2, sse4.2, avx, avx2, avx512 (where present); empty: the best
 };
 
+// One of Embree's devices. Those of many small scenes have one in common: a process has room for
+// some hundreds. Copies are the same device.
+class EmbreeDevice {
+ public:
+  // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
+  explicit EmbreeDevice(const BuildOptions& options);
+
+  std::uint64_t memory() const;  // bytes that Embree holds for all its scenes
+  std::string version() const;   // of the library, e.g. "3.13.5"
+  std::string isa() const;       // in use: sse2, sse4.2, avx, avx2, avx512, neon
+
+ private:
+  friend class EmbreeScene;
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
 // Immutable once made; any number of threads may send rays at the same time.
 class EmbreeScene {
  public:
-  // Builds in the caller's arena. Buffers of `placements` are used in place and have to outlive the
+  // Builds in the caller's arena; scenes of one device one after the other, or memory() of one
+  // counts some of another. Buffers of `placements` are used in place and have to outlive the
   // object. Degenerate triangles are never hit. O(n log n).
   // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
-  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options);
+  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options,
+              const EmbreeDevice& device);
+  // On a device of its own.
+  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options)
+      : EmbreeScene(placements, options, EmbreeDevice(options)) {}
   ~EmbreeScene();
   EmbreeScene(EmbreeScene&&) noexcept;
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
@@ -45,9 +67,8 @@ class EmbreeScene {
                 std::span<SeeThrough, kPacketRays> passed, bool coherent) const;
 
   bool has_see_through() const { return has_see_through_; }
-  std::uint64_t memory() const;  // bytes that Embree holds for this scene
-  std::string version() const;   // of the library, e.g. "3.13.5"
-  std::string isa() const;       // in use: sse2, sse4.2, avx, avx2, avx512, neon
+  std::uint64_t memory() const;  // bytes that Embree took for this scene
+  const EmbreeDevice& device() const;
 
   struct State;  // Embree's objects
 

@@ -214,8 +214,8 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
     statistics.build_seconds = tracer->build_seconds;
     statistics.degenerate = tracer->degenerate;
     statistics.structure_bytes = tracer->embree.memory();
-    statistics.embree_version = tracer->embree.version();
-    statistics.embree_isa = tracer->embree.isa();
+    statistics.embree_version = tracer->embree.device().version();
+    statistics.embree_isa = tracer->embree.device().isa();
   } else {
     const SharedScene& scene = *memory_->scene;
     statistics.build_seconds = scene.build_seconds();

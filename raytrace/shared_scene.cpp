@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "comm/collectives.h"
+#include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::raytrace {
@@ -102,7 +103,10 @@ SharedScene SharedScene::make(comm::Communicator& communicator, scenes::ScenePar
 SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shader,
                          LightTable lights, std::vector<ClusterData>&& mine,
                          const ShareOptions& options)
-    : shader_(std::move(shader)), lights_(std::move(lights)), build_(options.build) {
+    : shader_(std::move(shader)),
+      lights_(std::move(lights)),
+      build_(options.build),
+      device_(build_) {
   const auto start = std::chrono::steady_clock::now();
   if (options.deal == ShareOptions::Deal::random)
     mine = dealt_at_random(communicator, std::move(mine), options.seed);
@@ -156,23 +160,23 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
 
   std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
   std::vector<std::uint64_t> degenerate(mine.size());
-  parallel::parallel_for(0, mine.size(), 1, [&](std::size_t i) {
-    ready[i] = std::make_shared<const Cluster>(std::move(mine[i]), build_);
-    degenerate[i] = count_degenerate(ready[i]->placements());
+  // Each thread builds clusters on a device of its own, so that each knows what it takes.
+  const auto threads = static_cast<std::size_t>(parallel::arena_threads());
+  parallel::parallel_for(0, threads, 1, [&](std::size_t thread) {
+    const EmbreeDevice device = thread == 0 ? device_ : EmbreeDevice(build_);
+    for (std::size_t i = thread; i < mine.size(); i += threads) {
+      ready[i] = std::make_shared<const Cluster>(std::move(mine[i]), build_, device);
+      degenerate[i] = count_degenerate(ready[i]->placements());
+    }
   });
   for (std::size_t i = 0; i < ready.size(); ++i) {
     own_bytes_ += ready[i]->bytes();
     degenerate_ += degenerate[i];
-    if (version_.empty()) version_ = ready[i]->embree().version(), isa_ = ready[i]->embree().isa();
     owned_.emplace(first_mine + static_cast<std::uint32_t>(i), std::move(ready[i]));
   }
   const std::uint64_t all_bytes = comm::all_reduce_value(communicator, own_bytes_, std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
   degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
-  if (version_.empty()) {
-    const EmbreeScene nothing({}, build_);
-    version_ = nothing.version(), isa_ = nothing.isa();
-  }
   note_bytes();
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -186,7 +190,7 @@ std::shared_ptr<const Cluster> SharedScene::find(std::uint32_t cluster) {
 }
 
 std::shared_ptr<const Cluster> SharedScene::put(std::uint32_t cluster, ClusterData&& data) {
-  auto ready = std::make_shared<const Cluster>(std::move(data), build_);
+  auto ready = std::make_shared<const Cluster>(std::move(data), build_, device_);
   cached_bytes_ += ready->bytes();
   uses_.push_front(cluster);
   cached_.emplace(cluster, Cached{ready, uses_.begin()});
@@ -204,7 +208,7 @@ std::shared_ptr<const Cluster> SharedScene::give_away(std::uint32_t cluster) {
 }
 
 void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
-  auto ready = std::make_shared<const Cluster>(std::move(data), build_);
+  auto ready = std::make_shared<const Cluster>(std::move(data), build_, device_);
   own_bytes_ += ready->bytes();
   owned_.emplace(cluster, std::move(ready));
   note_bytes();

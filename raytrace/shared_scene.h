@@ -75,8 +75,8 @@ class SharedScene {
   std::uint64_t cache_bytes() const { return cache_limit_; }
   std::uint64_t evicted() const { return evicted_; }
   double build_seconds() const { return build_seconds_; }
-  std::string embree_version() const { return version_; }
-  std::string embree_isa() const { return isa_; }
+  std::string embree_version() const { return device_.version(); }
+  std::string embree_isa() const { return device_.isa(); }
   std::uint64_t degenerate() const { return degenerate_; }
 
  private:
@@ -90,6 +90,7 @@ class SharedScene {
   shading::Shader shader_;
   LightTable lights_;
   BuildOptions build_;
+  EmbreeDevice device_;  // of what comes later
   ClusterTree tree_;
   std::vector<int> owners_;                  // by cluster
   std::vector<std::uint64_t> packed_bytes_;  // by cluster
@@ -99,7 +100,6 @@ class SharedScene {
   std::uint64_t own_bytes_ = 0, cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
   bool has_instances_ = false;
   double build_seconds_ = 0.0;
-  std::string version_, isa_;
   std::uint64_t degenerate_ = 0;
 };
 

@@ -96,9 +96,22 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Distributions,
                                          Case{"gen:cornell:600", "whitted"},
                                          Case{"gen:spheres:4000", "whitted"}));
 
+// A process has room for some hundreds of Embree's devices, but not for a thousand.
+TEST(SharedScene, ThousandsOfClustersFitIntoAProcess) {
+  const scenes::Scene scene = completed("gen:terrain:4000");
+  RenderOptions options = small(20, 12);
+  options.tile = 16;
+  ShareOptions share;
+  share.most_triangles = 2;
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  const Result result = shared_out(scene, options, *find_distribution("ray"), share, 3, 2);
+  EXPECT_EQ(different(result, whole), 0U);
+}
+
 TEST(SharedScene, NoRankHoldsMoreThanItsPartAndTheCache) {
   constexpr int kRanks = 4;
-  const char* name = "gen:terrain:40000";
+  const bool full = std::getenv("DELRAY_FULL_TESTS") != nullptr;
+  const char* name = full ? "gen:terrain:2000000" : "gen:terrain:40000";
   const scenes::Scene scene = completed(name);
   RenderOptions options = small(96, 64);
   options.tile = 16;
@@ -110,6 +123,9 @@ TEST(SharedScene, NoRankHoldsMoreThanItsPartAndTheCache) {
   const Result whole = render_alone(scene, scene.cameras[0], options);
   for (const char* data : {"ray", "object", "hybrid", "ring"}) {
     SCOPED_TRACE(data);
+    const bool fetches = std::string(data) == "object" || std::string(data) == "hybrid";
+    // Percent. Embree takes memory in pieces that are large beside small clusters.
+    const std::uint64_t most = full ? 40 : fetches ? 55 : 45;
     Result result;
     comm::run_threads(kRanks, 1, [&](comm::Communicator& communicator) {
       SharedScene mine = SharedScene::make(
@@ -121,12 +137,11 @@ TEST(SharedScene, NoRankHoldsMoreThanItsPartAndTheCache) {
     EXPECT_EQ(different(result, whole), 0U);
     std::uint64_t fetched = 0, dropped = 0, travelled = 0;
     for (const RankStatistics& rank : result.statistics.ranks) {
-      EXPECT_LT(rank.geometry_bytes, replicated * 7 / 10);  // small clusters cost more each
+      EXPECT_LT(rank.geometry_bytes * 100, replicated * most) << replicated;
       fetched += rank.clusters_fetched;
       dropped += rank.clusters_dropped;
       travelled += rank.rays_sent;
     }
-    const bool fetches = std::string(data) == "object" || std::string(data) == "hybrid";
     EXPECT_EQ(fetched > 0, fetches);
     EXPECT_EQ(dropped > 0, std::string(data) == "object");
     EXPECT_EQ(travelled > 0, std::string(data) != "object");

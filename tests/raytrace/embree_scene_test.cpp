@@ -277,10 +277,10 @@ TEST(EmbreeScene, UsesTheInstructionSetAsked) {
 #if defined(__x86_64__)
   BuildOptions options;
   options.isa = "sse2";
-  const std::string isa = make_tracer(scene, options).embree.isa();
+  const std::string isa = make_tracer(scene, options).embree.device().isa();
   EXPECT_EQ(isa.substr(0, 3), "sse");
 #endif
-  EXPECT_FALSE(make_tracer(scene).embree.version().empty());
+  EXPECT_FALSE(make_tracer(scene).embree.device().version().empty());
 }
 
 TEST(Intersection, GivesPointNormalAndUv) {
