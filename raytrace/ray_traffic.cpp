@@ -9,6 +9,7 @@
 #include "parallel/parallel_for.h"
 #include "raytrace/flush_to_zero.h"
 #include "raytrace/internal/distributions.h"
+#include "raytrace/internal/ray_messages.h"
 
 namespace delray::raytrace {
 namespace {
@@ -28,80 +29,6 @@ constexpr auto kMoment = std::chrono::microseconds(100);
 // cluster may change rank where that one is so much more loaded.
 constexpr std::uint64_t kTestsBetweenLoads = 8192;
 constexpr double kMuchMore = 1.2;
-
-enum class Kind : std::uint32_t { meet, answer, fetch, cluster, move, load };
-
-struct Header {
-  Kind kind = Kind::meet;
-  std::uint32_t cluster = 0;
-  std::uint32_t rays = 0, shadows = 0;
-  std::uint64_t load = 0;
-};
-
-class Writer {
- public:
-  explicit Writer(std::size_t size) : buffer_(size) {}
-  void put(const void* from, std::size_t size) {
-    std::memcpy(buffer_.data() + at_, from, size);
-    at_ += size;
-  }
-  comm::Buffer take() { return std::move(buffer_); }
-
- private:
-  comm::Buffer buffer_;
-  std::size_t at_ = 0;
-};
-
-// What of a ray travels: the point only if there is one, and no more layers than there are.
-std::size_t size_of(const TravellingRay& ray) {
-  return ray.placement == kMiss ? offsetof(TravellingRay, point) : sizeof(TravellingRay);
-}
-std::size_t size_of(const TravellingShadow& shadow) {
-  return offsetof(TravellingShadow, layer) + shadow.layers * sizeof(Layer);
-}
-
-comm::Buffer pack(Kind kind, std::span<const TravellingRay> rays,
-                  std::span<const TravellingShadow> shadows) {
-  std::size_t size = sizeof(Header);
-  for (const TravellingRay& ray : rays) size += size_of(ray);
-  for (const TravellingShadow& shadow : shadows) size += size_of(shadow);
-  Header header;
-  header.kind = kind;
-  header.rays = static_cast<std::uint32_t>(rays.size());
-  header.shadows = static_cast<std::uint32_t>(shadows.size());
-  Writer out(size);
-  out.put(&header, sizeof(header));
-  for (const TravellingRay& ray : rays) out.put(&ray, size_of(ray));
-  for (const TravellingShadow& shadow : shadows) out.put(&shadow, size_of(shadow));
-  return out.take();
-}
-
-// Calls f(ray) and g(shadow) for what pack has put together.
-template <class F, class G>
-void unpack(const comm::Buffer& message, const Header& header, F&& f, G&& g) {
-  const std::byte* at = message.data() + sizeof(Header);
-  for (std::uint32_t i = 0; i < header.rays; ++i) {
-    TravellingRay ray;
-    std::memcpy(static_cast<void*>(&ray), at, offsetof(TravellingRay, point));
-    if (ray.placement != kMiss) std::memcpy(static_cast<void*>(&ray), at, sizeof(ray));
-    at += size_of(ray);
-    f(std::move(ray));
-  }
-  for (std::uint32_t i = 0; i < header.shadows; ++i) {
-    TravellingShadow shadow;
-    std::memcpy(static_cast<void*>(&shadow), at, offsetof(TravellingShadow, layer));
-    std::memcpy(static_cast<void*>(&shadow), at, size_of(shadow));
-    at += size_of(shadow);
-    g(std::move(shadow));
-  }
-}
-
-comm::Buffer with_header(const Header& header, const comm::Buffer& content) {
-  Writer out(sizeof(header) + content.size());
-  out.put(&header, sizeof(header));
-  if (!content.empty()) out.put(content.data(), content.size());
-  return out.take();
-}
 
 bool is_decided(const TravellingRay&) { return false; }
 bool is_decided(const TravellingShadow& shadow) { return shadow.occluded; }
@@ -196,45 +123,48 @@ void RayTraffic::receive_all() {
 void RayTraffic::receive(const comm::Envelope& envelope) {
   const comm::Buffer message = communicator_.receive(envelope.source, kTagTraffic);
   termination_.count_received();
-  Header header;
+  MessageHeader header;
   std::memcpy(&header, message.data(), sizeof(header));
-  const std::span<const std::byte> content(message.data() + sizeof(Header),
-                                           message.size() - sizeof(Header));
+  const std::span<const std::byte> content(message.data() + sizeof(MessageHeader),
+                                           message.size() - sizeof(MessageHeader));
   switch (header.kind) {
-    case Kind::meet: {
+    case MessageKind::meet: {
       std::vector<Crossing> crossings;
       const auto take_in = [&](auto&& ray) {
         if (ring_) choose_next(ray, crossings);
         route(std::move(ray));
       };
-      unpack(message, header, take_in, take_in);
+      Travellers travellers = unpack_travellers(message, header);
+      for (TravellingRay& ray : travellers.rays) take_in(std::move(ray));
+      for (TravellingShadow& shadow : travellers.shadows) take_in(std::move(shadow));
       break;
     }
-    case Kind::answer:
-      unpack(
-          message, header, [&](TravellingRay&& ray) { deliver(ray); },
-          [&](TravellingShadow&& shadow) { deliver(shadow); });
+    case MessageKind::answer: {
+      const Travellers travellers = unpack_travellers(message, header);
+      for (const TravellingRay& ray : travellers.rays) deliver(ray);
+      for (const TravellingShadow& shadow : travellers.shadows) deliver(shadow);
       break;
-    case Kind::fetch: {
-      Header answer;
-      answer.kind = Kind::cluster;
+    }
+    case MessageKind::fetch: {
+      MessageHeader answer;
+      answer.kind = MessageKind::cluster;
       answer.cluster = header.cluster;
       send(envelope.source,
            with_header(answer, raytrace::pack(scene_.find(header.cluster)->data())));
       break;
     }
-    case Kind::cluster: {
+    case MessageKind::cluster: {
       ++counts_.clusters_fetched;
       counts_.cluster_bytes += content.size();
       arrived_.emplace_back(header.cluster, scene_.put(header.cluster, unpack_cluster(content)));
       fetching_.erase(header.cluster);
       break;
     }
-    case Kind::move:
+    case MessageKind::move:
       scene_.take_over(header.cluster, unpack_cluster(content));
       taken_over_.push_back(header.cluster);
       break;
-    case Kind::load:
+    case MessageKind::load:
       next_load_ = header.load;
       knows_next_load_ = true;
       break;
@@ -507,8 +437,8 @@ void RayTraffic::look_at_waiting(bool hungry) {
         ++at;
         break;
       case Meeting::fetch_cluster: {
-        Header header;
-        header.kind = Kind::fetch;
+        MessageHeader header;
+        header.kind = MessageKind::fetch;
         header.cluster = number;
         send(static_cast<int>(owner), with_header(header, {}));
         fetching_.insert(number);
@@ -528,17 +458,17 @@ void RayTraffic::look_at_waiting(bool hungry) {
 
 void RayTraffic::send_all(bool hungry) {
   for (int rank = 0; rank < communicator_.size(); ++rank) {
-    const auto send_batch = [&](Kind kind, Outgoing& out) {
+    const auto send_batch = [&](MessageKind kind, Outgoing& out) {
       const std::size_t count = out.rays.size() + out.shadows.size();
       if (count == 0 || (!hungry && count < kBatchRays)) return false;
-      (kind == Kind::meet ? counts_.rays_sent : counts_.answers_sent) += count;
+      (kind == MessageKind::meet ? counts_.rays_sent : counts_.answers_sent) += count;
       send(rank, pack(kind, out.rays, out.shadows));
       out.rays.clear();
       out.shadows.clear();
       return true;
     };
-    send_batch(Kind::meet, to_meet_[static_cast<std::size_t>(rank)]);
-    send_batch(Kind::answer, to_answer_[static_cast<std::size_t>(rank)]);
+    send_batch(MessageKind::meet, to_meet_[static_cast<std::size_t>(rank)]);
+    send_batch(MessageKind::answer, to_answer_[static_cast<std::size_t>(rank)]);
   }
 }
 
@@ -547,8 +477,8 @@ void RayTraffic::even_out() {
   if (ranks == 1) return;
   const std::uint64_t load = counts_.tests;
   if (load - told_load_ >= kTestsBetweenLoads) {
-    Header header;
-    header.kind = Kind::load;
+    MessageHeader header;
+    header.kind = MessageKind::load;
     header.load = load;
     send((communicator_.rank() + ranks - 1) % ranks, with_header(header, {}));
     told_load_ = load;
@@ -561,8 +491,8 @@ void RayTraffic::even_out() {
   // the order of sending, it is there before them.
   for (const auto& [number, cluster] : scene_.owned()) {
     if (waiting_.contains(number)) continue;
-    Header header;
-    header.kind = Kind::move;
+    MessageHeader header;
+    header.kind = MessageKind::move;
     header.cluster = number;
     const int next = (communicator_.rank() + 1) % ranks;
     comm::Buffer message = with_header(header, raytrace::pack(cluster->data()));
