@@ -21,6 +21,15 @@ TEST(Program, TellsItsVersion) {
   EXPECT_EQ(ran.out.rfind("delray 0.", 0), 0U) << ran.out;
 }
 
+// Most of the time of a start would go into OpenImageIO's 250 libraries.
+TEST(Program, StartsWithoutWhatOnlyPictureFilesNeed) {
+  const Folder folder;
+  const Ran ran = run("LD_TRACE_LOADED_OBJECTS=1 " DELRAY_PROGRAM, folder.path());
+  EXPECT_EQ(ran.exit_code, 0);
+  EXPECT_NE(ran.out.find("libtbb"), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("libOpenImageIO"), std::string::npos) << ran.out;
+}
+
 TEST(Program, EverySubcommandHasHelpWithTwoExamples) {
   const Folder folder;
   for (const std::string name :

@@ -3,6 +3,7 @@
 #include <delaunay/generate.h>
 #include <delaunay/triangulate.h>
 #include <image/compare.h>
+#include <image/io.h>
 #include <raster/render.h>
 #include <raytrace/render.h>
 #include <scenes/generate.h>
@@ -34,6 +35,8 @@ int main() {
     for (const float depth : picture.depth.span()) covered += depth < image::kEmptyDepth ? 1 : 0;
     if (image::compare(picture, traced.image).coverage_differs > 10) covered = 0;
   });
+  // Through the library that is loaded on first use.
+  if (image::encode_png(1, 1, std::vector<image::Rgba8>(1)).empty()) return 3;
   std::printf("%zu triangles, %llu pixels\n", mesh.size(),
               static_cast<unsigned long long>(covered));
   return covered > 1000 ? 0 : 2;

@@ -5,8 +5,8 @@
 
 #include "files/error.h"
 #include "files/read_file.h"
-#include "image/internal/input_file.h"
 #include "image/io.h"
+#include "image/openimageio/input_file.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #define DELRAY_LEAK_CHECKER 1
@@ -19,7 +19,7 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
-namespace delray::image::internal {
+namespace delray::image::openimageio {
 namespace {
 
 constexpr std::size_t kMagicBytes = 16;
@@ -171,4 +171,4 @@ void InputFile::read_rows(int y, int rows, OIIO::TypeDesc type, void* values) {
   }
 }
 
-}  // namespace delray::image::internal
+}  // namespace delray::image::openimageio

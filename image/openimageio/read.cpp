@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <string_view>
 
-#include "image/internal/input_file.h"
-#include "image/io.h"
+#include "image/openimageio/codec.h"
+#include "image/openimageio/input_file.h"
 #include "image/srgb.h"
 
-namespace delray::image {
+namespace delray::image::openimageio {
 namespace {
-
-using internal::InputFile;
 
 // Which channel of a file is what; -1: none.
 struct Layout {
@@ -204,17 +202,10 @@ PictureInfo read_info(const std::filesystem::path& path) {
           spec.channelnames, attributes_of(spec)};
 }
 
-Picture read_picture(const std::filesystem::path& path) {
+Picture read_picture(const std::filesystem::path& path, bool with_channels) {
   InputFile file(path);
-  return read_all(file, true);
+  return read_all(file, with_channels);
 }
-
-ImageF read_image_float(const std::filesystem::path& path) {
-  InputFile file(path);
-  return read_all(file, false).image;
-}
-
-Image8 read_image8(const std::filesystem::path& path) { return to_8bit(read_image_float(path)); }
 
 Texels read_texels(const std::filesystem::path& path) {
   InputFile file(path);
@@ -232,4 +223,4 @@ RawChannels read_float_channels(const std::filesystem::path& path) {
   return {spec.width, spec.height, spec.channelnames, read_numbers(file)};
 }
 
-}  // namespace delray::image
+}  // namespace delray::image::openimageio

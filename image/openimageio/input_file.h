@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace delray::image::internal {
+namespace delray::image::openimageio {
 
 // Errors are files::FileError (input) with the file's name.
 class InputFile {
@@ -51,4 +51,4 @@ class InputFile {
   OIIO::ImageSpec spec_;
 };
 
-}  // namespace delray::image::internal
+}  // namespace delray::image::openimageio

@@ -1,0 +1,114 @@
+#include "image/io.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cctype>
+
+#include "files/atomic_file.h"
+#include "files/error.h"
+#include "image/openimageio/codec.h"
+#include "image/srgb.h"
+
+namespace delray::image {
+namespace {
+
+using openimageio::Codec;
+
+constexpr std::array kSuffixes = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"};
+
+const Codec* load_codec() {
+  using Entry = const Codec* (*)();
+  // Never unloaded: what it brings starts threads.
+  void* library = ::dlopen(openimageio::kLibrary, RTLD_LAZY | RTLD_LOCAL);
+  void* entry = library ? ::dlsym(library, openimageio::kEntry) : nullptr;
+  if (!entry) {
+    throw files::FileError(files::Cause::device, openimageio::kLibrary, "",
+                           std::string("cannot be loaded: ") + ::dlerror());
+  }
+  return reinterpret_cast<Entry>(entry)();
+}
+
+const Codec& codec() {
+  static const Codec* const loaded = load_codec();
+  return *loaded;
+}
+
+std::string lower_suffix(const std::filesystem::path& path) {
+  std::string suffix = path.extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return suffix;
+}
+
+void check_suffix(const std::filesystem::path& path) {
+  if (is_picture_suffix(path)) return;
+  std::string known;
+  for (const char* suffix : kSuffixes) known += std::string(known.empty() ? "" : " ") + suffix;
+  throw files::FileError(files::Cause::device, path.string(), "",
+                         "cannot write: the suffix of a picture is one of " + known);
+}
+
+}  // namespace
+
+PictureInfo read_info(const std::filesystem::path& path) { return codec().read_info(path); }
+
+Picture read_picture(const std::filesystem::path& path) { return codec().read_picture(path, true); }
+
+ImageF read_image_float(const std::filesystem::path& path) {
+  return codec().read_picture(path, false).image;
+}
+
+Image8 read_image8(const std::filesystem::path& path) { return to_8bit(read_image_float(path)); }
+
+Texels read_texels(const std::filesystem::path& path) { return codec().read_texels(path); }
+
+Texels decode_image8(std::span<const std::byte> bytes, const std::string& name) {
+  return codec().decode_image8(bytes, name);
+}
+
+RawChannels read_float_channels(const std::filesystem::path& path) {
+  return codec().read_float_channels(path);
+}
+
+std::span<const char* const> picture_suffixes() { return kSuffixes; }
+
+bool is_picture_suffix(const std::filesystem::path& path) {
+  const std::string suffix = lower_suffix(path);
+  return std::find(kSuffixes.begin(), kSuffixes.end(), suffix) != kSuffixes.end();
+}
+
+void write_image(const std::filesystem::path& path, const Image8& image,
+                 const WriteOptions& options) {
+  assert(image.width >= 1 && image.height >= 1);
+  check_suffix(path);
+  const std::string suffix = lower_suffix(path);
+  if (suffix == ".exr") return write_image(path, to_float(image), options);
+  const bool jpeg = suffix == ".jpg" || suffix == ".jpeg";
+  files::AtomicFile target(path);
+  (jpeg ? codec().write_jpeg : codec().write_codes)({target.temporary(), path.string()}, image,
+                                                    options);
+  target.commit();
+}
+
+void write_image(const std::filesystem::path& path, const ImageF& image,
+                 const WriteOptions& options) {
+  assert(image.width >= 1 && image.height >= 1);
+  check_suffix(path);
+  if (lower_suffix(path) != ".exr") return write_image(path, to_8bit(image), options);
+  for ([[maybe_unused]] const Channel& channel : options.channels) {
+    assert(channel.values.size() == image.pixels());
+  }
+  files::AtomicFile target(path);
+  codec().write_exr({target.temporary(), path.string()}, image, options);
+  target.commit();
+}
+
+std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels) {
+  assert(width >= 1 && height >= 1);
+  assert(texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  return codec().encode_png(width, height, texels);
+}
+
+}  // namespace delray::image

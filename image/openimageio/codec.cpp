@@ -1,0 +1,18 @@
+#include "image/openimageio/codec.h"
+
+// Found by its name: openimageio::kEntry.
+extern "C" const delray::image::openimageio::Codec* delray_openimageio_codec() {
+  using namespace delray::image;
+  static constexpr openimageio::Codec kCodec = {
+      .read_info = openimageio::read_info,
+      .read_picture = openimageio::read_picture,
+      .read_texels = openimageio::read_texels,
+      .decode_image8 = openimageio::decode_image8,
+      .read_float_channels = openimageio::read_float_channels,
+      .write_exr = openimageio::write_exr,
+      .write_codes = openimageio::write_codes,
+      .write_jpeg = openimageio::write_jpeg,
+      .encode_png = openimageio::encode_png,
+  };
+  return &kCodec;
+}
