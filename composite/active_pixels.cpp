@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cstring>
 
+#include <hwy/cache_control.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "composite/active_pixels.cpp"
 #include <hwy/foreach_target.h>
@@ -46,6 +48,14 @@ using Depths = hn::CappedTag<float, kMostLanes>;
 using Codes = hn::RebindToUnsigned<Depths>;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
+// Runs of covered pixels are too short for the processor to notice that they will be read.
+constexpr std::size_t kElementsAhead = 4, kElements = std::tuple_size_v<GroupMask>;
+template <class T>
+HWY_INLINE void prefetch_element(const T* values) {
+  constexpr std::size_t kLine = 64 / sizeof(T);
+  for (std::size_t i = 0; i < 64; i += kLine) hwy::Prefetch(values + i);
+}
+
 // Pixels whose value is not `nothing`.
 template <class D, class T>
 std::uint64_t find_loop(D d, const T* values, T nothing, std::size_t size, std::uint64_t* mask) {
@@ -86,6 +96,9 @@ void compress_loop(const std::uint32_t* values, const std::uint64_t* mask, std::
   const std::size_t lanes = hn::Lanes(d);
   const std::uint64_t lane_bits = (std::uint64_t{1} << lanes) - 1;
   for (std::size_t i = 0; to < end; ++i) {
+    if (i + kElementsAhead < kElements && mask[i + kElementsAhead] != 0) {
+      prefetch_element(values + (i + kElementsAhead) * 64);
+    }
     const std::uint64_t bits = mask[i];
     const std::uint32_t* from = values + i * 64;
     if (bits == kAll) {
@@ -94,20 +107,19 @@ void compress_loop(const std::uint32_t* values, const std::uint64_t* mask, std::
       continue;
     }
     for (std::uint64_t rest = bits; rest != 0; rest = lanes < 64 ? rest >> lanes : 0) {
+      // No branch for lanes that none are of: with scattered pixels nobody could foretell it.
       const auto some = static_cast<std::uint8_t>(rest & lane_bits);
-      if (some != 0) {
-        std::uint8_t loaded[8] = {some};
-        const auto packed = hn::Compress(hn::LoadU(d, from), hn::LoadMaskBits(d, loaded));
-        const auto count = static_cast<std::size_t>(std::popcount(some));
-        if (to + lanes <= end) {
-          hn::StoreU(packed, d, to);
-        } else {
-          HWY_ALIGN std::uint32_t last[kMostLanes];
-          hn::Store(packed, d, last);
-          std::memcpy(to, last, count * sizeof *to);
-        }
-        to += count;
+      std::uint8_t loaded[8] = {some};
+      const auto packed = hn::Compress(hn::LoadU(d, from), hn::LoadMaskBits(d, loaded));
+      const auto count = static_cast<std::size_t>(std::popcount(some));
+      if (to + lanes <= end) {
+        hn::StoreU(packed, d, to);
+      } else {
+        HWY_ALIGN std::uint32_t last[kMostLanes];
+        hn::Store(packed, d, last);
+        std::memcpy(to, last, count * sizeof *to);
       }
+      to += count;
       from += lanes;
     }
   }
@@ -154,6 +166,10 @@ void z_merge_loop(std::uint32_t* HWY_RESTRICT colour, float* HWY_RESTRICT depth,
   const auto everything = hn::Eq(hn::Zero(d), hn::Zero(d));
   std::size_t next = 0;
   for (std::size_t i = 0; i < elements; ++i) {
+    if (i + kElementsAhead < elements && mask[i + kElementsAhead] != 0) {
+      prefetch_element(depth + (i + kElementsAhead) * 64);
+      prefetch_element(colour + (i + kElementsAhead) * 64);
+    }
     const std::uint64_t bits = mask[i];
     std::size_t at = i * 64;
     if (bits == kAll) {
@@ -166,7 +182,6 @@ void z_merge_loop(std::uint32_t* HWY_RESTRICT colour, float* HWY_RESTRICT depth,
     }
     for (std::uint64_t rest = bits; rest != 0; rest >>= lanes, at += lanes) {
       const auto some = static_cast<std::uint8_t>(rest & lane_bits);
-      if (some == 0) continue;
       const auto count = static_cast<std::size_t>(std::popcount(some));
       const bool at_end = next + lanes > readable;
       auto other = load_some(d, other_depth + next, at_end, count);
@@ -356,11 +371,30 @@ void z_merge(image::RgbaF* colour, float* depth, const GroupMask& mask,
 
 void blend(image::Rgba8* colour, std::size_t size, const GroupMask& mask,
            const ActivePixels<image::Rgba8>& other, bool front) {
-  // Pixels that are not covered have no effect as {}.
+  const std::size_t elements = (size + 63) / 64;
   std::array<image::Rgba8, kGroupPixels> expanded;
-  expand(other.colour, other.readable, mask, std::span(expanded.data(), size));
-  const std::span<const image::Rgba8> layer(expanded.data(), size);
-  front ? image::blend_front({colour, size}, layer) : image::blend_back({colour, size}, layer);
+  for (std::size_t i = 0, next = 0; i < elements;) {
+    // Elements of one kind: pixels that are not covered have no effect, and those that all are
+    // need not be expanded.
+    const auto kind = [&](std::size_t k) { return mask[k] == 0 ? 0 : ~mask[k] == 0 ? 2 : 1; };
+    const std::size_t first = i;
+    std::size_t covered = 0;
+    for (; i < elements && kind(i) == kind(first); ++i) {
+      covered += static_cast<std::size_t>(std::popcount(mask[i]));
+    }
+    if (covered == 0) continue;
+    const std::size_t count = std::min(i * 64, size) - first * 64;
+    std::span<const image::Rgba8> layer(other.colour + next, covered);
+    if (covered < count) {
+      GroupMask some{};
+      std::copy(mask.begin() + first, mask.begin() + i, some.begin());
+      expand(other.colour + next, other.readable - next, some, std::span(expanded.data(), count));
+      layer = {expanded.data(), count};
+    }
+    const std::span target(colour + first * 64, count);
+    front ? image::blend_front(target, layer) : image::blend_back(target, layer);
+    next += covered;
+  }
 }
 
 void blend(image::RgbaF* colour, std::size_t size, const GroupMask& mask,

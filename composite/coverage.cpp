@@ -7,12 +7,6 @@
 namespace delray::composite {
 namespace {
 
-// Which elements of a mask have any bit, and which all.
-struct Blocks {
-  std::uint64_t any = 0, full = 0;
-  std::uint64_t mixed() const { return any & ~full; }
-};
-
 // The element of a mask that has all bits of a group of `size` pixels.
 std::uint64_t full_element(std::uint64_t size, std::size_t i) {
   const std::uint64_t begin = i * 64;
@@ -20,13 +14,25 @@ std::uint64_t full_element(std::uint64_t size, std::size_t i) {
   return size > begin ? (std::uint64_t{1} << (size - begin)) - 1 : 0;
 }
 
+// As Coverage::Blocks has them, of a group of `size` pixels.
+template <class Blocks>
 Blocks blocks_of(const GroupMask& mask, std::uint64_t size) {
   Blocks result;
-  for (std::size_t i = 0; i * 64 < size; ++i) {
+  for (std::size_t i = 0; i < mask.size(); ++i) {
     result.any |= std::uint64_t{mask[i] != 0} << i;
-    result.full |= std::uint64_t{mask[i] == full_element(size, i)} << i;
+    result.full |= std::uint64_t{~mask[i] == 0} << i;
+  }
+  if (const std::uint64_t rest = size % 64; rest != 0) {
+    const std::size_t last = size / 64;
+    result.full |= std::uint64_t{mask[last] == full_element(size, last)} << last;
   }
   return result;
+}
+
+// Calls f(i) for every bit i that is set.
+template <class F>
+void for_each_bit(std::uint64_t bits, F&& f) {
+  for (; bits != 0; bits &= bits - 1) f(static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 std::size_t groups_of(std::uint64_t pixels) { return (pixels + kGroupPixels - 1) / kGroupPixels; }
@@ -57,18 +63,31 @@ Coverage::Coverage(
     std::uint64_t pixels,
     parallel::FunctionRef<std::uint64_t(std::uint64_t begin, std::uint64_t end, GroupMask& mask)>
         find)
-    : pixels_(pixels), covered_before_(groups_of(pixels) + 1), masks_(new GroupMask[groups()]) {
+    : pixels_(pixels),
+      covered_before_(groups_of(pixels) + 1),
+      masks_(new GroupMask[groups()]),
+      blocks_(groups()) {
   parallel::parallel_for(0, groups(), 1, [&](std::size_t i) {
     GroupMask& mask = masks_[i];
     mask.fill(0);
     covered_before_[i + 1] =
         find(i * kGroupPixels, std::min((i + 1) * kGroupPixels, pixels_), mask);
+    blocks_[i] = blocks_of<Blocks>(mask, group_size(i));
   });
   sum_up(covered_before_);
+  if (covered() == 0 || covered() == pixels_) return;
+  encoded_bytes_ += bytes_of_counts(groups());
+  for (std::size_t i = 0; i < groups(); ++i) {
+    if (!is_mixed(i)) continue;
+    encoded_bytes_ +=
+        sizeof(Blocks) +
+        sizeof(std::uint64_t) * static_cast<std::size_t>(std::popcount(blocks_[i].mixed()));
+  }
 }
 
 Coverage::Coverage(std::uint64_t pixels, const std::byte* encoded)
     : pixels_(pixels), covered_before_(groups_of(pixels) + 1) {
+  const std::byte* const begin = encoded;
   std::uint64_t all = 0;
   encoded = take(encoded, all);
   if (all == 0) return;
@@ -87,33 +106,20 @@ Coverage::Coverage(std::uint64_t pixels, const std::byte* encoded)
   encoded += bytes_of_counts(groups());
 
   masks_.reset(new GroupMask[groups()]);
+  blocks_.resize(groups());
   const std::byte* elements = encoded;
   for (std::size_t i = 0; i < groups(); ++i) elements += is_mixed(i) ? sizeof(Blocks) : 0;
   for (std::size_t i = 0; i < groups(); ++i) {
     if (!is_mixed(i)) continue;
-    Blocks blocks;
+    Blocks& blocks = blocks_[i];
     encoded = take(encoded, blocks);
-    const Group at = group(i);
-    for (std::size_t k = 0; k < kGroupPixels / 64; ++k) {
-      const std::uint64_t bit = std::uint64_t{1} << k;
-      masks_[i][k] = (blocks.full & bit) != 0 ? full_element(at.end - at.begin, k) : 0;
-      if ((blocks.mixed() & bit) != 0) elements = take(elements, masks_[i][k]);
-    }
+    const std::uint64_t size = group_size(i);
+    GroupMask& mask = masks_[i];
+    mask.fill(0);
+    for_each_bit(blocks.full, [&](std::size_t k) { mask[k] = full_element(size, k); });
+    for_each_bit(blocks.mixed(), [&](std::size_t k) { elements = take(elements, mask[k]); });
   }
-}
-
-std::size_t Coverage::encoded_bytes() const {
-  std::size_t bytes = sizeof(std::uint64_t);
-  if (covered() == 0 || covered() == pixels_) return bytes;
-  bytes += bytes_of_counts(groups());
-  for (std::size_t i = 0; i < groups(); ++i) {
-    if (!is_mixed(i)) continue;
-    const Group at = group(i);
-    const Blocks blocks = blocks_of(masks_[i], at.end - at.begin);
-    bytes += sizeof blocks +
-             sizeof(std::uint64_t) * static_cast<std::size_t>(std::popcount(blocks.mixed()));
-  }
-  return bytes;
+  encoded_bytes_ = static_cast<std::size_t>(elements - begin);
 }
 
 std::byte* Coverage::encode(std::byte* to) const {
@@ -129,12 +135,9 @@ std::byte* Coverage::encode(std::byte* to) const {
   for (std::size_t i = 0; i < groups(); ++i) elements += is_mixed(i) ? sizeof(Blocks) : 0;
   for (std::size_t i = 0; i < groups(); ++i) {
     if (!is_mixed(i)) continue;
-    const Group at = group(i);
-    const Blocks blocks = blocks_of(masks_[i], at.end - at.begin);
-    to = put(to, blocks);
-    for (std::uint64_t mixed = blocks.mixed(); mixed != 0; mixed &= mixed - 1) {
-      elements = put(elements, masks_[i][static_cast<std::size_t>(std::countr_zero(mixed))]);
-    }
+    to = put(to, blocks_[i]);
+    for_each_bit(blocks_[i].mixed(),
+                 [&](std::size_t k) { elements = put(elements, masks_[i][k]); });
   }
   return elements;
 }

@@ -58,11 +58,20 @@ class Coverage {
   const GroupMask& mask(std::size_t group) const { return masks_[group]; }
 
   // A multiple of 8.
-  std::size_t encoded_bytes() const;
+  std::size_t encoded_bytes() const { return encoded_bytes_; }
   // Returns the end of what it wrote.
   std::byte* encode(std::byte* to) const;
 
  private:
+  // Bit i: whether element i of a group's mask has any bit, and whether it has all.
+  struct Blocks {
+    std::uint64_t any = 0, full = 0;
+    std::uint64_t mixed() const { return any & ~full; }
+  };
+
+  std::uint64_t group_size(std::size_t i) const {
+    return std::min(kGroupPixels, pixels_ - i * kGroupPixels);
+  }
   bool is_mixed(std::size_t i) const {
     const Group at = group(i);
     return at.covered > 0 && !at.is_full();
@@ -71,6 +80,8 @@ class Coverage {
   std::uint64_t pixels_;
   std::vector<std::uint64_t> covered_before_;  // one more than there are groups
   std::unique_ptr<GroupMask[]> masks_;         // only those of groups covered in part are set
+  std::vector<Blocks> blocks_;                 // of these masks
+  std::size_t encoded_bytes_ = sizeof(std::uint64_t);
 };
 
 // Calls f(pixel, k) in ascending order for the covered pixels of a group: k counts them from 0,
