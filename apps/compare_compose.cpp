@@ -92,7 +92,7 @@ class Comparison {
   }
 
  private:
-  int repeats(int ranks) const { return request_.quick ? 1 : ranks > 16 ? 3 : ranks > 4 ? 9 : 15; }
+  int repeats(int ranks) const { return request_.quick ? 3 : ranks > 16 ? 3 : ranks > 4 ? 9 : 15; }
 
   std::vector<std::string> codecs_of(const raster::Share& share) const {
     return is_transparent(share) ? std::vector<std::string>{"deep"} : request_.codecs;

@@ -7,10 +7,10 @@ namespace delray::apps::report::internal {
 const char* const kStyle = R"css(
 :root{color-scheme:light dark;--paper:#fff;--ink:#1c2126;--soft:#5c6670;--line:#dfe3e8;
 --panel:#f5f7f9;--accent:#0067b0;--warn:#9a4a00;
---c0:#0067b0;--c1:#c75100;--c2:#00856a;--c3:#a8477d;--c4:#2c8fc9;--c5:#a87c00;--c6:#4b4b9e;--c7:#4a4f55}
+--c0:#005a9c;--c1:#c75100;--c2:#00856a;--c3:#a8477d;--c4:#4fabe0;--c5:#a87c00;--c6:#4b4b9e;--c7:#4a4f55}
 @media (prefers-color-scheme:dark){:root{--paper:#14181c;--ink:#e6eaee;--soft:#9aa5b0;--line:#2d343b;
 --panel:#1c2227;--accent:#5cb3f0;--warn:#f0a35c;
---c0:#5cb3f0;--c1:#f08a4b;--c2:#3cc9a7;--c3:#e08fbd;--c4:#9bd3f5;--c5:#e6c04d;--c6:#a3a3f0;--c7:#b8bec4}}
+--c0:#86c8fa;--c1:#f08a4b;--c2:#3cc9a7;--c3:#e08fbd;--c4:#2f86dd;--c5:#e6c04d;--c6:#a3a3f0;--c7:#b8bec4}}
 *{box-sizing:border-box}
 body{margin:0 auto;max-width:76rem;padding:1.2rem 1.4rem 3rem;background:var(--paper);color:var(--ink);
 font:16px/1.5 system-ui,"Segoe UI","Liberation Sans",sans-serif}

@@ -140,25 +140,6 @@ TEST(CompareTriangulate, LivesWithFewPointsAndFlatOnes) {
   }
 }
 
-TEST(CompareTriangulate, WritesWhatIsFinishedWhenInterrupted) {
-  const Folder folder;
-  generate(folder, "uniform -n 20000 --dim 2 -o points.xyz");
-  const Ran ran = run(
-      "delray compare triangulate points.xyz --threads 2 -v -o report.html --stats f.json "
-      ">table 2>log & p=$!; while kill -0 $p && ! grep -q '5000 points' log; do sleep 0.02; done; "
-      "kill -INT $p; wait $p",
-      folder.path());
-  EXPECT_EQ(ran.exit_code, 130) << folder.read("log");
-  const Json json = Json::parse(folder.read("f.json"));
-  EXPECT_EQ(json["unfinished"], true);
-  ASSERT_GE(json["rows"].size(), delaunay::methods().size());
-  EXPECT_EQ(json["rows"].front()["points"], 2500);
-  EXPECT_LT(json["rows"].back()["points"], 20000);
-  EXPECT_NE(folder.read("report.html").find("was interrupted"), std::string::npos);
-  EXPECT_NE(folder.read("log").find("interrupted: what was finished is written"),
-            std::string::npos);
-}
-
 TEST(CompareTriangulate, RefusesWhatItCannotDo) {
   const Folder folder;
   folder.write("p.xyz", "0 0\n1 0\n0 1\n");
