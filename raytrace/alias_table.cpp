@@ -5,7 +5,8 @@
 
 namespace delray::raytrace {
 
-AliasTable::AliasTable(std::span<const float> weights) : columns_(weights.size()) {
+AliasTable::AliasTable(std::span<const float> weights)
+    : own_(weights.size(), 1.0F), aliases_(weights.size()), probabilities_(weights.size()) {
   const std::size_t n = weights.size();
   std::vector<double> rest(n);
   double sum = 0.0;
@@ -21,15 +22,15 @@ AliasTable::AliasTable(std::span<const float> weights) : columns_(weights.size()
   std::vector<std::uint32_t> small, large;
   for (std::size_t i = 0; i < n; ++i) {
     rest[i] *= static_cast<double>(n) / sum;
-    columns_[i].probability = static_cast<float>(rest[i] / static_cast<double>(n));
-    columns_[i].alias = static_cast<std::uint32_t>(i);
+    probabilities_[i] = static_cast<float>(rest[i] / static_cast<double>(n));
+    aliases_[i] = static_cast<std::uint32_t>(i);
     (rest[i] < 1.0 ? small : large).push_back(static_cast<std::uint32_t>(i));
   }
   while (!small.empty() && !large.empty()) {
     const std::uint32_t to = small.back(), from = large.back();
     small.pop_back();
-    columns_[to].own = static_cast<float>(rest[to]);
-    columns_[to].alias = from;
+    own_[to] = static_cast<float>(rest[to]);
+    aliases_[to] = from;
     rest[from] -= 1.0 - rest[to];
     if (rest[from] >= 1.0) continue;
     large.pop_back();
@@ -37,20 +38,18 @@ AliasTable::AliasTable(std::span<const float> weights) : columns_(weights.size()
   }
   // What is left differs from 1 by roundings, unless its weight is 0 and nothing was left for it.
   for (const std::uint32_t i : small) {
-    if (columns_[i].probability > 0.0F) continue;
-    columns_[i].own = 0.0F;
-    const auto most = std::max_element(columns_.begin(), columns_.end(), [](auto& a, auto& b) {
-      return a.probability < b.probability;
-    });
-    columns_[i].alias = static_cast<std::uint32_t>(most - columns_.begin());
+    if (probabilities_[i] > 0.0F) continue;
+    own_[i] = 0.0F;
+    const auto most = std::max_element(probabilities_.begin(), probabilities_.end());
+    aliases_[i] = static_cast<std::uint32_t>(most - probabilities_.begin());
   }
 }
 
 std::uint32_t AliasTable::pick(float column, float height) const {
-  const auto n = columns_.size();
+  const auto n = own_.size();
   const auto i = std::min(
       static_cast<std::size_t>(static_cast<double>(column) * static_cast<double>(n)), n - 1);
-  return height < columns_[i].own ? static_cast<std::uint32_t>(i) : columns_[i].alias;
+  return height < own_[i] ? static_cast<std::uint32_t>(i) : aliases_[i];
 }
 
 }  // namespace delray::raytrace

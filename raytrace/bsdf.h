@@ -10,55 +10,62 @@
 //
 // Rays carry radiance over the square of the index of refraction, which refraction leaves as it is;
 // so light on both sides of an interface counts alike.
+//
+// Sixteen surfaces at a time, by vectors chosen at run time: the same bits on every instruction
+// set, whatever a surface's lane and whatever the others hold. Functions write the lanes in
+// `lanes`; the others of their results are left or become anything.
 #pragma once
 
-#include <glm/glm.hpp>
-
-#include "raytrace/warp.h"
-#include "shading/brdf.h"
-#include "shading/surface.h"
+#include "shading/batch.h"
+#include "shading/points.h"
 
 namespace delray::raytrace {
 
-// A surface seen from `view`. Directions are unit vectors away from the surface.
-struct Bsdf {
-  Frame frame;  // its z is the shading normal, turned, if need be, until the viewer is above it
-  glm::vec3 geometric_normal{0, 0, 1};
-  glm::vec3 view{0, 0, 1};  // in the frame; z > 0
-  shading::Lobes lobes;
-  glm::vec3 transmitted{0.0F};  // glass times base colour: tints what passes
-  float glass = 0.0F;
-  float ratio = 1.0F;          // index of refraction on the viewer's side over that of the other
-  bool smooth = false;         // reflection, and refraction with it, has one direction only
-  bool straight = false;       // what passes does not change direction
-  float diffuse_share = 1.0F;  // with which the diffuse lobe is drawn from; the rest: the others
-  bool black = false;          // nothing leaves in any direction
+// Surfaces, each seen from one direction. Directions are unit vectors away from the surface.
+struct Bsdfs {
+  // Frames; z is the shading normal, turned, if need be, until the viewer is above it.
+  shading::Vectors16 x, y, z;
+  shading::Vectors16 geometric_normal;
+  shading::Vectors16 view;         // in the frame; z > 0
+  shading::Vectors16 diffuse;      // albedo times what enters, over pi
+  shading::Vectors16 specular;     // reflectance at normal incidence
+  shading::Floats16 grazing;       // reflectance at grazing incidence
+  shading::Floats16 alpha;         // GGX width
+  shading::Vectors16 transmitted;  // glass times base colour: tints what passes
+  shading::Floats16 glass;
+  shading::Floats16 ratio;  // index of refraction on the viewer's side over that of the other
+  shading::Floats16 diffuse_share;  // with which the diffuse lobe is drawn from; the rest: others
+
+  shading::LaneMask smooth = 0;    // reflection, and refraction with it, has one direction only
+  shading::LaneMask straight = 0;  // what passes does not change direction
+  shading::LaneMask black = 0;     // nothing leaves in any direction
 };
 
-// `view` is the unit vector to the viewer, for which `surface` was evaluated.
-Bsdf make_bsdf(const shading::Surface& surface, const glm::vec3& view);
+// `views` are unit vectors to the viewers, for which `surfaces` were evaluated.
+void make_bsdfs(const shading::Surfaces& surfaces, const shading::Vectors16& views,
+                shading::LaneMask lanes, Bsdfs& bsdfs);
 
-struct BsdfValue {
-  glm::vec3 value{0.0F};  // f(view, light) * |cos|: radiance to the viewer per unit of irradiance
-                          // at normal incidence
-  float pdf = 0.0F;       // with which `sample` draws the direction, per steradian
+struct BsdfValues {
+  shading::Vectors16 value;  // f(view, light) * |cos|: radiance to the viewer per unit of
+                             // irradiance at normal incidence
+  shading::Floats16 pdf;     // with which `sample` draws the direction, per steradian
 };
 
 // Without deltas. Zero for directions whose side of the geometric normal is not that of the shading
 // normal: no light leaks through a closed mesh.
-BsdfValue evaluate(const Bsdf& bsdf, const glm::vec3& light);
+void evaluate(const Bsdfs& bsdfs, const shading::Vectors16& lights, shading::LaneMask lanes,
+              BsdfValues& values);
 
-struct BsdfSample {
-  glm::vec3 direction{0.0F};  // to where light comes from
-  glm::vec3 weight{0.0F};     // f |cos| / pdf; zero: nothing comes of this sample
-  float pdf = 0.0F;           // as evaluate gives it; 0 for a delta
-  bool delta = false;
-  bool transmitted = false;  // to the other side of the surface
+struct BsdfSamples {
+  shading::Vectors16 direction;       // to where light comes from
+  shading::Vectors16 weight;          // f |cos| / pdf; zero: nothing comes of this sample
+  shading::Floats16 pdf;              // as evaluate gives it; 0 for a delta
+  shading::LaneMask transmitted = 0;  // to the other side of the surface
 };
 
-// `lobe` and both numbers of `u` from [0, 1). The mean of `weight` is the albedo, at most about 1.
-// Normals are drawn as the viewer sees them (Heitz 2018, by the spherical caps of Dupuy and Benyoub
-// 2023).
-BsdfSample sample(const Bsdf& bsdf, float lobe, const glm::vec2& u);
+// `lobe`, `u` and `v` from [0, 1). The mean of `weight` is the albedo, at most about 1. Normals are
+// drawn as the viewer sees them (Heitz 2018, by the spherical caps of Dupuy and Benyoub 2023).
+void sample(const Bsdfs& bsdfs, const shading::Floats16& lobe, const shading::Floats16& u,
+            const shading::Floats16& v, shading::LaneMask lanes, BsdfSamples& samples);
 
 }  // namespace delray::raytrace

@@ -1,14 +1,57 @@
 #include "raytrace/light_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/light_table.cpp"
+#include <hwy/foreach_target.h>
+// What is compiled per target comes after it.
+#include <hwy/highway.h>
+
+#include "raytrace/internal/alias_lanes.h"
 #include "shading/arithmetic.h"
+#include "shading/batch.h"
 #include "shading/lighting.h"
 #include "shading/surface.h"
 
+HWY_BEFORE_NAMESPACE();
+namespace delray::raytrace {
+namespace HWY_NAMESPACE {
+
+void pick_emitters(const AliasTable& table, const Pairs16& choices, std::uint32_t* emitters,
+                   shading::Floats16& chances) {
+  for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
+    const I emitter = pick(table, load(choices.x, i), load(choices.y, i));
+    hn::Store(emitter, IntTag(), reinterpret_cast<std::int32_t*>(emitters) + i);
+    hn::Store(looked_up(table.probabilities(), emitter), FloatTag(), chances.lane + i);
+  }
+}
+
+void set_sky_samples(const shading::Vectors16& directions, const shading::Floats16& pdfs,
+                     const shading::Floats16& chances, const shading::Vectors16& radiance,
+                     shading::LaneMask mask, LightSamples& samples) {
+  for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
+    const M active = mask_of(mask, i);
+    const F pdf = load(pdfs, i) * load(chances, i);
+    store(load(directions, i), active, i, samples.direction);
+    store(set(std::numeric_limits<float>::infinity()), active, i, samples.distance);
+    store(load(radiance, i) * (set(1.0F) / pdf), active, i, samples.weight);
+    store(pdf, active, i, samples.pdf);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raytrace
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace delray::raytrace {
 namespace {
+
+HWY_EXPORT(pick_emitters);
+HWY_EXPORT(set_sky_samples);
 
 using scenes::kNone;
 using scenes::Light;
@@ -60,6 +103,13 @@ float area_pdf(const glm::vec3& normal, const glm::vec3& way) {
 }
 
 }  // namespace
+
+void LightSamples::set(int i, const LightSample& sample) {
+  direction.set(i, sample.direction);
+  distance[i] = sample.distance;
+  weight.set(i, sample.weight);
+  pdf[i] = sample.pdf;
+}
 
 void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& shader) {
   std::vector<std::uint32_t> number(scene.meshes.size(), kNone);
@@ -259,37 +309,38 @@ LightSample LightTable::draw_glow(const shading::Shader& shader, const GlowingIn
   return result;
 }
 
-LightSample LightTable::sample(const shading::Shader& shader, const glm::vec3& from,
-                               Sampler& sampler) const {
-  static_assert(kDimensions == 3);
+void LightTable::sample(const shading::BatchShader& shader, const shading::Vectors16& from,
+                        shading::LaneMask lanes, std::span<const Pairs16, kPairs> numbers,
+                        LightSamples& samples) const {
   if (empty()) {
-    sampler.skip(kDimensions);
-    return {};
+    samples = {};
+    return;
   }
-  const glm::vec2 choice = sampler.two();
-  const std::uint32_t emitter = emitters_.pick(choice.x, choice.y);
-  const float chance = emitters_.probability(emitter);
+  alignas(64) std::uint32_t emitters[shading::kBlockPoints];
+  shading::Floats16 chances;
+  HWY_DYNAMIC_DISPATCH(pick_emitters)(emitters_, numbers[0], emitters, chances);
   const std::size_t lights = lights_.size();
-  if (emitter < lights) {
-    sampler.skip(1);
-    if (lights_[emitter].kind == Light::Kind::area) {
-      return draw_light(emitter, from, chance, sampler.two());
+  shading::LaneMask sky = 0;
+  for (shading::LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint32_t emitter = emitters[i];
+    const glm::vec2 place(numbers[2].x[i], numbers[2].y[i]);
+    if (emitter == lights) {
+      sky |= 1U << i;
+    } else if (emitter < lights) {
+      samples.set(i, draw_light(emitter, from.get(i), chances[i], place));
+    } else {
+      const glm::vec2 element(numbers[1].x[i], numbers[1].y[i]);
+      samples.set(i, draw_glow(*shader.shader, instances_[emitter - lights - 1], from.get(i),
+                               chances[i], element, place));
     }
-    sampler.skip(1);
-    return draw_light(emitter, from, chance, {});
   }
-  const glm::vec2 element = sampler.two();
-  const glm::vec2 place = sampler.two();
-  if (emitter > lights) {
-    return draw_glow(shader, instances_[emitter - lights - 1], from, chance, element, place);
-  }
-  const SkyDirection drawn = sky_.sample(element, place);
-  LightSample result;
-  result.direction = drawn.direction;
-  result.pdf = drawn.pdf * chance;
-  result.weight =
-      shading::radiance(shader.environment, shader.textures, drawn.direction) / result.pdf;
-  return result;
+  if (sky == 0) return;
+  shading::Vectors16 directions, radiance;
+  shading::Floats16 pdfs;
+  sky_.sample(numbers[1], numbers[2], directions, pdfs);
+  shading::environment_radiance(shader, directions, 0.0F, sky, radiance);
+  HWY_DYNAMIC_DISPATCH(set_sky_samples)(directions, pdfs, chances, radiance, sky, samples);
 }
 
 float LightTable::pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, const glm::vec3& from,
@@ -316,9 +367,14 @@ float LightTable::pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, con
   return std::isfinite(pdf) ? pdf : 0.0F;
 }
 
-float LightTable::pdf_of_sky(const glm::vec3& direction) const {
-  if (!has_sky_) return 0.0F;
-  return sky_.pdf(direction) * emitters_.probability(static_cast<std::uint32_t>(lights_.size()));
+void LightTable::pdf_of_sky(const shading::Vectors16& directions, shading::Floats16& pdfs) const {
+  if (!has_sky_) {
+    pdfs = {};
+    return;
+  }
+  sky_.pdf(directions, pdfs);
+  const float chance = emitters_.probability(static_cast<std::uint32_t>(lights_.size()));
+  for (float& pdf : pdfs.lane) pdf *= chance;
 }
 
 std::uint64_t LightTable::glowing_triangles() const {
@@ -330,3 +386,4 @@ std::uint64_t LightTable::glowing_triangles() const {
 }
 
 }  // namespace delray::raytrace
+#endif

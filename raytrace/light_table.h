@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "raytrace/alias_table.h"
@@ -19,6 +20,8 @@
 #include "raytrace/sampler.h"
 #include "raytrace/sky_table.h"
 #include "scenes/scene.h"
+#include "shading/batch_shader.h"
+#include "shading/points.h"
 #include "shading/shader.h"
 
 namespace delray::raytrace {
@@ -31,10 +34,20 @@ struct LightSample {
   float pdf = 0.0F;        // per steradian; 0: scattered rays never find it, it counts in full
 };
 
+// Of sixteen lanes.
+struct LightSamples {
+  shading::Vectors16 direction;
+  shading::Floats16 distance;
+  shading::Vectors16 weight;
+  shading::Floats16 pdf;
+
+  void set(int i, const LightSample& sample);
+};
+
 class LightTable {
  public:
-  // What `sample` takes from a sampler.
-  static constexpr std::uint32_t kDimensions = 3;
+  // Pairs of numbers that `sample` takes.
+  static constexpr std::size_t kPairs = 3;
 
   LightTable() = default;
   // The shader is that of the scene. Keeps glowing triangles of its own, once for each mesh.
@@ -43,14 +56,17 @@ class LightTable {
 
   bool empty() const { return emitters_.size() == 0; }
 
-  // Takes kDimensions from the sampler, whatever is drawn.
-  LightSample sample(const shading::Shader& shader, const glm::vec3& from, Sampler& sampler) const;
+  // Draws a light for each lane in `lanes`; of the results, other lanes hold anything.
+  void sample(const shading::BatchShader& shader, const shading::Vectors16& from,
+              shading::LaneMask lanes, std::span<const Pairs16, kPairs> numbers,
+              LightSamples& samples) const;
 
   // The density with which `sample` would have drawn what a ray from `from` met: a point of a
   // triangle, or the environment. 0 for what does not glow.
   float pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, const glm::vec3& from,
                    const glm::vec3& position) const;
-  float pdf_of_sky(const glm::vec3& direction) const;
+  // The same of lanes that look along unit vectors.
+  void pdf_of_sky(const shading::Vectors16& directions, shading::Floats16& pdfs) const;
 
   std::uint64_t glowing_triangles() const;  // that can be drawn, of all instances
 

@@ -1,14 +1,18 @@
 #include "raytrace/path.h"
 
+#include <array>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "image/image.h"
 #include "raytrace/bsdf.h"
 #include "raytrace/internal/ask.h"
 #include "raytrace/internal/lane_sums.h"
+#include "raytrace/internal/path_vertices.h"
 #include "raytrace/internal/same_material.h"
 #include "raytrace/light_table.h"
+#include "raytrace/warp.h"
 #include "shading/batch.h"
 
 namespace delray::raytrace {
@@ -19,31 +23,13 @@ using shading::LaneMask;
 // Scatterings after which a path may end by chance.
 constexpr int kCertain = 2;
 
-// What is drawn at each surface: dimensions of the sampler.
+// What is drawn at each surface: dimensions of the sampler, pairs first.
 enum Dimension : std::uint32_t {
-  kLayer,
   kLight,
-  kLobe = kLight + LightTable::kDimensions,
+  kLobe = kLight + LightTable::kPairs,  // and whether the path goes on
   kDirection,
-  kGoOn,
+  kLayer,
   kDimensions,
-};
-
-// What a path tracer knows of the rays of a group besides.
-struct PathLanes {
-  bool whole = true;          // the primary rays of `block`: the rest is not set
-  std::uint32_t block = 0;    // of samples()
-  shading::Vectors16 weight;  // what the sample makes of radiance along the ray
-  shading::Floats16 pdf;      // with which the direction was drawn; 0: no other way finds it
-  alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * sample block + lane in it
-  alignas(64) std::uint32_t bounce[kPacketRays];  // scatterings so far
-  alignas(64) std::uint32_t vertex[kPacketRays];  // surfaces met so far, layers among them
-  alignas(64) std::uint32_t placement[kPacketRays], triangle[kPacketRays];  // left behind
-};
-
-struct LightLanes {
-  shading::Vectors16 reflected;  // what is added if all of the light arrives
-  alignas(64) std::uint32_t pixel[kPacketRays];
 };
 
 bool finite(const glm::vec3& v) {
@@ -79,7 +65,7 @@ class Path final : public Walk {
       PathLanes& lanes = answered_[g];
       if (lanes.whole && wave_.rays[g].hits != 0) spell_out(lanes);
       add_sky(wave_.rays[g], lanes);
-      if (wave_.rays[g].hits != 0) look_at(wave_.rays[g], lanes);
+      if (wave_.rays[g].hits != 0) meet(wave_.rays[g], lanes);
     }
   }
 
@@ -130,155 +116,191 @@ class Path final : public Walk {
     negate_lanes(group.view, directions_);
     shading::environment_radiance(setting_.shader, directions_, 0.0F, missed, colour_);
     if (lanes.whole) return add_lanes(colour_, missed, samples_[lanes.block].colour);
+    setting_.lights.pdf_of_sky(directions_, pdfs_);
+    weigh_sky(lanes, pdfs_, colour_);
     for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      float share = 1.0F;
-      if (lanes.pdf[i] > 0.0F) {
-        share = power_heuristic(lanes.pdf[i], setting_.lights.pdf_of_sky(directions_.get(i)));
-      }
-      add(lanes.pixel[i], lanes.weight.get(i) * colour_.get(i) * share);
+      add(lanes.pixel[i], colour_.get(i));
     }
   }
 
-  void look_at(const RayGroup& group, const PathLanes& lanes) {
+  // The surfaces that a group's rays met.
+  void meet(const RayGroup& group, const PathLanes& lanes) {
     for (LaneMask rest = group.hits; rest != 0;) {
       const LaneMask same = same_material(group, rest);
       shading::evaluate(setting_.shader, group.material[std::countr_zero(rest)], group.points,
                         group.view, same, surfaces_);
       rest &= ~same;
     }
+    const LaneMask seen = see(group, lanes);
+    LaneMask alive = 0;
+    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const bool more = static_cast<int>(lanes.bounce[i]) < setting_.options.depth;
+      alive |= more ? 1U << i : 0U;
+    }
+    for (LaneMask rest = glowing_lanes(surfaces_, seen); rest != 0; rest &= rest - 1) {
+      add_glow(group, lanes, std::countr_zero(rest));
+    }
+    if (alive != 0) make_bsdfs(surfaces_, group.view, alive, bsdfs_);
+    alive &= ~bsdfs_.black;
+    if (alive == 0) return;
+    draw(lanes.pixel, alive, numbers_);
+    for (int i = 0; i < kPacketRays; ++i) numbers_.dimension[i] += lanes.vertex[i] * kDimensions;
+    sobol_pairs(numbers_, pairs_);
+    setting_.lights.sample(setting_.shader, surfaces_.position, alive,
+                           std::span(pairs_).subspan<kLight, LightTable::kPairs>(), lights_);
+    evaluate(bsdfs_, lights_.direction, alive, values_);
+    const Vertices vertices{group, lanes, surfaces_};
+    const LaneMask lit = rays_to_lights(vertices, lights_, values_, alive, light_rays_);
+    if (lit != 0) ask_lights(lit);
+    sample(bsdfs_, pairs_[kLobe].x, pairs_[kDirection].x, pairs_[kDirection].y, alive, scattered_);
+    scattered_rays(vertices, scattered_, pairs_[kLobe].y, kCertain, alive, next_rays_);
+    if (next_rays_.count != 0) ask_scattered();
+  }
+
+  // Asks for rays behind layers that a path goes through by chance. Returns the other hits, and
+  // notes their depths.
+  LaneMask see(const RayGroup& group, const PathLanes& lanes) {
+    LaneMask seen = group.hits;
     for (LaneMask rest = group.hits; rest != 0; rest &= rest - 1) {
-      meet(group, lanes, std::countr_zero(rest));
-    }
-  }
-
-  // One surface on the way of a path.
-  void meet(const RayGroup& group, const PathLanes& lanes, int i) {
-    const std::uint32_t pixel = lanes.pixel[i];
-    const Sampler numbers = sampler(pixel);
-    const auto dimension = [&](Dimension which) {
-      Sampler result = numbers;
-      result.skip(lanes.vertex[i] * kDimensions + which);
-      return result;
-    };
-    const Hit hit = hit_of(group.packet, i);
-    const float alpha = surfaces_.alpha[i];
-    if (alpha < 1.0F ||
-        (hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i])) {
+      const int i = std::countr_zero(rest);
+      const bool behind = lanes.triangle[i] != kMiss;
+      const float alpha = surfaces_.alpha[i];
+      if (!behind && !(alpha < 1.0F)) continue;
+      const Hit hit = hit_of(group.packet, i);
       const bool again = hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
-      if (again || !(dimension(kLayer).one() < alpha)) return go_behind(group, lanes, i, hit);
-    }
-    if (lanes.bounce[i] == 0) {
-      samples_[pixel / kPacketRays].depth[static_cast<int>(pixel % kPacketRays)] = hit.distance;
-    }
-    const glm::vec3 weight = lanes.weight.get(i);
-    const shading::Surface surface = shading::surface_at(surfaces_, i);
-    if (surface.emission != glm::vec3(0.0F)) {
-      float share = 1.0F;
-      if (lanes.pdf[i] > 0.0F) {
-        share = power_heuristic(
-            lanes.pdf[i], setting_.lights.pdf_of_hit(hit.placement, hit.triangle,
-                                                     origin_of(group.packet, i), surface.position));
+      if (!again) {
+        if (!(alpha < 1.0F)) continue;
+        Sampler layer = sampler(lanes.pixel[i]);
+        layer.skip(lanes.vertex[i] * kDimensions + kLayer);
+        if (layer.one() < alpha) continue;
       }
-      add(pixel, weight * surface.emission * share);
+      go_behind(group, lanes, i, hit);
+      seen &= ~(1U << i);
     }
-    if (static_cast<int>(lanes.bounce[i]) >= setting_.options.depth) return;
-    const Bsdf bsdf = make_bsdf(surface, group.view.get(i));
-    if (bsdf.black) return;
-    const glm::vec3 offset = surface.geometric_normal * group.offset[i];
-    Sampler light_numbers = dimension(kLight);
-    const LightSample light =
-        setting_.lights.sample(*setting_.shader.shader, surface.position, light_numbers);
-    if (brightest(light.weight) > 0.0F) {
-      const BsdfValue value = evaluate(bsdf, light.direction);
-      const float share = light.pdf > 0.0F ? power_heuristic(light.pdf, value.pdf) : 1.0F;
-      const glm::vec3 reflected = weight * value.value * light.weight * share;
-      if (brightest(reflected) > 0.0F) {
-        const bool above = glm::dot(light.direction, surface.geometric_normal) >= 0.0F;
-        ask_light(above ? surface.position + offset : surface.position - offset, light, reflected,
-                  pixel);
-      }
+    if (lanes.whole) {
+      choose_lanes(group.packet.far, image::kEmptyDepth, seen, samples_[lanes.block].depth);
+      return seen;
     }
-    const BsdfSample scattered = sample(bsdf, dimension(kLobe).one(), dimension(kDirection).two());
-    glm::vec3 next = weight * scattered.weight;
-    if (!(brightest(next) > 0.0F) || !finite(next)) return;
-    if (lanes.bounce[i] >= kCertain) {
-      const float chance = std::min(brightest(next), 1.0F);
-      if (!(dimension(kGoOn).one() < chance)) return;
-      next *= 1.0F / chance;
+    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      if (lanes.bounce[i] != 0) continue;
+      const std::uint32_t pixel = lanes.pixel[i];
+      samples_[pixel / kPacketRays].depth[static_cast<int>(pixel % kPacketRays)] =
+          group.packet.far[i];
     }
-    const glm::vec3 origin =
-        scattered.transmitted ? surface.position - offset : surface.position + offset;
-    const auto [to, lane] = lane_for_ray();
-    set_ray(next_.rays.back(), lane, origin, scattered.direction, -scattered.direction, 0.0F);
-    next_.rays.back().width[lane] = group.width[i] + group.packet.far[i] * group.spread[i];
-    next_.rays.back().spread[lane] = spread_after(group.spread[i], scattered.pdf);
-    to->weight.set(lane, next);
-    to->pdf[lane] = scattered.delta ? 0.0F : scattered.pdf;
-    to->pixel[lane] = pixel;
-    to->bounce[lane] = lanes.bounce[i] + 1;
-    to->vertex[lane] = lanes.vertex[i] + 1;
-    to->placement[lane] = to->triangle[lane] = kMiss;
-    ++rays_.secondary;
+    return seen;
   }
 
-  // A cone of the directions that are drawn with about the density of this one, as a ratio of width
-  // and distance; wide enough for textures to be read from small levels, never all of the sphere.
-  static float spread_after(float spread, float pdf) {
-    constexpr float kWidest = 0.25F;
-    if (!(pdf > 0.0F)) return spread;
-    return std::max(spread, std::min(kWidest, 0.25F / std::sqrt(pdf)));
+  void add_glow(const RayGroup& group, const PathLanes& lanes, int i) {
+    float share = 1.0F;
+    if (lanes.pdf[i] > 0.0F) {
+      const Hit hit = hit_of(group.packet, i);
+      share = power_heuristic(lanes.pdf[i], setting_.lights.pdf_of_hit(hit.placement, hit.triangle,
+                                                                       origin_of(group.packet, i),
+                                                                       surfaces_.position.get(i)));
+    }
+    add(lanes.pixel[i], lanes.weight.get(i) * surfaces_.emission.get(i) * share);
   }
 
   void go_behind(const RayGroup& group, const PathLanes& lanes, int i, const Hit& hit) {
     if (lanes.vertex[i] >= kMostLayers + static_cast<std::uint32_t>(setting_.options.depth)) return;
-    const auto [to, lane] = lane_for_ray();
-    set_ray(next_.rays.back(), lane, origin_of(group.packet, i), direction_of(group.packet, i),
+    make_room();
+    const int lane = used_++;
+    RayGroup& next = next_.rays.back();
+    PathLanes& to = asked_.back();
+    set_ray(next, lane, origin_of(group.packet, i), direction_of(group.packet, i),
             group.view.get(i), next_up(hit.distance));
-    next_.rays.back().width[lane] = group.width[i];
-    next_.rays.back().spread[lane] = group.spread[i];
-    to->weight.set(lane, lanes.weight.get(i));
-    to->pdf[lane] = lanes.pdf[i];
-    to->pixel[lane] = lanes.pixel[i];
-    to->bounce[lane] = lanes.bounce[i];
-    to->vertex[lane] = lanes.vertex[i] + 1;
-    to->placement[lane] = hit.placement;
-    to->triangle[lane] = hit.triangle;
+    next.width[lane] = group.width[i];
+    next.spread[lane] = group.spread[i];
+    to.weight.set(lane, lanes.weight.get(i));
+    to.pdf[lane] = lanes.pdf[i];
+    to.pixel[lane] = lanes.pixel[i];
+    to.bounce[lane] = lanes.bounce[i];
+    to.vertex[lane] = lanes.vertex[i] + 1;
+    to.placement[lane] = hit.placement;
+    to.triangle[lane] = hit.triangle;
     ++(lanes.bounce[i] == 0 ? rays_.primary : rays_.secondary);
   }
 
-  std::pair<PathLanes*, int> lane_for_ray() {
-    if (used_ == kPacketRays) {
-      clear_lanes(next_.rays.add());
-      asked_.add().whole = false;
-      used_ = 0;
-    }
-    return {&asked_.back(), used_++};
+  // Sees to it that the last group of next_ has lanes left.
+  void make_room() {
+    if (used_ < kPacketRays) return;
+    clear_rays(next_.rays.add());
+    PathLanes& lanes = asked_.add();
+    lanes.whole = false;
+    std::fill_n(lanes.triangle, kPacketRays, kMiss);
+    used_ = 0;
   }
 
-  void ask_light(const glm::vec3& origin, const LightSample& light, const glm::vec3& reflected,
-                 std::uint32_t pixel) {
-    if (used_lights_ == kPacketRays) {
-      ShadowGroup& fresh = next_.shadows.add();
-      clear_lanes(fresh);
-      fresh.through_glass = 0;
-      asked_lights_.add();
-      used_lights_ = 0;
+  void ask_scattered() {
+    make_room();
+    const int used = used_, all = used + next_rays_.count;
+    const std::size_t first = next_.rays.size() - 1;
+    used_ = std::min(all, kPacketRays);
+    std::array<float*, 18> second{};
+    if (all > kPacketRays) {
+      make_room();
+      used_ = all - kPacketRays;
+      second = path_fields(next_.rays.back(), asked_.back());
+      activate(next_.rays.back(), 0, used_);
     }
-    const int lane = used_lights_++;
-    ShadowGroup& group = next_.shadows.back();
-    set_shadow_ray(group, lane, origin, light.direction, light.distance * kShadowReach);
-    if (!(light.pdf > 0.0F)) group.through_glass |= 1U << lane;
-    asked_lights_.back().reflected.set(lane, reflected);
-    asked_lights_.back().pixel[lane] = pixel;
-    ++rays_.shadow;
+    append_lanes(next_rays_, used, path_fields(next_.rays[first], asked_[first]),
+                 all > kPacketRays ? &second : nullptr);
+    activate(next_.rays[first], used, std::min(all, kPacketRays));
+    rays_.secondary += static_cast<std::uint64_t>(next_rays_.count);
+  }
+
+  void ask_lights(LaneMask lit) {
+    const auto add_group = [&] {
+      clear_rays(next_.shadows.add());
+      asked_lights_.add();
+    };
+    if (used_lights_ == kPacketRays) add_group(), used_lights_ = 0;
+    const int used = used_lights_, all = used + light_rays_.count;
+    const std::size_t first = next_.shadows.size() - 1;
+    used_lights_ = all;
+    std::array<float*, 11> second{};
+    if (all > kPacketRays) {
+      add_group();
+      used_lights_ = all - kPacketRays;
+      second = light_fields(next_.shadows.back(), asked_lights_.back());
+      activate(next_.shadows.back(), 0, used_lights_);
+    }
+    append_lanes(light_rays_, used, light_fields(next_.shadows[first], asked_lights_[first]),
+                 all > kPacketRays ? &second : nullptr);
+    activate(next_.shadows[first], used, std::min(all, kPacketRays));
+    // Scattered rays find other lights behind glass.
+    int lane = used;
+    for (LaneMask rest = lit; rest != 0; rest &= rest - 1, ++lane) {
+      if (lights_.pdf[std::countr_zero(rest)] > 0.0F) continue;
+      next_.shadows[first + static_cast<std::size_t>(lane / kPacketRays)].through_glass |=
+          1U << (lane % kPacketRays);
+    }
+    rays_.shadow += static_cast<std::uint64_t>(light_rays_.count);
+  }
+
+  template <class Group>
+  static void activate(Group& group, int from, int to) {
+    std::fill(group.active.ray + from, group.active.ray + to, -1);
   }
 
   Groups<PathLanes> asked_, answered_;  // of next_.rays and wave_.rays
   Groups<LightLanes> asked_lights_, answered_lights_;
   int used_ = kPacketRays, used_lights_ = kPacketRays;  // lanes of the last groups of next_
+  // Of the surfaces that are looked at.
   shading::Surfaces surfaces_;
+  Bsdfs bsdfs_;
+  SampleLanes numbers_{};
+  Pairs16 pairs_[kLayer];
+  LightSamples lights_;
+  BsdfValues values_;
+  BsdfSamples scattered_;
+  LightRays light_rays_;
+  ScatteredRays next_rays_;
   shading::Vectors16 directions_, colour_;
+  shading::Floats16 pdfs_;
 };
 
 }  // namespace

@@ -2,8 +2,88 @@
 
 #include <Random123/philox.h>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/sampler.cpp"
+#include <hwy/foreach_target.h>
+// What is compiled per target comes after it.
+#include <hwy/highway.h>
+
+#include "shading/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raytrace {
+namespace HWY_NAMESPACE {
+
+using namespace shading::HWY_NAMESPACE;
+
+// The functions of the same names below, over lanes.
+using WordTag = hn::RebindToUnsigned<FloatTag>;
+using W = hn::Vec<WordTag>;
+
+HWY_INLINE W word(std::uint32_t x) { return hn::Set(WordTag(), x); }
+
+HWY_INLINE W reversed(W x) {
+  x = hn::Or(hn::ShiftLeft<16>(x), hn::ShiftRight<16>(x));
+  x = hn::Or(hn::ShiftLeft<8>(x & word(0x00FF00FFU)), hn::ShiftRight<8>(x) & word(0x00FF00FFU));
+  x = hn::Or(hn::ShiftLeft<4>(x & word(0x0F0F0F0FU)), hn::ShiftRight<4>(x) & word(0x0F0F0F0FU));
+  x = hn::Or(hn::ShiftLeft<2>(x & word(0x33333333U)), hn::ShiftRight<2>(x) & word(0x33333333U));
+  return hn::Or(hn::ShiftLeft<1>(x & word(0x55555555U)), hn::ShiftRight<1>(x) & word(0x55555555U));
+}
+
+HWY_INLINE W scrambled(W digits, W seed) {
+  digits = digits ^ digits * word(0x3D20ADEAU);
+  digits = digits + seed;
+  digits = digits * (hn::ShiftRight<16>(seed) | word(1));
+  digits = digits ^ digits * word(0x05526C56U);
+  return digits ^ digits * word(0x53A22864U);
+}
+
+HWY_INLINE W second_dimension(W number) {
+  number = number ^ hn::ShiftRight<16>(number);
+  number = number ^ hn::ShiftRight<8>(number & word(0xFF00FF00U));
+  number = number ^ hn::ShiftRight<4>(number & word(0xF0F0F0F0U));
+  number = number ^ hn::ShiftRight<2>(number & word(0xCCCCCCCCU));
+  return number ^ hn::ShiftRight<1>(number & word(0xAAAAAAAAU));
+}
+
+HWY_INLINE W mixed(W x) {
+  x = (x ^ hn::ShiftRight<16>(x)) * word(0x21F0AAADU);
+  x = (x ^ hn::ShiftRight<15>(x)) * word(0xD35A2D97U);
+  return x ^ hn::ShiftRight<15>(x);
+}
+
+HWY_INLINE F unit(W x) {
+  const auto number = hn::BitCast(IntTag(), hn::ShiftRight<8>(x));
+  return to_float(number) * set(0x1p-24F);
+}
+
+void pairs_block(const SampleLanes& from, std::span<Pairs16> pairs) {
+  const WordTag d;
+  for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
+    const W low = hn::Load(d, from.key_low + i), high = hn::Load(d, from.key_high + i);
+    const W sample = reversed(hn::Load(d, from.sample + i));
+    W step = hn::Load(d, from.dimension + i) * word(0x9E3779B9U);
+    for (Pairs16& pair : pairs) {
+      const W order = mixed(high ^ mixed(low + step));
+      step = step + word(0x9E3779B9U);
+      const W number = reversed(scrambled(sample, order));
+      const W x = scrambled(number, mixed(order + low));
+      const W y = scrambled(second_dimension(number), mixed(order + high));
+      hn::Store(unit(reversed(x)), FloatTag(), pair.x.lane + i);
+      hn::Store(unit(reversed(y)), FloatTag(), pair.y.lane + i);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raytrace
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace delray::raytrace {
 namespace {
+
+HWY_EXPORT(pairs_block);
 
 std::uint32_t reversed(std::uint32_t x) {
   x = __builtin_bswap32(x);
@@ -35,20 +115,21 @@ std::uint32_t second_dimension(std::uint32_t number) {
   return number ^ (number & 0xAAAAAAAAU) >> 1;
 }
 
-// The output function of SplitMix64 (Steele, Lea and Flood 2014).
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ x >> 27) * 0x94D049BB133111EBU;
-  return x ^ x >> 31;
-}
-
-// Two keys for every dimension.
-std::uint64_t dimension_key(std::uint64_t pixel, std::uint32_t dimension, std::uint64_t which) {
-  return mixed(pixel + (2 * std::uint64_t{dimension} + which + 1) * 0x9E3779B97F4A7C15U);
+// A permutation of all words in which every bit of the result depends on every bit of x (constants:
+// C. Wellons, "Hash Prospector", 2018).
+std::uint32_t mixed(std::uint32_t x) {
+  x = (x ^ x >> 16) * 0x21F0AAADU;
+  x = (x ^ x >> 15) * 0xD35A2D97U;
+  return x ^ x >> 15;
 }
 
 std::uint32_t low(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
 std::uint32_t high(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
+
+// The order of a pixel's samples in a dimension; keys of their scramblings derive from it.
+std::uint32_t order_of(std::uint64_t pixel, std::uint32_t dimension) {
+  return mixed(high(pixel) ^ mixed(low(pixel) + dimension * 0x9E3779B9U));
+}
 
 // Samples in another order, in which aligned 2^k of them stay together.
 std::uint32_t shuffled(std::uint32_t sample, std::uint32_t seed) {
@@ -67,17 +148,20 @@ std::uint64_t pixel_key(std::uint64_t seed, int x, int y) {
 }
 
 float sobol(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension) {
-  const std::uint64_t key = dimension_key(pixel, dimension, 0);
-  // Another start of the scrambling than a pair's.
-  return unit(reversed(scrambled(shuffled(sample, high(key)), low(key))));
+  // Other keys than a pair's.
+  const std::uint32_t order = order_of(~pixel, dimension);
+  return unit(reversed(scrambled(shuffled(sample, order), mixed(order + low(pixel)))));
 }
 
 glm::vec2 sobol_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension) {
-  const std::uint64_t order = dimension_key(pixel, dimension, 0);
-  const std::uint64_t keys = dimension_key(pixel, dimension, 1);
-  const std::uint32_t number = shuffled(sample, low(order));
-  return {unit(reversed(scrambled(number, low(keys)))),
-          unit(reversed(scrambled(second_dimension(number), high(keys))))};
+  const std::uint32_t order = order_of(pixel, dimension);
+  const std::uint32_t number = shuffled(sample, order);
+  return {unit(reversed(scrambled(number, mixed(order + low(pixel))))),
+          unit(reversed(scrambled(second_dimension(number), mixed(order + high(pixel)))))};
+}
+
+void sobol_pairs(const SampleLanes& lanes, std::span<Pairs16> pairs) {
+  HWY_DYNAMIC_DISPATCH(pairs_block)(lanes, pairs);
 }
 
 glm::vec2 independent_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension) {
@@ -87,3 +171,4 @@ glm::vec2 independent_pair(std::uint64_t pixel, std::uint32_t sample, std::uint3
 }
 
 }  // namespace delray::raytrace
+#endif

@@ -10,6 +10,9 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
+
+#include "shading/points.h"
 
 namespace delray::raytrace {
 
@@ -24,6 +27,26 @@ glm::vec2 sobol_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t di
 
 // The same without any order among samples: independent numbers, to compare with.
 glm::vec2 independent_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
+
+// Sixteen samples, of any pixels, and a dimension of each. The key is in two halves.
+struct SampleLanes {
+  alignas(64) std::uint32_t key_low[shading::kBlockPoints], key_high[shading::kBlockPoints];
+  alignas(64) std::uint32_t sample[shading::kBlockPoints], dimension[shading::kBlockPoints];
+
+  void set(int i, std::uint64_t pixel, std::uint32_t number, std::uint32_t at) {
+    key_low[i] = static_cast<std::uint32_t>(pixel);
+    key_high[i] = static_cast<std::uint32_t>(pixel >> 32);
+    sample[i] = number;
+    dimension[i] = at;
+  }
+};
+
+struct Pairs16 {
+  shading::Floats16 x, y;
+};
+
+// By vectors: lane i of pairs[k] is sobol_pair of lane i, its dimension plus k.
+void sobol_pairs(const SampleLanes& lanes, std::span<Pairs16> pairs);
 
 // Dimension after dimension of one sample of a pixel. Copies are cheap and go on by themselves.
 class Sampler {

@@ -6,14 +6,17 @@
 #include <vector>
 
 #include "raytrace/alias_table.h"
+#include "raytrace/sampler.h"
 #include "shading/environment.h"
+#include "shading/points.h"
 
 namespace delray::raytrace {
 
-// A direction and the density with which it is drawn, per steradian.
-struct SkyDirection {
-  glm::vec3 direction{0, 0, 1};
-  float pdf = 0.0F;
+struct SkyCells {
+  glm::vec3 up{0, 1, 0}, front{0, 0, -1}, right{1, 0, 0};
+  int rows = 0, columns = 0;
+  std::vector<float> heights;  // cosines between rows, from 1 down to -1
+  AliasTable table;            // of cells, row by row
 };
 
 // The sphere cut into rows of equal angle and columns; a cell is drawn by its light, a direction
@@ -24,20 +27,17 @@ class SkyTable {
   // O(cells): at most 256 x 128.
   SkyTable(const shading::Environment& environment, std::span<const shading::Texture> textures);
 
-  // Numbers from [0, 1): two to choose the cell, two for the place in it.
-  SkyDirection sample(const glm::vec2& cell, const glm::vec2& place) const;
-  float pdf(const glm::vec3& direction) const;  // of a unit vector
+  // Sixteen lanes by vectors, all of them written. Numbers from [0, 1): two to choose the cell, two
+  // for the place in it. Densities are per steradian.
+  void sample(const Pairs16& cell, const Pairs16& place, shading::Vectors16& directions,
+              shading::Floats16& pdfs) const;
+  void pdf(const shading::Vectors16& directions, shading::Floats16& pdfs) const;  // unit vectors
 
   // The integral of the radiance over all directions, mean of the channels.
   float integral() const { return integral_; }
 
  private:
-  float cell_pdf(int row, std::uint32_t cell) const;
-
-  glm::vec3 up_{0, 1, 0}, front_{0, 0, -1}, right_{1, 0, 0};
-  int rows_ = 0, columns_ = 0;
-  std::vector<float> heights_;  // cosines between rows, from 1 down to -1
-  AliasTable table_;
+  SkyCells cells_;
   float integral_ = 0.0F;
 };
 

@@ -83,6 +83,17 @@ Sampler Walk::sampler(std::uint32_t pixel) {
           kFirstFree};
 }
 
+void Walk::draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples) {
+  const auto count = static_cast<std::uint32_t>(keys_.size());
+  for (shading::LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    std::uint32_t pixel = pixels[i];
+    auto sample = static_cast<std::uint32_t>(task_.first_sample);
+    for (; pixel >= count; pixel -= count) ++sample;  // tasks have few samples
+    samples.set(i, key(pixel), sample, kFirstFree);
+  }
+}
+
 void Walk::start(const Task& task) {
   assert(task.pixels.x0 % kBlockSide == 0 && task.pixels.y0 % kBlockSide == 0);
   task_ = task;

@@ -107,6 +107,8 @@ class Walk {
 
   // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
   Sampler sampler(std::uint32_t pixel);
+  // The same for sixteen lanes, of which those in `lanes` are set.
+  void draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples);
 
   Setting setting_;
   Task task_;

@@ -52,7 +52,7 @@ struct Surfaces {
   Vectors16 emission;
   Vectors16 diffuse, entering, specular;  // of Lobes, as the next three
   Floats16 grazing, lobe_alpha, lobe_roughness;
-  Vectors16 mirrored;  // specular_albedo towards the viewer; unset if the environment is black
+  Vectors16 mirrored;  // specular_albedo towards the viewer
 };
 
 void evaluate(const BatchShader& shader, std::uint32_t material, const Points& points,

@@ -48,7 +48,6 @@ void evaluate_block(const BatchShader& shader, std::uint32_t number, const Point
     store(l.grazing, active, i, out.grazing);
     store(l.alpha, active, i, out.lobe_alpha);
     store(l.roughness, active, i, out.lobe_roughness);
-    if (shader.shader->environment.black) continue;
     LobeLanes<Coloured> lobes = ready(l);
     if (!varying) lobes.constant = &constants;
     store(specular_albedo(lobes, clamp01(dot(s.normal, view))).v, active, i, out.mirrored);

@@ -95,6 +95,31 @@ HWY_INLINE F acos(F x) {
   return atan2(hn::Sqrt((set(1.0F) - x) * (set(1.0F) + x)), x);
 }
 
+struct SinCosLanes {
+  F sin, cos;
+};
+
+HWY_INLINE SinCosLanes sin_cos(F x) {
+  const I quarter = floor_to_int(x * set(0.636619772F) + set(0.5F));
+  const F q = to_float(quarter);
+  const F r = (x - q * set(1.5703125F)) - q * set(4.83826794897e-4F);
+  const F r2 = r * r;
+  const F s =
+      r * (set(0.999999997F) +
+           r2 * (set(-0.166666507F) + r2 * (set(0.00833203579F) + r2 * set(-0.000195039043F))));
+  const F c =
+      set(1.0F) +
+      r2 * (set(-0.499999996F) +
+            r2 * (set(0.0416666167F) + r2 * (set(-0.0013886618F) + r2 * set(2.43798312e-05F))));
+  const FloatTag d;
+  const M odd = hn::RebindMask(d, hn::Ne(quarter & set(1), set(0)));
+  // Bit 1 of the quarter, and of the next one, are the signs.
+  const F sign_of_sin = hn::BitCast(d, hn::ShiftLeft<30>(quarter & set(2)));
+  const F sign_of_cos = hn::BitCast(d, hn::ShiftLeft<30>((quarter + set(1)) & set(2)));
+  return {hn::Xor(hn::IfThenElse(odd, c, s), sign_of_sin),
+          hn::Xor(hn::IfThenElse(odd, s, c), sign_of_cos)};
+}
+
 struct F3 {
   F x, y, z;
 };

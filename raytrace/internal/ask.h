@@ -26,6 +26,30 @@ void clear_lanes(Group& group) {
   group.coherent = false;
 }
 
+// What is the same in all rays that start at surfaces; no lane is active.
+inline void clear_rays(RayGroup& group) {
+  RayPacket& packet = group.packet;
+  clear_lanes(group);
+  std::fill_n(packet.near, kPacketRays, 0.0F);
+  std::fill_n(packet.time, kPacketRays, 0.0F);
+  std::fill_n(packet.far, kPacketRays, std::numeric_limits<float>::infinity());
+  std::fill_n(packet.mask, kPacketRays, 0xFFFFFFFFU);
+  std::fill_n(packet.id, kPacketRays, 0U);
+  std::fill_n(packet.flags, kPacketRays, 0U);
+  std::fill_n(packet.triangle, kPacketRays, kMiss);
+  std::fill_n(packet.geometry, kPacketRays, kMiss);
+  std::fill_n(packet.instance, kPacketRays, kMiss);
+}
+inline void clear_rays(ShadowGroup& group) {
+  ShadowPacket& packet = group.packet;
+  clear_lanes(group);
+  group.through_glass = 0;
+  std::fill_n(packet.near, kPacketRays, 0.0F);
+  std::fill_n(packet.time, kPacketRays, 0.0F);
+  std::fill_n(packet.mask, kPacketRays, 0xFFFFFFFFU);
+  std::fill_n(packet.flags, kPacketRays, 0U);
+}
+
 // `direction` may have any length; `view` is the unit vector against it.
 inline void set_ray(RayGroup& group, int i, const glm::vec3& origin, const glm::vec3& direction,
                     const glm::vec3& view, float near) {
@@ -51,23 +75,6 @@ inline glm::vec3 origin_of(const RayPacket& packet, int i) {
 }
 inline glm::vec3 direction_of(const RayPacket& packet, int i) {
   return {packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]};
-}
-
-inline void set_shadow_ray(ShadowGroup& group, int i, const glm::vec3& origin,
-                           const glm::vec3& direction, float far) {
-  ShadowPacket& packet = group.packet;
-  group.active.ray[i] = -1;
-  packet.origin_x[i] = origin.x;
-  packet.origin_y[i] = origin.y;
-  packet.origin_z[i] = origin.z;
-  packet.near[i] = 0.0F;
-  packet.direction_x[i] = direction.x;
-  packet.direction_y[i] = direction.y;
-  packet.direction_z[i] = direction.z;
-  packet.time[i] = 0.0F;
-  packet.far[i] = far;
-  packet.mask[i] = 0xFFFFFFFFU;
-  packet.flags[i] = 0;
 }
 
 }  // namespace delray::raytrace

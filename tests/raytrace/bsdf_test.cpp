@@ -10,6 +10,8 @@
 
 #include "raytrace/optics.h"
 #include "raytrace/sampler.h"
+#include "shading/brdf.h"
+#include "tests/support/targets.h"
 
 namespace delray::raytrace {
 namespace {
@@ -31,6 +33,75 @@ Surface made_of(float metallic, float roughness, float transmission, float ior, 
   s.front = front;
   s.base_colour = colour;
   return s;
+}
+
+using shading::kBlockPoints;
+
+// One surface, in all lanes of Bsdfs: as many directions are looked at at once.
+struct Bsdf {
+  Bsdfs all;
+  float ratio() const { return all.ratio[0]; }
+};
+
+shading::Surfaces sixteen(const Surface& surface, const glm::vec3& view) {
+  const shading::Lobes lobes = shading::lobes(surface);
+  shading::Surfaces s;
+  for (int i = 0; i < kBlockPoints; ++i) {
+    s.geometric_normal.set(i, surface.geometric_normal);
+    s.normal.set(i, surface.normal);
+    s.front[i] = surface.front ? -1 : 0;
+    s.base_colour.set(i, surface.base_colour);
+    s.metallic[i] = surface.metallic;
+    s.roughness[i] = surface.roughness;
+    s.transmission[i] = surface.transmission;
+    s.ior[i] = surface.ior;
+    s.diffuse.set(i, lobes.diffuse);
+    s.entering.set(i, lobes.entering);
+    s.specular.set(i, lobes.specular);
+    s.grazing[i] = lobes.grazing;
+    s.lobe_alpha[i] = lobes.alpha;
+    s.lobe_roughness[i] = lobes.roughness;
+    const float cosine = shading::clamp01(glm::dot(surface.normal, view));
+    s.mirrored.set(i, shading::specular_albedo(lobes, cosine));
+  }
+  return s;
+}
+
+Bsdf make_bsdf(const Surface& surface, const glm::vec3& view) {
+  shading::Vectors16 views;
+  for (int i = 0; i < kBlockPoints; ++i) views.set(i, view);
+  Bsdf bsdf;
+  make_bsdfs(sixteen(surface, view), views, shading::kAllLanes, bsdf.all);
+  return bsdf;
+}
+
+struct Value {
+  glm::vec3 value{0.0F};
+  float pdf = 0.0F;
+};
+
+Value evaluate(const Bsdf& bsdf, const glm::vec3& light) {
+  shading::Vectors16 lights;
+  lights.set(0, light);
+  BsdfValues values;
+  evaluate(bsdf.all, lights, 1, values);
+  return {values.value.get(0), values.pdf[0]};
+}
+
+struct Sample {
+  glm::vec3 direction{0.0F}, weight{0.0F};
+  float pdf = 0.0F;
+  bool delta = false, transmitted = false;
+};
+
+Sample sample(const Bsdf& bsdf, float lobe, const glm::vec2& u) {
+  shading::Floats16 lobes, x, y;
+  lobes[0] = lobe, x[0] = u.x, y[0] = u.y;
+  BsdfSamples samples;
+  sample(bsdf.all, lobes, x, y, 1, samples);
+  const glm::vec3 weight = samples.weight.get(0);
+  return {samples.direction.get(0), weight, samples.pdf[0],
+          samples.pdf[0] == 0.0F && weight != glm::vec3(0.0F), (samples.transmitted & 1) != 0};
 }
 
 // Materials of every kind, their normals along z.
@@ -72,7 +143,7 @@ TEST(Bsdf, IsWhatShadingReflectsWhereNothingIsGlass) {
     if (glm::dot(v, s.normal) < 0.01F || glm::dot(l, s.normal) < 0.01F) continue;
     if (i % 2 == 0) l = glm::normalize(mirrored(v, s.normal) + 0.05F * l);
     const glm::vec3 expected = shading::reflect(shading::lobes(s), s.normal, v, l);
-    const BsdfValue got = evaluate(make_bsdf(s, v), l);
+    const Value got = evaluate(make_bsdf(s, v), l);
     for (int k = 0; k < 3; ++k) {
       ASSERT_NEAR(got.value[k], expected[k], 2e-3F * expected[k] + 1e-5F) << "seed 1, try " << i;
     }
@@ -98,7 +169,7 @@ TEST(Bsdf, IsReciprocal) {
       const glm::vec3 ab = evaluate(from_a, b).value / std::abs(b.z);
       const glm::vec3 ba = evaluate(from_b, a).value / std::abs(a.z);
       // Over the squares of the indices on the light's sides.
-      const float scale = through ? from_a.ratio * from_a.ratio : 1.0F;
+      const float scale = through ? from_a.ratio() * from_a.ratio() : 1.0F;
       for (int k = 0; k < 3; ++k) {
         ASSERT_NEAR(ab[k] * scale, ba[k], 2e-3F * ba[k] + 1e-5F)
             << m.name << (through ? " through" : "") << ", seed 2, try " << i;
@@ -120,12 +191,20 @@ std::vector<double> expected_bins(const Bsdf& bsdf) {
   constexpr int kFine = 12;
   std::vector<double> bins(kBins, 0.0);
   for (int i = 0; i < kBinRows * kFine; ++i) {
-    for (int j = 0; j < kBinColumns * kFine; ++j) {
-      const auto z = static_cast<float>((i + 0.5) / (kBinRows * kFine) * 2 - 1);
-      const auto phi = static_cast<float>((j + 0.5) / (kBinColumns * kFine) * 2 * M_PI - M_PI);
-      bins[static_cast<std::size_t>(i / kFine) * kBinColumns +
-           static_cast<std::size_t>(j / kFine)] +=
-          evaluate(bsdf, direction(z, phi)).pdf * 4 * M_PI / (kBins * kFine * kFine);
+    const auto z = static_cast<float>((i + 0.5) / (kBinRows * kFine) * 2 - 1);
+    for (int first = 0; first < kBinColumns * kFine; first += kBlockPoints) {
+      shading::Vectors16 lights;
+      for (int k = 0; k < kBlockPoints; ++k) {
+        const double turn = (first + k + 0.5) / (kBinColumns * kFine);
+        lights.set(k, direction(z, static_cast<float>(turn * 2 * M_PI - M_PI)));
+      }
+      BsdfValues values;
+      evaluate(bsdf.all, lights, shading::kAllLanes, values);
+      for (int k = 0; k < kBlockPoints; ++k) {
+        bins[static_cast<std::size_t>(i / kFine) * kBinColumns +
+             static_cast<std::size_t>((first + k) / kFine)] +=
+            values.pdf[k] * 4 * M_PI / (kBins * kFine * kFine);
+      }
     }
   }
   return bins;
@@ -142,7 +221,7 @@ TEST(Bsdf, SamplesAreDistributedAsTheirDensitySays) {
       std::uniform_real_distribution<float> unit(0.0F, 1.0F);
       double lost = 0, deltas = 0;
       for (int i = 0; i < kSamples; ++i) {
-        const BsdfSample s = sample(bsdf, unit(random), {unit(random), unit(random)});
+        const Sample s = sample(bsdf, unit(random), {unit(random), unit(random)});
         if (s.delta) {
           ++deltas;
         } else if (s.pdf > 0) {
@@ -194,16 +273,24 @@ TEST(Bsdf, SamplesIntegrateToWhatQuadratureSays) {
   for (const Named& m : materials({0.9F, 0.5F, 0.2F})) {
     for (const float z : {1.0F, 0.4F}) {
       const Bsdf bsdf = make_bsdf(m.surface, direction(z, 0.7F));
-      if (bsdf.straight) continue;
+      if (bsdf.all.straight != 0) continue;
       glm::dvec3 integral(0);
       // Rings of equal width: what passes head-on is a narrow lobe.
-      constexpr int kFine = 400, kAround = 200;
+      constexpr int kFine = 400, kAround = 208;
       for (int i = 0; i < kFine; ++i) {
         const double theta = (i + 0.5) / kFine * M_PI;
-        for (int j = 0; j < kAround; ++j) {
-          const glm::vec3 light = direction(static_cast<float>(std::cos(theta)),
-                                            static_cast<float>((j + 0.5) / kAround * 2 * M_PI));
-          integral += glm::dvec3(evaluate(bsdf, light).value) * std::sin(theta);
+        for (int first = 0; first < kAround; first += kBlockPoints) {
+          shading::Vectors16 lights;
+          for (int k = 0; k < kBlockPoints; ++k) {
+            const double turn = (first + k + 0.5) / kAround;
+            lights.set(k, direction(static_cast<float>(std::cos(theta)),
+                                    static_cast<float>(turn * 2 * M_PI)));
+          }
+          BsdfValues values;
+          evaluate(bsdf.all, lights, shading::kAllLanes, values);
+          for (int k = 0; k < kBlockPoints; ++k) {
+            integral += glm::dvec3(values.value.get(k)) * std::sin(theta);
+          }
         }
       }
       integral *= M_PI / kFine * 2 * M_PI / kAround;
@@ -240,7 +327,7 @@ TEST(Bsdf, SmoothGlassHasTwoDirections) {
     const Refraction bent = refracted(view, normal, front ? 1 / 1.5F : 1.5F);
     int reflections = 0;
     for (int i = 0; i < 1000; ++i) {
-      const BsdfSample s = sample(bsdf, (static_cast<float>(i) + 0.5F) / 1000, {0.3F, 0.8F});
+      const Sample s = sample(bsdf, (static_cast<float>(i) + 0.5F) / 1000, {0.3F, 0.8F});
       ASSERT_TRUE(s.delta);
       ASSERT_EQ(s.pdf, 0.0F);
       reflections += s.transmitted ? 0 : 1;
@@ -267,11 +354,62 @@ TEST(Bsdf, NoLightLeaksThroughTheGeometricSurface) {
     glm::vec3 view = uniform_direction(random);
     if (view.z < 0) view = -view;  // on the geometric side, perhaps below the shading normal
     const Bsdf bsdf = make_bsdf(s, view);
-    ASSERT_GT(bsdf.view.z, 0.0F);
-    const BsdfSample got = sample(bsdf, unit(random), {unit(random), unit(random)});
+    ASSERT_GT(bsdf.all.view.z[0], 0.0F);
+    const Sample got = sample(bsdf, unit(random), {unit(random), unit(random)});
     for (int k = 0; k < 3; ++k) ASSERT_TRUE(got.weight[k] >= 0.0F && got.weight[k] < 100.0F);
     if (got.weight == glm::vec3(0.0F)) continue;
     ASSERT_EQ(got.direction.z < 0, got.transmitted) << "seed 4, try " << i;
+  }
+}
+
+TEST(Bsdf, IsTheSameOnEveryInstructionSetInEveryLane) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+  std::vector<Named> all = materials({0.9F, 0.5F, 0.2F});
+  all.push_back({"clear glass", made_of(0, 0, 1, 1.5F, true, glm::vec3(1.0F))});
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    shading::Surfaces surfaces;
+    shading::Vectors16 views, lights;
+    shading::Floats16 lobes, x, y;
+    for (int i = 0; i < kBlockPoints; ++i) {
+      glm::vec3 view = uniform_direction(random);
+      view.z = std::abs(view.z);
+      Surface s = all[random() % all.size()].surface;
+      s.normal = glm::normalize(s.geometric_normal + 0.5F * uniform_direction(random));
+      const shading::Surfaces one = sixteen(s, view);
+      for (std::size_t f = 0; f < sizeof(one) / sizeof(shading::Floats16); ++f) {
+        reinterpret_cast<shading::Floats16*>(&surfaces)[f][i] =
+            reinterpret_cast<const shading::Floats16*>(&one)[f][i];
+      }
+      views.set(i, view);
+      lights.set(i, uniform_direction(random));
+      lobes[i] = unit(random), x[i] = unit(random), y[i] = unit(random);
+    }
+    const auto found = [&](shading::LaneMask lanes) {
+      Bsdfs bsdfs;
+      BsdfValues values;
+      BsdfSamples samples;
+      make_bsdfs(surfaces, views, lanes, bsdfs);
+      evaluate(bsdfs, lights, lanes, values);
+      sample(bsdfs, lobes, x, y, lanes, samples);
+      std::vector<std::array<float, 12>> all_of;
+      for (int i = 0; i < kBlockPoints; ++i) {
+        if ((lanes >> i & 1) == 0) continue;
+        const glm::vec3 v = values.value.get(i), w = samples.weight.get(i);
+        // Where nothing comes of a sample its direction does not count.
+        const glm::vec3 d = w != glm::vec3(0.0F) ? samples.direction.get(i) : glm::vec3(0.0F);
+        all_of.push_back({v.x, v.y, v.z, values.pdf[i], d.x, d.y, d.z, w.x, w.y, w.z,
+                          samples.pdf[i], (samples.transmitted >> i & 1) != 0 ? 1.0F : 0.0F});
+      }
+      return all_of;
+    };
+    const auto expected = found(shading::kAllLanes);
+    tests::for_each_target([&] {
+      ASSERT_EQ(found(shading::kAllLanes), expected) << "seed 6, try " << attempt;
+      for (const int i : {0, 5, 15}) {
+        ASSERT_EQ(found(1U << i)[0], expected[static_cast<std::size_t>(i)]) << attempt;
+      }
+    });
   }
 }
 

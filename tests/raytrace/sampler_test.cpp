@@ -6,6 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "tests/support/targets.h"
+
 namespace delray::raytrace {
 namespace {
 
@@ -131,6 +133,25 @@ TEST(Sampler, IntegratesMuchBetterThanIndependentNumbers) {
             error(independent_pair, disc, M_PI / 4, 1024) / 3);
   const double few = error(sobol_pair, product, 0.25, 64);
   EXPECT_GT(few / error(sobol_pair, product, 0.25, 1024), 0.5 * std::pow(16.0, 1.5));
+}
+
+TEST(Sampler, VectorsGiveTheSameNumbersOnEveryInstructionSet) {
+  SampleLanes lanes{};
+  for (int i = 0; i < shading::kBlockPoints; ++i) {
+    lanes.set(i, pixel_key(10, i * 71, 3), static_cast<std::uint32_t>(i * i * 1001),
+              static_cast<std::uint32_t>(i % 5 * 7));
+  }
+  tests::for_each_target([&] {
+    Pairs16 pairs[3];
+    sobol_pairs(lanes, pairs);
+    for (int i = 0; i < shading::kBlockPoints; ++i) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const glm::vec2 expected =
+            sobol_pair(pixel_key(10, i * 71, 3), lanes.sample[i], lanes.dimension[i] + k);
+        ASSERT_EQ(glm::vec2(pairs[k].x[i], pairs[k].y[i]), expected) << i << " " << k;
+      }
+    }
+  });
 }
 
 TEST(Sampler, GoesThroughDimensionsInOrder) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "raytrace/sampler.h"
+#include "tests/support/targets.h"
 
 namespace delray::raytrace {
 namespace {
@@ -59,9 +60,32 @@ double over_sphere(G g) {
   return sum * 4 * M_PI / (kRows * kColumns);
 }
 
+float pdf(const SkyTable& table, const glm::vec3& direction) {
+  shading::Vectors16 directions;
+  directions.set(0, direction);
+  shading::Floats16 pdfs;
+  table.pdf(directions, pdfs);
+  return pdfs[0];
+}
+
+struct Drawn {
+  glm::vec3 direction;
+  float pdf;
+};
+
+Drawn draw(const SkyTable& table, const glm::vec2& cell, const glm::vec2& place) {
+  Pairs16 cells, places;
+  cells.x[3] = cell.x, cells.y[3] = cell.y;
+  places.x[3] = place.x, places.y[3] = place.y;
+  shading::Vectors16 directions;
+  shading::Floats16 pdfs;
+  table.sample(cells, places, directions, pdfs);
+  return {directions.get(3), pdfs[3]};
+}
+
 void check(const Sky& sky, double tolerance) {
   const SkyTable table(sky.environment, sky.textures);
-  EXPECT_NEAR(over_sphere([&](const glm::vec3& d) { return table.pdf(d); }), 1.0, 5e-3);
+  EXPECT_NEAR(over_sphere([&](const glm::vec3& d) { return pdf(table, d); }), 1.0, 5e-3);
   const auto arriving = [&](const glm::vec3& d) {
     return shading::radiance(sky.environment, sky.textures, d).x * std::max(0.0F, d.x + 0.5F * d.y);
   };
@@ -70,11 +94,11 @@ void check(const Sky& sky, double tolerance) {
   double sum = 0, squares = 0;
   int differ = 0;
   for (std::uint32_t i = 0; i < kSamples; ++i) {
-    const SkyDirection s = table.sample(sobol_pair(3, i, 0), sobol_pair(3, i, 1));
+    const Drawn s = draw(table, sobol_pair(3, i, 0), sobol_pair(3, i, 1));
     ASSERT_GT(s.pdf, 0.0F);
     ASSERT_NEAR(glm::length(s.direction), 1.0F, 1e-5F);
     // At the border of two cells rounding may find the other one.
-    differ += std::abs(table.pdf(s.direction) / s.pdf - 1.0F) < 1e-4F ? 0 : 1;
+    differ += std::abs(pdf(table, s.direction) / s.pdf - 1.0F) < 1e-4F ? 0 : 1;
     const double value = arriving(s.direction) / s.pdf;
     sum += value / kSamples;
     squares += value * value / kSamples;
@@ -90,6 +114,30 @@ void check(const Sky& sky, double tolerance) {
 TEST(SkyTable, DrawsTexturesByTheirLight) { check(textured(), 0.01); }
 
 TEST(SkyTable, DrawsGradientsByTheirLight) { check(gradient(), 0.01); }
+
+TEST(SkyTable, IsTheSameOnEveryInstructionSet) {
+  for (const Sky& sky : {textured(), gradient()}) {
+    const SkyTable table(sky.environment, sky.textures);
+    SampleLanes lanes{};
+    for (int i = 0; i < shading::kBlockPoints; ++i) lanes.set(i, pixel_key(4, i, 0), 7, 0);
+    const auto found = [&] {
+      Pairs16 pairs[2];
+      sobol_pairs(lanes, pairs);
+      shading::Vectors16 directions;
+      shading::Floats16 drawn, again;
+      table.sample(pairs[0], pairs[1], directions, drawn);
+      table.pdf(directions, again);
+      std::vector<float> all;
+      for (int i = 0; i < shading::kBlockPoints; ++i) {
+        const glm::vec3 d = directions.get(i);
+        all.insert(all.end(), {d.x, d.y, d.z, drawn[i], again[i]});
+      }
+      return all;
+    };
+    const std::vector<float> expected = found();
+    tests::for_each_target([&] { EXPECT_EQ(found(), expected); });
+  }
+}
 
 TEST(SkyTable, KnowsHowMuchLightThereIs) {
   for (const Sky& sky : {textured(), gradient()}) {
