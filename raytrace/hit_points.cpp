@@ -5,6 +5,30 @@
 #include "raytrace/internal/edges.h"
 #include "raytrace/intersection.h"
 
+#ifndef DELRAY_RAYTRACE_GATHERED
+#define DELRAY_RAYTRACE_GATHERED
+
+namespace delray::raytrace {
+
+// What meshes and placements know of the triangles that lanes hit: [corner][axis][lane]. What a
+// lane's mask does not ask for may hold anything.
+struct Gathered {
+  alignas(64) float position[3][3][kPacketRays], normal[3][3][kPacketRays];
+  alignas(64) float linear[3][3][kPacketRays], origin[3][kPacketRays];  // Placement::to_world
+  alignas(64) float normal_matrix[3][3][kPacketRays];
+  alignas(64) float orientation[kPacketRays], transform_scale[kPacketRays];
+  alignas(64) float u[3][kPacketRays], v[3][kPacketRays];
+  alignas(64) float tangent[3][3][kPacketRays], handedness[kPacketRays];
+  alignas(64) float colour[3][3][kPacketRays], alpha[3][kPacketRays];
+  shading::LaneMask instanced = 0;  // positions are to be moved
+  shading::LaneMask placed = 0;     // normals and tangents are to be turned
+  shading::LaneMask smooth = 0, textured = 0, mapped = 0, tangents = 0, coloured = 0;
+};
+
+}  // namespace delray::raytrace
+
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/hit_points.cpp"
 #include <hwy/foreach_target.h>
@@ -19,58 +43,30 @@ namespace HWY_NAMESPACE {
 
 using namespace shading::HWY_NAMESPACE;
 
-// Numbers of triangles' corners.
-struct Corners {
-  I a, b, c;
-};
-
-HWY_INLINE I times_three(I x) { return x + x + x; }
-
-HWY_INLINE Corners corners_of(const scenes::Mesh& mesh, I triangle) {
-  const auto* first = reinterpret_cast<const std::int32_t*>(mesh.triangles.data());
-  const I at = times_three(triangle);
-  const IntTag d;
-  return {hn::GatherIndex(d, first, at), hn::GatherIndex(d, first, at + set(1)),
-          hn::GatherIndex(d, first, at + set(2))};
-}
-
-HWY_INLINE F3 gathered(const glm::vec3* values, I vertex) {
+// Three corners' vectors, or columns of a matrix.
+HWY_INLINE F3 at(const float (&v)[3][kPacketRays], int i) {
   const FloatTag d;
-  const I at = times_three(vertex);
-  return {hn::GatherIndex(d, &values->x, at), hn::GatherIndex(d, &values->y, at),
-          hn::GatherIndex(d, &values->z, at)};
+  return {hn::Load(d, v[0] + i), hn::Load(d, v[1] + i), hn::Load(d, v[2] + i)};
 }
+HWY_INLINE F at(const float (&v)[kPacketRays], int i) { return hn::Load(FloatTag(), v + i); }
 
 struct Weights {
   F a, b, c;
 };
 
-HWY_INLINE F3 interpolated(const std::vector<glm::vec3>& values, const Corners& corners,
-                           const Weights& w) {
-  const glm::vec3* first = values.data();
-  return gathered(first, corners.a) * w.a + gathered(first, corners.b) * w.b +
-         gathered(first, corners.c) * w.c;
+HWY_INLINE F3 interpolated(const float (&corners)[3][3][kPacketRays], const Weights& w, int i) {
+  return at(corners[0], i) * w.a + at(corners[1], i) * w.b + at(corners[2], i) * w.c;
+}
+HWY_INLINE F interpolated(const float (&corners)[3][kPacketRays], const Weights& w, int i) {
+  return at(corners[0], i) * w.a + at(corners[1], i) * w.b + at(corners[2], i) * w.c;
 }
 
-// Component k of values that have 2 or 4.
-template <int kComponents>
-HWY_INLINE F component(const float* values, I vertex, int k) {
-  static_assert(kComponents == 2 || kComponents == 4);
-  return hn::GatherIndex(FloatTag(), values + k, hn::ShiftLeft<kComponents / 2>(vertex));
+// Transforms of the lanes.
+HWY_INLINE F3 turned(const float (&m)[3][3][kPacketRays], const F3& v, int i) {
+  return at(m[0], i) * v.x + at(m[1], i) * v.y + at(m[2], i) * v.z;
 }
-
-template <int kComponents>
-HWY_INLINE F interpolated(const float* values, const Corners& corners, const Weights& w, int k) {
-  return component<kComponents>(values, corners.a, k) * w.a +
-         component<kComponents>(values, corners.b, k) * w.b +
-         component<kComponents>(values, corners.c, k) * w.c;
-}
-
-HWY_INLINE F3 transformed(const glm::mat3& m, const F3& v) {
-  return set(m[0]) * v.x + set(m[1]) * v.y + set(m[2]) * v.z;
-}
-HWY_INLINE F3 transformed(const glm::mat4x3& m, const F3& v) {
-  return set(m[0]) * v.x + set(m[1]) * v.y + set(m[2]) * v.z + set(m[3]);
+HWY_INLINE F3 moved(const Gathered& g, const F3& v, int i) {
+  return turned(g.linear, v, i) + at(g.origin, i);
 }
 
 HWY_INLINE F largest(const F3& v) {
@@ -83,125 +79,90 @@ HWY_INLINE F3 unit(const F3& v, const F3& otherwise) {
 }
 
 // What only materials with textures look at.
-HWY_INLINE void find_texture_point(const Placement& placement, const Corners& corners,
-                                   const Weights& w, const F3& geometric_normal, F area, int i,
-                                   M active, RayGroup& group) {
-  const scenes::Mesh& mesh = *placement.mesh;
+HWY_INLINE void find_texture_points(const Gathered& g, const Weights& w, const F3& geometric_normal,
+                                    F area, int i, RayGroup& group) {
   shading::Points& points = group.points;
+  const FloatTag d;
   const F zero = set(0.0F);
-  F u = zero, v = zero, step = zero, handedness = zero;
-  F3 tangent = set(glm::vec3(0.0F));
-  if (!mesh.uvs.empty()) {
-    const float* uvs = &mesh.uvs.data()->x;
-    u = interpolated<2>(uvs, corners, w, 0);
-    v = interpolated<2>(uvs, corners, w, 1);
-    const F u_a = component<2>(uvs, corners.a, 0), v_a = component<2>(uvs, corners.a, 1);
-    const F ab_u = component<2>(uvs, corners.b, 0) - u_a;
-    const F ab_v = component<2>(uvs, corners.b, 1) - v_a;
-    const F ac_u = component<2>(uvs, corners.c, 0) - u_a;
-    const F ac_v = component<2>(uvs, corners.c, 1) - v_a;
-    const F uv_area = hn::Abs(ab_u * ac_v - ab_v * ac_u);
-    const F cosine = hn::Abs(dot(geometric_normal, load(group.view, i)));
-    const FloatTag df;
-    const F width =
-        load(group.width, i) + hn::Load(df, group.packet.far + i) * load(group.spread, i);
-    const F along = width * hn::Sqrt(uv_area / area) / max_of(cosine, set(kSteepest));
-    step = hn::IfThenElseZero(hn::Gt(area, zero), along);
-    if (!mesh.tangents.empty()) {
-      const float* tangents = &mesh.tangents.data()->x;
-      const F3 sum = {interpolated<4>(tangents, corners, w, 0),
-                      interpolated<4>(tangents, corners, w, 1),
-                      interpolated<4>(tangents, corners, w, 2)};
-      const glm::mat3 linear(placement.to_world);
-      tangent = unit(placement.identity ? sum : transformed(linear, sum), set(glm::vec3(1, 0, 0)));
-      const M mirrored = hn::Lt(component<4>(tangents, corners.a, 3), zero);
-      handedness =
-          hn::IfThenElse(mirrored, set(-placement.orientation), set(placement.orientation));
-    }
-  }
-  store(u, active, i, points.u);
-  store(v, active, i, points.v);
+  const M active = mask_of(g.textured, i), mapped = mask_of(g.mapped, i);
+  const F u_a = at(g.u[0], i), v_a = at(g.v[0], i);
+  const F ab_u = at(g.u[1], i) - u_a, ab_v = at(g.v[1], i) - v_a;
+  const F ac_u = at(g.u[2], i) - u_a, ac_v = at(g.v[2], i) - v_a;
+  const F uv_area = hn::Abs(ab_u * ac_v - ab_v * ac_u);
+  const F cosine = hn::Abs(dot(geometric_normal, load(group.view, i)));
+  const F width = load(group.width, i) + hn::Load(d, group.packet.far + i) * load(group.spread, i);
+  const F along = width * hn::Sqrt(uv_area / area) / max_of(cosine, set(kSteepest));
+  const F step = hn::IfThenElseZero(hn::And(mapped, hn::Gt(area, zero)), along);
+  store(hn::IfThenElseZero(mapped, interpolated(g.u, w, i)), active, i, points.u);
+  store(hn::IfThenElseZero(mapped, interpolated(g.v, w, i)), active, i, points.v);
   store(step, active, i, points.footprint_dx_u);
   store(zero, active, i, points.footprint_dx_v);
   store(zero, active, i, points.footprint_dy_u);
   store(step, active, i, points.footprint_dy_v);
+  F3 tangent = set(glm::vec3(0.0F));
+  F handedness = zero;
+  if (g.tangents != 0) {
+    const M has = mask_of(g.tangents, i);
+    const F3 sum = interpolated(g.tangent, w, i);
+    const F3 along_u = choose(mask_of(g.placed, i), turned(g.linear, sum, i), sum);
+    const F orientation = at(g.orientation, i);
+    tangent = where(has, unit(along_u, set(glm::vec3(1, 0, 0))));
+    handedness = hn::IfThenElseZero(
+        has, hn::IfThenElse(hn::Lt(at(g.handedness, i), zero), hn::Neg(orientation), orientation));
+  }
   store(tangent, active, i, points.tangent);
   store(handedness, active, i, points.handedness);
 }
 
-HWY_INLINE void find_colours(const scenes::Mesh& mesh, const Corners& corners, const Weights& w,
-                             int i, M active, shading::Points& points) {
-  F3 colour = set(glm::vec3(1.0F));
-  F alpha = set(1.0F);
-  if (!mesh.colours.empty()) {
-    const float* colours = &mesh.colours.data()->x;
-    colour = {interpolated<4>(colours, corners, w, 0), interpolated<4>(colours, corners, w, 1),
-              interpolated<4>(colours, corners, w, 2)};
-    alpha = interpolated<4>(colours, corners, w, 3);
-  }
-  store(colour, active, i, points.colour);
-  store(alpha, active, i, points.colour_alpha);
-}
-
-// The points of lanes that hit the same placement.
-void find_placement_points(const Placement& placement, shading::LaneMask mask, RayGroup& group) {
-  const scenes::Mesh& mesh = *placement.mesh;
+// The points of lanes that were gathered.
+void find_gathered_points(const Gathered& g, RayGroup& group) {
   const RayPacket& packet = group.packet;
   shading::Points& points = group.points;
   const FloatTag d;
-  const IntTag di;
   for (int i = 0; i < kPacketRays; i += lanes()) {
-    const M active = mask_of(mask, i);
+    const M active = mask_of(group.hits, i);
     if (hn::AllFalse(d, active)) continue;
-    // Lanes of other placements look at triangle 0.
-    const I triangle = hn::IfThenElseZero(
-        hn::RebindMask(di, active),
-        hn::Load(di, reinterpret_cast<const std::int32_t*>(packet.triangle) + i));
     const F u = hn::Load(d, packet.u + i), v = hn::Load(d, packet.v + i);
     const Weights weights = {set(1.0F) - u - v, u, v};
-    const Corners corners = corners_of(mesh, triangle);
-    F3 a = gathered(placement.positions, corners.a);
-    F3 b = gathered(placement.positions, corners.b);
-    F3 c = gathered(placement.positions, corners.c);
-    if (placement.instanced) {
-      a = transformed(placement.to_world, a);
-      b = transformed(placement.to_world, b);
-      c = transformed(placement.to_world, c);
+    F3 a = at(g.position[0], i), b = at(g.position[1], i), c = at(g.position[2], i);
+    if (g.instanced != 0) {
+      const M m = mask_of(g.instanced, i);
+      a = choose(m, moved(g, a, i), a);
+      b = choose(m, moved(g, b, i), b);
+      c = choose(m, moved(g, c, i), c);
     }
     const F3 ab = b - a, ac = c - a;
-    const F3 position = a + ab * u + ac * v;
-    const F offset =
-        set(kOffset) * (max_of(max_of(largest(a), largest(b)), largest(c)) +
-                        max_of(largest(ab), largest(ac)) + set(placement.transform_scale));
+    const F offset = set(kOffset) * (max_of(max_of(largest(a), largest(b)), largest(c)) +
+                                     max_of(largest(ab), largest(ac)) + at(g.transform_scale, i));
     const F3 normal_of_corners = cross(ab, ac);
     const F area = hn::Sqrt(dot(normal_of_corners, normal_of_corners));
     const F3 geometric_normal =
-        choose(hn::Gt(area, set(0.0F)), normal_of_corners * (set(placement.orientation) / area),
+        choose(hn::Gt(area, set(0.0F)), normal_of_corners * (at(g.orientation, i) / area),
                set(glm::vec3(0, 0, 1)));
     F3 normal = geometric_normal;
-    if (!mesh.normals.empty()) {
-      normal = interpolated(mesh.normals, corners, weights);
-      if (!placement.identity) normal = transformed(placement.normal_to_world, normal);
-      normal = unit(normal, geometric_normal);
+    if (g.smooth != 0) {
+      F3 sum = interpolated(g.normal, weights, i);
+      if (g.placed != 0) {
+        sum = choose(mask_of(g.placed, i), turned(g.normal_matrix, sum, i), sum);
+      }
+      normal = choose(mask_of(g.smooth, i), unit(sum, geometric_normal), geometric_normal);
     }
-    store(position, active, i, points.position);
+    store(a + ab * u + ac * v, active, i, points.position);
     store(geometric_normal, active, i, points.geometric_normal);
     store(normal, active, i, points.normal);
     store(offset, active, i, group.offset);
-    hn::Store(hn::IfThenElse(
-                  hn::RebindMask(di, active), set(static_cast<std::int32_t>(placement.material)),
-                  hn::Load(di, reinterpret_cast<const std::int32_t*>(group.material) + i)),
-              di, reinterpret_cast<std::int32_t*>(group.material) + i);
-    if (points.coloured) find_colours(mesh, corners, weights, i, active, points);
-    if (placement.textured) {
-      find_texture_point(placement, corners, weights, geometric_normal, area, i, active, group);
-    }
+    if (g.textured != 0) find_texture_points(g, weights, geometric_normal, area, i, group);
+    if (!points.coloured) continue;
+    const M coloured = mask_of(g.coloured, i);
+    const F3 white = set(glm::vec3(1.0F));
+    store(choose(coloured, interpolated(g.colour, weights, i), white), active, i, points.colour);
+    store(hn::IfThenElse(coloured, interpolated(g.alpha, weights, i), set(1.0F)), active, i,
+          points.colour_alpha);
   }
 }
 
-// Sets hits, and the number of the placement of each lane. Returns whether it is the same for all
-// that hit.
-bool find_hits(RayGroup& group, std::uint32_t* placements) {
+// Sets hits, and the number of the placement of each lane.
+void find_hits(RayGroup& group, std::uint32_t* placements) {
   const IntTag d;
   const auto ints = [](std::uint32_t* p) { return reinterpret_cast<std::int32_t*>(p); };
   RayPacket& packet = group.packet;
@@ -217,15 +178,6 @@ bool find_hits(RayGroup& group, std::uint32_t* placements) {
     hits |= bits_of(hn::RebindMask(FloatTag(), hit), i);
   }
   group.hits = hits;
-  if (hits == 0) return true;
-  const I first =
-      set(static_cast<std::int32_t>(placements[hwy::Num0BitsBelowLS1Bit_Nonzero32(hits)]));
-  shading::LaneMask same = 0;
-  for (int i = 0; i < kPacketRays; i += lanes()) {
-    const auto equal = hn::Eq(hn::Load(d, ints(placements) + i), first);
-    same |= bits_of(hn::RebindMask(FloatTag(), equal), i);
-  }
-  return (hits & ~same) == 0;
 }
 
 bool find_edge_lanes(const ActiveRays& active, const RayPacket& packet, ActiveRays& edges) {
@@ -253,23 +205,81 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 namespace {
 
-HWY_EXPORT(find_placement_points);
+HWY_EXPORT(find_gathered_points);
 HWY_EXPORT(find_hits);
 HWY_EXPORT(find_edge_lanes);
 
-// From so many lanes on vectors are faster than lane by lane.
-constexpr int kFewestLanes = 3;
+void put(const glm::vec3& v, int lane, float (&to)[3][kPacketRays]) {
+  to[0][lane] = v.x;
+  to[1][lane] = v.y;
+  to[2][lane] = v.z;
+}
 
-// Corners of more vertices, times three, would not fit 32 bits.
-constexpr std::size_t kMostVertices = 1U << 29;
+template <class F>
+void for_lanes(shading::LaneMask lanes, F&& f) {
+  for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
+}
 
-void find_point(const Placement& placement, int i, RayGroup& group) {
-  const glm::vec3 direction = -group.view.get(i);
-  const float width = group.width[i] + group.packet.far[i] * group.spread[i];
-  const Intersection at = intersection(placement, hit_of(group.packet, i), direction, {width});
-  set_point(group.points, i, at.point);
-  group.offset[i] = at.offset;
-  group.material[i] = placement.material;
+// Of lanes that hit the same mesh; element i of corners belongs to lane i.
+void gather_textured(const scenes::Mesh& mesh, const glm::uvec3* corners, shading::LaneMask lanes,
+                     Gathered& to) {
+  to.textured |= lanes;
+  if (mesh.uvs.empty()) return;
+  to.mapped |= lanes;
+  for_lanes(lanes, [&, uvs = mesh.uvs.data()](int i) {
+    for (int k = 0; k < 3; ++k) {
+      to.u[k][i] = uvs[corners[i][k]].x;
+      to.v[k][i] = uvs[corners[i][k]].y;
+    }
+  });
+  if (mesh.tangents.empty()) return;
+  to.tangents |= lanes;
+  for_lanes(lanes, [&, tangents = mesh.tangents.data()](int i) {
+    for (int k = 0; k < 3; ++k) put(glm::vec3(tangents[corners[i][k]]), i, to.tangent[k]);
+    to.handedness[i] = tangents[corners[i].x].w;
+  });
+}
+
+void gather_transforms(const Placement& placement, shading::LaneMask lanes, Gathered& to) {
+  to.placed |= lanes;
+  if (placement.instanced) to.instanced |= lanes;
+  for_lanes(lanes, [&](int i) {
+    for (int k = 0; k < 3; ++k) {
+      put(placement.to_world[k], i, to.linear[k]);
+      put(placement.normal_to_world[k], i, to.normal_matrix[k]);
+    }
+    put(placement.to_world[3], i, to.origin);
+  });
+}
+
+// What the lanes' triangles of one placement need.
+void gather(const Placement& placement, const std::uint32_t* triangles, shading::LaneMask lanes,
+            Gathered& to) {
+  const scenes::Mesh& mesh = *placement.mesh;
+  glm::uvec3 corners[kPacketRays];
+  for_lanes(lanes, [&, numbers = mesh.triangles.data(), positions = placement.positions](int i) {
+    corners[i] = numbers[triangles[i]];
+    for (int k = 0; k < 3; ++k) put(positions[corners[i][k]], i, to.position[k]);
+    to.orientation[i] = placement.orientation;
+    to.transform_scale[i] = placement.transform_scale;
+  });
+  if (!mesh.normals.empty()) {
+    to.smooth |= lanes;
+    for_lanes(lanes, [&, normals = mesh.normals.data()](int i) {
+      for (int k = 0; k < 3; ++k) put(normals[corners[i][k]], i, to.normal[k]);
+    });
+  }
+  if (placement.instanced || !placement.identity) gather_transforms(placement, lanes, to);
+  if (!mesh.colours.empty()) {
+    to.coloured |= lanes;
+    for_lanes(lanes, [&, colours = mesh.colours.data()](int i) {
+      for (int k = 0; k < 3; ++k) {
+        put(glm::vec3(colours[corners[i][k]]), i, to.colour[k]);
+        to.alpha[k][i] = colours[corners[i][k]].w;
+      }
+    });
+  }
+  if (placement.textured) gather_textured(mesh, corners, lanes, to);
 }
 
 // Calls f(placement, triangle) for the hits.
@@ -309,28 +319,22 @@ void fetch_vertices(std::span<const Placement> placements, const RayGroup& group
 }
 
 void find_points(std::span<const Placement> placements, RayGroup& group) {
-  alignas(64) std::uint32_t placement[kPacketRays];
-  const bool one = HWY_DYNAMIC_DISPATCH(find_hits)(group, placement);
-  shading::LaneMask hits = group.hits;
-  group.points.coloured = false;
-  for (shading::LaneMask rest = hits; rest != 0; rest = one ? 0 : rest & (rest - 1)) {
-    const scenes::Mesh& mesh = *placements[placement[std::countr_zero(rest)]].mesh;
-    group.points.coloured = group.points.coloured || !mesh.colours.empty();
+  alignas(64) std::uint32_t numbers[kPacketRays];
+  HWY_DYNAMIC_DISPATCH(find_hits)(group, numbers);
+  if (group.hits == 0) return;
+  Gathered gathered;
+  for (shading::LaneMask rest = group.hits; rest != 0;) {
+    const std::uint32_t number = numbers[std::countr_zero(rest)];
+    const Placement& placement = placements[number];
+    shading::LaneMask same = 0;
+    for (int i = 0; i < kPacketRays; ++i) same |= numbers[i] == number ? 1U << i : 0U;
+    same &= rest;
+    rest &= ~same;
+    for_lanes(same, [&](int i) { group.material[i] = placement.material; });
+    gather(placement, group.packet.triangle, same, gathered);
   }
-  while (hits != 0) {
-    const std::uint32_t number = placement[std::countr_zero(hits)];
-    shading::LaneMask same = one ? hits : 0;
-    for (int i = 0; !one && i < kPacketRays; ++i) same |= placement[i] == number ? 1U << i : 0U;
-    same &= hits;
-    hits &= ~same;
-    const Placement& where = placements[number];
-    if (std::popcount(same) >= kFewestLanes && where.mesh->positions.size() <= kMostVertices &&
-        where.mesh->triangles.size() <= kMostVertices) {
-      HWY_DYNAMIC_DISPATCH(find_placement_points)(where, same, group);
-      continue;
-    }
-    for (; same != 0; same &= same - 1) find_point(where, std::countr_zero(same), group);
-  }
+  group.points.coloured = gathered.coloured != 0;
+  HWY_DYNAMIC_DISPATCH(find_gathered_points)(gathered, group);
 }
 
 }  // namespace delray::raytrace

@@ -9,7 +9,7 @@
 namespace delray::raytrace {
 
 // The answer of a group whose rays were traced: for each lane what intersection() gives, to the
-// last bit. Lanes that hit the same placement are computed together by vectors.
+// last bit. Their corners are gathered one lane after the other, the rest is done by vectors.
 void find_points(std::span<const Placement> placements, RayGroup& group);
 
 // Neighbouring hits in a large scene lie far apart in memory. Who has something else to do before
