@@ -121,7 +121,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   }
   if (practice.show != "colour") {
     const double most = show(practice.show, result, practice.window, done.picture);
-    if (most > 0.0) spdlog::info("{}: up to {:.6g}", practice.show, most);
+    if (most > 0.0) spdlog::info("{}: 99 % are below {:.6g}", practice.show, most);
   }
   return done;
 }

@@ -17,8 +17,8 @@ using raytrace::ProgressiveResult;
 struct Shown {
   const char* name;
   const char* description;
-  enum class Kind { direction, colour, id, number } kind;
-  const char* channel;  // the first of its channels
+  enum class Kind { direction, colour, id, number, square } kind;  // of a square, its root is shown
+  const char* channel;                                             // the first of its channels
 };
 
 constexpr Shown kShown[] = {
@@ -27,7 +27,7 @@ constexpr Shown kShown[] = {
     {"instance", "instances, each in a colour of its own", Shown::Kind::id, "id.instance"},
     {"material", "materials, each in a colour of its own", Shown::Kind::id, "id.material"},
     {"depth", "distance along the view", Shown::Kind::number, "Z"},
-    {"variance", "of pixels: what is left of the noise, squared", Shown::Kind::number, "variance"},
+    {"variance", "of pixels: what is left of the noise", Shown::Kind::square, "variance"},
     {"samples", "of each pixel", Shown::Kind::number, "samples"},
     {"rays", "that each pixel took", Shown::Kind::number, "cost.rays"},
     {"seconds", "that each pixel took", Shown::Kind::number, "cost.seconds"},
@@ -57,6 +57,16 @@ glm::vec3 colour_of_id(float id) {
   };
   const float value = 0.35F + 0.4F * static_cast<float>(static_cast<int>(id) % 3) * 0.5F;
   return (glm::vec3(part(0.0F), part(2.0F / 3), part(1.0F / 3)) * 0.8F + 0.2F) * value;
+}
+
+// Nearly the greatest of the finite values, which alone may be many times all others; 0 if none is
+// positive.
+float top_of(std::vector<float> values) {
+  std::erase_if(values, [](float v) { return !std::isfinite(v) || !(v > 0.0F); });
+  if (values.empty()) return 0.0F;
+  const auto top = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
+  std::nth_element(values.begin(), top, values.end());
+  return *top;
 }
 
 }  // namespace
@@ -117,9 +127,11 @@ double show(const std::string& name, const ProgressiveResult& result, const Rect
   channels.push_back({"Z", {picture.depth.data(), picture.depth.data() + picture.pixels()}});
   const auto first = std::find_if(channels.begin(), channels.end(),
                                   [&](const auto& c) { return c.name == shown.channel; });
-  const std::vector<float>& values = first->values;
-  float most = 0.0F;
-  for (const float v : values) most = std::isfinite(v) ? std::max(most, v) : most;
+  std::vector<float>& values = first->values;
+  if (shown.kind == Shown::Kind::square) {
+    for (float& v : values) v = std::sqrt(v);
+  }
+  const float top = top_of(values);
   const auto& map = scenes::colour_map("turbo");
   for (std::size_t i = 0; i < picture.pixels(); ++i) {
     glm::vec3 colour(0.0F);
@@ -137,13 +149,14 @@ double show(const std::string& name, const ProgressiveResult& result, const Rect
         colour = colour_of_id(values[i]);
         break;
       case Shown::Kind::number:
+      case Shown::Kind::square:
         covered = std::isfinite(values[i]);
-        colour = map.colour(most > 0.0F ? values[i] / most : 0.0F);
+        colour = map.colour(top > 0.0F ? std::min(values[i] / top, 1.0F) : 0.0F);
         break;
     }
     picture.colour[i] = covered ? image::RgbaF{colour.x, colour.y, colour.z, 1.0F} : image::RgbaF{};
   }
-  return shown.kind == Shown::Kind::number ? most : 0.0;
+  return shown.kind == Shown::Kind::number || shown.kind == Shown::Kind::square ? top : 0.0;
 }
 
 }  // namespace delray::apps

@@ -25,8 +25,8 @@ std::vector<image::Channel> channels_of(const raytrace::ProgressiveResult& resul
                                         const geometry::Rect& window);
 
 // A picture of a channel: normals and albedo as colours, ids as colours of their own, numbers by a
-// map from nothing (dark) to the greatest (bright). What nothing covers is transparent; depth is
-// left. Returns that greatest number, 0 where there is none.
+// map from nothing to what 99 % of the positive ones stay below; of variances the roots. What
+// nothing covers is transparent; depth is left. Returns that number, 0 where there is none.
 double show(const std::string& name, const raytrace::ProgressiveResult& result,
             const geometry::Rect& window, image::ImageF& picture);
 
