@@ -55,6 +55,16 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
   return options;
 }
 
+raytrace::BuildOptions build_options(const RenderRequest& request) {
+  using Quality = raytrace::BuildOptions::Quality;
+  raytrace::BuildOptions options;
+  options.quality = request.build == "low"    ? Quality::low
+                    : request.build == "high" ? Quality::high
+                                              : Quality::medium;
+  if (request.isa != "best") options.isa = request.isa;
+  return options;
+}
+
 raytrace::RenderOptions raytrace_options(const RenderRequest& request,
                                          parallel::Progress* progress) {
   raytrace::RenderOptions options;
@@ -62,6 +72,8 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   options.height = request.height;
   options.samples = request.samples;
   options.trace.depth = request.depth;
+  options.trace.shadows = !request.no_shadows;
+  if (request.reach > 0) options.trace.reach = static_cast<float>(request.reach);
   options.trace.background = raytrace::TraceOptions::Background::transparent;
   options.trace.seed = request.practice.seed;
   options.integrator = request.integrator;
@@ -101,6 +113,7 @@ raytrace::SharedScene share(comm::Communicator& communicator, const Prepared& pr
 raytrace::ShareOptions share_options(const RenderRequest& request) {
   constexpr double kMebibyte = 1 << 20;
   raytrace::ShareOptions options;
+  options.build = build_options(request);
   options.deal = request.deal == "random" ? raytrace::ShareOptions::Deal::random
                                           : raytrace::ShareOptions::Deal::neighbours;
   options.cache_bytes = static_cast<std::uint64_t>(request.cache_mebibytes * kMebibyte);
@@ -143,8 +156,8 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
     prepared->shader =
         std::make_shared<const shading::Shader>(shading::make_shader(prepared->scene));
   } else {
-    prepared->tracer =
-        std::make_unique<const raytrace::Tracer>(raytrace::make_tracer(prepared->scene));
+    prepared->tracer = std::make_unique<const raytrace::Tracer>(
+        raytrace::make_tracer(prepared->scene, build_options(request)));
   }
   prepared->build_seconds = watch.lap();
   return prepared;

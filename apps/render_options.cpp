@@ -33,7 +33,9 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
 }
 
 void check_raster(const CLI::App& command, const RenderRequest& request) {
-  refuse(command, {"--integrator", "--spp", "--depth", "--data", "--deal", "--cache"},
+  refuse(command,
+         {"--integrator", "--spp", "--depth", "--reach", "--no-shadows", "--build", "--isa",
+          "--data", "--deal", "--cache"},
          "--engine raster");
   refuse_practice(command);
   find_entry(raster::strategies(), request.strategy, "--strategy");
@@ -83,6 +85,9 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
           "--travel", "--groups", "--geometry-ranks", "--redistribute"},
          "--engine raytrace");
   find_entry(raytrace::integrators(), request.integrator, "--integrator");
+  if (request.integrator != "ao") refuse(command, {"--reach"}, "another --integrator than ao");
+  if (request.integrator != "direct")
+    refuse(command, {"--no-shadows"}, "another --integrator than direct");
   check_practice(command, request);
   find_entry(loadbalance::schedules(), request.schedule, "--schedule");
   find_entry(raytrace::distributions(), request.data, "--data");
@@ -229,6 +234,25 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raytrace);
   command.add_option("--depth", request.depth, "mirrored or refracted how often (default 8)")
       ->check(CLI::Range(0, 64))
+      ->group(raytrace);
+  command
+      .add_option("--reach", request.reach,
+                  "ao: what is further away hides nothing (default: everything hides)")
+      ->check(CLI::PositiveNumber)
+      ->group(raytrace);
+  command.add_flag("--no-shadows", request.no_shadows, "direct: nothing hides lights")
+      ->group(raytrace);
+  command
+      .add_option("--build", request.build,
+                  "Embree's structures: low (quick to build), medium (default) or high (quick to "
+                  "trace, splits triangles)")
+      ->check(CLI::IsMember({"low", "medium", "high"}))
+      ->group(raytrace);
+  command
+      .add_option("--isa", request.isa,
+                  "instructions for Embree: best (default); avx2 may be quicker than avx512 where "
+                  "rays go everywhere")
+      ->check(CLI::IsMember({"best", "sse2", "sse4.2", "avx", "avx2", "avx512"}))
       ->group(raytrace);
   command
       .add_option("--schedule", request.schedule,

@@ -35,6 +35,9 @@ struct RenderRequest {
   std::string integrator = "whitted", schedule, data = "replicated", deal = "neighbours";
   double cache_mebibytes = 0;  // 0: a tenth of the scene
   int samples = 1, depth = 8;
+  double reach = 0;  // 0: without end
+  bool no_shadows = false;
+  std::string build = "medium", isa = "best";
   Practice practice;
 
   // Set by check:

@@ -50,6 +50,10 @@ Json options_of(const RenderRequest& request, int ranks) {
     options["integrator"] = request.integrator;
     options["spp"] = request.samples;
     options["depth"] = request.depth;
+    options["reach"] = request.reach;
+    options["shadows"] = !request.no_shadows;
+    options["build"] = request.build;
+    options["isa"] = request.isa;
     options["schedule"] = request.schedule;
     options["block"] = request.block;
     options["partition"] = request.partition;

@@ -120,13 +120,39 @@ TEST(Practice, ExposureTonesAndSmoothingChangeWhatIsSeen) {
   EXPECT_NE(mean("--aperture 0.5 --focus 3"), plain);
 }
 
+TEST(Practice, RaysGoAsFarAndThroughWhatIsAsked) {
+  const Folder folder;
+  const auto mean = [&](const std::string& options) {
+    const Ran ran =
+        run("delray render gen:cornell -o a.exr --size 48x48 --engine raytrace --stats f.json " +
+                options,
+            folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    double sum = 0;
+    for (const image::RgbaF& c : image::read_image_float(folder / "a.exr").colour.span())
+      sum += c.g;
+    return sum / (48 * 48);
+  };
+  const double open = mean("--integrator ao --spp 4");
+  EXPECT_GT(mean("--integrator ao --spp 4 --reach 0.05"), open * 1.2);
+  const double shadowed = mean("--integrator direct");
+  EXPECT_GT(mean("--integrator direct --no-shadows"), shadowed * 1.01);
+  // Whatever the hierarchy, the picture is the same but for rounding.
+  EXPECT_NEAR(mean("--integrator direct --build low"), shadowed, 1e-3 * shadowed);
+  EXPECT_NEAR(mean("--integrator direct --build high --isa sse4.2"), shadowed, 1e-3 * shadowed);
+  const Json told = Json::parse(folder.read("f.json"));
+  EXPECT_EQ(told["options"]["build"], "high");
+  EXPECT_EQ(told["options"]["isa"], "sse4.2");
+}
+
 TEST(Practice, OptionsWithoutEffectAreRefused) {
   const Folder folder;
   for (const std::string options :
        {"-o a.png --aovs", "-o a.exr --tone filmic", "-o a.png --resume", "-o a.png --focus 2",
         "-o a.png --checkpoint-every 3", "-o a.png --crop 60,0,30,10", "-o a.png --crop 1,2,3",
         "-o a.png --tone sepia", "-o a.png --show smell", "-o a.png --show rays --denoise",
-        "-o a.png --turntable 3 --checkpoint a.film", "-o a.png --time 0"}) {
+        "-o a.png --turntable 3 --checkpoint a.film", "-o a.png --reach 1", "-o a.png --no-shadows",
+        "-o a.png --isa mmx", "-o a.png --time 0"}) {
     EXPECT_EQ(run(kBall + options, folder.path()).exit_code, 2) << options;
   }
   EXPECT_EQ(run("delray render gen:cornell -o a.png --denoise", folder.path()).exit_code, 2);
