@@ -35,6 +35,7 @@ struct ClusterInSetUp {
   std::int32_t position[kClusterVertices + ScreenVertices::kPadding];  // if compact: x | y << 16
   int origin_x = 0, origin_y = 0;                                      // if compact
   geometry::Rect wanted;                                               // pixels of the frame
+  DepthsAround around;                                                 // in them
   int centre_x = 0, centre_y = 0, tiles_x = 0;                         // the screen's
 };
 
@@ -254,6 +255,30 @@ void draw_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles, 
 }
 static_assert(kTileSize == 1 << 6 && kTilePixels == 1 << 12);
 
+// Of `keep`, those that are hidden: their boxes' pixels [x0, x1] x [y0, y1] of the frame show what
+// is nearer.
+HWY_INLINE Mask hidden_of(const ClusterInSetUp& cluster, Mask keep, I a, I b, I c, I x0, I y0, I x1,
+                          I y1) {
+  static_assert(VisibilityTile::kBlockWidth == 16 && VisibilityTile::kBlockHeight == 8);
+  const Ints d;
+  const Floats df;
+  const DepthsAround& around = cluster.around;
+  const I block_x = hn::ShiftRight<4>(x0), block_y = hn::ShiftRight<3>(y0);
+  const I one = hn::Set(d, 1);
+  const Mask many = hn::Or(hn::Gt(hn::ShiftRight<4>(x1), hn::Add(block_x, one)),
+                           hn::Gt(hn::ShiftRight<3>(y1), hn::Add(block_y, one)));
+  const Mask known = hn::AndNot(many, keep);
+  if (hn::AllFalse(d, known)) return known;
+  const I place =
+      hn::Add(hn::Mul(hn::Sub(block_y, hn::Set(d, around.y0)), hn::Set(d, around.width)),
+              hn::Sub(block_x, hn::Set(d, around.x0)));
+  const I farthest = hn::GatherIndex(d, around.farthest, hn::IfThenElseZero(known, place));
+  const float* depths = cluster.vertices.depth;
+  const F nearest = hn::Min(hn::Min(hn::GatherIndex(df, depths, a), hn::GatherIndex(df, depths, b)),
+                            hn::GatherIndex(df, depths, c));
+  return hn::And(known, hn::Gt(hn::Not(hn::BitCast(d, nearest)), farthest));
+}
+
 enum class Extent : bool { compact, wide };
 
 template <Extent extent>
@@ -329,15 +354,17 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
     const Mask shown = draw.hidden_side == 0  ? hn::Or(clockwise, counter)
                        : draw.hidden_side > 0 ? counter
                                               : clockwise;
-    const Mask keep =
-        hn::And(hn::And(hn::Gt(hn::Or(columns, rows), hn::Set(d, -1)), shown), in_range);
-    if (hn::AllFalse(d, keep)) continue;
+    Mask keep = hn::And(hn::And(hn::Gt(hn::Or(columns, rows), hn::Set(d, -1)), shown), in_range);
     kept += hn::CountTrue(d, keep);
+    const I pixel_x0 = hn::Add(box.x0, origin.x), pixel_y0 = hn::Add(box.y0, origin.y);
+    const I pixel_x1 = hn::Add(box.x1, origin.x), pixel_y1 = hn::Add(box.y1, origin.y);
+    if (cluster.around.may_hide)
+      keep = hn::AndNot(hidden_of(cluster, keep, a, b, c, pixel_x0, pixel_y0, pixel_x1, pixel_y1),
+                        keep);
+    if (hn::AllFalse(d, keep)) continue;
     // Triangles of a few pixels are drawn pixel by pixel, those that are wider window by window if
     // they lie in one tile.
-    const I pixel_x0 = hn::Add(box.x0, origin.x), pixel_y0 = hn::Add(box.y0, origin.y);
-    const I border = hn::Or(hn::Xor(pixel_x0, hn::Add(pixel_x0, columns)),
-                            hn::Xor(pixel_y0, hn::Add(pixel_y0, rows)));
+    const I border = hn::Or(hn::Xor(pixel_x0, pixel_x1), hn::Xor(pixel_y0, pixel_y1));
     const Mask tiny = hn::Lt(hn::Add(hn::Mul(columns, rows), hn::Add(columns, rows)),
                              hn::Set(d, kTinyBox));  // (columns + 1) * (rows + 1) - 1
     const Mask fits = hn::And(hn::And(hn::Lt(columns, hn::Set(d, WindowTriangles::kMostColumns)),
@@ -429,7 +456,8 @@ void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBl
 
 void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                     const Cluster& cluster, const ScreenVertices& vertices,
-                    std::uint32_t first_number, const geometry::Rect& wanted, SetUpResult& result) {
+                    std::uint32_t first_number, const geometry::Rect& wanted,
+                    const FrameTiles& tiles, SetUpResult& result) {
   if (draw.masked || draw.blended || vertices.any_outside) {
     set_up_each(screen, draw, block, cluster, vertices, first_number, wanted, result);
     return;
@@ -439,6 +467,15 @@ void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const Cluste
   in_set_up.centre_x = screen.centre_x;
   in_set_up.centre_y = screen.centre_y;
   in_set_up.tiles_x = screen.tiles_x;
+  const auto pixel = [](std::int32_t coordinate, int centre) {
+    return (coordinate >> kSubpixelBits) + centre;
+  };
+  tiles.look_around(geometry::intersection({pixel(vertices.low_x, screen.centre_x),
+                                            pixel(vertices.low_y, screen.centre_y),
+                                            pixel(vertices.high_x, screen.centre_x) + 1,
+                                            pixel(vertices.high_y, screen.centre_y) + 1},
+                                           wanted),
+                    vertices.farthest, in_set_up.around);
   // Whole pixels, so that pixel centres are where they are in the frame.
   const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;
   const int origin_x = low_x * kSubpixels, origin_y = low_y * kSubpixels;

@@ -46,7 +46,7 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
   transform(draw.to_view, task.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
             worker.vertices);
   set_up_cluster(task.screen, draw, block, cluster, worker.vertices, k << kClusterBits, task.wanted,
-                 worker.result);
+                 tiles, worker.result);
 }
 
 // By counting, into worker.fragments, entries and windows. Neighbours in a batch lie in one tile or

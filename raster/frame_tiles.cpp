@@ -69,6 +69,43 @@ VisibilityTile& FrameTiles::open(int tile) {
   return tiles_[tile];
 }
 
+std::int32_t FrameTiles::farthest_of(int block_x, int block_y) const {
+  constexpr int kBlocksY = VisibilityTile::kBlocks / VisibilityTile::kBlocksX;
+  const int tile = block_y / kBlocksY * tiles_x_ + block_x / VisibilityTile::kBlocksX;
+  const State now = state(tile);
+  if (now != State::drawn) return now == State::untouched ? kEmptyCode : 0;
+  return tiles_[tile].farthest_of(block_y % kBlocksY * VisibilityTile::kBlocksX +
+                                  block_x % VisibilityTile::kBlocksX);
+}
+
+void FrameTiles::look_around(const geometry::Rect& pixels, float depth,
+                             DepthsAround& result) const {
+  const int x0 = pixels.x0 / VisibilityTile::kBlockWidth;
+  const int y0 = pixels.y0 / VisibilityTile::kBlockHeight;
+  const int width = (pixels.x1 - 1) / VisibilityTile::kBlockWidth - x0 + 1;
+  const int height = (pixels.y1 - 1) / VisibilityTile::kBlockHeight - y0 + 1;
+  result.may_hide = false;
+  if (pixels.empty() || width > DepthsAround::kMostBlocks ||
+      width * height > DepthsAround::kMostBlocks)
+    return;
+  result.x0 = x0;
+  result.y0 = y0;
+  result.width = width;
+  const int blocks = width * height;
+  std::int32_t nearest = kEmptyCode;
+  for (int i = 0; i < blocks; ++i) {
+    result.farthest[i] = farthest_of(x0 + i % width, y0 + i / width);
+    nearest = std::min(nearest, result.farthest[i]);
+  }
+  result.may_hide = nearest < code_of_depth(depth);
+  if (!result.may_hide) return;
+  for (int i = 0; i + 1 < blocks; ++i)
+    if (i % width != width - 1)
+      result.farthest[i] = std::max(result.farthest[i], result.farthest[i + 1]);
+  for (int i = 0; i + width < blocks; ++i)
+    result.farthest[i] = std::max(result.farthest[i], result.farthest[i + width]);
+}
+
 bool FrameTiles::is_hidden(const geometry::Rect& pixels, float depth) const {
   constexpr int kMostTiles = 6;
   const std::int32_t code = code_of_depth(depth);

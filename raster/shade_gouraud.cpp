@@ -238,19 +238,19 @@ std::uint64_t GouraudTile::shade(const FrameShading& frame, SeenTriangles& seen,
   const std::uint64_t shown = triangles_.find(tile, rect);
   set_up_triangles(frame);
   set_up_colours(triangles_.planes(), radiances_, triangles_.size(), colours_.data());
-  using Runs = const std::uint16_t*;
-  triangles_.write<Colour>(
-      frame, seen, tile, rect, window,
-      [&](std::uint64_t starts, Runs runs, int x, int y, int count, Colour* pixels) {
-        if (!any_special_) {
-          shade_row(colours_, starts, runs, x, y, count, pixels);
-          return;
-        }
-        for_each_block(starts, runs, x, y, count, block_, [&](int i, shading::LaneMask lanes) {
-          if (lanes != 0) shade_special(frame, lanes);
-          store_colours(block_colours_, lanes, pixels + i);
-        });
-      });
+  triangles_.write<Colour>(frame, seen, tile, rect, window,
+                           [&](const RowRuns& row, int x, int y, int count, Colour* pixels) {
+                             const TriangleIndices indices = triangles_.indices();
+                             if (!any_special_) {
+                               shade_row(colours_, indices, row, x, y, count, pixels);
+                               return;
+                             }
+                             for_each_block(row, indices, x, y, count, block_,
+                                            [&](int i, shading::LaneMask lanes) {
+                                              if (lanes != 0) shade_special(frame, lanes);
+                                              store_colours(block_colours_, lanes, pixels + i);
+                                            });
+                           });
   return shown;
 }
 

@@ -120,14 +120,15 @@ std::uint64_t PhongTile::shade(const FrameShading& frame, SeenTriangles& seen,
   triangles_.for_each_group(
       frame, [&](std::uint32_t draw) { return !frame.draws[draw].blended; },
       [&](const ClusterMembers& members) { set_up_group(frame, members); });
-  triangles_.write<Colour>(
-      frame, seen, tile, rect, window,
-      [&](std::uint64_t starts, const std::uint16_t* run, int x, int y, int count, Colour* pixels) {
-        for_each_block(starts, run, x, y, count, block_, [&](int i, shading::LaneMask lanes) {
-          if (lanes != 0) shade_block(frame, lanes);
-          store_colours(shaded_.colour, lanes, pixels + i);
-        });
-      });
+  triangles_.write<Colour>(frame, seen, tile, rect, window,
+                           [&](const RowRuns& row, int x, int y, int count, Colour* pixels) {
+                             const TriangleIndices indices = triangles_.indices();
+                             for_each_block(row, indices, x, y, count, block_,
+                                            [&](int i, shading::LaneMask lanes) {
+                                              if (lanes != 0) shade_block(frame, lanes);
+                                              store_colours(shaded_.colour, lanes, pixels + i);
+                                            });
+                           });
   return shown;
 }
 

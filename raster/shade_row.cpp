@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "image/srgb.h"
-#include "raster/internal/tile_runs.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/shade_row.cpp"
@@ -52,8 +51,9 @@ inline constexpr float kPower[6] = {0.376330309F, 0.952814901F,   -0.491730163F,
 // Of codes that are computed with it: 3.3e-4 for the polynomial and less than 2e-4 for rounding.
 inline constexpr float kCodeError = 6e-4F;
 
-// A vector with so many changes of triangle at most is shaded run by run.
-inline constexpr int kMostChanges = 6;
+// Runs of which there are fewer in a row are long: they are shaded by vectors of pixels, others by
+// vectors of a pixel's values.
+inline constexpr int kManyRuns = 8;
 
 }  // namespace delray::raster
 #endif
@@ -88,23 +88,34 @@ HWY_INLINE Colours divided(const FourVectors<F>& sums) {
   return {hn::Mul(sums.v[0], share), hn::Mul(sums.v[1], share), hn::Mul(sums.v[2], share)};
 }
 
-// The same, lane i of triangles[which[i]].
-HWY_INLINE FourVectors<F> sums_of_each(const PixelTriangle* triangles, const std::uint16_t* which,
-                                       int x, float y) {
+#if HWY_TARGET != HWY_SCALAR
+// The four sums of each pixel of a row, pixel after pixel.
+struct RowSums {
+  static constexpr int kRoom = kTileSize + kBlockSize;
+  alignas(64) float of[kRoom][4];
+};
+
+// Of pixels [first, last) of the row, the first of which is at `column`; some after them may be
+// changed.
+HWY_INLINE void sums_of_run(const PixelTriangle& t, float column, float y, int first, int last,
+                            RowSums& sums) {
+  constexpr int kAtOnce = 4;  // pixels: most runs have no more
   const Floats d;
-#if HWY_TARGET == HWY_SCALAR
-  return sums_of(triangles[which[0]], hn::Set(d, static_cast<float>(x)), y);
-#else
   const HWY_CAPPED(float, 4) four;
-  return transposed_rows(d, [&](std::size_t i) HWY_ATTR {
-    const PixelTriangle& t = triangles[which[i]];
-    const auto dx = hn::Set(four, static_cast<float>(x + static_cast<int>(i)) - t.x);
-    const auto dy = hn::Set(four, y - t.y);
-    return hn::Add(hn::Mul(hn::Load(four, t.a), dx),
-                   hn::Add(hn::Mul(hn::Load(four, t.b), dy), hn::Load(four, t.c)));
-  });
-#endif
+  constexpr int kPixels = static_cast<int>(hn::MaxLanes(Floats())) / 4;
+  const auto dy = hn::Set(four, y - t.y);
+  HWY_ALIGN float row_sums[4];
+  hn::Store(hn::Add(hn::Mul(hn::Load(four, t.b), dy), hn::Load(four, t.c)), four, row_sums);
+  const F a = hn::LoadDup128(d, t.a), rest = hn::LoadDup128(d, row_sums);
+  const F pixel = hn::ConvertTo(d, hn::ShiftRight<2>(hn::Iota(Ints(), 0)));
+  float at = column - t.x;
+  for (int i = first; i < last; i += kAtOnce)
+    for (int k = 0; k < kAtOnce; k += kPixels, at += static_cast<float>(kPixels)) {
+      const F dx = hn::Add(hn::Set(d, at), pixel);  // whole numbers: exact
+      hn::StoreU(hn::Add(hn::Mul(a, dx), rest), d, sums.of[i + k]);
+    }
 }
+#endif
 
 // image::encode_srgb, by table.
 HWY_INLINE I looked_up_code(F linear) {
@@ -198,9 +209,10 @@ HWY_INLINE hn::Mask<Ints> mask_of(std::uint32_t bits) {
   return hn::LoadMaskBits(Ints(), bytes);
 }
 
+// By vectors of pixels.
 template <class Colour>
-HWY_INLINE void shade_pixels(const PixelTriangle* triangles, std::uint64_t starts,
-                             const std::uint16_t* runs, int x, int y, int count, Colour* pixels) {
+HWY_INLINE void shade_long_runs(const PixelTriangle* triangles, const TriangleIndices& indices,
+                                const RowRuns& runs, int x, int y, int count, Colour* pixels) {
   const Floats d;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -208,57 +220,85 @@ HWY_INLINE void shade_pixels(const PixelTriangle* triangles, std::uint64_t start
   // A constant; counted from a variable, lanes are filled one by one.
   const I lane_numbers = hn::Iota(di, 0);
   const auto row = static_cast<float>(y);
-  // No triangle is any triangle whose colour is not shown: without a branch, which would often be
-  // guessed wrong.
-  const auto drawn = [](std::uint16_t index) { return index == kNoTriangle ? 0U : index; };
-  const std::uint16_t* run = runs;
-  starts &= ~std::uint64_t{1};  // the first run has begun
-  for (int i = 0; i < count; i += lanes, starts >>= lanes) {
-    const F column = hn::ConvertTo(d, hn::Add(hn::Set(di, x + i), lane_numbers));
-    run += starts & 1;
-    std::uint32_t changes = static_cast<std::uint32_t>(starts) & all & ~1U;
-    if (changes == 0) {
-      if (*run == kNoTriangle)
-        std::fill_n(pixels + i, lanes, Colour());
-      else
-        store(divided(sums_of(triangles[*run], column, row)), mask_of(all), pixels + i);
+  for (int i = 0; i < count; i += lanes) {
+    const std::uint32_t shown = static_cast<std::uint32_t>(runs.shown >> i) & all;
+    if (shown == 0) {
+      std::fill_n(pixels + i, lanes, Colour());
       continue;
     }
-    std::uint32_t shown = *run == kNoTriangle ? 0 : all;
-    const auto show = [&](std::uint32_t rest) {
-      shown = *run == kNoTriangle ? shown & ~rest : shown | rest;
+    const F column = hn::ConvertTo(d, hn::Add(hn::Set(di, x + i), lane_numbers));
+    const auto sums_at = [&](int k) HWY_ATTR {
+      return sums_of(triangles[indices.of(runs.numbers[i + k])], column, row);
     };
-    FourVectors<F> sums;
-    if (std::popcount(changes) <= kMostChanges) {
-      sums = sums_of(triangles[drawn(*run)], column, row);
-      for (; changes != 0; changes &= changes - 1) {
-        ++run;
-        const std::uint32_t rest = all & ~((changes & (0 - changes)) - 1);
-        show(rest);
-        const auto mask = hn::RebindMask(d, mask_of(rest));
-        const FourVectors<F> others = sums_of(triangles[drawn(*run)], column, row);
-        for (int v = 0; v < 4; ++v) sums.v[v] = hn::IfThenElse(mask, others.v[v], sums.v[v]);
-      }
-    } else {
-      std::uint16_t which[kBlockSize];
-      for (int k = 0; k < lanes; ++k) {
-        run += changes >> k & 1;
-        show(all << k & all);
-        which[k] = static_cast<std::uint16_t>(drawn(*run));
-      }
-      sums = sums_of_each(triangles, which, x + i, row);
+    const int first = std::countr_zero(shown);
+    FourVectors<F> sums = sums_at(first);
+    std::uint32_t changes = static_cast<std::uint32_t>(runs.starts >> i) & shown;
+    changes &= ~((std::uint32_t{2} << first) - 1);
+    for (; changes != 0; changes &= changes - 1) {
+      const int k = std::countr_zero(changes);
+      const auto mask = hn::RebindMask(d, mask_of(all << k & all));
+      const FourVectors<F> others = sums_at(k);
+      for (int v = 0; v < 4; ++v) sums.v[v] = hn::IfThenElse(mask, others.v[v], sums.v[v]);
     }
     store(divided(sums), mask_of(shown), pixels + i);
   }
 }
 
-void shade_row8(const PixelTriangle* triangles, std::uint64_t starts, const std::uint16_t* runs,
-                int x, int y, int count, image::Rgba8* pixels) {
-  shade_pixels(triangles, starts, runs, x, y, count, pixels);
+#if HWY_TARGET != HWY_SCALAR
+// By vectors of a pixel's values, and then by vectors of pixels.
+template <class Colour>
+HWY_INLINE void shade_short_runs(const PixelTriangle* triangles, const TriangleIndices& indices,
+                                 const RowRuns& runs, int x, int y, int count, Colour* pixels) {
+  const Floats d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const std::uint32_t all = (std::uint32_t{1} << lanes) - 1;
+  const auto row = static_cast<float>(y);
+  RowSums sums;
+  const TriangleIndices look_up = indices;
+  std::uint64_t rest = runs.starts;
+  do {
+    const int first = std::countr_zero(rest);
+    rest &= rest - 1;
+    const int last = rest == 0 ? count : std::countr_zero(rest);
+    if ((runs.shown >> first & 1) == 0) continue;
+    sums_of_run(triangles[look_up.of(runs.numbers[first])], static_cast<float>(x + first), row,
+                first, last, sums);
+  } while (rest != 0);
+  for (int i = 0; i < count; i += lanes) {
+    const std::uint32_t shown = static_cast<std::uint32_t>(runs.shown >> i) & all;
+    if (shown == 0) {
+      std::fill_n(pixels + i, lanes, Colour());
+      continue;
+    }
+    FourVectors<F> here;
+    hn::LoadInterleaved4(d, sums.of[i], here.v[0], here.v[1], here.v[2], here.v[3]);
+    store(divided(here), mask_of(shown), pixels + i);
+  }
 }
-void shade_row_float(const PixelTriangle* triangles, std::uint64_t starts,
-                     const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels) {
-  shade_pixels(triangles, starts, runs, x, y, count, pixels);
+#endif
+
+// `row` may have more than `count` pixels.
+template <class Colour>
+HWY_INLINE void shade_pixels(const PixelTriangle* triangles, const TriangleIndices& indices,
+                             const RowRuns& row, int x, int y, int count, Colour* pixels) {
+  const std::uint64_t here = ~std::uint64_t{0} >> (kTileSize - count);
+  const RowRuns runs{row.starts & here, row.shown & here, row.numbers};
+#if HWY_TARGET != HWY_SCALAR
+  if (std::popcount(runs.starts) >= kManyRuns) {
+    shade_short_runs(triangles, indices, runs, x, y, count, pixels);
+    return;
+  }
+#endif
+  shade_long_runs(triangles, indices, runs, x, y, count, pixels);
+}
+
+void shade_row8(const PixelTriangle* triangles, const TriangleIndices& indices, const RowRuns& row,
+                int x, int y, int count, image::Rgba8* pixels) {
+  shade_pixels(triangles, indices, row, x, y, count, pixels);
+}
+void shade_row_float(const PixelTriangle* triangles, const TriangleIndices& indices,
+                     const RowRuns& row, int x, int y, int count, image::RgbaF* pixels) {
+  shade_pixels(triangles, indices, row, x, y, count, pixels);
 }
 
 template <class Colour>
@@ -321,15 +361,15 @@ HWY_EXPORT(store_colours8);
 HWY_EXPORT(store_colours_float);
 HWY_EXPORT(store_depths);
 
-void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
-               const std::uint16_t* runs, int x, int y, int count, image::Rgba8* pixels) {
+void shade_row(std::span<const PixelTriangle> triangles, const TriangleIndices& indices,
+               const RowRuns& row, int x, int y, int count, image::Rgba8* pixels) {
   HWY_DYNAMIC_DISPATCH(shade_row8)
-  (triangles.data(), starts, runs, x, y, count, pixels);
+  (triangles.data(), indices, row, x, y, count, pixels);
 }
-void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
-               const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels) {
+void shade_row(std::span<const PixelTriangle> triangles, const TriangleIndices& indices,
+               const RowRuns& row, int x, int y, int count, image::RgbaF* pixels) {
   HWY_DYNAMIC_DISPATCH(shade_row_float)
-  (triangles.data(), starts, runs, x, y, count, pixels);
+  (triangles.data(), indices, row, x, y, count, pixels);
 }
 
 void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,

@@ -43,51 +43,17 @@ void find_runs(const VisibilityTile& tile, int j0, int j1, TileRuns& runs) {
   for (int j = j0; j < j1; ++j) {
     const std::uint32_t* const row = numbers + j * kTileSize;
     const std::uint32_t* const above = j == j0 ? row : row - kTileSize;
-    std::uint64_t along = 0, down = 0;
+    std::uint64_t along = 0, down = 0, shown = 0;
     for (int i = 0; i < kTileSize; i += lanes) {
       const N here = hn::Load(d, row + i);
       along |= bits(hn::Ne(here, hn::LoadU(d, row + i - 1))) << i;
       down |= bits(hn::Ne(here, hn::Load(d, above + i))) << i;
+      shown |= bits(hn::Ne(here, hn::Set(d, kNothing))) << i;
     }
     runs.changes_along[j] = along | 1;
     runs.changes_down[j] = j == j0 ? ~std::uint64_t{0} : down;
+    runs.shown[j] = shown;
   }
-}
-
-// Here, and not for all processors alike, because of the counts of bits.
-std::uint64_t index_runs(const TileRuns& runs, int i1, int j0, int j1, const TileGroups& groups,
-                         RunTriangles& result) {
-  const std::uint16_t* group = result.group;
-  std::uint16_t* const triangles = result.triangle;
-  std::uint64_t shown = 0;
-  std::uint32_t run = 0;
-  for (int j = j0; j < j1; ++j) {
-    const std::uint32_t* const numbers = runs.numbers() + j * kTileSize;
-    const std::uint64_t down = runs.changes_down[j];
-    // In the first row there is a change everywhere, and no matter what is above.
-    const int above = j == j0 ? j : j - 1;
-    const std::uint64_t starts_above = result.starts[above];
-    result.first[j] = static_cast<std::uint16_t>(run);
-    const std::uint32_t before_above = result.first[above] - 1U;
-    for (std::uint64_t starts = result.starts[j]; starts != 0; ++run) {
-      const int i = std::countr_zero(starts);
-      starts &= starts - 1;
-      if (numbers[i] == kNothing) {
-        triangles[run] = kNoTriangle;
-        continue;
-      }
-      shown += static_cast<std::uint64_t>((starts == 0 ? i1 : std::countr_zero(starts)) - i);
-      // Without a branch, which would often be guessed wrong.
-      const auto changed = static_cast<std::uint16_t>(-(down >> i & 1));
-      const std::uint64_t until = starts_above & (~std::uint64_t{0} >> (kTileSize - 1 - i));
-      const std::uint16_t old =
-          triangles[before_above + static_cast<std::uint32_t>(std::popcount(until))];
-      const std::uint16_t found = groups.index(*group, numbers[i]);
-      triangles[run] = static_cast<std::uint16_t>((found & changed) | (old & ~changed));
-      group += changed & 1;
-    }
-  }
-  return shown;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -98,28 +64,23 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raster {
 
 HWY_EXPORT(find_runs);
-HWY_EXPORT(index_runs);
 
 void find_runs(const VisibilityTile& tile, int j0, int j1, TileRuns& runs) {
   HWY_DYNAMIC_DISPATCH(find_runs)(tile, j0, j1, runs);
 }
 
-std::uint64_t number_runs(const TileRuns& runs, int i0, int j0, int i1, int j1, TileGroups& groups,
-                          RunTriangles& result) {
+std::uint64_t add_runs(const TileRuns& runs, int i0, int j0, int i1, int j1, TileGroups& groups) {
   const std::uint64_t wanted = (~std::uint64_t{0} >> (kTileSize - (i1 - i0))) << i0;
-  groups.clear();
-  std::uint16_t* group = result.group;
+  std::uint64_t shown = 0;
   for (int j = j0; j < j1; ++j) {
     const std::uint32_t* const numbers = runs.numbers() + j * kTileSize;
-    result.starts[j] = (runs.changes_along[j] & wanted) | std::uint64_t{1} << i0;
-    for (std::uint64_t starts = result.starts[j] & runs.changes_down[j]; starts != 0;
-         starts &= starts - 1)
-      if (const std::uint32_t number = numbers[std::countr_zero(starts)]; number != kNothing)
-        *group++ = groups.add(number);
+    const std::uint64_t here = runs.shown[j] & wanted;
+    shown += static_cast<std::uint64_t>(std::popcount(here));
+    const std::uint64_t starts = runs.changes_along[j] | std::uint64_t{1} << i0;
+    for (std::uint64_t rest = starts & runs.changes_down[j] & here; rest != 0; rest &= rest - 1)
+      groups.add(numbers[std::countr_zero(rest)]);
   }
-  *group = 0;  // looked at after the last one
-  groups.number_triangles();
-  return HWY_DYNAMIC_DISPATCH(index_runs)(runs, i1, j0, j1, groups, result);
+  return shown;
 }
 
 }  // namespace delray::raster

@@ -22,15 +22,18 @@ std::uint64_t TileTriangles::find(const VisibilityTile& tile, const geometry::Re
   const int i0 = rect.x0 % kTileSize, j0 = rect.y0 % kTileSize;
   const int i1 = i0 + rect.width(), j1 = j0 + rect.height();
   find_runs(tile, j0, j1, runs_);
-  return number_runs(runs_, i0, j0, i1, j1, groups_, run_triangles_);
+  groups_.clear();
+  const std::uint64_t shown = add_runs(runs_, i0, j0, i1, j1, groups_);
+  groups_.number_triangles();
+  return shown;
 }
 
 std::vector<std::uint16_t> TileTriangles::set(std::span<const std::uint32_t> numbers) {
   std::vector<std::uint16_t> result(numbers.size());
   groups_.clear();
-  for (std::size_t i = 0; i < numbers.size(); ++i) result[i] = groups_.add(numbers[i]);
+  for (const std::uint32_t number : numbers) groups_.add(number);
   groups_.number_triangles();
-  for (std::size_t i = 0; i < numbers.size(); ++i) result[i] = groups_.index(result[i], numbers[i]);
+  for (std::size_t i = 0; i < numbers.size(); ++i) result[i] = indices().of(numbers[i]);
   return result;
 }
 
@@ -149,6 +152,14 @@ void TileTriangles::for_each_group(const FrameShading& frame, Wanted wanted, Set
     std::fill_n(corner + size(), TrianglePlanes::kSize - kTilePixels, 0);
 }
 
+std::uint64_t TileTriangles::left_of(const RowRuns& row, int count) const {
+  std::uint64_t left = 0;
+  for (int i = 0; i < count; ++i)
+    if ((row.shown >> i & 1) != 0 && is_left(indices().of(row.numbers[i])))
+      left |= std::uint64_t{1} << i;
+  return left;
+}
+
 template <class Colour>
 void TileTriangles::write(const FrameShading& frame, SeenTriangles& seen,
                           const VisibilityTile& tile, const geometry::Rect& rect,
@@ -157,28 +168,19 @@ void TileTriangles::write(const FrameShading& frame, SeenTriangles& seen,
   const int width = rect.width();
   alignas(64) Colour colours[kTileSize + kBlockSize];
   alignas(64) float depths[kTileSize + kBlockSize];
-  std::uint16_t others[kTileSize];
   // Rows of whole vectors go straight into the image, others might run over what is beside them.
   const bool whole = width % kBlockSize == 0;
   for (int j = j0; j < j0 + rect.height(); ++j) {
     const int y = rect.y0 + (j - j0);
     const std::size_t first = window.at(rect.x0, y);
     Colour* const to = whole ? window.colour + first : colours;
-    const std::uint16_t* run = run_triangles_.of_row(j).data();
-    const std::uint64_t starts = run_triangles_.starts[j];
-    if (any_left_) {
-      const int runs = std::popcount(starts);
-      for (int i = 0; i < runs; ++i)
-        others[i] = run[i] != kNoTriangle && is_left(run[i]) ? kNoTriangle : run[i];
-    }
-    shade_row(starts >> i0, any_left_ ? others : run, rect.x0, y, width, to);
-    if (any_left_) {
-      const std::uint32_t* const numbers = runs_.numbers() + j * kTileSize + i0;
-      for (int i = 0; i < width; ++i) {
-        if (i > 0) run += starts >> (i0 + i) & 1;
-        if (*run != kNoTriangle && is_left(*run))
-          shade_pixel(frame, seen, numbers[i], rect.x0 + i, y, to[i]);
-      }
+    RowRuns row = row_of(runs_, i0, j);
+    std::uint64_t left = any_left_ ? left_of(row, width) : 0;
+    row.shown &= ~left;
+    shade_row(row, rect.x0, y, width, to);
+    for (; left != 0; left &= left - 1) {
+      const int i = std::countr_zero(left);
+      shade_pixel(frame, seen, row.numbers[i], rect.x0 + i, y, to[i]);
     }
     float* const depths_to = whole ? window.depth + first : depths;
     const std::int64_t* const keys = tile.key + j * kTileSize + i0;

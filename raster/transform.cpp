@@ -33,6 +33,7 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
   const V guard = hn::Set(d, static_cast<float>(kGuardSubpixels));
   auto low_x = hn::Set(di, INT32_MAX), high_x = hn::Set(di, INT32_MIN);
   auto low_y = low_x, high_y = high_x;
+  V farthest = hn::Set(d, -std::numeric_limits<float>::infinity());
   bool all_inside = true;
   HWY_ALIGN float p[3][16];
   for (std::size_t i = 0; i < count; i += lanes) {
@@ -63,6 +64,7 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
     const auto fixed_x =
         hn::IfThenElse(hn::RebindMask(di, inside), hn::NearestInt(screen_x), hn::Set(di, kOutside));
     const auto fixed_y = hn::NearestInt(screen_y);
+    farthest = hn::Max(farthest, depth);
     low_x = hn::Min(low_x, fixed_x);
     high_x = hn::Max(high_x, fixed_x);
     low_y = hn::Min(low_y, fixed_y);
@@ -72,6 +74,7 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
     hn::Store(depth, d, vertices.depth + i);
   }
   vertices.any_outside = !all_inside;
+  vertices.farthest = hn::GetLane(hn::MaxOfLanes(d, farthest));
   vertices.low_x = hn::GetLane(hn::MinOfLanes(di, low_x));
   vertices.high_x = hn::GetLane(hn::MaxOfLanes(di, high_x));
   vertices.low_y = hn::GetLane(hn::MinOfLanes(di, low_y));

@@ -224,65 +224,93 @@ HWY_INLINE std::uint32_t blocks_touched(int i0, int i1, int j0, int j1) {
 }
 static_assert(WindowTriangles::kMostRows <= 2 * VisibilityTile::kBlockHeight);
 
+// The lesser of the keys in memory and those of `codes` and `number` stays.
+template <class V>
+HWY_INLINE void keep_least_of_window(V codes, std::uint32_t number, std::int64_t* keys) {
+  const hn::DFromV<V> d;
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (hn::MaxLanes(hn::DFromV<V>()) > WindowTriangles::kWindowWidth) {
+    const hn::Half<decltype(d)> half;
+    keep_least_of_window(hn::LowerHalf(half, codes), number, keys);
+    keep_least_of_window(hn::UpperHalf(half, codes), number, keys + hn::Lanes(half));
+    return;
+  } else
+#endif
+  {
+    const hn::Rebind<std::int64_t, decltype(d)> dk;
+    const hn::RebindToUnsigned<decltype(dk)> duk;
+    const auto upper = hn::BitCast(dk, hn::ShiftLeft<32>(hn::PromoteTo(duk, codes)));
+    const auto mine = hn::Or(upper, hn::Set(dk, std::int64_t{number}));
+    hn::Store(hn::Min(hn::Load(dk, keys), mine), dk, keys);
+  }
+}
+
+// Columns [i, i + lanes) of a window, a vector's worth, that starts at `keys`.
+template <class D>
+HWY_INLINE void draw_window(D d, const WindowTriangles& triangles, std::uint32_t k, int i, int rows,
+                            std::int64_t* keys) {
+  const hn::RebindToSigned<D> di;
+  const hn::RebindToUnsigned<D> du;
+  const WindowTriangles::Edges& edges = triangles.edges[k];
+  const WindowTriangles::Columns& columns = triangles.columns[k];
+  const WindowTriangles::Rows& down = triangles.rows[k];
+  const WindowTriangles::Plane& plane = triangles.planes[k];
+  const WindowTriangles::Depths& depths = triangles.depths[k];
+  const auto column = hn::Add(hn::Iota(di, 0), hn::Set(di, i));
+  const auto edge = [&](int e) HWY_ATTR {
+    return hn::Add(hn::Set(di, edges.value[e]), hn::Mul(hn::Set(di, columns.step[e]), column));
+  };
+  auto value0 = edge(0), value1 = edge(1), value2 = edge(2);
+  const auto down0 = hn::Set(di, down.step[0]), down1 = hn::Set(di, down.step[1]),
+             down2 = hn::Set(di, down.step[2]);
+  const auto x =
+      hn::Mul(hn::Set(d, plane.slope_x), hn::Add(hn::Set(d, plane.x), hn::ConvertTo(d, column)));
+  const auto depth = hn::Set(d, depths.depth);
+  const auto nearest = hn::Set(d, depths.nearest), farthest = hn::Set(d, depths.farthest);
+  const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
+  float row = plane.y;
+  for (const std::int64_t* const end = keys + rows * kTileSize; keys != end; keys += kTileSize) {
+    const auto y = hn::Set(d, plane.slope_y * row);
+    const auto z = hn::Min(hn::Max(hn::Add(hn::Add(x, y), depth), nearest), farthest);
+    const auto covered = hn::Gt(hn::Or(hn::Or(value0, value1), value2), hn::Set(di, -1));
+    const auto code =
+        hn::IfThenElse(hn::RebindMask(du, covered), hn::Not(hn::BitCast(du, z)), behind_all);
+    keep_least_of_window(code, columns.number, keys);
+    value0 = hn::Add(value0, down0);
+    value1 = hn::Add(value1, down1);
+    value2 = hn::Add(value2, down2);
+    row += 1.0F;  // exact
+  }
+}
+
 void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
                        VisibilityTile& tile) {
   using Window = HWY_CAPPED(std::int64_t, WindowTriangles::kWindowWidth);
-  const Window dk;
-  const hn::RebindToUnsigned<Window> duk;
-  const hn::Rebind<std::int32_t, Window> di;
-  const hn::Rebind<std::uint32_t, Window> du;
   const hn::Rebind<float, Window> d;
-  const int lanes = static_cast<int>(hn::Lanes(dk));
-  const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
+  const int lanes = static_cast<int>(hn::Lanes(d));
   for (const std::uint32_t k : which) {
     const WindowTriangles::Edges& edges = triangles.edges[k];
-    const WindowTriangles::Columns& columns = triangles.columns[k];
-    const WindowTriangles::Rows& rows = triangles.rows[k];
-    const WindowTriangles::Plane& plane = triangles.planes[k];
-    const WindowTriangles::Depths& depths = triangles.depths[k];
     const int i0 = static_cast<int>(edges.window & 63),
               j0 = static_cast<int>(edges.window >> 6 & 63);
-    const int j1 = j0 + static_cast<int>(edges.window >> 12 & 255);
+    const int rows = static_cast<int>(edges.window >> 12 & 255);
     const int width = static_cast<int>(edges.window >> 20) * WindowTriangles::kWindowWidth;
-    const std::uint32_t touched = blocks_touched(i0, i0 + width, j0, j1);
-    const std::int32_t nearest_code = code_of_depth(depths.nearest);
+    const std::uint32_t touched = blocks_touched(i0, i0 + width, j0, j0 + rows);
+    const std::int32_t nearest_code = code_of_depth(triangles.depths[k].nearest);
     bool hidden = true;
     for (std::uint32_t rest = touched; rest != 0; rest &= rest - 1)
       hidden &= nearest_code > tile.farthest[std::countr_zero(rest)];
     if (hidden) continue;
 
-    const auto slope_x = hn::Set(d, plane.slope_x);
-    const auto depth = hn::Set(d, depths.depth);
-    const auto nearest = hn::Set(d, depths.nearest), farthest = hn::Set(d, depths.farthest);
-    const auto number = hn::Set(dk, std::int64_t{columns.number});
-    const auto down0 = hn::Set(di, rows.step[0]), down1 = hn::Set(di, rows.step[1]),
-               down2 = hn::Set(di, rows.step[2]);
-    for (int i = 0; i < width; i += lanes) {
-      const auto column = hn::Add(hn::Iota(di, 0), hn::Set(di, i));
-      auto value0 =
-          hn::Add(hn::Set(di, edges.value[0]), hn::Mul(hn::Set(di, columns.step[0]), column));
-      auto value1 =
-          hn::Add(hn::Set(di, edges.value[1]), hn::Mul(hn::Set(di, columns.step[1]), column));
-      auto value2 =
-          hn::Add(hn::Set(di, edges.value[2]), hn::Mul(hn::Set(di, columns.step[2]), column));
-      const auto x = hn::Mul(slope_x, hn::Add(hn::Set(d, plane.x), hn::ConvertTo(d, column)));
-      std::int64_t* keys = tile.key + j0 * kTileSize + i0 + i;
-      float row = plane.y;
-      for (int j = j0; j < j1; ++j) {
-        const auto y = hn::Set(d, plane.slope_y * row);
-        const auto z = hn::Min(hn::Max(hn::Add(hn::Add(x, y), depth), nearest), farthest);
-        const auto covered = hn::Gt(hn::Or(hn::Or(value0, value1), value2), hn::Set(di, -1));
-        const auto code =
-            hn::IfThenElse(hn::RebindMask(du, covered), hn::Not(hn::BitCast(du, z)), behind_all);
-        const auto upper = hn::BitCast(dk, hn::ShiftLeft<32>(hn::PromoteTo(duk, code)));
-        hn::Store(hn::Min(hn::Load(dk, keys), hn::Or(upper, number)), dk, keys);
-        value0 = hn::Add(value0, down0);
-        value1 = hn::Add(value1, down1);
-        value2 = hn::Add(value2, down2);
-        row += 1.0F;  // exact
-        keys += kTileSize;
-      }
+    std::int64_t* const keys = tile.key + j0 * kTileSize + i0;
+    int i = 0;
+#if HWY_TARGET <= HWY_AVX3
+    const HWY_CAPPED(float, 2 * WindowTriangles::kWindowWidth) d2;
+    if (width > WindowTriangles::kWindowWidth) {
+      draw_window(d2, triangles, k, 0, rows, keys);
+      i = 2 * WindowTriangles::kWindowWidth;
     }
+#endif
+    for (; i < width; i += lanes) draw_window(d, triangles, k, i, rows, keys + i);
     tile.stale |= touched;
     ++tile.since_refresh;
     refresh_if_due(tile);

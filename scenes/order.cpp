@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "parallel/parallel_for.h"
 
@@ -18,47 +19,75 @@ constexpr double kWorthwhile = 0.8;
 // of a square of its area: those of a flat square add up to 2 or 3.
 constexpr double kCompact = 4;
 constexpr std::size_t kGrain = 1 << 14;  // triangles: some hundred microseconds
-constexpr int kAxisBits = 21;
+// Renderers take so many triangles for a cluster, and so many for a vector.
+constexpr std::size_t kCluster = 256, kVector = 16;
+// Parts that threads share are no smaller, and no more.
+constexpr std::size_t kLeastPart = 4 * kCluster, kMostParts = 256;
 
+// A triangle, and three times its centre.
 struct Place {
-  std::uint64_t code;
+  glm::vec3 at;
   std::uint32_t triangle;
-  bool operator<(const Place& other) const {
-    return code != other.code ? code < other.code : triangle < other.triangle;
-  }
 };
 
-// Moves bit k to bit 3 k, for 21 bits.
-std::uint64_t spread(std::uint64_t x) {
-  x = (x | x << 32) & 0x1F00000000FFFFU;
-  x = (x | x << 16) & 0x1F0000FF0000FFU;
-  x = (x | x << 8) & 0x100F00F00F00F00FU;
-  x = (x | x << 4) & 0x10C30C30C30C30C3U;
-  return (x | x << 2) & 0x1249249249249249U;
-}
-
-std::vector<Place> places_on_curve(const Mesh& mesh) {
-  geometry::Box3 box;
-  for (const glm::vec3& p : mesh.positions) box.include(p);
-  const glm::vec3 size = box.size();
-  const float largest = std::max({size.x, size.y, size.z});
-  // Positions that are not finite have a place of their own: the first.
-  const float scale = largest > 0 ? static_cast<float>((1 << kAxisBits) - 1) / largest : 0.0F;
+std::vector<Place> places_of(const Mesh& mesh) {
   std::vector<Place> places(mesh.triangles.size());
   parallel::parallel_for(0, places.size(), kGrain, [&](std::size_t t) {
     const glm::uvec3& v = mesh.triangles[t];
-    const glm::vec3 sum = (mesh.positions[v.x] - box.low) + (mesh.positions[v.y] - box.low) +
-                          (mesh.positions[v.z] - box.low);
-    std::uint64_t code = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float place = sum[k] * (scale / 3.0F);
-      const bool inside = place >= 0 && place < static_cast<float>(1 << kAxisBits);
-      code |= spread(inside ? static_cast<std::uint64_t>(place) : 0) << k;
-    }
-    places[t] = {code, static_cast<std::uint32_t>(t)};
+    glm::vec3 sum = mesh.positions[v.x] + mesh.positions[v.y] + mesh.positions[v.z];
+    // What is not finite has to be somewhere.
+    for (int k = 0; k < 3; ++k) sum[k] = std::isfinite(sum[k]) ? sum[k] : 0.0F;
+    places[t] = {sum, static_cast<std::uint32_t>(t)};
   });
-  std::sort(places.begin(), places.end());
   return places;
+}
+
+// Those before `middle` are not behind the others along the longest side of their box.
+void halve(std::span<Place> places, std::size_t middle) {
+  geometry::Box3 box;
+  for (const Place& place : places) box.include(place.at);
+  const glm::vec3 size = box.size();
+  int axis = size.y > size.x ? 1 : 0;
+  if (size.z > size[axis]) axis = 2;
+  std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle),
+                   places.end(), [axis](const Place& a, const Place& b) {
+                     return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis]
+                                                     : a.triangle < b.triangle;
+                   });
+}
+
+// Halves at a multiple of `unit`. REQUIRES: size > unit.
+std::size_t middle_of(std::size_t size, std::size_t unit) {
+  return std::max<std::size_t>(size / unit / 2, 1) * unit;
+}
+
+void order_all(std::span<Place> places) {
+  if (places.size() <= kVector) {
+    std::sort(places.begin(), places.end(),
+              [](const Place& a, const Place& b) { return a.triangle < b.triangle; });
+    return;
+  }
+  const std::size_t middle =
+      middle_of(places.size(), places.size() > kCluster ? kCluster : kVector);
+  halve(places, middle);
+  order_all(places.first(middle));
+  order_all(places.subspan(middle));
+}
+
+// Level by level until there are parts for all threads, then part by part.
+void order_in_parallel(std::span<Place> places) {
+  std::vector<std::span<Place>> parts = {places};
+  while (parts.size() < kMostParts && places.size() / parts.size() > kLeastPart) {
+    std::vector<std::span<Place>> halves(2 * parts.size());
+    parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) {
+      const std::size_t middle = middle_of(parts[i].size(), kCluster);
+      halve(parts[i], middle);
+      halves[2 * i] = parts[i].first(middle);
+      halves[2 * i + 1] = parts[i].subspan(middle);
+    });
+    parts = std::move(halves);
+  }
+  parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) { order_all(parts[i]); });
 }
 
 // Sums over all runs: the sides of its box, and the side of a square with its area.
@@ -135,7 +164,8 @@ void order_for_locality(Mesh& mesh) {
   const RunSizes before =
       sizes_of_runs(mesh, [&](std::size_t t) -> const glm::uvec3& { return mesh.triangles[t]; });
   if (before.box < kCompact * before.square) return;
-  const std::vector<Place> places = places_on_curve(mesh);
+  std::vector<Place> places = places_of(mesh);
+  order_in_parallel(places);
   const RunSizes after = sizes_of_runs(
       mesh, [&](std::size_t t) -> const glm::uvec3& { return mesh.triangles[places[t].triangle]; });
   // Not worthwhile either where something is not a number.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "raster/internal/frame_tiles.h"
 #include "raster/internal/set_up.h"
 #include "raster/internal/visibility.h"
 
@@ -43,9 +44,11 @@ struct SetUpResult {
 inline constexpr int kFewTiles = 4;
 
 // Sets up places [cluster.begin, cluster.end) of the cluster and appends what may be seen in
-// `wanted` (pixels of the frame); place p has the number `first_number` + p. Counts them.
+// `wanted` (pixels of the frame); place p has the number `first_number` + p. Counts them. Small
+// triangles that are known to be hidden in `tiles` are left out, but counted.
 void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                     const Cluster& cluster, const ScreenVertices& vertices,
-                    std::uint32_t first_number, const geometry::Rect& wanted, SetUpResult& result);
+                    std::uint32_t first_number, const geometry::Rect& wanted,
+                    const FrameTiles& tiles, SetUpResult& result);
 
 }  // namespace delray::raster

@@ -27,6 +27,16 @@ struct TileJobs {
 // The tiles of disjoint regions of the frame.
 TileJobs make_tile_jobs(const Screen& screen, std::span<const geometry::Rect> regions);
 
+// How far what is seen in a few blocks of the frame is.
+struct DepthsAround {
+  static constexpr int kMostBlocks = 256;
+  int x0 = 0, y0 = 0, width = 0;  // in blocks
+  bool may_hide = false;          // otherwise the rest is not set
+  // Element (y - y0) * width + (x - x0): the code of the farthest depth in four blocks, (x, y) and
+  // those to the right, below, and below to the right, but for those that were not asked for.
+  std::int32_t farthest[kMostBlocks];
+};
+
 // Keeps its memory from frame to frame; tiles that nothing is drawn in are not touched.
 class FrameTiles {
  public:
@@ -51,7 +61,13 @@ class FrameTiles {
   // known at a glance.
   bool is_hidden(const geometry::Rect& pixels, float depth) const;
 
+  // What is known of the blocks that the pixels touch; nothing if they are many, or if what is not
+  // behind `depth` is not hidden in any of them.
+  void look_around(const geometry::Rect& pixels, float depth, DepthsAround& result) const;
+
  private:
+  std::int32_t farthest_of(int block_x, int block_y) const;
+
   enum class State : std::uint8_t { unwanted, untouched, drawn };
   struct Place {
     geometry::Rect rect;

@@ -6,6 +6,7 @@
 
 #include "image/image.h"
 #include "raster/internal/pixel_triangles.h"
+#include "raster/internal/tile_runs.h"
 #include "shading/points.h"
 
 namespace delray::raster {
@@ -13,15 +14,14 @@ namespace delray::raster {
 // Rows are stored so many pixels at a time.
 inline constexpr int kBlockSize = shading::kBlockPoints;
 
-// Stores the colours of pixels x .. x + count - 1 of row y. Where a run of pixels starts there is a
-// bit of `starts`, the first one for the first pixel; run i shows triangle runs[i], or transparent
-// black where that is kNoTriangle. `pixels` may be changed up to the next multiple of kBlockSize.
+// Stores the colours of pixels x .. x + count - 1 of row y, transparent black where no triangle is
+// shown. `pixels` may be changed up to the next multiple of kBlockSize.
 //
-// REQUIRES: count <= kTileSize; no run starts after the last pixel.
-void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
-               const std::uint16_t* runs, int x, int y, int count, image::Rgba8* pixels);
-void shade_row(std::span<const PixelTriangle> triangles, std::uint64_t starts,
-               const std::uint16_t* runs, int x, int y, int count, image::RgbaF* pixels);
+// REQUIRES: 1 <= count <= kTileSize.
+void shade_row(std::span<const PixelTriangle> triangles, const TriangleIndices& indices,
+               const RowRuns& row, int x, int y, int count, image::Rgba8* pixels);
+void shade_row(std::span<const PixelTriangle> triangles, const TriangleIndices& indices,
+               const RowRuns& row, int x, int y, int count, image::RgbaF* pixels);
 
 // Stores kBlockSize linear colours, opaque, or transparent black where the bit of `shown` is not
 // set.

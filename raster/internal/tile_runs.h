@@ -16,6 +16,7 @@ struct TileRuns {
   // Bit i of element j: pixel (i, j) shows another one than pixel (i - 1, j), or pixel (i, j - 1).
   // There is always a change at the tile's border.
   std::uint64_t changes_along[kTileSize], changes_down[kTileSize];
+  std::uint64_t shown[kTileSize];  // bit i of element j: pixel (i, j) shows something
 
   // That each pixel shows.
   std::uint32_t* numbers() { return padded + kPadding; }
@@ -25,25 +26,19 @@ struct TileRuns {
 // Of rows [j0, j1) of the tile; row j0 counts as the border.
 void find_runs(const VisibilityTile& tile, int j0, int j1, TileRuns& runs);
 
-// Index of a run that shows no triangle, or none that is shaded with the others.
-inline constexpr std::uint16_t kNoTriangle = 0xFFFFU;
-
-// The runs' triangles, by index in the tile's groups.
-struct RunTriangles {
-  std::uint16_t triangle[kTilePixels + 1];  // row by row
-  std::uint16_t first[kTileSize];           // of a row
-  std::uint64_t starts[kTileSize];          // bit i of a row: a run starts at pixel i
-  // For looking them up: groups of those that start with another triangle than the one above.
-  std::uint16_t group[kTilePixels + 1];
-
-  std::span<const std::uint16_t> of_row(int j) const {
-    return std::span(triangle).subspan(first[j]);
-  }
+// Pixels [first, first + 64) of a row of a tile, or as many as there are: bit i is pixel first + i.
+struct RowRuns {
+  std::uint64_t starts;          // it shows another triangle than the one before; bit 0 is set
+  std::uint64_t shown;           // it shows a triangle
+  const std::uint32_t* numbers;  // what it shows
 };
+inline RowRuns row_of(const TileRuns& runs, int first, int j) {
+  return {runs.changes_along[j] >> first | 1, runs.shown[j] >> first,
+          runs.numbers() + j * kTileSize + first};
+}
 
-// Of columns [i0, i1) of rows [j0, j1), whose runs are found; the groups are filled with what they
-// show. Returns how many pixels show something.
-std::uint64_t number_runs(const TileRuns& runs, int i0, int j0, int i1, int j1, TileGroups& groups,
-                          RunTriangles& result);
+// Adds what columns [i0, i1) of rows [j0, j1) show, whose runs are found, to the groups. Returns
+// how many pixels show something.
+std::uint64_t add_runs(const TileRuns& runs, int i0, int j0, int i1, int j1, TileGroups& groups);
 
 }  // namespace delray::raster

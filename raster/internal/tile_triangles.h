@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -72,11 +73,12 @@ class TileTriangles {
   bool any_left() const { return any_left_; }
   bool is_left(std::size_t triangle) const { return left_[triangle] != 0; }
 
-  // Writes colours and depths of what was found to the window. shade_row(starts, runs, x, y, count,
-  // pixels) stores a row's colours, as in internal/shade_row.h.
+  TriangleIndices indices() const { return groups_.indices(); }
+
+  // Writes colours and depths of what was found to the window. shade_row(row, x, y, count, pixels)
+  // stores a row's colours, as in internal/shade_row.h.
   template <class Colour>
-  using ShadeRow =
-      parallel::FunctionRef<void(std::uint64_t, const std::uint16_t*, int, int, int, Colour*)>;
+  using ShadeRow = parallel::FunctionRef<void(const RowRuns&, int, int, int, Colour*)>;
   template <class Colour>
   void write(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
              const geometry::Rect& rect, const Window<Colour>& window, ShadeRow<Colour> shade_row);
@@ -89,6 +91,8 @@ class TileTriangles {
                image::RgbaF* results);
 
  private:
+  // The pixels of a row whose triangles are left to shade_pixel, a bit each.
+  std::uint64_t left_of(const RowRuns& row, int count) const;
   void ask_for(const FrameShading& frame);
   static void number_vertices(std::span<const std::uint32_t> vertices, ClusterMembers& members);
   void collect(const FrameShading& frame, const Group& group, ClusterMembers& members);
@@ -97,7 +101,6 @@ class TileTriangles {
 
   TileRuns runs_;
   TileGroups groups_;
-  RunTriangles run_triangles_;
   TrianglePlanes planes_;
   std::vector<std::uint8_t> left_;  // by triangle
   bool any_left_ = false;
@@ -143,23 +146,18 @@ void TileTriangles::colours(const FrameShading& frame, SeenTriangles& seen,
 // the block filled; the lanes of `shown` show triangles, the others have one of these if there
 // are any.
 template <class F>
-void for_each_block(std::uint64_t starts, const std::uint16_t* run, int x, int y, int count,
+void for_each_block(const RowRuns& row, const TriangleIndices& indices, int x, int y, int count,
                     PixelBlock& block, F&& shade) {
-  starts &= ~std::uint64_t{1};  // the first run has begun
   for (int i = 0; i < count; i += shading::kBlockPoints) {
-    shading::LaneMask shown = 0;
-    std::uint16_t some = kNoTriangle;
+    const std::uint64_t rest = row.shown >> i & (~std::uint64_t{0} >> (kTileSize - (count - i)));
+    const auto shown = static_cast<shading::LaneMask>(rest & ((1U << shading::kBlockPoints) - 1));
+    std::uint16_t triangle = shown == 0 ? 0 : indices.of(row.numbers[i + std::countr_zero(shown)]);
     for (int k = 0; k < shading::kBlockPoints; ++k) {
-      if (i + k < count) run += starts >> (i + k) & 1;
-      const bool drawn = *run != kNoTriangle && i + k < count;
-      shown |= shading::LaneMask{drawn} << k;
-      block.triangle[k] = *run;
+      if (shown >> k & 1) triangle = indices.of(row.numbers[i + k]);
+      block.triangle[k] = triangle;
       block.x[k] = static_cast<float>(x + i + k);
       block.y[k] = static_cast<float>(y);
-      if (drawn) some = *run;
     }
-    for (std::uint16_t& triangle : block.triangle)
-      if (triangle == kNoTriangle) triangle = some;
     shade(i, shown);
   }
 }

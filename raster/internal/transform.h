@@ -43,6 +43,7 @@ struct ScreenVertices {
   bool any_outside = false;
   // The least and largest coordinates, if none is outside.
   std::int32_t low_x = 0, high_x = 0, low_y = 0, high_y = 0;
+  float farthest = 0;
 
   ScreenVertex operator[](std::size_t i) const { return {x[i], y[i], depth[i]}; }
 };

@@ -5,10 +5,11 @@
 
 namespace delray::scenes::internal {
 
-// Sorts triangles along a Z-order curve (Morton 1966) through their centres, and numbers vertices
-// in the order in which triangles use them, unless runs of triangles are about as compact as they
-// are: renderers take runs of triangles together. Meshes of few triangles stay as they are.
-// O(triangles log triangles).
+// Orders triangles so that those that follow each other, by clusters of 256 and by vectors of 16,
+// have small boxes: halved again and again along the longest side of the box of their centres (the
+// k-d tree of Bentley 1975). Numbers vertices in the order in which triangles use them. Unless runs
+// of triangles are about as compact as they are: renderers take runs of triangles together. Meshes
+// of few triangles stay as they are. O(triangles log triangles).
 //
 // REQUIRES: indices are in range.
 void order_for_locality(Mesh& mesh);

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
+#include <numeric>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "image/srgb.h"
 #include "tests/raster/shade_both_ways.h"
@@ -16,6 +21,61 @@ TEST(ShadeGouraud, GivesWhatPixelByPixelGives) {
 
 TEST(ShadeGouraud, ColoursOfSurfacesAreThoseOfEachAlone) {
   expect_colours_of_each_alone<GouraudTile>(Lighting::gouraud);
+}
+
+// Triangles of the first cluster have their numbers as indices.
+constexpr std::array<std::uint16_t, 1> kFirstGroup = {0};
+const std::vector<std::uint16_t> kOwnNumbers = [] {
+  std::vector<std::uint16_t> numbers(kClusterTriangles);
+  std::iota(numbers.begin(), numbers.end(), std::uint16_t{0});
+  return numbers;
+}();
+const TriangleIndices kSameIndices{kFirstGroup.data(), kOwnNumbers.data()};
+
+// However long runs are, a pixel is shaded as it is alone.
+template <class Colour>
+void expect_rows_of_single_pixels(std::mt19937& random, std::span<const PixelTriangle> triangles) {
+  const int count = 1 + static_cast<int>(random() % kTileSize);
+  const std::uint32_t longest = 1 + static_cast<std::uint32_t>(random()) % 20;
+  std::uint32_t numbers[kTileSize] = {};
+  std::uint64_t starts = 0, shown = 0;
+  for (int i = 0, next = 0; i < kTileSize; ++i) {
+    const bool start = i == next;
+    if (start) next += 1 + static_cast<int>(random() % longest);
+    numbers[i] = !start              ? numbers[i - 1]
+                 : random() % 4 == 0 ? kNothing
+                                     : static_cast<std::uint32_t>(random() % triangles.size());
+    starts |= std::uint64_t{start} << i;
+    shown |= std::uint64_t{numbers[i] != kNothing} << i;
+  }
+  const int x = static_cast<int>(random() % 1000), y = static_cast<int>(random() % 1000);
+  Colour row[kTileSize + kBlockSize], alone[kBlockSize];
+  shade_row(triangles, kSameIndices, {starts, shown, numbers}, x, y, count, row);
+  for (int i = 0; i < count; ++i) {
+    shade_row(triangles, kSameIndices, {1, shown >> i, numbers + i}, x + i, y, 1, alone);
+    ASSERT_EQ(std::memcmp(&row[i], &alone[0], sizeof(Colour)), 0) << i << " of " << count;
+  }
+}
+
+TEST(ShadeGouraud, RowsOfShortAndLongRunsAreThoseOfTheirPixels) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<PixelTriangle> triangles(9);
+  for (PixelTriangle& t : triangles) {
+    for (int k = 0; k < 4; ++k) {
+      t.a[k] = unit(random) / 4000;
+      t.b[k] = unit(random) / 4000;
+      t.c[k] = 1 + unit(random);
+    }
+    t.x = static_cast<float>(random() % 1000);
+    t.y = static_cast<float>(random() % 1000);
+  }
+  tests::for_each_target([&] {
+    for (int round = 0; round < 50; ++round) {
+      expect_rows_of_single_pixels<image::Rgba8>(random, triangles);
+      expect_rows_of_single_pixels<image::RgbaF>(random, triangles);
+    }
+  });
 }
 
 TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
@@ -35,9 +95,9 @@ TEST(ShadeGouraud, RowsEncodeEveryColourAsPixelsDo) {
       PixelTriangle flat{};
       flat.c[0] = flat.c[2] = colour;
       flat.c[3] = 1;
-      const std::uint16_t runs[] = {0, kNoTriangle, 0};
+      const std::uint32_t numbers[] = {0, kNothing, 0};
       image::Rgba8 pixels[kBlockSize];
-      shade_row({&flat, 1}, 7, runs, 5, 7, 3, pixels);
+      shade_row({&flat, 1}, kSameIndices, {7, 5, numbers}, 5, 7, 3, pixels);
       const std::uint8_t code = image::encode_srgb(colour);
       ASSERT_EQ(pixels[0], (image::Rgba8{code, 0, code, 255})) << colour;
       ASSERT_EQ(pixels[1], image::Rgba8());

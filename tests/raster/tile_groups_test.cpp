@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <memory>
 #include <random>
 #include <set>
+#include <vector>
 
 namespace delray::raster {
 namespace {
@@ -17,24 +17,29 @@ TEST(TileGroups, NumberEveryTriangleOnce) {
     groups->clear();
     // From a few clusters to one per triangle, near each other and far apart.
     const std::uint32_t reach = 1U << (random() % 32);
-    std::map<std::uint32_t, std::uint16_t> group_of;
+    std::set<std::uint32_t> added;
     const std::size_t additions = random() % (round % 10 == 0 ? 8000 : 300);
-    while (group_of.size() < std::min<std::size_t>(additions, reach) &&
-           group_of.size() < kTilePixels) {
+    while (added.size() < std::min<std::size_t>(additions, reach) && added.size() < kTilePixels) {
       const std::uint32_t number = 77 + static_cast<std::uint32_t>(random()) % reach;
-      const std::uint16_t group = groups->add(number);
-      const auto [place, added] = group_of.emplace(number, group);
-      ASSERT_EQ(place->second, group);
+      groups->add(number);
+      added.insert(number);
     }
     groups->number_triangles();
-    ASSERT_EQ(groups->places().size(), group_of.size());
+    ASSERT_EQ(groups->places().size(), added.size());
+    // Every index belongs to one group, and that to one cluster.
+    std::vector<std::uint32_t> cluster_of(added.size(), kNothing);
+    std::set<std::uint32_t> clusters;
+    for (const TileGroups::Group& group : groups->groups()) {
+      ASSERT_TRUE(clusters.insert(group.cluster).second);
+      for (std::size_t i = group.first; i < std::size_t{group.first} + group.count; ++i) {
+        ASSERT_EQ(cluster_of.at(i), kNothing);
+        cluster_of[i] = group.cluster;
+      }
+    }
     std::set<std::uint16_t> indices;
-    for (const auto& [number, group] : group_of) {
-      const std::uint16_t index = groups->index(group, number);
-      const TileGroups::Group& its = groups->groups()[group];
-      ASSERT_EQ(its.cluster, number >> kClusterBits);
-      ASSERT_GE(index, its.first);
-      ASSERT_LT(index, its.first + its.count);
+    for (const std::uint32_t number : added) {
+      const std::uint16_t index = groups->indices().of(number);
+      ASSERT_EQ(cluster_of.at(index), number >> kClusterBits);
       ASSERT_EQ(groups->places()[index], number % kClusterTriangles);
       ASSERT_TRUE(indices.insert(index).second);
     }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <random>
+#include <set>
 
 #include "tests/support/targets.h"
 
@@ -31,17 +32,17 @@ TEST(TileRuns, ChangesAreWhereNeighboursDiffer) {
         for (int i = 0; i < kTileSize; ++i) {
           ASSERT_EQ(runs->numbers()[j * kTileSize + i], at(i, j));
           ASSERT_EQ(runs->changes_along[j] >> i & 1, i == 0 || at(i, j) != at(i - 1, j));
+          ASSERT_EQ(runs->shown[j] >> i & 1, at(i, j) != kNothing);
           ASSERT_EQ(runs->changes_down[j] >> i & 1, j == j0 || at(i, j) != at(i, j - 1));
         }
     }
   });
 }
 
-TEST(TileRuns, RunsHaveTheTrianglesOfTheirPixels) {
+TEST(TileRuns, AllTrianglesOfTheirPixelsAreFound) {
   const auto tile = std::make_unique<VisibilityTile>();
   const auto runs = std::make_unique<TileRuns>();
   const auto groups = std::make_unique<TileGroups>();
-  const auto result = std::make_unique<RunTriangles>();
   tests::for_each_target([&] {
     std::mt19937 random(2);
     for (int round = 0; round < 30; ++round) {
@@ -57,26 +58,26 @@ TEST(TileRuns, RunsHaveTheTrianglesOfTheirPixels) {
         tile->key[pixel] = static_cast<std::int64_t>(std::uint64_t{random()} << 32 | number);
       }
       find_runs(*tile, j0, j1, *runs);
-      const std::uint64_t shown = number_runs(*runs, i0, j0, i1, j1, *groups, *result);
+      groups->clear();
+      const std::uint64_t shown = add_runs(*runs, i0, j0, i1, j1, *groups);
+      groups->number_triangles();
       std::uint64_t expected_shown = 0;
+      std::set<std::uint32_t> expected;
       for (int j = j0; j < j1; ++j) {
-        const std::uint16_t* run = result->of_row(j).data() - 1;
+        const RowRuns row = row_of(*runs, i0, j);
         for (int i = i0; i < i1; ++i) {
-          run += result->starts[j] >> i & 1;
-          const std::uint32_t number = runs->numbers()[j * kTileSize + i];
-          if (number == kNothing) {
-            ASSERT_EQ(*run, kNoTriangle);
-            continue;
-          }
+          const std::uint32_t number = number_of(tile->key[j * kTileSize + i]);
+          ASSERT_EQ(row.numbers[i - i0], number);
+          ASSERT_EQ(row.shown >> (i - i0) & 1, number != kNothing);
+          ASSERT_EQ(row.starts >> (i - i0) & 1,
+                    i == i0 || number != number_of(tile->key[j * kTileSize + i - 1]));
+          if (number == kNothing) continue;
           ++expected_shown;
-          ASSERT_EQ(groups->places()[*run], number % kClusterTriangles);
-          bool in_group = false;
-          for (const TileGroups::Group& group : groups->groups())
-            if (group.cluster == number >> kClusterBits)
-              in_group = *run >= group.first && *run < group.first + group.count;
-          ASSERT_TRUE(in_group);
+          expected.insert(number);
+          ASSERT_EQ(groups->places()[groups->indices().of(number)], number % kClusterTriangles);
         }
       }
+      ASSERT_EQ(groups->places().size(), expected.size());
       ASSERT_EQ(shown, expected_shown);
     }
   });
