@@ -30,9 +30,13 @@ TileCompositor::TileCompositor(comm::Communicator& communicator, std::unique_ptr
       own_(static_cast<std::size_t>(tiles_ / communicator.size())) {
   internal::for_each_outwards(communicator.rank(), communicator.size(),
                               [&](int rank) { order_.push_back(rank); });
+  std::size_t of_source = 0;
   for (int tile = communicator.rank(); tile < tiles_; tile += communicator.size()) {
-    if (range(tile).size() > 0) missing_ += order_.size();
+    if (range(tile).size() > 0) ++of_source;
   }
+  numbers_to_come_.assign(static_cast<std::size_t>(communicator.size()), of_source);
+  numbers_to_come_[static_cast<std::size_t>(communicator.rank())] = 0;
+  missing_ = of_source * order_.size();
 }
 
 PixelRange TileCompositor::range(int tile) const {
@@ -60,8 +64,28 @@ void TileCompositor::add(int tile, int from, std::optional<comm::Buffer>&& pixel
   merge_what_came(tile);
 }
 
+// Who is done may make the next compositor before others are, and speak to them: such numbers have
+// to wait, behind all that the source has sent for this one.
+std::optional<int> TileCompositor::sender_of_next_number(comm::Deadline deadline) {
+  const auto any = communicator_.probe(comm::kAnyRank, internal::kTagTile, deadline);
+  if (!any) return std::nullopt;
+  const auto is_to_come = [&](int rank) {
+    return numbers_to_come_[static_cast<std::size_t>(rank)] > 0;
+  };
+  if (is_to_come(any->source)) return any->source;
+  for (const int rank : order_) {
+    if (is_to_come(rank) && communicator_.probe(rank, internal::kTagTile, comm::Deadline::now()))
+      return rank;
+  }
+  const auto first = std::find_if(order_.begin(), order_.end(), is_to_come);
+  if (first == order_.end() || !communicator_.probe(*first, internal::kTagTile, deadline))
+    return std::nullopt;
+  return *first;
+}
+
 // The number of a tile goes before its pixels; the complement of the number if there are none.
 void TileCompositor::take_number(int from) {
+  --numbers_to_come_[static_cast<std::size_t>(from)];
   const int number = communicator_.receive(from, internal::kTagTile).as<int>()[0];
   if (number < 0) {
     add(~number, from, std::nullopt);
@@ -82,9 +106,9 @@ void TileCompositor::take_pixels(Announced::iterator from) {
 void TileCompositor::take_what_came() {
   const auto now = comm::Deadline::now();
   while (missing_ > 0) {
-    const auto next = communicator_.probe(comm::kAnyRank, internal::kTagTile, now);
+    const std::optional<int> next = sender_of_next_number(now);
     if (!next) break;
-    take_number(next->source);
+    take_number(*next);
   }
   for (auto from = announced_.begin(); from != announced_.end();) {
     const auto here = from++;
@@ -117,9 +141,7 @@ Part TileCompositor::finish() {
   communicator_.mark(comm::Phase::compose, 0);
   for (take_what_came(); missing_ > 0; take_what_came()) {
     if (announced_.empty()) {
-      const auto next =
-          communicator_.probe(comm::kAnyRank, internal::kTagTile, comm::Deadline::never());
-      take_number(next->source);
+      take_number(*sender_of_next_number(comm::Deadline::never()));
     } else {
       take_pixels(announced_.begin());
     }

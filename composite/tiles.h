@@ -55,6 +55,7 @@ class TileCompositor {
   using Announced = std::map<int, std::deque<int>>;
   Own& own(int tile) { return own_[static_cast<std::size_t>(tile / communicator_.size())]; }
   void hand_over(int tile, bool has_pixels);
+  std::optional<int> sender_of_next_number(comm::Deadline deadline);
   void take_number(int from);
   void take_pixels(Announced::iterator from);
   void take_what_came();
@@ -65,10 +66,11 @@ class TileCompositor {
   std::unique_ptr<Layer> layer_;
   int samples_per_pixel_;
   int tiles_ = 0;
-  std::vector<int> order_;   // in which the images of other ranks are merged
-  std::vector<Own> own_;     // of tile rank + i * ranks
-  Announced announced_;      // tiles whose pixels are on their way, by source, in their order
-  std::size_t missing_ = 0;  // of other ranks
+  std::vector<int> order_;  // in which the images of other ranks are merged
+  std::vector<Own> own_;    // of tile rank + i * ranks
+  Announced announced_;     // tiles whose pixels are on their way, by source, in their order
+  std::vector<std::size_t> numbers_to_come_;  // by source
+  std::size_t missing_ = 0;                   // of other ranks
 };
 
 }  // namespace delray::composite
