@@ -56,7 +56,7 @@ Layer layer_of(std::span<const Placement> placements, const shading::Shader& sha
                const glm::vec3& direction, bool through_glass) {
   const Placement& placement = placements[hit.placement];
   const scenes::Material& material = shader.materials[placement.material];
-  if (!through_glass) {
+  if (!through_glass || !(material.transmission > 0.0F)) {
     const CoveragePoint at = coverage_point(placement, hit);
     const float alpha = shading::coverage(shader, material, at.uv, {}, at.alpha);
     return {hit.distance, hit.placement, hit.triangle, glm::vec3(1.0F - alpha)};

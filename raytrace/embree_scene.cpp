@@ -116,12 +116,16 @@ RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
 // Beyond what rounding does to distances of triangles that meet in a point.
 float a_little_further(float distance) { return distance + std::abs(distance) * 1e-6F; }
 
-// Notes a hit and lets the ray go on. Embree may report one hit several times.
+// Notes a hit and lets the ray go on, unless the triangle is solid. Embree may report one hit
+// several times.
 void note_and_pass(const RTCFilterFunctionNArguments* arguments) {
   auto* query = reinterpret_cast<Query*>(arguments->context);
+  const auto* solid = static_cast<const std::uint64_t*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
+    const unsigned triangle = RTCHitN_primID(arguments->hit, n, i);
+    if (solid != nullptr && (solid[triangle / 64] >> (triangle % 64) & 1) != 0) continue;
     const Hit hit = hit_of(arguments, i);
     SeeThrough& passed = query->passed[RTCRayN_id(arguments->ray, n, i)];
     bool known = false;
@@ -194,6 +198,7 @@ struct EmbreeScene::State {
   Tree top = {};
   std::vector<std::unique_ptr<std::vector<glm::vec3>>> copies =
       {};  // of positions that were unreadable
+  std::vector<std::shared_ptr<const std::vector<std::uint64_t>>> solid = {};  // of geometries
 };
 
 namespace {
@@ -238,6 +243,10 @@ void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
                              mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
   rtcSetGeometryBuildQuality(geometry, quality(options.quality));
   if (placement.see_through) rtcSetGeometryOccludedFilterFunction(geometry, note_and_pass);
+  if (placement.solid) {
+    state.solid.push_back(placement.solid);
+    rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(placement.solid->data()));
+  }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(tree, geometry, number);
   rtcReleaseGeometry(geometry);

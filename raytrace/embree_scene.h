@@ -60,8 +60,9 @@ class EmbreeScene {
   void intersect(Ray& ray) const;
   void intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const;
 
-  // Whether anything opaque is on the way. What can be seen through (Placement::see_through) is put
-  // into `passed` instead, once each. A negative `far` on return: occluded.
+  // Whether anything opaque is on the way. What can be seen through (Placement::see_through,
+  // but for triangles that are solid) is put into `passed` instead, once each. A negative `far` on
+  // return: occluded.
   bool occluded(Ray& ray, SeeThrough& passed) const;
   void occluded(const ActiveRays& active, ShadowPacket& packet,
                 std::span<SeeThrough, kPacketRays> passed, bool coherent) const;

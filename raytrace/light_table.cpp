@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "raytrace/internal/alias_lanes.h"
+#include "raytrace/solid_triangles.h"
 #include "shading/arithmetic.h"
 #include "shading/batch.h"
 #include "shading/lighting.h"
@@ -113,6 +114,7 @@ void LightSamples::set(int i, const LightSample& sample) {
 
 void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& shader) {
   std::vector<std::uint32_t> number(scene.meshes.size(), kNone);
+  const std::vector<LeastAlpha> alphas = least_alphas(shader);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const scenes::Mesh& mesh = scene.meshes[m];
     const scenes::Material& material = shading::material(shader, mesh.material);
@@ -120,6 +122,7 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
     const bool textured = material.emission_texture != kNone && !mesh.uvs.empty();
     GlowingMesh glowing;
     glowing.material = mesh.material;
+    const std::vector<std::uint64_t> solid = solid_triangles(mesh, material, alphas);
     glowing.slots.assign(mesh.triangles.size(), kNone);
     std::vector<float> weights;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -128,6 +131,7 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
       triangle.a = mesh.positions[c.x];
       triangle.ab = mesh.positions[c.y] - triangle.a;
       triangle.ac = mesh.positions[c.z] - triangle.a;
+      triangle.solid = !solid.empty() && (solid[t / 64] >> (t % 64) & 1) != 0;
       for (int k = 0; k < 3; ++k) {
         if (!mesh.uvs.empty()) triangle.uv[k] = mesh.uvs[c[k]];
         triangle.alpha[k] = mesh.colours.empty() ? 1.0F : mesh.colours[c[k]].w;
@@ -297,7 +301,7 @@ LightSample LightTable::draw_glow(const shading::Shader& shader, const GlowingIn
     radiance *= glm::vec3(
         shading::sample(shader.textures[material.emission_texture], uv, shading::Footprint{}));
   }
-  if (material.alpha != scenes::Material::Alpha::opaque) {
+  if (material.alpha != scenes::Material::Alpha::opaque && !triangle.solid) {
     const float alpha =
         triangle.alpha[0] * rest + triangle.alpha[1] * b.x + triangle.alpha[2] * b.y;
     radiance *= shading::coverage(shader, material, uv, shading::Footprint{}, alpha);

@@ -76,6 +76,7 @@ class LightTable {
     glm::vec3 a, ab, ac;
     glm::vec2 uv[3];
     float alpha[3];
+    bool solid;  // covered everywhere
   };
   struct GlowingMesh {
     std::vector<Triangle> triangles;

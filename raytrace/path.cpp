@@ -145,9 +145,7 @@ class Path final : public Walk {
     if (alive != 0) make_bsdfs(surfaces_, group.view, alive, bsdfs_);
     alive &= ~bsdfs_.black;
     if (alive == 0) return;
-    draw(lanes.pixel, alive, numbers_);
-    for (int i = 0; i < kPacketRays; ++i) numbers_.dimension[i] += lanes.vertex[i] * kDimensions;
-    sobol_pairs(numbers_, pairs_);
+    draw_at(lanes, alive, kLight, pairs_);
     setting_.lights.sample(setting_.shader, surfaces_.position, alive,
                            std::span(pairs_).subspan<kLight, LightTable::kPairs>(), lights_);
     evaluate(bsdfs_, lights_.direction, alive, values_);
@@ -159,10 +157,20 @@ class Path final : public Walk {
     if (next_rays_.count != 0) ask_scattered();
   }
 
+  // Pairs of numbers from a dimension on.
+  void draw_at(const PathLanes& lanes, LaneMask mask, Dimension first, std::span<Pairs16> pairs) {
+    draw(lanes.pixel, mask, numbers_);
+    for (int i = 0; i < kPacketRays; ++i) {
+      numbers_.dimension[i] += lanes.vertex[i] * kDimensions + first;
+    }
+    sobol_pairs(numbers_, pairs);
+  }
+
   // Asks for rays behind layers that a path goes through by chance. Returns the other hits, and
   // notes their depths.
   LaneMask see(const RayGroup& group, const PathLanes& lanes) {
     LaneMask seen = group.hits;
+    bool drawn = false;
     for (LaneMask rest = group.hits; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const bool behind = lanes.triangle[i] != kMiss;
@@ -172,9 +180,9 @@ class Path final : public Walk {
       const bool again = hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
       if (!again) {
         if (!(alpha < 1.0F)) continue;
-        Sampler layer = sampler(lanes.pixel[i]);
-        layer.skip(lanes.vertex[i] * kDimensions + kLayer);
-        if (layer.one() < alpha) continue;
+        if (!drawn) draw_at(lanes, group.hits, kLayer, std::span(pairs_).first<1>());
+        drawn = true;
+        if (pairs_[0].x[i] < alpha) continue;
       }
       go_behind(group, lanes, i, hit);
       seen &= ~(1U << i);

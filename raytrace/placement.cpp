@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "parallel/parallel_for.h"
+#include "raytrace/solid_triangles.h"
 
 namespace delray::raytrace {
 namespace {
@@ -70,6 +71,17 @@ std::vector<Placement> place(const scenes::Scene& scene, const shading::Shader& 
   std::vector<float> reaches(scene.meshes.size());
   parallel::parallel_for(0, reaches.size(), 1,
                          [&](std::size_t i) { reaches[i] = reach(scene.meshes[i]); });
+  // Of meshes, where they can be seen through.
+  std::vector<std::shared_ptr<const std::vector<std::uint64_t>>> solid(scene.meshes.size());
+  const std::vector<LeastAlpha> alphas = least_alphas(shader);
+  parallel::parallel_for(0, solid.size(), 1, [&](std::size_t i) {
+    const scenes::Mesh& mesh = scene.meshes[i];
+    if (uses[i] == 0) return;
+    auto bits = solid_triangles(mesh, shading::material(shader, mesh.material), alphas);
+    if (!bits.empty()) {
+      solid[i] = std::make_shared<const std::vector<std::uint64_t>>(std::move(bits));
+    }
+  });
   std::vector<Placement> placements(scene.instances.size());
   for (std::size_t i = 0; i < placements.size(); ++i) {
     const scenes::Instance& instance = scene.instances[i];
@@ -82,6 +94,7 @@ std::vector<Placement> place(const scenes::Scene& scene, const shading::Shader& 
     placement.material =
         placement.mesh->material < shader.materials.size() ? placement.mesh->material : 0;
     look_at_material(placement, shader.materials[placement.material]);
+    placement.solid = solid[instance.mesh];
     look_at_transform(placement, reaches[instance.mesh]);
     placement.instanced = share_meshes && uses[instance.mesh] > 1;
     if (!placement.instanced && !placement.identity) move_to_world(placement);

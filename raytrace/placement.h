@@ -19,13 +19,14 @@ struct Placement {
   const glm::vec3* positions = nullptr;  // of the mesh's vertices: its own, or moved to the world
   std::uint32_t mesh_number = 0;
   std::uint32_t material = 0;
-  bool instanced = false;      // positions are the mesh's own, `to_world` brings them to the world
-  bool identity = true;        // normals and tangents need no transform
-  bool see_through = false;    // masked, blended or transmitting: shadow rays do not end there
-  bool layered = false;        // masked or blended: no ray need end there
-  bool textured = false;       // the material looks at uv
-  float orientation = 1.0F;    // -1 if the transform mirrors
-  glm::mat4x3 to_world{1.0F};  // the instance's transform
+  bool instanced = false;    // positions are the mesh's own, `to_world` brings them to the world
+  bool identity = true;      // normals and tangents need no transform
+  bool see_through = false;  // masked, blended or transmitting: shadow rays do not end there
+  bool layered = false;      // masked or blended: no ray need end there
+  std::shared_ptr<const std::vector<std::uint64_t>> solid;  // solid_triangles(); null: none
+  bool textured = false;                                    // the material looks at uv
+  float orientation = 1.0F;                                 // -1 if the transform mirrors
+  glm::mat4x3 to_world{1.0F};                               // the instance's transform
   glm::mat3 normal_to_world{1.0F};
   float transform_scale = 0.0F;  // largest length that to_world adds rounding errors of, 0 if none
   std::vector<glm::vec3> moved;  // backing store of `positions`, one spare element at the end

@@ -226,7 +226,9 @@ TEST(EmbreeScene, OcclusionPacketsAgreeWithSingleRays) {
 TEST(EmbreeScene, OcclusionNotesWhatItSeesThrough) {
   for (const bool share : {false, true}) {
     scenes::Scene scene;
-    add(scene, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0})).alpha = scenes::Material::Alpha::blend;
+    scenes::Material& veil = add(scene, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}));
+    veil.alpha = scenes::Material::Alpha::blend;
+    veil.base_colour.w = 0.5F;
     for (int i = 1; i < 5; ++i) {
       scene.instances.push_back({0, placed(1, {0, 0, -static_cast<float>(i)})});
     }
@@ -246,6 +248,11 @@ TEST(EmbreeScene, OcclusionNotesWhatItSeesThrough) {
       EXPECT_NEAR(passed.hits[i].distance, 5.0F + static_cast<float>(passed.hits[i].placement),
                   1e-5);
     }
+    scene.materials[0].base_colour.w = 1.0F;
+    const Tracer solid = make_tracer(scene, options);
+    r = ray({0.3F, 0.1F, 5}, {0, 0, -1});
+    EXPECT_TRUE(solid.embree.occluded(r, passed));
+    EXPECT_EQ(passed.count, 0);
   }
 }
 
