@@ -13,6 +13,7 @@ struct RasterCostModel {
   double per_triangle = 0.5;
   double per_pixel = 1;
 
+  bool operator==(const RasterCostModel&) const = default;
   double setup(double triangles) const { return per_triangle * triangles; }
   double operator()(double triangles, double pixels) const {
     return setup(triangles) + per_pixel * pixels;

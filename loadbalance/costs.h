@@ -17,6 +17,7 @@ struct WeightedBox {
   double cost = 0;   // for one rank that does all of it
   double setup = 0;  // the part of `cost` that each owner pays again who gets some of the group
   std::uint64_t primitives = 1;
+  bool operator==(const WeightedBox&) const = default;
 };
 
 // Costs over a frame, gathered from boxes or measured. Cell (i, j) of the grid covers the pixels

@@ -24,6 +24,13 @@ class KeptPartition {
   // the others. Collective: a broadcast of the regions, kept or not.
   const Partition& next(const Costs& costs, comm::Communicator& communicator);
 
+  // The last partition once more, for a frame with the costs of the last one. REQUIRES: there was
+  // one.
+  const Partition& again() {
+    ++frames_;
+    return partition_;
+  }
+
   // What next returned last: to scale costs to what it took with. Without regions before that.
   const Partition& last() const { return partition_; }
   std::uint64_t frames() const { return frames_; }

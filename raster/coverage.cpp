@@ -90,14 +90,19 @@ double Coverage::add_large(const ScreenTriangle& triangle, const Surface& surfac
   return all;
 }
 
+// In single precision: these are estimates.
 void Coverage::sum_over_ranks(comm::Communicator& communicator) {
-  std::vector<double> all, large;
+  std::vector<float> all, large;
+  bool any_large = false;
   for (const Square& s : squares_) {
-    all.insert(all.end(), {s.opaque, s.blended});
-    large.insert(large.end(), {s.large_opaque, s.large_blended});
+    all.insert(all.end(), {static_cast<float>(s.opaque), static_cast<float>(s.blended)});
+    large.insert(large.end(),
+                 {static_cast<float>(s.large_opaque), static_cast<float>(s.large_blended)});
+    any_large |= s.large_opaque + s.large_blended > 0;
   }
-  comm::all_reduce(communicator, std::span<double>(all), std::plus<>());
-  comm::reduce(communicator, 0, std::span<double>(large), std::plus<>());
+  all.push_back(any_large ? 1.0F : 0.0F);
+  comm::all_reduce(communicator, std::span<float>(all), std::plus<>());
+  if (all.back() > 0) comm::reduce(communicator, 0, std::span<float>(large), std::plus<>());
   for (std::size_t i = 0; i < squares_.size(); ++i)
     squares_[i] = {all[2 * i], all[2 * i + 1], large[2 * i], large[2 * i + 1]};
 }

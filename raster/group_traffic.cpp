@@ -39,17 +39,12 @@ comm::Buffer pieces_in(const comm::Buffer& message) {
 void GroupTraffic::begin_frame(Rank& rank, std::size_t groups) {
   const bool as_before = rank.number() == rank_ && rank.ranks() == ranks_ &&
                          rank.options.travel == travel_ && groups == holders_.size();
-  // The highest epoch of all, and how far the lowest is below the highest that there may be.
-  std::uint64_t epochs[] = {epoch_, ~(as_before ? epoch_ : 0)};
-  comm::all_reduce(rank.communicator, std::span<std::uint64_t>(epochs),
-                   [](std::uint64_t a, std::uint64_t b) { return std::max(a, b); });
-  if (epochs[0] != ~epochs[1] || epochs[0] == 0) {
+  if (!agreement_.holds(rank.communicator, as_before)) {
     holders_.assign(groups, {});
     held_.clear();
     rank_ = rank.number();
     ranks_ = rank.ranks();
     travel_ = rank.options.travel;
-    epoch_ = epochs[0] + 1;
   }
   ++frame_;
   outgoing_.clear();

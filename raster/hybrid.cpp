@@ -10,6 +10,7 @@
 #include "comm/collectives.h"
 #include "loadbalance/region_index.h"
 #include "parallel/parallel_for.h"
+#include "raster/internal/frame_memory.h"
 #include "raster/internal/hybrid_shares.h"
 #include "raster/internal/samples.h"
 #include "raster/internal/tile_fragments.h"
@@ -170,11 +171,17 @@ Picture render(Rank& rank) {
   const VisibleGroups visible = find_visible_groups(rank);
 
   communicator.mark(comm::Phase::redistribute, 0);
-  Arrivals arrivals;
-  Shares shares;
+  // As in the last frame, if that is unchanged for all ranks.
+  SharedOut& out = rank.memory.shared_out;
+  const Shares& shares = out.shares;
   const DrawList list = timed(communicator, rank.counts.phases.redistribute, [&] {
-    shares = share_out(rank, visible);
-    return make_draw_list(send_to_owners(rank, visible.groups, shares, arrivals), &rank.clusters);
+    if (!rank.memory.screen.unchanged() || out.travel != rank.options.travel) {
+      out = {};
+      out.shares = share_out(rank, visible);
+      out.pieces = send_to_owners(rank, visible.groups, shares, out.arrivals);
+      out.travel = rank.options.travel;
+    }
+    return make_draw_list(out.pieces, &rank.clusters);
   });
 
   auto image = rank.take_image<Colour>(rank.options.width, rank.options.height);

@@ -106,22 +106,47 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
   });
   for (std::size_t i = 0; i < groups.size(); ++i)
     coverage.add(boxes[i].box, samples[i], surface(i));
-  if (rank.ranks() > 1) coverage.sum_over_ranks(rank.communicator);
+  rank.counts.phases.bin += seconds.seconds();
+  unchanged_ = false;
+  if (rank.ranks() > 1) {
+    Contribution mine{rank.number(),
+                      rank.ranks(),
+                      rank.screen.frame(),
+                      rank.samples_per_pixel(),
+                      model,
+                      seen_samples != nullptr,
+                      boxes,
+                      samples,
+                      large_samples,
+                      coverage.squares()};
+    unchanged_ = agreement_.holds(rank.communicator,
+                                  rank.options.costs == CostSource::model && mine == last_);
+    if (unchanged_) {
+      if (seen_samples != nullptr) *seen_samples = answer_.seen;
+      return answer_.boxes;
+    }
+    cut_before_ = reported_ = false;
+    last_ = std::move(mine);
+    coverage.sum_over_ranks(rank.communicator);
+  }
+  statistics_.reset();
+  SeenSamples seen_of_groups;
   if (seen_samples != nullptr)
-    *seen_samples = {model.per_pixel, std::vector<double>(groups.size()),
-                     std::vector<double>(groups.size())};
+    seen_of_groups = {model.per_pixel, std::vector<double>(groups.size()),
+                      std::vector<double>(groups.size())};
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (boxes[i].box.empty()) continue;
     const double seen = coverage.seen(boxes[i].box, surface(i).blended);
     boxes[i].cost += model.per_pixel * samples[i] * (seen + kDrawn);
     if (seen_samples == nullptr) continue;
-    seen_samples->all[i] = seen * (samples[i] + large_samples[i]);
-    seen_samples->large[i] = seen * large_samples[i];
+    seen_of_groups.all[i] = seen * (samples[i] + large_samples[i]);
+    seen_of_groups.large[i] = seen * large_samples[i];
   }
   large_.clear();
   if (rank.number() == 0)
     large_ = coverage.costs_of_large(model.per_pixel, model.per_pixel * kDrawn);
-  rank.counts.phases.bin += seconds.seconds();
+  if (seen_samples != nullptr) *seen_samples = seen_of_groups;
+  if (rank.ranks() > 1) answer_ = {boxes, std::move(seen_of_groups)};
   return boxes;
 }
 
@@ -131,6 +156,18 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   const RenderOptions& options = rank.options;
   const Kind kind{options.partition, rank.ranks(), parts, options.regions_per_rank,
                   options.keep_factor};
+  if (unchanged_ && cut_before_ && kind == kind_ && (reported_ || !options.report_partition)) {
+    if (!options.report_partition) {
+      statistics_.reset();
+      reported_ = false;
+    } else if (statistics_) {
+      statistics_->kept = true;
+      statistics_->seconds = 0;
+    }
+    return kept_->again();
+  }
+  cut_before_ = true;
+  reported_ = options.report_partition;
   if (!kept_ || !(kind == kind_))
     kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
                   options.regions_per_rank);

@@ -21,6 +21,14 @@ class Coverage {
     bool blended = false;
     double opacity = 1;
   };
+  // A square of the screen.
+  struct Square {
+    double opaque = 0, blended = 0;              // samples, weighted with their opacity
+    double large_opaque = 0, large_blended = 0;  // samples of large triangles
+    bool operator==(const Square&) const = default;
+  };
+  const std::vector<Square>& squares() const { return squares_; }
+
   // So many samples, anywhere in a box of pixels.
   void add(const geometry::Rect& box, double samples, const Surface& surface);
   // A triangle, square by square. Returns its samples. O(squares in its box).
@@ -37,10 +45,6 @@ class Coverage {
  private:
   static constexpr int kSide = 16;  // pixels
 
-  struct Square {
-    double opaque = 0, blended = 0;              // samples, weighted with their opacity
-    double large_opaque = 0, large_blended = 0;  // samples of large triangles
-  };
   static geometry::Rect squares_of(const geometry::Rect& box);
   template <class F>
   void for_each_square(const geometry::Rect& box, F&& f) const;

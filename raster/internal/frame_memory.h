@@ -2,6 +2,7 @@
 #pragma once
 
 #include "raster/internal/group_traffic.h"
+#include "raster/internal/hybrid_shares.h"
 #include "raster/internal/scene_cells.h"
 #include "raster/internal/screen_partition.h"
 
@@ -10,7 +11,8 @@ namespace delray::raster {
 struct FrameMemory {
   ScreenPartition screen;
   GroupTraffic traffic;
-  SceneCells cells;  // of sort-last, blended in order
+  SharedOut shared_out;  // of hybrid
+  SceneCells cells;      // of sort-last, blended in order
 };
 
 }  // namespace delray::raster

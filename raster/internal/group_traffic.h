@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "raster/internal/agreement.h"
 #include "raster/internal/draws.h"
 #include "raster/internal/rank.h"
 
@@ -24,8 +25,8 @@ class GroupTraffic {
   // rank is to draw: its own groups that it needs, and what others sent it, now or before.
   // Collective. The pieces stay valid until the next call.
   //
-  // Two numbers a rank are exchanged to see whether all remember the same frames; if not, all
-  // begin anew. REQUIRES: for the same number of groups, they are the same from frame to frame.
+  // If not all remember the same frames all begin anew. REQUIRES: for the same number of groups,
+  // they are the same from frame to frame.
   template <class F>
   std::vector<Piece> exchange(Rank& rank, std::span<const Piece> groups, F&& needed_by) {
     begin_frame(rank, groups.size());
@@ -61,7 +62,8 @@ class GroupTraffic {
   void forget_unneeded(std::span<const Piece> groups);
   void keep(Rank& rank, const comm::Buffer& message);
 
-  std::uint64_t frame_ = 0, epoch_ = 0;  // epoch: since all began anew
+  Agreement agreement_;
+  std::uint64_t frame_ = 0;
   int rank_ = -1, ranks_ = 0;
   Travel travel_ = Travel::geometry;
   std::vector<std::vector<Holder>> holders_;      // by group

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,14 @@ struct Shares {
 };
 // Collective: every rank gets all boxes, and then the ranges of everybody's groups, if any.
 Shares share_out(const Rank& rank, const VisibleGroups& visible);
+
+// How a frame was shared out, and what a rank draws of it.
+struct SharedOut {
+  Shares shares;
+  Arrivals arrivals;
+  std::vector<Piece> pieces;
+  std::optional<Travel> travel;  // none: there was no frame
+};
 
 // Sends every group to its owner, everybody's to the ranks whose regions they touch. Returns this
 // rank's, with those that arrived. Collective.

@@ -8,6 +8,8 @@
 
 #include "loadbalance/cost_model.h"
 #include "loadbalance/kept_partition.h"
+#include "raster/internal/agreement.h"
+#include "raster/internal/coverage.h"
 #include "raster/internal/draws.h"
 #include "raster/render.h"
 
@@ -34,14 +36,18 @@ class ScreenPartition {
 
   // The box of every group on the screen, in pixels, and what it may cost: its triangles, and the
   // part of its pixels that is seen if all groups lie behind each other at random; cut() knows of
-  // those of large triangles, more exactly than by a box. Empty boxes cost nothing. Collective: a
-  // grid of 16 x 16 pixels is summed over ranks and, where costs are measured, every rank says what
-  // it did.
+  // those of large triangles, more exactly than by a box. Empty boxes cost nothing. Collective:
+  // unless nothing has changed for any rank since the last frame, a grid of 16 x 16 pixels is
+  // summed over ranks and, where costs are measured, every rank says what it did.
   std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups,
                                                  SeenSamples* seen_samples = nullptr);
 
+  // Whether boxes_of gave on all ranks what it gave the last time; never for measured costs.
+  bool unchanged() const { return unchanged_; }
+
   // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
-  // boxes, or as it was cut for the last frame. Collective. Valid until the next call. Owner k is
+  // boxes, or as it was cut for the last frame. Collective; nothing travels if all is unchanged.
+  // Valid until the next call. Owner k is
   // rank first_rank + k.
   const loadbalance::Partition& cut(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
                                     int parts, int first_rank = 0);
@@ -64,6 +70,28 @@ class ScreenPartition {
     bool operator==(const Kind&) const = default;
   };
 
+  // What this rank puts into the costs of a frame, and what came out for its groups.
+  struct Contribution {
+    int rank = -1, ranks = 0;
+    geometry::Rect frame;
+    int samples_per_pixel = 0;
+    loadbalance::RasterCostModel model;
+    bool tells_seen = false;
+    std::vector<loadbalance::WeightedBox> boxes;
+    std::vector<double> samples, large_samples;
+    std::vector<Coverage::Square> squares;
+    bool operator==(const Contribution&) const = default;
+  };
+  struct Answer {
+    std::vector<loadbalance::WeightedBox> boxes;
+    SeenSamples seen;
+  };
+
+  Agreement agreement_;
+  Contribution last_;
+  Answer answer_;
+  bool unchanged_ = false;
+  bool cut_before_ = false, reported_ = false;  // since the ranks agreed
   Kind kind_{};
   std::optional<loadbalance::KeptPartition> kept_;
   std::optional<PartitionStatistics> statistics_;
