@@ -18,16 +18,16 @@ struct DenseLanes {
 };
 
 // Lanes [used, 16) of `first` and as many of `second` as are left over become those of `dense`;
-// lanes behind them become anything. Element f of each is where field f begins, aligned.
-// REQUIRES: `second` is there if used + count > 16.
-void append_lanes(const float* dense, std::size_t fields, int used, float* const* first,
+// lanes behind them become 0: Embree looks at rays that take no part as well. Element f of each is
+// where field f begins, aligned. REQUIRES: `second` is there if used + count > 16.
+void append_lanes(const float* dense, std::size_t fields, int count, int used, float* const* first,
                   float* const* second);
 
 template <std::size_t kFields>
 void append_lanes(const DenseLanes<kFields>& dense, int used,
                   const std::array<float*, kFields>& first,
                   const std::array<float*, kFields>* second) {
-  append_lanes(dense.field[0], kFields, used, first.data(),
+  append_lanes(dense.field[0], kFields, dense.count, used, first.data(),
                second != nullptr ? second->data() : nullptr);
 }
 

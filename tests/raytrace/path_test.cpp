@@ -151,6 +151,25 @@ TEST(Path, CornellBoxConvergesToItsReference) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(sum[k] / 3, b[k], 0.02 * b[k]);
 }
 
+// With assertions Embree ends the process over rays that take no part, if they are not numbers.
+TEST(Path, InstancesAreTracedOnEveryInstructionSet) {
+  scenes::Scene scene;
+  add(scene, sphere(8), placed(0.4F, {-0.5F, 0, 0}));
+  for (int i = 0; i < 20; ++i) {
+    scene.instances.push_back(
+        {0, placed(0.3F, {0.3F * static_cast<float>(i % 5), 0.2F, -0.5F * i})});
+  }
+  scene.environment.zenith = scene.environment.horizon = glm::vec3(0.5F);
+  scenes::Camera camera;
+  camera.eye = {0, 0, 4};
+  const double expected = mean(render_alone(scene, camera, path_options(40, 4))).x;
+  for (const char* isa : {"sse4.2", "avx", "avx2"}) {
+    RenderOptions options = path_options(40, 4);
+    options.build.isa = isa;
+    EXPECT_NEAR(mean(render_alone(scene, camera, options)).x, expected, 1e-3) << isa;
+  }
+}
+
 TEST(Path, TransparentBackgroundShowsInAlpha) {
   scenes::Scene scene;
   add(scene, quad({0, -50, 0}, {50, 0, 0}, {0, 100, 0}));
