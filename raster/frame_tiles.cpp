@@ -69,6 +69,7 @@ VisibilityTile& FrameTiles::open(int tile) {
   return tiles_[tile];
 }
 
+// Coordinates are not negative.
 std::int32_t FrameTiles::farthest_of(int block_x, int block_y) const {
   constexpr int kBlocksY = VisibilityTile::kBlocks / VisibilityTile::kBlocksX;
   const int tile = block_y / kBlocksY * tiles_x_ + block_x / VisibilityTile::kBlocksX;
@@ -91,18 +92,20 @@ void FrameTiles::look_around(const geometry::Rect& pixels, float depth,
   result.x0 = x0;
   result.y0 = y0;
   result.width = width;
-  const int blocks = width * height;
   std::int32_t nearest = kEmptyCode;
-  for (int i = 0; i < blocks; ++i) {
-    result.farthest[i] = farthest_of(x0 + i % width, y0 + i / width);
-    nearest = std::min(nearest, result.farthest[i]);
-  }
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      std::int32_t& here = result.farthest[y * width + x];
+      here = farthest_of(x0 + x, y0 + y);
+      nearest = std::min(nearest, here);
+    }
   result.may_hide = nearest < code_of_depth(depth);
   if (!result.may_hide) return;
-  for (int i = 0; i + 1 < blocks; ++i)
-    if (i % width != width - 1)
-      result.farthest[i] = std::max(result.farthest[i], result.farthest[i + 1]);
-  for (int i = 0; i + width < blocks; ++i)
+  for (int y = 0; y < height; ++y) {
+    std::int32_t* const row = result.farthest + y * width;
+    for (int x = 0; x + 1 < width; ++x) row[x] = std::max(row[x], row[x + 1]);
+  }
+  for (int i = 0; i < (height - 1) * width; ++i)
     result.farthest[i] = std::max(result.farthest[i], result.farthest[i + width]);
 }
 

@@ -51,6 +51,16 @@ inline constexpr float kPower[6] = {0.376330309F, 0.952814901F,   -0.491730163F,
 // Of codes that are computed with it: 3.3e-4 for the polynomial and less than 2e-4 for rounding.
 inline constexpr float kCodeError = 6e-4F;
 
+// Where pixels are after a vector's worth of them was transposed block by block: block k of four
+// lanes has pixels k, k + blocks, k + 2 blocks and k + 3 blocks.
+constexpr std::array<std::int32_t, kBlockSize> lanes_after_transposing(std::size_t lanes) {
+  std::array<std::int32_t, kBlockSize> result{};
+  const std::size_t blocks = lanes / 4;
+  for (std::size_t i = 0; i < lanes && blocks > 0; ++i)
+    result[i] = static_cast<std::int32_t>(4 * (i % blocks) + i / blocks);
+  return result;
+}
+
 // Runs of which there are fewer in a row are long: they are shaded by vectors of pixels, others by
 // vectors of a pixel's values.
 inline constexpr int kManyRuns = 8;
@@ -138,13 +148,12 @@ HWY_INLINE I looked_up_code(F linear) {
   return hn::IfThenElse(hn::RebindMask(di, dark), hn::Zero(di), bounded);
 }
 
-// A code before it is rounded, within kCodeError. Whatever is not above 0 counts as 0, what is
-// above 1 as 1.
+// A code before it is rounded, within kCodeError. What is below 0 counts as 0, what is above 1 as
+// 1; of what is not a number it is that of 0, or not a number.
 HWY_INLINE F estimated_code(F linear) {
   const Floats d;
   const Ints di;
-  const F positive = hn::IfThenElseZero(hn::Gt(linear, hn::Zero(d)), linear);
-  const F x = hn::Min(positive, hn::Set(d, 1.0F));
+  const F x = hn::Min(hn::Max(linear, hn::Zero(d)), hn::Set(d, 1.0F));
   const I bits = hn::BitCast(di, x);
   const I exponent = hn::And(hn::ShiftRight<23>(bits), hn::Set(di, 15));
   const F scale =
@@ -186,15 +195,28 @@ HWY_INLINE Codes encoded(const Colours& colours) {
   return {looked_up_code(colours.red), looked_up_code(colours.green), looked_up_code(colours.blue)};
 }
 
-HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::Rgba8* pixels) {
+struct InOrder {
+  template <class V>
+  V operator()(V v) const {
+    return v;
+  }
+};
+
+// Lane i of order(vector) is pixel i.
+template <class Order = InOrder>
+HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::Rgba8* pixels,
+                      const Order& order = {}) {
   const Ints d;
   const Codes codes = encoded(colours);
   const I code = hn::Or(
       hn::Or(codes.red, hn::ShiftLeft<8>(codes.green)),
       hn::Or(hn::ShiftLeft<16>(codes.blue), hn::Set(d, static_cast<std::int32_t>(0xFF000000U))));
-  hn::StoreU(hn::IfThenElseZero(shown, code), d, reinterpret_cast<std::int32_t*>(pixels));
+  hn::StoreU(hn::IfThenElseZero(shown, order(code)), d, reinterpret_cast<std::int32_t*>(pixels));
 }
-HWY_INLINE void store(const Colours& colours, hn::Mask<Ints> shown, image::RgbaF* pixels) {
+template <class Order = InOrder>
+HWY_INLINE void store(const Colours& in_lanes, hn::Mask<Ints> shown, image::RgbaF* pixels,
+                      const Order& order = {}) {
+  const Colours colours = {order(in_lanes.red), order(in_lanes.green), order(in_lanes.blue)};
   const Floats d;
   const auto mask = hn::RebindMask(d, shown);
   hn::StoreInterleaved4(
@@ -253,26 +275,32 @@ HWY_INLINE void shade_short_runs(const PixelTriangle* triangles, const TriangleI
   const int lanes = static_cast<int>(hn::Lanes(d));
   const std::uint32_t all = (std::uint32_t{1} << lanes) - 1;
   const auto row = static_cast<float>(y);
+  const Ints di;
+  alignas(64) static constexpr auto kLanes = lanes_after_transposing(hn::MaxLanes(Floats()));
+  const I lane_of_pixel = hn::Load(di, kLanes.data());
   RowSums sums;
   const TriangleIndices look_up = indices;
-  std::uint64_t rest = runs.starts;
-  do {
+  for (std::uint64_t rest = runs.starts & runs.shown; rest != 0; rest &= rest - 1) {
     const int first = std::countr_zero(rest);
-    rest &= rest - 1;
-    const int last = rest == 0 ? count : std::countr_zero(rest);
-    if ((runs.shown >> first & 1) == 0) continue;
+    const std::uint64_t later = runs.starts & (~std::uint64_t{1} << first);
+    const int last = later == 0 ? count : std::countr_zero(later);
     sums_of_run(triangles[look_up.of(runs.numbers[first])], static_cast<float>(x + first), row,
                 first, last, sums);
-  } while (rest != 0);
+  }
   for (int i = 0; i < count; i += lanes) {
     const std::uint32_t shown = static_cast<std::uint32_t>(runs.shown >> i) & all;
     if (shown == 0) {
       std::fill_n(pixels + i, lanes, Colour());
       continue;
     }
-    FourVectors<F> here;
-    hn::LoadInterleaved4(d, sums.of[i], here.v[0], here.v[1], here.v[2], here.v[3]);
-    store(divided(here), mask_of(shown), pixels + i);
+    // Within each block of four lanes; what that mixes up is put in order last.
+    const float* const from = sums.of[i];
+    const FourVectors<F> here =
+        transposed_blocks(d, hn::Load(d, from), hn::Load(d, from + lanes),
+                          hn::Load(d, from + 2 * lanes), hn::Load(d, from + 3 * lanes));
+    store(divided(here), mask_of(shown), pixels + i, [&](auto v) HWY_ATTR {
+      return hn::TableLookupLanes(v, hn::IndicesFromVec(hn::DFromV<decltype(v)>(), lane_of_pixel));
+    });
   }
 }
 #endif

@@ -20,7 +20,7 @@ constexpr double kWorthwhile = 0.8;
 constexpr double kCompact = 4;
 constexpr std::size_t kGrain = 1 << 14;  // triangles: some hundred microseconds
 // Renderers take so many triangles for a cluster, and so many for a vector.
-constexpr std::size_t kCluster = 256, kVector = 16;
+constexpr std::size_t kCluster = 128, kVector = 16;
 // Parts that threads share are no smaller, and no more.
 constexpr std::size_t kLeastPart = 4 * kCluster, kMostParts = 256;
 

@@ -5,7 +5,7 @@
 
 namespace delray::scenes::internal {
 
-// Orders triangles so that those that follow each other, by clusters of 256 and by vectors of 16,
+// Orders triangles so that those that follow each other, by clusters of 128 and by vectors of 16,
 // have small boxes: halved again and again along the longest side of the box of their centres (the
 // k-d tree of Bentley 1975). Numbers vertices in the order in which triangles use them. Unless runs
 // of triangles are about as compact as they are: renderers take runs of triangles together. Meshes
