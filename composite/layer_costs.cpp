@@ -10,16 +10,15 @@
 
 #include "comm/collectives.h"
 #include "comm/threads.h"
-#include "image/image.h"
+#include "composite/image_layer.h"
+#include "composite/scheme.h"
 
 namespace delray::composite {
 namespace {
 
-constexpr int kRepeats = 7;
-constexpr comm::Tag kTagPiece = 64;
+constexpr int kRepeats = 9;
 // More tell no more about what cores take from each other.
 constexpr int kMostRanks = 4;
-constexpr std::uint64_t kPixelsAhead = std::uint64_t{1} << 18;  // cut before they are merged
 
 // A disc in the middle of a square that covers this share of it; everything from 1 on.
 image::Image8 picture(int side, double share) {
@@ -40,19 +39,17 @@ image::Image8 picture(int side, double share) {
 }
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
-double median(std::array<double, kRepeats> values) {
-  std::nth_element(values.begin(), values.begin() + kRepeats / 2, values.end());
-  return values[kRepeats / 2];
-}
-
-// `seconds` that a call took for so much of each of three things.
+// Calls that took `seconds` for so much of each of three things.
 struct Line {
-  std::array<double, 3> amounts;
-  double seconds;
+  std::array<double, 3> amounts{};
+  double seconds = 0;
 };
 
 // The prices >= 0 of three things that tell the seconds of all lines best: relative least squares,
@@ -78,79 +75,130 @@ std::array<double, 3> fit(std::span<const Line> lines) {
   return prices;
 }
 
-struct Exchanged {
+// What the calls of a rank came to: of cuts and of merges.
+struct Spent {
   Line cut, merge;
+  Spent& operator+=(const Spent& other) {
+    for (Line Spent::*line : {&Spent::cut, &Spent::merge}) {
+      (this->*line).seconds += (other.*line).seconds;
+      for (std::size_t k = 0; k < 3; ++k) (this->*line).amounts[k] += (other.*line).amounts[k];
+    }
+    return *this;
+  }
 };
 
-image::Image8 copy(const image::Image8& image) {
-  image::Image8 result(image.width, image.height);
-  std::copy_n(image.colour.data(), image.pixels(), result.colour.data());
-  std::copy_n(image.depth.data(), image.pixels(), result.depth.data());
-  return result;
+// A layer that takes the time of its calls.
+class TimedLayer final : public Layer {
+ public:
+  TimedLayer(std::unique_ptr<Layer> layer, Spent& spent)
+      : layer_(std::move(layer)), spent_(spent) {}
+
+  std::unique_ptr<Layer> release() { return std::move(layer_); }
+  std::uint64_t pixels() const override { return layer_->pixels(); }
+  bool empty() const override { return layer_->empty(); }
+  comm::Buffer cut(PixelRange range) override {
+    const auto begin = Clock::now();
+    comm::Buffer message = layer_->cut(range);
+    add(spent_.cut, begin, range, message.size());
+    return message;
+  }
+  std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override {
+    const auto begin = Clock::now();
+    const std::uint64_t composited = layer_->merge(range, pixels, from);
+    add(spent_.merge, begin, range, composited);
+    return composited;
+  }
+  void replace(PixelRange range, const comm::Buffer& pixels) override {
+    layer_->replace(range, pixels);
+  }
+
+ private:
+  static void add(Line& line, Clock::time_point begin, PixelRange range, std::uint64_t amount) {
+    line.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+    line.amounts[0] += 1;
+    line.amounts[1] += static_cast<double>(range.size());
+    line.amounts[2] += static_cast<double>(amount);
+  }
+
+  std::unique_ptr<Layer> layer_;
+  Spent& spent_;
+};
+
+// Composites copies of `image`, which all ranks have, in the memory of `spare`; the result is of
+// all ranks together, on rank 0.
+Spent compose_timed(comm::Communicator& communicator, const Codec& codec, const char* scheme,
+                    const image::Image8& image, image::Image8& spare) {
+  if (spare.pixels() != image.pixels()) spare = image::Image8(image.width, image.height);
+  std::copy_n(image.colour.data(), image.pixels(), spare.colour.data());
+  std::copy_n(image.depth.data(), image.pixels(), spare.depth.data());
+  Spent spent;
+  auto layer = std::make_unique<TimedLayer>(codec.make(std::exchange(spare, {})), spent);
+  // The first wait may be long; the others are over at once, and all are awake.
+  for (int i = 0; i < 3; ++i) comm::barrier(communicator);
+  Part part = compose(communicator, std::move(layer), scheme);
+  comm::barrier(communicator);  // who goes on would slow down those who are not done
+  part.layer = dynamic_cast<TimedLayer&>(*part.layer).release();
+  spare = take_image<image::Rgba8>(std::move(part));
+  Spent all;
+  for (const comm::Buffer& one : comm::gather(communicator, 0, comm::Buffer::of_value(spent))) {
+    all += one.as<Spent>()[0];
+  }
+  return all;
 }
 
-// Neighbours exchange halves of their images in pieces, several times, all at once and each time
-// with images that nobody has looked at yet, so that memory, caches and what cores take from each
-// other are as they are in schemes.
-Exchanged exchange(comm::Communicator& communicator, const Codec& codec, const image::Image8& image,
-                   std::uint64_t piece) {
-  const std::uint64_t half = image.pixels() / 2;
-  piece = std::min(piece, half);
-  const std::uint64_t pieces = half / piece, ahead = std::min(kPixelsAhead / piece, pieces);
-  const int me = communicator.rank(), partner = communicator.size() > 1 ? me ^ 1 : me;
-  const auto range = [&](int rank, std::uint64_t i) {
-    const std::uint64_t begin = (rank % 2 == 0 ? half : 0) + i * piece;
-    return PixelRange{begin, begin + piece};
-  };
-  std::array<double, kRepeats> cut{}, merge{};
-  double bytes = 0, composited = 0;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    bytes = composited = 0;
-    const auto layer = codec.make(copy(image));
-    // The first wait may be long; the others are over at once, and all are awake.
-    for (int i = 0; i < 3; ++i) comm::barrier(communicator);
-    for (std::uint64_t first = 0; first < pieces; first += ahead) {
-      const std::uint64_t last = std::min(first + ahead, pieces);
-      std::vector<comm::Buffer> messages;
-      auto begin = Clock::now();
-      for (std::uint64_t i = first; i < last; ++i) messages.push_back(layer->cut(range(me, i)));
-      cut[static_cast<std::size_t>(repeat)] += seconds_since(begin);
-      for (comm::Buffer& message : messages) {
-        bytes += static_cast<double>(message.size());
-        communicator.send(partner, kTagPiece, std::move(message));
-      }
-      for (comm::Buffer& message : messages) message = communicator.receive(partner, kTagPiece);
-      begin = Clock::now();
-      for (std::uint64_t i = first; i < last; ++i) {
-        composited += static_cast<double>(
-            layer->merge(range(partner, i), std::exchange(messages[i - first], {}), Side::higher));
-      }
-      merge[static_cast<std::size_t>(repeat)] += seconds_since(begin);
+// A scheme on a picture, several times.
+struct Variant {
+  const char* scheme;
+  image::Image8 image;
+  std::vector<Spent> spent;
+};
+
+std::vector<Variant> variants_of(std::uint64_t pixels) {
+  int side = 1;
+  while (static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) < pixels) ++side;
+  std::vector<Variant> variants;
+  for (const double share : {0.0, 0.3, 0.7, 1.0}) {
+    // Ranks that cut and merge in turns, ranks that do one of both, and many small messages: what
+    // cores take from each other is not the same.
+    for (const char* scheme : {"binary-swap", "tree", "tiles"}) {
+      variants.push_back({scheme, picture(side, share), {}});
     }
+    variants.push_back({"tiles", picture(std::max(1, side / 4), share), {}});
   }
-  const auto calls = static_cast<double>(pieces), all = static_cast<double>(pieces * piece);
-  return {{{calls, all, bytes}, median(cut)}, {{calls, all, composited}, median(merge)}};
+  return variants;
+}
+
+Line median_of(const Variant& variant, Line Spent::*line) {
+  std::vector<double> seconds;
+  for (const Spent& spent : variant.spent) seconds.push_back((spent.*line).seconds);
+  Line result = variant.spent.front().*line;
+  result.seconds = median(std::move(seconds));
+  return result;
 }
 
 }  // namespace
 
 LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels) {
-  std::vector<Line> cuts, merges;  // of rank 0
+  std::vector<Variant> variants = variants_of(pixels);
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  const int ranks = std::clamp(cores / 2 * 2, 1, kMostRanks);
+  const int ranks = std::clamp(cores / 2 * 2, 2, kMostRanks);
   comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
-    int side = 1;
-    while (static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) < pixels) ++side;
-    for (const double share : {0.0, 0.3, 0.7, 1.0}) {
-      const image::Image8 image = picture(side, share);
-      for (const std::uint64_t piece : {std::uint64_t{1} << 16, std::uint64_t{1} << 12}) {
-        const Exchanged times = exchange(communicator, codec, image, piece);
-        if (communicator.rank() != 0) continue;
-        cuts.push_back(times.cut);
-        merges.push_back(times.merge);
+    image::Image8 large, small;
+    // All take turns; the first one is to warm up.
+    for (int repeat = 0; repeat <= kRepeats; ++repeat) {
+      for (Variant& variant : variants) {
+        image::Image8& spare = variant.image.pixels() < pixels ? small : large;
+        const Spent spent =
+            compose_timed(communicator, codec, variant.scheme, variant.image, spare);
+        if (communicator.rank() == 0 && repeat > 0) variant.spent.push_back(spent);
       }
     }
   });
+  std::vector<Line> cuts, merges;
+  for (const Variant& variant : variants) {
+    cuts.push_back(median_of(variant, &Spent::cut));
+    merges.push_back(median_of(variant, &Spent::merge));
+  }
   const auto cut = fit(cuts), merge = fit(merges);
   return {cut[0], cut[1], cut[2], merge[0], merge[1], merge[2]};
 }

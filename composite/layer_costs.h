@@ -17,10 +17,10 @@ struct LayerCosts {
   double merge_covered = 0;  // and for each pixel composited
 };
 
-// Of images with 8-bit colours, on this machine: threads, as ranks with a core each, exchange
-// images of `pixels` pixels, empty, covered in part and full, piece by piece, and the costs are
-// fitted to the medians. Some hundred times as long as a cut of a full image. Not the same from run
-// to run.
+// Of images with 8-bit colours, on this machine: threads, as ranks with a core each, composite
+// images of `pixels` pixels, empty, covered in part and full, with several schemes in turns; the
+// time that each spends in cuts and merges is taken, and the costs are fitted to the medians. Some
+// hundred times as long as it takes to composite once. Not the same from run to run.
 //
 // REQUIRES: pixels >= 4096.
 LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels = std::uint64_t{1} << 21);
