@@ -114,14 +114,15 @@ class Comparison {
   // On every rank.
   void measure_all(comm::Communicator& communicator, const raster::Share& share) {
     const int ranks = communicator.size();
+    ShareLayers layers(share);
     for (const std::string& codec : codecs_of(share)) {
       for (const std::string& scheme : schemes_of(request_)) {
         // All ranks stop before the same scheme.
         const bool stop = communicator.rank() == 0 && steps_.stop_requested();
         if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0)
           throw parallel::Interrupted{};
-        const MeasuredScheme measured =
-            measure_scheme(communicator, share, scheme, codec, repeats(ranks), request_, prepared_);
+        const MeasuredScheme measured = measure_scheme(communicator, layers, scheme, codec,
+                                                       repeats(ranks), request_, prepared_);
         if (communicator.rank() != 0) continue;
         append(scheme, codec, ranks, measured);
         steps_.done();

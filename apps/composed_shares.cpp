@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "apps/background.h"
-#include "apps/share_layers.h"
 #include "comm/collectives.h"
 #include "comm/recording.h"
 #include "composite/scheme.h"
@@ -34,17 +33,16 @@ std::vector<composite::ImageMasks> ShareDrawer::masks(int ranks) {
   return result;
 }
 
-MeasuredScheme measure_scheme(comm::Communicator& communicator, const raster::Share& share,
+MeasuredScheme measure_scheme(comm::Communicator& communicator, ShareLayers& layers,
                               const std::string& scheme, const std::string& codec, int repeats,
                               const CompareRequest& request, const Prepared& prepared) {
   MeasuredScheme result;
-  ShareLayers layers(share, codec);
   std::vector<double> compose_seconds, gather_seconds;
   for (int repeat = 0; repeat <= repeats; ++repeat) {
     comm::Tally tally(communicator.world_rank(communicator.rank()));
     comm::Recording recording(communicator, tally);
     comm::Communicator& used = repeat == 0 ? recording : communicator;
-    auto layer = layers.make();
+    auto layer = layers.make(codec);
     // The first wait may be long, and who has slept comes out late; the last is over at once.
     for (int i = 0; i < 3; ++i) comm::barrier(communicator);
     const double begin = communicator.seconds();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/compare_compose.h"
+#include "apps/share_layers.h"
 #include "comm/communicator.h"
 #include "composite/mask.h"
 #include "raster/render.h"
@@ -34,8 +35,9 @@ struct MeasuredScheme {
 };
 
 // Collective: composites copies of the shares `repeats` times after once to warm up, which is when
-// it counts. The result is rank 0's.
-MeasuredScheme measure_scheme(comm::Communicator& communicator, const raster::Share& share,
+// it counts. Schemes that are to be compared should use the same memory, which may be faster or
+// slower by a third: give them the same layers. The result is rank 0's.
+MeasuredScheme measure_scheme(comm::Communicator& communicator, ShareLayers& layers,
                               const std::string& scheme, const std::string& codec, int repeats,
                               const CompareRequest& request, const Prepared& prepared);
 

@@ -25,14 +25,14 @@ bool is_transparent(const raster::Share& share) {
   return !std::holds_alternative<image::Image8>(share);
 }
 
-std::unique_ptr<composite::Layer> ShareLayers::make() {
+std::unique_ptr<composite::Layer> ShareLayers::make(const std::string& codec) {
   if (const auto* surfaces = std::get_if<Surfaces>(&share_))
     return composite::make_deep(copy_of(*surfaces));
   const auto& image = std::get<image::Image8>(share_);
   if (spare_.pixels() != image.pixels()) spare_ = image::Image8(image.width, image.height);
   std::copy_n(image.colour.data(), image.pixels(), spare_.colour.data());
   std::copy_n(image.depth.data(), image.pixels(), spare_.depth.data());
-  return composite::find_codec(codec_)->make(std::exchange(spare_, {}));
+  return composite::find_codec(codec)->make(std::exchange(spare_, {}));
 }
 
 image::Image8 ShareLayers::image_of(composite::Part&& part) const {

@@ -13,18 +13,16 @@ namespace delray::apps {
 class ShareLayers {
  public:
   // REQUIRES: the share outlives this.
-  ShareLayers(const raster::Share& share, const std::string& codec)
-      : share_(share), codec_(codec) {}
+  explicit ShareLayers(const raster::Share& share) : share_(share) {}
 
-  // A copy of the share.
-  std::unique_ptr<composite::Layer> make();
+  // A copy of the share; its codec counts for flat ones only.
+  std::unique_ptr<composite::Layer> make(const std::string& codec);
   // The image of a part, only the part's ranges of which are final.
   image::Image8 image_of(composite::Part&& part) const;
   void recycle(image::Image8&& image) { spare_ = std::move(image); }
 
  private:
   const raster::Share& share_;
-  std::string codec_;
   image::Image8 spare_;
 };
 

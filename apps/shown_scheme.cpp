@@ -77,9 +77,9 @@ ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& s
   ShownScheme result;
   result.scheme = scheme;
   result.codec = codec;
-  ShareLayers layers(share, codec);
+  ShareLayers layers(share);
   composite::Part whole;
-  whole.layer = layers.make();
+  whole.layer = layers.make(codec);
   image::Image8 own = layers.image_of(std::move(whole));
   for (std::size_t i = 0; i < own.pixels(); ++i)  // what nothing covers may hold anything
     if (!(own.depth[i] < image::kEmptyDepth)) own.colour[i] = {};
@@ -88,7 +88,7 @@ ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& s
   std::vector<comm::Event> events;
   {
     comm::Recording recording(communicator, events);
-    auto layer = layers.make();
+    auto layer = layers.make(codec);
     comm::barrier(communicator);
     composite::Part part = composite::compose(recording, std::move(layer), scheme);
     const std::vector<composite::PixelRange> owned = part.ranges;
