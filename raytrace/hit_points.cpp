@@ -282,6 +282,13 @@ void gather(const Placement& placement, const std::uint32_t* triangles, shading:
   if (placement.textured) gather_textured(mesh, corners, lanes, to);
 }
 
+// GCC 12 takes functions that do nothing but prefetch for functions that do nothing, and leaves out
+// the calls; it knows nothing of what an asm statement does.
+void fetch(const void* p) {
+  __builtin_prefetch(p);
+  asm volatile("");
+}
+
 // Calls f(placement, triangle) for the hits.
 template <class F>
 void for_hits(std::span<const Placement> placements, const RayGroup& group, F&& f) {
@@ -301,7 +308,7 @@ bool find_edges(const ActiveRays& active, const RayPacket& packet, ActiveRays& e
 
 void fetch_corners(std::span<const Placement> placements, const RayGroup& group) {
   for_hits(placements, group, [](const Placement& placement, std::uint32_t triangle) {
-    __builtin_prefetch(&placement.mesh->triangles[triangle]);
+    fetch(&placement.mesh->triangles[triangle]);
   });
 }
 
@@ -310,10 +317,10 @@ void fetch_vertices(std::span<const Placement> placements, const RayGroup& group
     const scenes::Mesh& mesh = *placement.mesh;
     const glm::uvec3 corners = mesh.triangles[triangle];
     for (int k = 0; k < 3; ++k) {
-      __builtin_prefetch(placement.positions + corners[k]);
-      if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[corners[k]]);
-      if (!mesh.colours.empty()) __builtin_prefetch(&mesh.colours[corners[k]]);
-      if (placement.textured && !mesh.uvs.empty()) __builtin_prefetch(&mesh.uvs[corners[k]]);
+      fetch(placement.positions + corners[k]);
+      if (!mesh.normals.empty()) fetch(&mesh.normals[corners[k]]);
+      if (!mesh.colours.empty()) fetch(&mesh.colours[corners[k]]);
+      if (placement.textured && !mesh.uvs.empty()) fetch(&mesh.uvs[corners[k]]);
     }
   });
 }
