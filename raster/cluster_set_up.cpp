@@ -186,18 +186,26 @@ void set_up_windows(const ClusterInSetUp& cluster, const SmallTriangles& triangl
   const I before = hn::And(x, hn::Set(d, 7));
   const I start = hn::Sub(x, before);
   const I parts = hn::Add(hn::ShiftRight<3>(hn::Add(before, s.columns)), hn::Set(d, 1));
-  const auto at_start = [&](const Edges& e) { return hn::Sub(e.value, hn::Mul(e.step_x, before)); };
+  static_assert(WindowTriangles::kRowsAtOnce == 4);
+  const I groups = hn::Add(hn::ShiftRight<2>(s.rows), hn::Set(d, 1));
+  const I rows = hn::ShiftLeft<2>(groups);
+  const I above = hn::Max(hn::Sub(hn::Add(y, rows), hn::Set(d, kTileSize)), hn::Zero(d));
+  const I below = hn::Sub(hn::Sub(rows, hn::Add(s.rows, hn::Set(d, 1))), above);
+  const auto at_start = [&](const Edges& e) {
+    return hn::Sub(e.value, hn::Add(hn::Mul(e.step_x, before), hn::Mul(e.step_y, above)));
+  };
   const F from_x = hn::Sub(s.from_x, hn::ConvertTo(df, before));
-  const I rows = hn::Add(s.rows, hn::Set(d, 1));
-  const I window = hn::Or(hn::Or(start, hn::ShiftLeft<6>(y)),
-                          hn::Or(hn::ShiftLeft<12>(rows), hn::ShiftLeft<20>(parts)));
+  const F from_y = hn::Sub(s.from_y, hn::ConvertTo(df, above));
+  const I window = hn::Or(hn::Or(hn::Or(start, hn::ShiftLeft<6>(hn::Sub(y, above))),
+                                 hn::Or(hn::ShiftLeft<12>(above), hn::ShiftLeft<14>(below))),
+                          hn::Or(hn::ShiftLeft<16>(groups), hn::ShiftLeft<20>(parts)));
   const std::size_t n = windows.size;
   const I zero = hn::Zero(d);
   store4(at_start(s.e0), at_start(s.e1), at_start(s.e2), window, windows.edges.data() + n);
   store4(s.e0.step_x, s.e1.step_x, s.e2.step_x, hn::BitCast(d, s.number),
          windows.columns.data() + n);
   store4(s.e0.step_y, s.e1.step_y, s.e2.step_y, zero, windows.rows.data() + n);
-  store4(s.slope.x, s.slope.y, from_x, s.from_y, windows.planes.data() + n);
+  store4(s.slope.x, s.slope.y, from_x, from_y, windows.planes.data() + n);
   store4(s.depth, s.nearest, s.farthest, hn::Zero(df), windows.depths.data() + n);
   const I tile = hn::Add(hn::Mul(hn::ShiftRight<6>(pixel_y), hn::Set(d, cluster.tiles_x)),
                          hn::ShiftRight<6>(pixel_x));

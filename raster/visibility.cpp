@@ -269,7 +269,7 @@ HWY_INLINE void draw_window(D d, const WindowTriangles& triangles, std::uint32_t
   const auto nearest = hn::Set(d, depths.nearest), farthest = hn::Set(d, depths.farthest);
   const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
   float row = plane.y;
-  for (const std::int64_t* const end = keys + rows * kTileSize; keys != end; keys += kTileSize) {
+  const auto next_row = [&]() HWY_ATTR {
     const auto y = hn::Set(d, plane.slope_y * row);
     const auto z = hn::Min(hn::Max(hn::Add(hn::Add(x, y), depth), nearest), farthest);
     const auto covered = hn::Gt(hn::Or(hn::Or(value0, value1), value2), hn::Set(di, -1));
@@ -280,6 +280,14 @@ HWY_INLINE void draw_window(D d, const WindowTriangles& triangles, std::uint32_t
     value1 = hn::Add(value1, down1);
     value2 = hn::Add(value2, down2);
     row += 1.0F;  // exact
+    keys += kTileSize;
+  };
+  static_assert(WindowTriangles::kRowsAtOnce == 4);
+  for (; rows > 0; rows -= 4) {
+    next_row();
+    next_row();
+    next_row();
+    next_row();
   }
 }
 
@@ -292,9 +300,11 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
     const WindowTriangles::Edges& edges = triangles.edges[k];
     const int i0 = static_cast<int>(edges.window & 63),
               j0 = static_cast<int>(edges.window >> 6 & 63);
-    const int rows = static_cast<int>(edges.window >> 12 & 255);
+    const int above = static_cast<int>(edges.window >> 12 & 3);
+    const int below = static_cast<int>(edges.window >> 14 & 3);
+    const int rows = static_cast<int>(edges.window >> 16 & 15) * WindowTriangles::kRowsAtOnce;
     const int width = static_cast<int>(edges.window >> 20) * WindowTriangles::kWindowWidth;
-    const std::uint32_t touched = blocks_touched(i0, i0 + width, j0, j0 + rows);
+    const std::uint32_t touched = blocks_touched(i0, i0 + width, j0 + above, j0 + rows - below);
     const std::int32_t nearest_code = code_of_depth(triangles.depths[k].nearest);
     bool hidden = true;
     for (std::uint32_t rest = touched; rest != 0; rest &= rest - 1)

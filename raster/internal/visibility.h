@@ -72,12 +72,16 @@ struct VisibilityTile {
 
 // Triangles of a few pixels that lie in one tile, ready to be drawn: everything that
 // internal/tile_triangle.h computes, for the window of pixels from (x, y) of the tile on, x a
-// multiple of kWindowWidth. Four by four, so that vectors of them may be loaded. Grows only.
+// multiple of kWindowWidth. A window is of so many times kRowsAtOnce rows, within the tile, of
+// which the first `above` and the last `below` are not the triangle's: how often a loop runs is
+// guessed wrong less often then. Four by four, so that vectors of them may be loaded. Grows only.
 struct WindowTriangles {
   // Edge functions at the window's first pixel, and what they grow by per column and row.
   struct Edges {
     std::int32_t value[3];
-    std::uint32_t window;  // x | y << 6 | rows << 12 | parts << 20, the parts kWindowWidth wide
+    // x | y << 6 | above << 12 | below << 14 | rows / kRowsAtOnce << 16 | parts << 20, the parts
+    // kWindowWidth wide.
+    std::uint32_t window;
   };
   struct Columns {
     std::int32_t step[3];
@@ -94,7 +98,7 @@ struct WindowTriangles {
   struct Depths {
     float depth, nearest, farthest, unused;
   };
-  static constexpr int kWindowWidth = 8;
+  static constexpr int kWindowWidth = 8, kRowsAtOnce = 4;
   static constexpr int kMostRows = 16, kMostColumns = 16;
 
   std::vector<Edges> edges;
