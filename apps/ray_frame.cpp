@@ -73,6 +73,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   options.window = practice.window;
   options.noise = static_cast<float>(practice.noise);
   if (practice.seconds > 0.0) options.seconds = practice.seconds;
+  options.film = practice.channels || practice.denoise || practice.show != "colour";
   options.features = practice.channels || practice.denoise || shows_features(practice.show);
 
   std::string mark;
@@ -91,12 +92,14 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   };
   Every preview_due(practice.preview_every > 0.0 && preview ? practice.preview_every : -1.0);
   Every checkpoint_due(practice.checkpoint.empty() ? -1.0 : practice.checkpoint_every);
-  options.after_pass = [&](const raytrace::Film& film) {
-    if (checkpoint_due.due()) save(film);
-    if (preview_due.due()) {
-      preview(raytrace::cut(raytrace::mean(film), film.window(), practice.window));
-    }
-  };
+  if (!practice.checkpoint.empty() || practice.preview_every > 0.0) {
+    options.after_pass = [&](const raytrace::Film& film) {
+      if (checkpoint_due.due()) save(film);
+      if (preview_due.due()) {
+        preview(raytrace::cut(raytrace::mean(film), film.window(), practice.window));
+      }
+    };
+  }
   if (!practice.checkpoint.empty()) {
     options.on_interruption = [&](const raytrace::Film& film) {
       save(film);
@@ -113,8 +116,10 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   if (!practice.checkpoint.empty()) save(result.film);
   done.extras.passes = result.passes;
   done.extras.out_of_time = result.out_of_time;
-  done.extras.samples = static_cast<double>(result.film.total_samples()) /
-                        static_cast<double>(std::max<std::size_t>(1, result.film.pixels().size()));
+  done.extras.samples = result.film.pixels().empty()
+                            ? static_cast<double>(frame.samples)
+                            : static_cast<double>(result.film.total_samples()) /
+                                  static_cast<double>(result.film.pixels().size());
   if (practice.channels) done.extras.channels = channels_of(result, practice.window);
   done.picture = std::move(result.image);
   if (practice.denoise) {

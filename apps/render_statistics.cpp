@@ -193,6 +193,16 @@ double imbalance_of(const Ranks& ranks) {
   return sum > 0 ? most * static_cast<double>(ranks.size()) / sum : 1.0;
 }
 
+Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+
+// As --camera takes it.
+Json json_of(const scenes::Camera& camera) {
+  return {{"eye", json_of(camera.eye)},
+          {"at", json_of(camera.at)},
+          {"up", json_of(camera.up)},
+          {"fov", camera.vertical_fov}};
+}
+
 // Of the picture, or of the part of it that is rendered.
 int width_of(const RenderRequest& request) {
   return request.kind == Engine::raster ? request.width : request.practice.window.width();
@@ -214,6 +224,7 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
               {"triangles", prepared.triangles},
               {"vertices", prepared.vertices},
               {"instances", prepared.scene.instances.size()}}},
+            {"camera", json_of(prepared.camera)},
             {"options", options_of(request, static_cast<int>(s.ranks.size()))},
             {"image",
              {{"width", width_of(request)}, {"height", height_of(request)}, {"hash", hash}}},

@@ -9,6 +9,7 @@
 
 namespace delray::apps {
 
+// "camera": of the first frame, in the numbers of --camera.
 Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
                        const std::string& hash, double write_seconds);
 

@@ -1,6 +1,7 @@
 #include "raytrace/progressive.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -134,7 +135,7 @@ Features trace_features(comm::Communicator& communicator, Renderer& renderer,
     options.integrator = integrator;
     Result result = renderer.render(communicator, camera, options);
     add_statistics(std::move(result.statistics), statistics);
-    return cut(result.image, options.part.window, window);
+    return cut(std::move(result.image), options.part.window, window);
   };
   const bool root = communicator.rank() == 0;
   const image::ImageF albedo = picture("albedo");
@@ -157,6 +158,15 @@ Features trace_features(comm::Communicator& communicator, Renderer& renderer,
   return features;
 }
 
+// Whether the picture of the first pass is that of its film, bit for bit: sums of powers of two are
+// exact.
+bool one_pass_does(const ProgressiveOptions& options) {
+  const int samples = options.frame.samples;
+  return samples <= chunk_size(0) && std::has_single_bit(static_cast<unsigned>(samples)) &&
+         !(options.noise > 0.0F) && !options.film && !options.features && !options.resume &&
+         !options.after_pass && !options.on_interruption;
+}
+
 }  // namespace
 
 Rect grown(const Rect& window, const Rect& frame) {
@@ -166,8 +176,8 @@ Rect grown(const Rect& window, const Rect& frame) {
               up(window.y1)});
 }
 
-image::ImageF cut(const image::ImageF& picture, const Rect& of, const Rect& window) {
-  if (picture.pixels() == 0) return {};
+image::ImageF cut(image::ImageF&& picture, const Rect& of, const Rect& window) {
+  if (of == window || picture.pixels() == 0) return std::move(picture);
   image::ImageF result(window.width(), window.height());
   const auto width = static_cast<std::size_t>(window.width());
   for (int y = window.y0; y < window.y1; ++y) {
@@ -191,11 +201,18 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
   const Rect film_window = grown(window, frame);
 
   ProgressiveResult result;
-  if (root) result.film = options.resume != nullptr ? *options.resume : Film(film_window);
-  Film& film = result.film;
   RenderOptions pass_options = options.frame;
   pass_options.part.window = film_window;
   pass_options.scattered = options.noise > 0.0F || std::isfinite(options.seconds);
+  if (one_pass_does(options)) {
+    Result traced = renderer.render(communicator, camera, pass_options);
+    result.statistics = std::move(traced.statistics);
+    result.passes = 1;
+    if (root) result.image = cut(std::move(traced.image), film_window, window);
+    return result;
+  }
+  if (root) result.film = options.resume != nullptr ? *options.resume : Film(film_window);
+  Film& film = result.film;
   parallel::Progress* const whole = options.frame.progress;
   parallel::Progress part(whole);
   try {

@@ -25,6 +25,8 @@ struct ProgressiveOptions {
   double seconds = std::numeric_limits<double>::infinity();
 
   bool features = false;
+  bool film =
+      true;  // whether the result is to have one; a call of a single pass is quicker without
 
   // On rank 0, where there may be a film of an earlier call with the same options and scene, which
   // is gone on from: with the same result as if nothing had happened.
@@ -36,7 +38,7 @@ struct ProgressiveOptions {
 // On rank 0; elsewhere all but the statistics of the call is empty.
 struct ProgressiveResult {
   image::ImageF image;    // of the window
-  Film film;              // of a window that may be larger: see grown
+  Film film;              // of a window that may be larger: see grown; empty where not asked for
   Features features;      // of the window
   Statistics statistics;  // of all passes together
   int passes = 0;         // of this call
@@ -48,8 +50,7 @@ struct ProgressiveResult {
 geometry::Rect grown(const geometry::Rect& window, const geometry::Rect& frame);
 
 // The pixels of `window` alone, of a picture of `of`. REQUIRES: `of` contains `window`.
-image::ImageF cut(const image::ImageF& picture, const geometry::Rect& of,
-                  const geometry::Rect& window);
+image::ImageF cut(image::ImageF&& picture, const geometry::Rect& of, const geometry::Rect& window);
 
 // Collective. The same bytes for every number of ranks and threads, and however often it was
 // interrupted; not so when time runs out. Throws what Renderer::render throws.

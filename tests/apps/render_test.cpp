@@ -97,6 +97,19 @@ TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
             statistics(base + "--camera 1,1,3.5,0,1,0,0,1,0,45", folder)["image"]["hash"]);
 }
 
+TEST(RenderCommand, TellsTheCameraAsItCanBeGiven) {
+  const Folder folder;
+  const std::string base = "delray render gen:spheres:500 -o a.png --size 48x32 ";
+  const json told = statistics(base + "--view iso", folder);
+  std::string camera;
+  for (const char* key : {"eye", "at", "up"}) {
+    for (const json& number : told["camera"][key]) camera += number.dump() + ",";
+  }
+  camera += told["camera"]["fov"].dump();
+  EXPECT_EQ(statistics(base + "--camera=" + camera, folder)["image"]["hash"],
+            told["image"]["hash"]);
+}
+
 TEST(RenderCommand, AnimationsTellTheirStages) {
   const Folder folder;
   const std::string base = "delray render gen:cornell -o a.png --size 48x32 --turntable 4 ";

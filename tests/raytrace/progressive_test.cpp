@@ -85,6 +85,19 @@ TEST(Progressive, IsThePictureOfOneCall) {
   EXPECT_EQ(result.film.total_samples(), 70U * 50U * 16U);
 }
 
+TEST(Progressive, IsTheSamePictureWithoutAFilm) {
+  for (const int samples : {1, 2, 3, 4, 5}) {
+    ProgressiveOptions options = balls_of(samples);
+    options.window = {3, 5, 41, 50};
+    const ProgressiveResult with = render_by(2, options);
+    options.film = false;
+    const ProgressiveResult without = render_by(3, options);
+    expect_same(with.image, without.image);
+    EXPECT_EQ(with.statistics.rays, without.statistics.rays);
+    EXPECT_EQ(with.passes, without.passes);
+  }
+}
+
 TEST(Progressive, RanksGiveTheSameBytes) {
   ProgressiveOptions options = balls_of(12);
   options.features = true;
@@ -139,7 +152,7 @@ TEST(Progressive, AWindowShowsWhatTheWholePictureShowsThere) {
                                       geometry::Rect{69, 20, 70, 50}}) {
     options.window = window;
     const ProgressiveResult part = render_by(2, options);
-    expect_same(cut(whole.image, {0, 0, 70, 50}, window), part.image);
+    expect_same(cut(mean(whole.film), {0, 0, 70, 50}, window), part.image);
     EXPECT_EQ(part.features.albedo.size(), static_cast<std::size_t>(window.area()));
     EXPECT_LT(part.statistics.rays.primary, whole.statistics.rays.primary);
   }
