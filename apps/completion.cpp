@@ -45,8 +45,9 @@ std::string bash(const CommandText& program) {
       options.insert(options.end(), option.names.begin(), option.names.end());
       if (option.values.empty()) continue;
       for (const std::string& name : option.names)
-        values += fmt::format("    {}) COMPREPLY=($(compgen -W {} -- \"$current\")); return ;;\n",
-                              quoted(path + ":" + name), quoted(joined(option.values)));
+        values +=
+            fmt::format("    {}) COMPREPLY=($(compgen -W {} -- \"$current\")); return ;;\n",
+                        quoted(fmt::format("{}:{}", path, name)), quoted(joined(option.values)));
     }
     if (!path.empty()) paths += fmt::format("      {}) path=$next ;;\n", quoted(path));
     words += fmt::format("    {}) options={} commands={} ;;\n", quoted(path),

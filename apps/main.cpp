@@ -3,7 +3,9 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 #include "apps/commands.h"
 #include "apps/launch.h"
@@ -27,9 +29,7 @@ std::string joined(int argc, char** argv) {
   return line;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   set_up_log();
   Session session;
   session.command_line = joined(argc, argv);
@@ -55,4 +55,15 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? kDone : kUsage;
   }
   return run_guarded(session);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // before a subcommand began
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return kFailed;
+  }
 }
