@@ -159,7 +159,9 @@ void sleep_until_rung(std::uint32_t rings_seen, std::chrono::microseconds longes
 }
 
 void ring(const SharedMemory& other) {
-  Beginning& theirs = beginning_of(reach(other));
+  std::byte* const memory = reach(other);
+  if (memory == nullptr) return;
+  Beginning& theirs = beginning_of(memory);
   ++theirs.rings;
   if (theirs.is_asleep.load()) futex(theirs.rings, FUTEX_WAKE, 1, nullptr);
 }

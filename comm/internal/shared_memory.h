@@ -41,9 +41,10 @@ Buffer borrow(const SharedMemory& other, std::uint64_t offset, std::size_t bytes
 //
 // A process counts how often it was rung for. It reads the count, looks for messages, and if there
 // are none sleeps until the count is another or so much time has passed.
-// REQUIRES: this process shares its memory; can_reach(other).
+// REQUIRES: this process shares its memory.
 std::uint32_t rings();
 void sleep_until_rung(std::uint32_t rings_seen, std::chrono::microseconds longest);
+// Nothing where this process cannot reach the other, which then has ended.
 void ring(const SharedMemory& other);
 
 }  // namespace delray::comm::internal
