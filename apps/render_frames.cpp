@@ -43,6 +43,7 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
   options.regions_per_rank = request.regions_per_rank;
   options.keep_factor = request.keep_factor;
   options.schedule = request.schedule;
+  options.master_works = request.master == "works";
   options.block = request.block;
   options.groups = request.groups == "two" ? raster::Groups::two : raster::Groups::one;
   options.geometry_ranks = request.geometry_ranks;
@@ -78,6 +79,7 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   options.trace.seed = request.practice.seed;
   options.integrator = request.integrator;
   options.schedule = request.schedule;
+  options.master_works = request.master == "works";
   options.tile = request.block;
   options.partition = request.partition;
   options.costs =

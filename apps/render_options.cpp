@@ -32,6 +32,12 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
   }
 }
 
+// Throws UsageError if --master was given and no rank is one.
+void check_master(const CLI::App& command, const std::string& schedule) {
+  if (schedule != "demand" && schedule != "guided" && schedule != "hierarchical")
+    refuse(command, {"--master"}, schedule.empty() ? "no --schedule" : "--schedule " + schedule);
+}
+
 void check_raster(const CLI::App& command, const RenderRequest& request) {
   refuse(command,
          {"--integrator", "--spp", "--depth", "--reach", "--no-shadows", "--build", "--isa",
@@ -60,6 +66,7 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
   } else {
     refuse(command, {"--schedule", "--block"}, "--strategy " + request.strategy);
   }
+  check_master(command, request.schedule);
   if (request.strategy == "sort-middle") {
     refuse(command, {"--travel"}, "--strategy sort-middle: triangles travel");
     if (request.groups == "one") refuse(command, {"--geometry-ranks"}, "--groups one");
@@ -90,6 +97,7 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
     refuse(command, {"--no-shadows"}, "another --integrator than direct");
   check_practice(command, request);
   find_entry(loadbalance::schedules(), request.schedule, "--schedule");
+  check_master(command, request.schedule);
   find_entry(raytrace::distributions(), request.data, "--data");
   if (request.data == "replicated") refuse(command, {"--deal", "--cache"}, "--data replicated");
   if (request.data == "ray" || request.data == "ring")
@@ -258,6 +266,12 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--schedule", request.schedule,
                   "how ranks share blocks of the picture; sort-first: blocks that change rank "
                   "meanwhile")
+      ->group(raytrace);
+  command
+      .add_option("--master", request.master,
+                  "ranks that hand out blocks (demand, guided, hierarchical): works (on some "
+                  "itself, default) or serves (the others only)")
+      ->check(CLI::IsMember({"works", "serves"}))
       ->group(raytrace);
   command
       .add_option("--data", request.data,

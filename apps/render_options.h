@@ -32,7 +32,8 @@ struct RenderRequest {
   int supersampling = 1, regions_per_rank = 1, block = 64, geometry_ranks = 0;
   double keep_factor = 1.2;
   // raytrace; schedule is raster's too
-  std::string integrator = "whitted", schedule, data = "replicated", deal = "neighbours";
+  std::string integrator = "whitted", schedule, master = "works", data = "replicated",
+              deal = "neighbours";
   double cache_mebibytes = 0;  // 0: a tenth of the scene
   int samples = 1, depth = 8;
   double reach = 0;  // 0: without end

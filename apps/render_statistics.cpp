@@ -39,6 +39,7 @@ Json options_of(const RenderRequest& request, int ranks) {
       options["regions"] = request.regions_per_rank;
       options["keep"] = request.keep_factor;
       options["schedule"] = request.schedule;
+      options["master"] = request.master;
       options["block"] = request.block;
     }
     if (request.strategy == "sort-middle") {
@@ -55,6 +56,7 @@ Json options_of(const RenderRequest& request, int ranks) {
     options["build"] = request.build;
     options["isa"] = request.isa;
     options["schedule"] = request.schedule;
+    options["master"] = request.master;
     options["block"] = request.block;
     options["partition"] = request.partition;
     options["costs"] = request.costs;

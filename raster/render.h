@@ -87,6 +87,7 @@ struct RenderOptions {
   // instance from a rank whose region takes long to one that is done with its own. Every rank needs
   // all primitives then, and knows from their clusters' bounds which a block shows. Empty: none.
   std::string schedule;
+  bool master_works = true;          // whether ranks that hand out blocks draw some themselves
   int block = 64;                    // pixels, the side of a block that is handed out
   bool report_partition = false;     // costs time of about that of cutting
   Travel travel = Travel::geometry;  // sort-first, hybrid

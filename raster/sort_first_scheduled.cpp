@@ -117,6 +117,7 @@ Picture render(Rank& rank) {
   communicator.mark(comm::Phase::redistribute, 0);
   loadbalance::ScheduleOptions how;
   how.initial = blocks_of_regions(rank, blocks);
+  how.master_works = options.master_works;
 
   communicator.mark(comm::Phase::rasterize, 0);
   auto image = rank.take_image<Colour>(options.width, options.height);

@@ -190,6 +190,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   recording.mark(comm::Phase::redistribute, 0);
   loadbalance::ScheduleOptions how =
       tile_schedule(frame.tiles.grid().count(), communicator.size(), parallel::arena_threads());
+  how.master_works = options.master_works;
   if (!options.partition.empty()) {
     how.initial = memory_->shares.next(recording, frame.tiles, options);
     if (root) statistics.partition = memory_->shares.statistics();

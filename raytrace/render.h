@@ -49,6 +49,7 @@ struct RenderOptions {
   Part part;
   // Of loadbalance::schedules(): tiles are handed out to ranks and threads.
   std::string schedule = "interlaced";
+  bool master_works = true;  // whether ranks that hand out tiles trace some themselves
   // Pixels, the side of a tile; a multiple of kTaskSide, so that no walk goes over two tiles.
   // Large enough that a tile takes a good part of a millisecond, small enough that there are many
   // for each rank.

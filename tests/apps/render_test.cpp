@@ -72,6 +72,25 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
   }
 }
 
+TEST(RenderCommand, AMasterThatServesHandsEverythingOut) {
+  const Folder folder;
+  const std::string base = "delray render gen:spheres:3000 -o a.png --size 95x61 ";
+  for (const std::string engine : {"--strategy sort-first ", "--engine raytrace "}) {
+    const std::string hash = statistics(base + engine, folder)["image"]["hash"];
+    for (const std::string schedule : {"demand", "guided", "hierarchical"}) {
+      const std::string command =
+          base + engine + "--ranks 3 --block 16 --master serves --schedule " + schedule;
+      const json stats = statistics(command, folder);
+      EXPECT_EQ(stats["image"]["hash"], hash) << command;
+      EXPECT_EQ(stats["ranks"][0]["tasks"], 0) << command;
+      EXPECT_EQ(stats["ranks"][1]["tasks"].get<int>() + stats["ranks"][2]["tasks"].get<int>(), 24)
+          << command;
+    }
+  }
+  EXPECT_EQ(run(base + "--engine raytrace --master serves", folder.path()).exit_code, 2);
+  EXPECT_EQ(run(base + "--master serves", folder.path()).exit_code, 2);
+}
+
 TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
   const Folder folder;
   folder.write("path.txt", "0,1,4, 0,1,0, 0,1,0, 40 # frame 0\n3: 1,1,3.5, 0,1,0, 0,1,0, 45\n");
