@@ -47,6 +47,7 @@ text{fill:var(--ink);font-size:12px}
 text.tick{fill:var(--soft);font-size:11px}
 .grid{stroke:var(--line)}
 .frame{fill:none;stroke:var(--line)}
+.line,.spread{pointer-events:none}
 .line{fill:none;stroke-width:2}
 .spread{fill:none;stroke-width:1.5;opacity:.5}
 .predicted .line{stroke-dasharray:2 4}
