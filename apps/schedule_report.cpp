@@ -126,7 +126,8 @@ Html chart_by_ranks(const ScheduleComparison& comparison, const std::string& tit
 }
 
 PointOf value_of(std::function<double(const ScheduleOver&)> value, std::size_t network = 0) {
-  return [=](const ComparedSchedule& row) -> std::optional<ChartPoint> {
+  return [value = std::move(value),
+          network](const ComparedSchedule& row) -> std::optional<ChartPoint> {
     const double y = value(row.over[network]);
     return ChartPoint{static_cast<double>(row.ranks), y, y, y};
   };

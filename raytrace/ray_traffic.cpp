@@ -25,11 +25,6 @@ constexpr std::size_t kMostStrands = 96;
 // A rank looks whether messages have come at least so often while it waits.
 constexpr auto kMoment = std::chrono::microseconds(100);
 
-// Ring: rays against clusters after which the rank before learns how loaded this one is, and a
-// cluster may change rank where that one is so much more loaded.
-constexpr std::uint64_t kTestsBetweenLoads = 8192;
-constexpr double kMuchMore = 1.2;
-
 bool is_decided(const TravellingRay&) { return false; }
 bool is_decided(const TravellingShadow& shadow) { return shadow.occluded; }
 
@@ -165,8 +160,7 @@ void RayTraffic::receive(const comm::Envelope& envelope) {
       taken_over_.push_back(header.cluster);
       break;
     case MessageKind::load:
-      next_load_ = header.load;
-      knows_next_load_ = true;
+      loads_.hear(header.load);
       break;
   }
 }
@@ -476,17 +470,13 @@ void RayTraffic::even_out() {
   const int ranks = communicator_.size();
   if (ranks == 1) return;
   const std::uint64_t load = counts_.tests;
-  if (load - told_load_ >= kTestsBetweenLoads) {
+  if (loads_.tell(load)) {
     MessageHeader header;
     header.kind = MessageKind::load;
     header.load = load;
     send((communicator_.rank() + ranks - 1) % ranks, with_header(header, {}));
-    told_load_ = load;
   }
-  if (!knows_next_load_ || load - load_when_moved_ < kTestsBetweenLoads ||
-      scene_.owned().size() < 2)
-    return;
-  if (static_cast<double>(load) < kMuchMore * static_cast<double>(next_load_)) return;
+  if (!loads_.should_give(load) || scene_.owned().size() < 2) return;
   // One that no ray waits for. Rays that come later find it on the next rank: on the same way, in
   // the order of sending, it is there before them.
   for (const auto& [number, cluster] : scene_.owned()) {
@@ -499,7 +489,7 @@ void RayTraffic::even_out() {
     scene_.give_away(number);
     send(next, std::move(message));
     ++counts_.clusters_moved;
-    load_when_moved_ = load;
+    loads_.gave(load);
     return;
   }
 }

@@ -71,6 +71,7 @@ std::vector<Tick> Axis::ticks_at(std::span<const double> values) {
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   std::vector<Tick> result;
+  result.reserve(sorted.size());
   for (const double value : sorted) result.push_back({value, short_number(value)});
   return result;
 }

@@ -13,6 +13,7 @@
 #include "comm/termination.h"
 #include "raytrace/distribution.h"
 #include "raytrace/internal/meet_cluster.h"
+#include "raytrace/internal/ring_loads.h"
 #include "raytrace/internal/sample_tile.h"
 #include "raytrace/internal/travelling.h"
 
@@ -114,8 +115,7 @@ class RayTraffic {
 
   // Ring: what was taken over, in order, and how loaded this rank and the next are.
   std::vector<std::uint32_t> taken_over_;
-  std::uint64_t next_load_ = 0, told_load_ = 0, load_when_moved_ = 0;
-  bool knows_next_load_ = false;
+  RingLoads loads_;
 };
 
 }  // namespace delray::raytrace

@@ -9,3 +9,5 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR}/build -G Ninja -DCMAKE_CXX_
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
 run(${WORK_DIR}/prefix/bin/delray --version)
+# With the library that it loads for pictures.
+run(${WORK_DIR}/prefix/bin/delray render gen:cornell:100 --size 16x16 -q -o ${WORK_DIR}/picture.png)
