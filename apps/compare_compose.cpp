@@ -40,13 +40,6 @@ std::vector<std::string> schemes_of(const CompareRequest& request) {
   return names;
 }
 
-// Whether hollow layers can stand for those of a codec.
-bool is_simulated(const std::string& codec) { return codec == "dense" || codec == "active"; }
-
-HollowImages hollow(const std::vector<ImageMasks>& masks, const std::string& codec) {
-  return {masks, codec == "active", composite::kPixelBytes8};
-}
-
 int cores_here() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 // What messages cost between so many threads of this process, before it is fitted.
@@ -93,6 +86,14 @@ class Comparison {
 
  private:
   int repeats(int ranks) const { return request_.quick ? 3 : ranks > 16 ? 3 : ranks > 4 ? 9 : 15; }
+
+  composite::ComposeOptions options() const { return {.interlace = request_.interlace}; }
+
+  // REQUIRES: hollow layers can stand for those of the codec.
+  HollowImages hollow(const std::vector<ImageMasks>& masks, const std::string& codec) const {
+    return {masks, *composite::hollow_of(codec), composite::kPixelBytes8,
+            static_cast<std::uint64_t>(request_.render.width)};
+  }
 
   std::vector<std::string> codecs_of(const raster::Share& share) const {
     return is_transparent(share) ? std::vector<std::string>{"deep"} : request_.codecs;
@@ -200,11 +201,9 @@ class Comparison {
   // Counts what was not measured, and predicts everything.
   void predict() {
     for (const std::string& codec : request_.codecs) {
-      if (!is_simulated(codec)) {
-        spdlog::warn(
-            "nothing is predicted of codec {}, whose messages depend on what pixels show: "
-            "only of dense and active",
-            codec);
+      if (!composite::hollow_of(codec)) {
+        spdlog::warn("nothing is predicted of codec {}, whose messages depend on what pixels show",
+                     codec);
         continue;
       }
       const composite::LayerCosts costs = measure_layer_costs(*composite::find_codec(codec));
@@ -229,7 +228,8 @@ class Comparison {
           steps_.stop_if_asked();
           steps_.done();
           for (const auto& [name, machine] : machines) {
-            const composite::Simulated run = simulate(row.scheme, hollow(images, codec), machine);
+            const composite::Simulated run =
+                simulate(row.scheme, hollow(images, codec), machine, options());
             row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
           }
         }
@@ -256,7 +256,7 @@ class Comparison {
       steps_.stop_if_asked();
       steps_.done();
       const composite::Simulated run =
-          simulate(scheme, hollow(images, codec), {comm::networks()[0].network, {}});
+          simulate(scheme, hollow(images, codec), {comm::networks()[0].network, {}}, options());
       ComparedScheme row;
       row.scheme = scheme;
       row.codec = codec;
@@ -273,7 +273,7 @@ class Comparison {
       if (row.codec != codec || row.ranks > kMostFittedRanks || row.ranks < 2) continue;
       if (!row.compose_seconds || masks(row.ranks).empty()) continue;
       samples.push_back({row.scheme, hollow(masks(row.ranks), codec),
-                         std::max(1e-9, row.compose_seconds->median)});
+                         std::max(1e-9, row.compose_seconds->median), 1, options()});
     }
     return samples;
   }

@@ -16,6 +16,7 @@ namespace delray::apps {
 struct CompareRequest : SceneComparison {
   std::vector<std::string> codecs = {"active"};
   std::vector<std::string> schemes;  // empty: all
+  bool interlace = false;            // ComposeOptions
 };
 
 // How long a scheme would take.

@@ -1,5 +1,8 @@
 // delray compare compose: the command line.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/compare_commands.h"
 #include "apps/compare_compose.h"
@@ -8,6 +11,7 @@
 #include "apps/list.h"
 #include "comm/network.h"
 #include "composite/codec.h"
+#include "composite/hollow.h"
 #include "composite/scheme.h"
 
 namespace delray::apps {
@@ -20,9 +24,22 @@ int list() {
   return kDone;
 }
 
+void check_codecs(const CompareRequest& request) {
+  const bool simulates = std::any_of(request.ranks.begin(), request.ranks.end(),
+                                     [](int ranks) { return ranks > kMostMeasuredRanks; });
+  for (const std::string& codec : request.codecs) {
+    find_entry(composite::codecs(), codec, "--codec");
+    if (simulates && !composite::hollow_of(codec))
+      throw UsageError(
+          fmt::format("--codec {}: what it sends depends on what pixels show, so that more than {} "
+                      "ranks cannot be simulated",
+                      codec, kMostMeasuredRanks));
+  }
+}
+
 int run(Session& session, const CLI::App& command, CompareRequest request) {
   if (request.list) return list();
-  for (const std::string& codec : request.codecs) find_entry(composite::codecs(), codec, "--codec");
+  check_codecs(request);
   for (const std::string& scheme : request.schemes)
     if (composite::find_scheme(scheme) == nullptr)
       find_entry(composite::schemes(), scheme, "--compose");
@@ -53,6 +70,8 @@ void add_compare_compose(CLI::App& compare, Session& session) {
                    "how pixels travel, separated by commas (default active)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  command->add_flag("--interlace", request->interlace,
+                    "deal pieces of the image out to the ranks in turn");
   command->add_option("--compose", request->schemes, "schemes, separated by spaces (default all)");
   add_comparison_options(*command, *request, "measure once each", "schemes, codecs, networks");
   add_common_options(*command, session,

@@ -46,7 +46,8 @@ MeasuredScheme measure_scheme(comm::Communicator& communicator, ShareLayers& lay
     // The first wait may be long, and who has slept comes out late; the last is over at once.
     for (int i = 0; i < 3; ++i) comm::barrier(communicator);
     const double begin = communicator.seconds();
-    composite::Part part = composite::compose(used, std::move(layer), scheme);
+    composite::Part part =
+        composite::compose(used, std::move(layer), scheme, {.interlace = request.interlace});
     const double composed = communicator.seconds();
     comm::barrier(communicator);
     const double waited = communicator.seconds();

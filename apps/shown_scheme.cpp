@@ -90,7 +90,8 @@ ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& s
     comm::Recording recording(communicator, events);
     auto layer = layers.make(codec);
     comm::barrier(communicator);
-    composite::Part part = composite::compose(recording, std::move(layer), scheme);
+    composite::Part part =
+        composite::compose(recording, std::move(layer), scheme, {.interlace = request.interlace});
     const std::vector<composite::PixelRange> owned = part.ranges;
     part = composite::gather(recording, std::move(part), 0);
     // Only the root's image is whole: it tells the others, who show what was theirs.

@@ -1,27 +1,21 @@
 #include "composite/bounds.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cstring>
 #include <vector>
 
-#include "composite/internal/range.h"
+#include "composite/internal/bounds.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::composite {
 namespace {
 
+using internal::Bounds;
+using internal::bounds_of;
+using internal::run_of;
+
 constexpr std::size_t kGrain = 16;  // rows; some ten microseconds
-
-struct Bounds {
-  std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-};
-
-// The pixels of `range` that lie in `bounds` on one of its rows.
-PixelRange run_of(const Bounds& bounds, std::uint32_t y, std::uint64_t width, PixelRange range) {
-  return internal::overlap({y * width + bounds.x0, y * width + bounds.x1}, range);
-}
 
 // Runs of all rows, and how many pixels lie in those before each; one element more.
 struct Runs {
@@ -43,30 +37,10 @@ comm::Buffer BoundsLayer<Colour>::cut(PixelRange range) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   const image::BasicImage<Colour>& image = this->image();
   const auto width = static_cast<std::uint64_t>(image.width);
-  Bounds bounds{~std::uint32_t{0}, ~std::uint32_t{0}, 0, 0};
-  const auto include = [&](std::uint64_t first, std::uint64_t last) {
-    bounds.y0 = std::min(bounds.y0, static_cast<std::uint32_t>(first / width));
-    bounds.y1 = std::max(bounds.y1, static_cast<std::uint32_t>(last / width + 1));
-    const bool one_row = first / width == last / width;
-    const auto x0 = one_row ? first % width : 0, x1 = one_row ? last % width + 1 : width;
-    bounds.x0 = std::min(bounds.x0, static_cast<std::uint32_t>(x0));
-    bounds.x1 = std::max(bounds.x1, static_cast<std::uint32_t>(x1));
-  };
-  for (std::uint64_t begin = range.begin; begin < range.end;) {
-    // Groups end with rows, so that the first and last covered pixels of one tell its columns.
-    const std::uint64_t end =
-        std::min({begin + kGroupPixels, range.end, (begin / width + 1) * width});
-    GroupMask mask{};
-    if (this->find_covered(begin, end, mask) > 0) {
-      std::size_t first = 0, last = mask.size() - 1;
-      while (mask[first] == 0) ++first;
-      while (mask[last] == 0) --last;
-      include(begin + first * 64 + static_cast<std::uint64_t>(std::countr_zero(mask[first])),
-              begin + last * 64 + 63 - static_cast<std::uint64_t>(std::countl_zero(mask[last])));
-    }
-    begin = end;
-  }
-  if (bounds.y1 == 0) bounds = {};
+  const Bounds bounds =
+      bounds_of(range, width, [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+        return this->find_covered(begin, end, mask);
+      });
   const Runs runs(bounds, width, range);
   comm::Buffer buffer(sizeof bounds + runs.before.back() * this->bytes_per_pixel());
   std::memcpy(buffer.data(), &bounds, sizeof bounds);

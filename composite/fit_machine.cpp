@@ -30,7 +30,8 @@ MachineModel scaled(const MachineModel& start, const Factors& logarithms) {
 std::vector<double> errors_of(const MachineModel& model, std::span<const TimedScheme> samples) {
   std::vector<double> errors;
   for (const TimedScheme& sample : samples) {
-    const double seconds = simulate(sample.scheme, sample.images, model).compose_seconds;
+    const double seconds =
+        simulate(sample.scheme, sample.images, model, sample.options).compose_seconds;
     errors.push_back(std::log(std::max(seconds, 1e-9) / sample.seconds));
   }
   return errors;

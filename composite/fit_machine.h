@@ -14,6 +14,7 @@ struct TimedScheme {
   HollowImages images;
   double seconds = 0;
   double weight = 1;  // how much it counts
+  ComposeOptions options = {};
 };
 
 // `start` with overhead and latency of messages, the costs of cutting and those of merging scaled,

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
+
+#include "composite/internal/bounds.h"
 
 namespace delray::composite {
 namespace {
@@ -23,9 +26,8 @@ class HollowLayer : public Layer {
     charge(clock_.costs.merge + clock_.costs.merge_pixel * static_cast<double>(range.size()));
   }
   // Bytes are written once more, into the image.
-  void charge_replace(const comm::Buffer& pixels) const {
-    charge(clock_.costs.merge +
-           clock_.costs.cut_byte * static_cast<double>(pixels.counted_bytes()));
+  void charge_replace(std::size_t bytes) const {
+    charge(clock_.costs.merge + clock_.costs.cut_byte * static_cast<double>(bytes));
   }
 
  private:
@@ -55,7 +57,9 @@ class HollowDenseLayer final : public HollowLayer {
     charge_merge(range);
     return range.size();
   }
-  void replace(PixelRange, const comm::Buffer& pixels) override { charge_replace(pixels); }
+  void replace(PixelRange range, const comm::Buffer&) override {
+    charge_replace(range.size() * pixel_bytes());
+  }
   std::uint64_t prune(PixelRange range, const comm::Buffer&) override {
     charge_merge(range);
     return range.size();
@@ -67,10 +71,10 @@ class HollowDenseLayer final : public HollowLayer {
   bool empty_;
 };
 
-// A message holds the coverage alone.
-class HollowActiveLayer final : public HollowLayer {
+// Knows which pixels are covered. A message holds how many pixels travel and which are covered.
+class HollowMaskLayer : public HollowLayer {
  public:
-  HollowActiveLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
+  HollowMaskLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
       : HollowLayer(pixel_bytes, clock), image_(std::move(image)) {}
 
   std::uint64_t pixels() const override { return image_.covered.pixels(); }
@@ -79,20 +83,22 @@ class HollowActiveLayer final : public HollowLayer {
         range.size(), [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
           return image_.covered.read(range.begin + begin, range.begin + end, mask);
         });
-    comm::Buffer content(coverage.encoded_bytes());
-    coverage.encode(content.data());
-    const std::size_t bytes = content.size() + coverage.covered() * pixel_bytes();
-    charge_cut(range, bytes);
-    return comm::Buffer::standing_for(bytes, std::move(content));
+    const Sizes sizes = sizes_of(range, coverage);
+    comm::Buffer content(sizeof sizes + coverage.encoded_bytes());
+    std::memcpy(content.data(), &sizes, sizeof sizes);
+    coverage.encode(content.data() + sizeof sizes);
+    charge_cut(range, sizes.bytes);
+    return comm::Buffer::standing_for(sizes.bytes, std::move(content));
   }
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side) override {
     charge_merge(range);
-    return for_each_group(range, pixels, [&](std::uint64_t begin, const GroupMask& mask) {
+    for_each_group(range, pixels, [&](std::uint64_t begin, const GroupMask& mask) {
       image_.covered.add(begin, mask);
     });
+    return sizes_in(pixels).pixels;
   }
   void replace(PixelRange range, const comm::Buffer& pixels) override {
-    charge_replace(pixels);
+    charge_replace(sizes_in(pixels).bytes);
     image_.covered.remove(range);
     for_each_group(range, pixels, [&](std::uint64_t begin, const GroupMask& mask) {
       image_.covered.add(begin, mask);
@@ -102,28 +108,41 @@ class HollowActiveLayer final : public HollowLayer {
   // sends what is left, whoever hides it has come.
   std::uint64_t prune(PixelRange range, const comm::Buffer& pixels) override {
     charge_merge(range);
-    return for_each_group(range, pixels, [&](std::uint64_t begin, GroupMask& mask) {
+    for_each_group(range, pixels, [&](std::uint64_t begin, GroupMask& mask) {
       const std::uint64_t end = std::min(begin + kGroupPixels, range.end);
       GroupMask unhidden{};
       image_.unhidden.read(begin, end, unhidden);
       for (std::size_t i = 0; i < mask.size(); ++i) mask[i] &= ~unhidden[i];
       image_.covered.remove(begin, mask);
     });
+    return sizes_in(pixels).pixels;
   }
   bool empty() const override { return image_.covered.empty(); }
 
+ protected:
+  struct Sizes {
+    std::uint64_t bytes = 0, pixels = 0;  // of the message that it stands for, and pixels in it
+  };
+  virtual Sizes sizes_of(PixelRange range, const Coverage& coverage) const = 0;
+  const PixelMask& covered() const { return image_.covered; }
+
  private:
-  // Calls f(first pixel, mask) for the groups that a message covers; returns the covered pixels.
+  static Sizes sizes_in(const comm::Buffer& pixels) {
+    Sizes sizes;
+    std::memcpy(&sizes, pixels.data(), sizeof sizes);
+    return sizes;
+  }
+
+  // Calls f(first pixel, mask) for the groups that a message covers.
   template <class F>
-  std::uint64_t for_each_group(PixelRange range, const comm::Buffer& pixels, F&& f) {
-    const Coverage coverage(range.size(), pixels.data());
+  static void for_each_group(PixelRange range, const comm::Buffer& pixels, F&& f) {
+    const Coverage coverage(range.size(), pixels.data() + sizeof(Sizes));
     for (std::size_t i = 0; i < coverage.groups(); ++i) {
       const Coverage::Group at = coverage.group(i);
       if (at.covered == 0) continue;
       GroupMask mask = at.is_full() ? first_bits(at.end - at.begin) : coverage.mask(i);
       f(range.begin + at.begin, mask);
     }
-    return coverage.covered();
   }
 
   static GroupMask first_bits(std::uint64_t count) {
@@ -138,7 +157,43 @@ class HollowActiveLayer final : public HollowLayer {
   ImageMasks image_;
 };
 
+class HollowActiveLayer final : public HollowMaskLayer {
+ public:
+  using HollowMaskLayer::HollowMaskLayer;
+
+ private:
+  Sizes sizes_of(PixelRange, const Coverage& coverage) const override {
+    return {coverage.encoded_bytes() + coverage.covered() * pixel_bytes(), coverage.covered()};
+  }
+};
+
+class HollowBoundsLayer final : public HollowMaskLayer {
+ public:
+  HollowBoundsLayer(ImageMasks&& image, std::uint64_t width, std::size_t pixel_bytes,
+                    const LayerClock& clock)
+      : HollowMaskLayer(std::move(image), pixel_bytes, clock), width_(width) {}
+
+ private:
+  Sizes sizes_of(PixelRange range, const Coverage&) const override {
+    const internal::Bounds bounds = internal::bounds_of(
+        range, width_, [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+          return covered().read(begin, end, mask);
+        });
+    const std::uint64_t inside = internal::pixels_in(bounds, width_, range);
+    return {sizeof bounds + inside * pixel_bytes(), inside};
+  }
+
+  std::uint64_t width_;
+};
+
 }  // namespace
+
+std::optional<Hollow> hollow_of(std::string_view codec) {
+  if (codec == "dense") return Hollow::dense;
+  if (codec == "bounds") return Hollow::bounds;
+  if (codec == "active") return Hollow::active;
+  return std::nullopt;
+}
 
 std::unique_ptr<Layer> make_hollow_dense(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
                                          const LayerClock& clock) {
@@ -148,6 +203,11 @@ std::unique_ptr<Layer> make_hollow_dense(std::uint64_t pixels, std::size_t pixel
 std::unique_ptr<Layer> make_hollow_active(ImageMasks&& image, std::size_t pixel_bytes,
                                           const LayerClock& clock) {
   return std::make_unique<HollowActiveLayer>(std::move(image), pixel_bytes, clock);
+}
+
+std::unique_ptr<Layer> make_hollow_bounds(ImageMasks&& image, std::uint64_t width,
+                                          std::size_t pixel_bytes, const LayerClock& clock) {
+  return std::make_unique<HollowBoundsLayer>(std::move(image), width, pixel_bytes, clock);
 }
 
 }  // namespace delray::composite

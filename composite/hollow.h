@@ -7,6 +7,8 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include "comm/communicator.h"
 #include "composite/layer.h"
@@ -15,8 +17,15 @@
 
 namespace delray::composite {
 
-// Bytes of a pixel that travels: its colour and its depth.
+// Bytes of a pixel that travels: its colour and its depth; with Operator::over its colour alone.
 inline constexpr std::size_t kPixelBytes8 = 8, kPixelBytesF = 20;
+inline constexpr std::size_t kColourBytes8 = 4, kColourBytesF = 16;
+
+// The codecs whose messages hollow layers know the size of. That of "lz4" depends on the values of
+// pixels: only real layers can tell.
+enum class Hollow : std::uint8_t { dense, bounds, active };
+// Nothing for other codecs.
+std::optional<Hollow> hollow_of(std::string_view codec);
 
 // Charges what a layer does to a rank as work, so that it takes time on the simulated machine.
 // Pixels composited are not charged: schemes tell of them themselves.
@@ -33,5 +42,9 @@ std::unique_ptr<Layer> make_hollow_dense(std::uint64_t pixels, std::size_t pixel
 // are left when all lower ranks have had it pruned.
 std::unique_ptr<Layer> make_hollow_active(ImageMasks&& image, std::size_t pixel_bytes,
                                           const LayerClock& clock = {});
+
+// The same for codec "bounds". REQUIRES: width, the image's, is >= 1 where it has pixels.
+std::unique_ptr<Layer> make_hollow_bounds(ImageMasks&& image, std::uint64_t width,
+                                          std::size_t pixel_bytes, const LayerClock& clock = {});
 
 }  // namespace delray::composite

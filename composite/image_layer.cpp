@@ -8,8 +8,7 @@
 namespace delray::composite {
 namespace {
 
-bool hides(image::Rgba8 colour) { return colour.a == 255; }
-bool hides(image::RgbaF colour) { return colour.a == 1; }
+using internal::hides;
 
 // What lies behind.
 void cover(std::span<float> depth, const float* front) {

@@ -128,4 +128,37 @@ ImageMasks MaskMaker::add(std::span<const float> depth) {
   return result;
 }
 
+template <class Colour>
+ImageMasks MaskMaker::add(const image::BasicImage<Colour>& image, Operator how) {
+  if (how == Operator::nearest) return add(image.depth.span());
+  const std::span<const Colour> colour = image.colour.span();
+  if (!concealed_) concealed_.emplace(colour.size());
+  ImageMasks result{PixelMask(colour.size()), PixelMask(colour.size())};
+  for (std::size_t begin = 0; begin < colour.size(); begin += kGroupPixels) {
+    const std::size_t size = std::min<std::size_t>(kGroupPixels, colour.size() - begin);
+    GroupMask covered{}, concealed{}, unhidden{}, opaque{};
+    if (how == Operator::over) {
+      internal::find_coloured(colour.subspan(begin, size), covered);
+    } else {
+      internal::find_covered(image.depth.span().subspan(begin, size), covered);
+    }
+    concealed_->read(begin, begin + size, concealed);
+    for (std::size_t i = 0; i < covered.size(); ++i) {
+      unhidden[i] = covered[i] & ~concealed[i];
+      for (std::uint64_t bits = covered[i]; bits != 0; bits &= bits - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(bits));
+        if (internal::hides(colour[begin + i * kElementPixels + bit]))
+          opaque[i] |= std::uint64_t{1} << bit;
+      }
+    }
+    result.covered.add(begin, covered);
+    result.unhidden.add(begin, unhidden);
+    concealed_->add(begin, opaque);
+  }
+  return result;
+}
+
+template ImageMasks MaskMaker::add(const image::Image8& image, Operator how);
+template ImageMasks MaskMaker::add(const image::ImageF& image, Operator how);
+
 }  // namespace delray::composite

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "composite/coverage.h"
+#include "composite/image_layer.h"
 #include "composite/layer.h"
 
 namespace delray::composite {
@@ -47,14 +49,22 @@ struct ImageMasks {
   ImageMasks copy() const { return {covered.copy(), unhidden.copy()}; }
 };
 
-// The masks of the images of all ranks, from rank 0 up.
+// The masks of the images of all ranks, from the lowest up: rank 0, or the first of
+// ComposeOptions::order.
 class MaskMaker {
  public:
-  // The next rank's depths, of as many pixels as the first's. O(pixels).
+  // The next rank's depths, for Operator::nearest; of as many pixels as the first's. O(pixels).
   ImageMasks add(std::span<const float> depth);
+  // The next rank's image; all of one size and for one operator. No colour is negative. O(pixels).
+  template <class Colour>
+  ImageMasks add(const image::BasicImage<Colour>& image, Operator how);
 
  private:
-  std::vector<float> nearest_;  // of all ranks so far
+  std::vector<float> nearest_;          // of all ranks so far
+  std::optional<PixelMask> concealed_;  // by any rank so far, of layers that are blended
 };
+
+extern template ImageMasks MaskMaker::add(const image::Image8& image, Operator how);
+extern template ImageMasks MaskMaker::add(const image::ImageF& image, Operator how);
 
 }  // namespace delray::composite

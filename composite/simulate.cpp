@@ -5,7 +5,6 @@
 #include "comm/collectives.h"
 #include "comm/recording.h"
 #include "comm/simulated.h"
-#include "composite/scheme.h"
 #include "parallel/arena.h"
 
 namespace delray::composite {
@@ -39,7 +38,14 @@ class Counter {
 
 std::unique_ptr<Layer> make_layer(const HollowImages& images, int rank, const LayerClock& clock) {
   const ImageMasks& image = images.ranks[static_cast<std::size_t>(rank)];
-  if (images.active) return make_hollow_active(image.copy(), images.pixel_bytes, clock);
+  switch (images.codec) {
+    case Hollow::dense:
+      break;
+    case Hollow::bounds:
+      return make_hollow_bounds(image.copy(), images.width, images.pixel_bytes, clock);
+    case Hollow::active:
+      return make_hollow_active(image.copy(), images.pixel_bytes, clock);
+  }
   return make_hollow_dense(image.covered.pixels(), images.pixel_bytes, image.covered.empty(),
                            clock);
 }
@@ -72,8 +78,8 @@ Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Pha
   return counter.counts();
 }
 
-Simulated simulate(std::string_view scheme, const HollowImages& images,
-                   const MachineModel& machine) {
+Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
+                   const ComposeOptions& options) {
   const auto ranks = static_cast<int>(images.ranks.size());
   comm::Network network = machine.network;
   network.seconds_per_work[static_cast<std::size_t>(comm::Work::pixels_composited)] =
@@ -86,8 +92,8 @@ Simulated simulate(std::string_view scheme, const HollowImages& images,
     comm::run_simulated(ranks, network, 1, [&](comm::Communicator& communicator) {
       const int rank = communicator.rank();
       comm::Recording recording(communicator, tallies[static_cast<std::size_t>(rank)]);
-      Part part =
-          compose(recording, make_layer(images, rank, {&communicator, machine.costs}), scheme);
+      Part part = compose(recording, make_layer(images, rank, {&communicator, machine.costs}),
+                          scheme, options);
       result.compose_seconds = std::max(result.compose_seconds, communicator.seconds());
       comm::barrier(communicator);
       gather_begin = std::max(gather_begin, communicator.seconds());

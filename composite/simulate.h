@@ -12,6 +12,7 @@
 #include "composite/hollow.h"
 #include "composite/layer_costs.h"
 #include "composite/mask.h"
+#include "composite/scheme.h"
 
 namespace delray::composite {
 
@@ -30,9 +31,10 @@ Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Pha
 
 // What ranks know of their images, and how they send them.
 struct HollowImages {
-  std::span<const ImageMasks> ranks;       // at least one; all of one size
-  bool active = false;                     // codec "active", else "dense"
-  std::size_t pixel_bytes = kPixelBytes8;  // kPixelBytes8 or kPixelBytesF
+  std::span<const ImageMasks> ranks;  // at least one; all of one size
+  Hollow codec = Hollow::dense;
+  std::size_t pixel_bytes = kPixelBytes8;  // or another of hollow.h
+  std::uint64_t width = 1;                 // of the images, for Hollow::bounds
 };
 
 // A machine on which layers are cut and merged.
@@ -49,8 +51,8 @@ struct Simulated {
 // Runs the scheme and the gather to rank 0, ranks waiting for each other in between. Time and
 // memory grow with the messages and the pixels covered, not with ranks times pixels.
 //
-// REQUIRES: there is such a scheme.
-Simulated simulate(std::string_view scheme, const HollowImages& images,
-                   const MachineModel& machine);
+// REQUIRES: there is such a scheme; masks were made in the order of the options.
+Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
+                   const ComposeOptions& options = {});
 
 }  // namespace delray::composite

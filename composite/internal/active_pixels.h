@@ -12,6 +12,10 @@
 
 namespace delray::composite::internal {
 
+// Nothing that lies behind is seen.
+inline bool hides(image::Rgba8 colour) { return colour.a == 255; }
+inline bool hides(const image::RgbaF& colour) { return colour.a == 1; }
+
 // Sets the bits of the pixels that have a depth and returns how many. REQUIRES: `mask` is zero and
 // not smaller.
 std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask);

@@ -23,9 +23,9 @@ std::string hash_of_render(const Folder& folder, const std::string& scene_and_si
 TEST(CompareCompose, TellsOfEverySchemeWhatTheInterfaceSays) {
   const Folder folder;
   const std::string scene = "gen:city:3000 --size 150x101";
-  const Ran ran = run(
-      "delray compare compose " + scene + " --ranks 3,2,80 --codec active,dense --quick --stats -",
-      folder.path());
+  const Ran ran = run("delray compare compose " + scene +
+                          " --ranks 3,2,80 --codec active,bounds --interlace --quick --stats -",
+                      folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Json json = Json::parse(ran.out);
   EXPECT_EQ(json["schema"], "delray.compare.compose/1");
@@ -83,9 +83,9 @@ TEST(CompareCompose, BlendsTransparentScenesAlikeAndTakesEveryCodec) {
 
 TEST(CompareCompose, RefusesWhatItCannotDo) {
   const Folder folder;
-  for (const std::string arguments :
-       {"", "gen:spheres --ranks 2,x", "gen:spheres --codec nothing",
-        "gen:spheres --compose nothing", "gen:spheres -o report.png"}) {
+  for (const std::string arguments : {"", "gen:spheres --ranks 2,x", "gen:spheres --codec nothing",
+                                      "gen:spheres --compose nothing", "gen:spheres -o report.png",
+                                      "gen:city --codec lz4 --ranks 2,65"}) {
     const Ran ran = run("delray compare compose " + arguments, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << arguments << ran.err;
     EXPECT_EQ(ran.out, "");

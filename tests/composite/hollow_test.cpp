@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "comm/recording.h"
@@ -16,14 +21,16 @@ namespace delray::composite {
 namespace {
 
 using image::Image8;
+using image::ImageF;
 
 struct Size {
   int width, height;
 };
 
-// A disc, a few pixels at random, everything or nothing.
-Image8 partial_image(int rank, Size size) {
-  Image8 image(size.width, size.height);
+// A disc, a few pixels at random, everything or nothing; opaque or not.
+template <class Image>
+Image partial_image(int rank, Size size) {
+  Image image(size.width, size.height);
   clear(image);
   std::mt19937 random(77U + static_cast<unsigned>(rank));
   const int kind = static_cast<int>(random() % 8);
@@ -37,7 +44,10 @@ Image8 partial_image(int rank, Size size) {
                          : kind == 2 ? random() % 20 == 0
                                      : in_disc;
     if (!covered) continue;
-    image.colour[static_cast<std::size_t>(i)] = {1, 2, 3, 255};
+    auto& colour = image.colour[static_cast<std::size_t>(i)];
+    colour.g = 1;
+    colour.a = 1;
+    if (std::is_same_v<Image, Image8>) colour.a = random() % 3 == 0 ? 255 : 2;
     image.depth[static_cast<std::size_t>(i)] = static_cast<float>(random() % 5);
   }
   return image;
@@ -46,13 +56,14 @@ Image8 partial_image(int rank, Size size) {
 using MakeLayer = std::function<std::unique_ptr<Layer>(int rank)>;
 
 // Of all ranks, while they composite and gather.
-std::vector<comm::Tally> counts_of(const Scheme& scheme, int ranks, const MakeLayer& make) {
+std::vector<comm::Tally> counts_of(const Scheme& scheme, int ranks, const ComposeOptions& options,
+                                   const MakeLayer& make) {
   std::vector<comm::Tally> result;
   for (int rank = 0; rank < ranks; ++rank) result.emplace_back(rank);
   comm::run_simulated(ranks, {}, 1, [&](comm::Communicator& communicator) {
     const int rank = communicator.rank();
     comm::Recording recording(communicator, result[static_cast<std::size_t>(rank)]);
-    gather(recording, compose(recording, make(rank), scheme.name), 0);
+    gather(recording, compose(recording, make(rank), scheme.name, options), 0);
   });
   return result;
 }
@@ -66,33 +77,74 @@ void expect_equal(const comm::Totals& a, const comm::Totals& b) {
   EXPECT_EQ(a.work, b.work);
 }
 
+// What a picture is made of, and how.
+struct Case {
+  const char* name;
+  Operator how;
+  bool is_float, interlace, backwards;
+  std::size_t pixel_bytes;
+};
+constexpr std::array kCases = {
+    Case{"nearest", Operator::nearest, false, false, false, kPixelBytes8},
+    Case{"nearest, interlaced", Operator::nearest, false, true, false, kPixelBytes8},
+    Case{"over", Operator::over, false, false, false, kColourBytes8},
+    Case{"nearest, float", Operator::nearest, true, false, false, kPixelBytesF},
+    Case{"over, backwards, interlaced", Operator::over, false, true, true, kColourBytes8},
+    Case{"over, float, backwards", Operator::over, true, false, true, kColourBytesF},
+    Case{"over with depth", Operator::over_with_depth, false, false, true, kPixelBytes8},
+};
+
+template <class Image>
+void compare(const Scheme& scheme, const std::string& codec, const Case& c, int ranks, Size size) {
+  SCOPED_TRACE(scheme.name + (", " + codec) + ", " + c.name + ", " + std::to_string(ranks) +
+               " ranks, " + std::to_string(size.width) + " x " + std::to_string(size.height));
+  ComposeOptions options;
+  options.interlace = c.interlace;
+  std::vector<int> order(static_cast<std::size_t>(ranks));
+  std::iota(order.begin(), order.end(), 0);
+  if (c.backwards) std::reverse(order.begin(), order.end());
+  if (c.backwards) options.order = order;
+  std::map<int, ImageMasks> masks;
+  MaskMaker maker;
+  for (const int rank : order) {
+    masks.emplace(rank, maker.add(partial_image<Image>(rank, size), c.how));
+  }
+  const auto real = counts_of(scheme, ranks, options, [&](int rank) {
+    return find_codec(codec)->make(partial_image<Image>(rank, size), c.how);
+  });
+  const auto hollow = counts_of(scheme, ranks, options, [&](int rank) {
+    ImageMasks& image = masks.at(rank);
+    switch (*hollow_of(codec)) {
+      case Hollow::dense:
+        return make_hollow_dense(image.covered.pixels(), c.pixel_bytes, image.covered.empty());
+      case Hollow::bounds:
+        return make_hollow_bounds(image.copy(), static_cast<std::uint64_t>(size.width),
+                                  c.pixel_bytes);
+      case Hollow::active:
+        break;
+    }
+    return make_hollow_active(image.copy(), c.pixel_bytes);
+  });
+  for (int rank = 0; rank < ranks; ++rank) {
+    SCOPED_TRACE("rank " + std::to_string(rank));
+    for (const comm::Phase phase : {comm::Phase::compose, comm::Phase::gather}) {
+      const auto i = static_cast<std::size_t>(rank);
+      expect_equal(real[i].totals(phase), hollow[i].totals(phase));
+    }
+  }
+}
+
 TEST(HollowLayers, CountWhatRealOnesDo) {
+  std::size_t turn = 0;
   for (const int ranks : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 16, 17, 64}) {
     for (const Size size : {Size{1, 1}, Size{7, 3}, ranks < 10 ? Size{149, 127} : Size{97, 61}}) {
-      std::vector<ImageMasks> masks;
-      MaskMaker maker;
-      for (int rank = 0; rank < ranks; ++rank) {
-        masks.push_back(maker.add(partial_image(rank, size).depth.span()));
-      }
-      const std::uint64_t pixels = masks[0].covered.pixels();
       for (const Scheme& scheme : schemes()) {
-        for (const std::string codec : {"dense", "active"}) {
-          SCOPED_TRACE(scheme.name + (", " + codec) + ", " + std::to_string(ranks) + " ranks, " +
-                       std::to_string(size.width) + " x " + std::to_string(size.height));
-          const auto real = counts_of(scheme, ranks, [&](int rank) {
-            return find_codec(codec)->make(partial_image(rank, size));
-          });
-          const auto hollow = counts_of(scheme, ranks, [&](int rank) {
-            ImageMasks& image = masks[static_cast<std::size_t>(rank)];
-            return codec == "dense" ? make_hollow_dense(pixels, kPixelBytes8, image.covered.empty())
-                                    : make_hollow_active(image.copy(), kPixelBytes8);
-          });
-          for (int rank = 0; rank < ranks; ++rank) {
-            SCOPED_TRACE("rank " + std::to_string(rank));
-            for (const comm::Phase phase : {comm::Phase::compose, comm::Phase::gather}) {
-              const auto i = static_cast<std::size_t>(rank);
-              expect_equal(real[i].totals(phase), hollow[i].totals(phase));
-            }
+        for (const char* codec : {"dense", "bounds", "active"}) {
+          const Case& c = kCases[turn++ % kCases.size()];
+          if (c.is_float) {
+            compare<ImageF>(scheme, codec, c, ranks, size);
+          } else {
+            compare<Image8>(scheme, codec, c, ranks, size);
           }
           ASSERT_FALSE(::testing::Test::HasFailure());
         }
