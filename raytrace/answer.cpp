@@ -41,6 +41,7 @@ void occlude(const Tracer& tracer, ShadowGroup& group) {
 void answer(const Tracer& tracer, Wave& wave) {
   const RayGroup* before = nullptr;
   for (RayGroup& group : wave.rays) {
+    if (group.misses) continue;
     tracer.embree.intersect(group.active, group.packet, group.coherent);
     if (!tracer.large) continue;
     fetch_corners(tracer.placements, group);
@@ -48,7 +49,10 @@ void answer(const Tracer& tracer, Wave& wave) {
     before = &group;
   }
   if (before != nullptr) fetch_vertices(tracer.placements, *before);
-  for (RayGroup& group : wave.rays) find_points(tracer.placements, group);
+  for (RayGroup& group : wave.rays) {
+    group.hits = 0;
+    if (!group.misses) find_points(tracer.placements, group);
+  }
   for (ShadowGroup& group : wave.shadows) occlude(tracer, group);
 }
 

@@ -38,6 +38,8 @@ class ClusterTree {
   void find(const glm::vec3& origin, const glm::vec3& direction, float near, float far,
             std::vector<Crossing>& crossings) const;
 
+  geometry::Box3 bounds() const { return nodes_.empty() ? geometry::Box3() : nodes_[0].box; }
+
   std::uint64_t bytes() const {
     return boxes_.capacity() * sizeof(ClusterBox) + nodes_.capacity() * sizeof(Node);
   }

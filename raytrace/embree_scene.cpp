@@ -459,6 +459,12 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
 
 std::uint64_t EmbreeScene::memory() const { return state_->memory; }
 
+geometry::Box3 EmbreeScene::bounds() const {
+  RTCBounds box;
+  rtcGetSceneBounds(state_->top.get(), &box);
+  return {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+}
+
 const EmbreeDevice& EmbreeScene::device() const { return state_->common; }
 
 }  // namespace delray::raytrace

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "geometry/box.h"
 #include "raytrace/placement.h"
 #include "raytrace/ray.h"
 
@@ -68,7 +69,8 @@ class EmbreeScene {
                 std::span<SeeThrough, kPacketRays> passed, bool coherent) const;
 
   bool has_see_through() const { return has_see_through_; }
-  std::uint64_t memory() const;  // bytes that Embree took for this scene
+  std::uint64_t memory() const;   // bytes that Embree took for this scene
+  geometry::Box3 bounds() const;  // of all that can be hit
   const EmbreeDevice& device() const;
 
   struct State;  // Embree's objects

@@ -80,6 +80,7 @@ void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& 
     hn::Store(hn::VecFromMask(di, hn::RebindMask(di, mask_of(mask, i))), di, group.active.ray + i);
   }
   group.coherent = true;
+  group.misses = false;
 }
 
 }  // namespace HWY_NAMESPACE

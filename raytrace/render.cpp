@@ -146,6 +146,9 @@ struct Renderer::Memory {
   }
   const shading::Shader& shader() const { return tracer ? tracer->shader : scene->shader(); }
   const LightTable& lights() const { return tracer ? tracer->lights : scene->lights(); }
+  geometry::Box3 bounds() const {
+    return tracer ? tracer->embree.bounds() : scene->tree().bounds();
+  }
 };
 
 Renderer::Renderer(const Tracer& tracer) : memory_(new Memory{&tracer, nullptr, nullptr}) {}
@@ -168,8 +171,13 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   const geometry::Rect whole{0, 0, width, height};
   const geometry::Rect window = options.part.window.empty() ? whole : options.part.window;
   const shading::BatchShader shader = shading::make_batch_shader(memory_->shader());
-  const Setting setting{shader,        memory_->lights(), view,
-                        options.trace, options.samples,   options.scattered};
+  const Setting setting{shader,
+                        memory_->lights(),
+                        view,
+                        options.trace,
+                        options.samples,
+                        options.scattered,
+                        scenes::pixels_of(view, memory_->bounds())};
   Walks walks(integrator(options.integrator), setting);
   const bool root = communicator.rank() == 0;
   Result result;

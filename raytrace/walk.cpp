@@ -57,7 +57,10 @@ void Walk::ask_primary_rays() {
                           disc_point(sobol_pair(key(first + i), sample, kLens)));
         }
         const shading::LaneMask mask = inside(task_.pixels, x, y);
-        set_primary_rays(setting_.view, x, y, places, mask, next_.rays.add());
+        RayGroup& group = next_.rays.add();
+        set_primary_rays(setting_.view, x, y, places, mask, group);
+        group.misses =
+            geometry::intersection(setting_.filled, {x, y, x + kBlockSide, y + kBlockSide}).empty();
         rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
       }
     }

@@ -50,6 +50,8 @@ struct Setting {
   // Samples lie anywhere in their pixels, whatever the integrator: the first few of them are spread
   // out as evenly as all are.
   bool scattered = false;
+  // Primary rays of other pixels meet nothing.
+  geometry::Rect filled = {0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
 };
 
 inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)

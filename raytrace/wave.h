@@ -22,6 +22,7 @@ struct RayGroup {
   ActiveRays active;
   RayPacket packet;          // near, far and a miss as the hit
   bool coherent = false;     // rays of neighbouring pixels, which stay together
+  bool misses = false;       // known to meet nothing, as all of the scene is elsewhere
   shading::Vectors16 view;   // unit vectors back along the rays
   shading::Floats16 width;   // of the cone that stands for its pixel, where the ray starts
   shading::Floats16 spread;  // what the cone gains per unit of the packet's distances

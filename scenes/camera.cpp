@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -122,6 +123,32 @@ View make_view(const Camera& camera, int width, int height) {
   view.focus_distance =
       camera.focus > 0 ? camera.focus : static_cast<float>(distance > 0 ? distance : 1);
   return view;
+}
+
+geometry::Rect pixels_of(const View& view, const geometry::Box3& box) {
+  const geometry::Rect all{0, 0, view.width, view.height};
+  if (box.empty()) return {};
+  if (view.lens_radius > 0) return all;
+  // Directions are single floats, and none is closer to an axis than a millionth of its length.
+  const double margin = 1.0 + 4e-6 * view.scale;
+  glm::dvec2 low(std::numeric_limits<double>::max()), high(-low);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 at((corner & 1) != 0 ? box.high.x : box.low.x,
+                        (corner & 2) != 0 ? box.high.y : box.low.y,
+                        (corner & 4) != 0 ? box.high.z : box.low.z);
+    const glm::dvec3 v = at - glm::dvec3(view.eye);
+    const double along = glm::dot(v, glm::dvec3(view.forward));
+    const double least = 1e-5 * glm::length(v);  // what is farther aside is beyond any frame
+    if (!(along > least)) return all;
+    const glm::dvec2 pixel(glm::dot(v, glm::dvec3(view.right)), -glm::dot(v, glm::dvec3(view.up)));
+    low = glm::min(low, pixel / along);
+    high = glm::max(high, pixel / along);
+  }
+  const glm::dvec2 half(view.half_width, view.half_height), size(view.width, view.height);
+  low = glm::clamp(glm::floor(half + low * double{view.scale} - margin), glm::dvec2(0), size);
+  high = glm::clamp(glm::ceil(half + high * double{view.scale} + margin), glm::dvec2(0), size);
+  return {static_cast<int>(low.x), static_cast<int>(low.y), static_cast<int>(high.x),
+          static_cast<int>(high.y)};
 }
 
 Camera camera_around(const geometry::Box3& bounds, const char* name, bool z_up, float aspect) {

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "geometry/box.h"
+#include "geometry/rect.h"
 
 namespace delray::scenes {
 
@@ -54,6 +55,12 @@ struct View {
 // REQUIRES: width, height >= 1. A camera whose eye equals `at`, or whose up is parallel to the
 // view, gets some direction rather than NaN.
 View make_view(const Camera& camera, int width, int height);
+
+// A rectangle of pixels outside of which no ray from the lens, through any place in its pixel,
+// meets a point of the box. Empty for an empty box; for one that reaches behind the eye and for a
+// lens with a size it is the whole frame. Rays may be rounded as make_view's numbers and a
+// thousandth of a pixel ask for.
+geometry::Rect pixels_of(const View& view, const geometry::Box3& box);
 
 // Cameras around the box of a scene, such that all of it is in the frame.
 // name: default, front, back, left, right, top, bottom, iso. `z_up` for terrains and point data.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <glm/glm.hpp>
 #include <limits>
+#include <type_traits>
 
 #include "raytrace/wave.h"
 
@@ -24,6 +25,7 @@ template <class Group>
 void clear_lanes(Group& group) {
   std::fill_n(group.active.ray, kPacketRays, 0);
   group.coherent = false;
+  if constexpr (std::is_same_v<Group, RayGroup>) group.misses = false;
 }
 
 // What is the same in all rays that start at surfaces; no lane is active.

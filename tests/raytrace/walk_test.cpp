@@ -54,15 +54,17 @@ struct Samples {
   std::vector<glm::vec4> colours;
   std::vector<float> depths;
   RayCounts rays;
+  int misses = 0;  // groups that were not sent
 };
 
 Samples walk_over(const Tracer& tracer, const char* name, int width, int height, int samples,
-                  int side, int samples_at_a_time) {
+                  int side, int samples_at_a_time, bool all_filled = true) {
   const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
   TraceOptions options;
   options.depth = 4;
-  const Setting setting{shader, tracer.lights, scenes::make_view(camera(), width, height), options,
-                        samples};
+  Setting setting{shader, tracer.lights, scenes::make_view(camera(), width, height), options,
+                  samples};
+  if (!all_filled) setting.filled = scenes::pixels_of(setting.view, tracer.embree.bounds());
   const auto pixels = static_cast<std::size_t>(width * height);
   Samples result;
   result.colours.resize(pixels * static_cast<std::size_t>(samples));
@@ -74,7 +76,10 @@ Samples walk_over(const Tracer& tracer, const char* name, int width, int height,
         const Task task{{x, y, std::min(x + side, width), std::min(y + side, height)},
                         s,
                         std::min(samples_at_a_time, samples - s)};
-        for (walk->start(task); !walk->done(); walk->go_on()) answer(tracer, walk->wave());
+        for (walk->start(task); !walk->done(); walk->go_on()) {
+          for (const RayGroup& group : walk->wave().rays) result.misses += group.misses ? 1 : 0;
+          answer(tracer, walk->wave());
+        }
         result.rays += walk->rays();
         for (std::size_t b = 0; b < walk->samples().size(); ++b) {
           const auto blocks = static_cast<std::size_t>(task.blocks());
@@ -94,6 +99,25 @@ Samples walk_over(const Tracer& tracer, const char* name, int width, int height,
     }
   }
   return result;
+}
+
+TEST(Walk, PixelsThatNothingFillsAreNotSentAndStayTheSame) {
+  scenes::Scene scene;
+  add(scene, sphere(12));
+  scene.environment.zenith = {0.2F, 0.3F, 0.6F};
+  const Tracer tracer = make_tracer(scene);
+  for (const Integrator& one : integrators()) {
+    const Samples sent = walk_over(tracer, one.name, 64, 40, 1, 16, 1);
+    const Samples spared = walk_over(tracer, one.name, 64, 40, 1, 16, 1, false);
+    EXPECT_EQ(sent.misses, 0);
+    EXPECT_GT(spared.misses, 20);
+    EXPECT_EQ(sent.rays, spared.rays);
+    EXPECT_EQ(std::memcmp(sent.colours.data(), spared.colours.data(),
+                          sent.colours.size() * sizeof(glm::vec4)),
+              0)
+        << one.name;
+    EXPECT_EQ(sent.depths, spared.depths) << one.name;
+  }
 }
 
 TEST(Walk, CutsIntoTasksChangeNoPixel) {

@@ -49,6 +49,51 @@ TEST(Camera, RayThroughTheProjectionOfAPointMeetsThePoint) {
   }
 }
 
+// Whatever is seen of a box is seen in its pixels, however close to the edge of the frame.
+TEST(Camera, PixelsOfABoxHaveAllRaysThatMeetIt) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  int parts = 0, seen = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    const float far = std::pow(10.0F, 2.0F * unit(random) + 1.0F);
+    const float angle = trial % 5 == 0 ? 0.01F : 20 + 50 * std::abs(unit(random));
+    const View view =
+        make_view({vector() * far, vector(), vector(), angle, 0}, 1 + trial % 700, 1 + trial % 500);
+    geometry::Box3 box;
+    box.include(vector() * 2.0F);
+    box.include(vector() * 2.0F);
+    const geometry::Rect pixels = pixels_of(view, box);
+    parts += pixels.area() < std::int64_t{view.width} * view.height ? 1 : 0;
+    for (int k = 0; k < 40; ++k) {
+      const glm::dvec3 weight = (glm::dvec3(vector()) + 1.0) * 0.5;
+      const glm::dvec3 p =
+          k < 8 ? corner(box, k) : glm::mix(glm::dvec3(box.low), glm::dvec3(box.high), weight);
+      const Projected at = project(view, p);
+      const glm::dvec2 cell = glm::floor(at.pixel);
+      if (!(at.depth > 0) || cell.x < 0 || cell.y < 0 || cell.x >= view.width ||
+          cell.y >= view.height)
+        continue;
+      ++seen;
+      EXPECT_TRUE(pixels.contains(static_cast<int>(cell.x), static_cast<int>(cell.y)))
+          << "trial " << trial;
+    }
+  }
+  EXPECT_GT(parts, 500);
+  EXPECT_GT(seen, 5000);
+}
+
+TEST(Camera, PixelsOfABoxAreNoneOrAllWhereThereIsNothingToTell) {
+  Camera camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40, 0};
+  const geometry::Rect all{0, 0, 64, 48};
+  const geometry::Box3 small{glm::vec3(-0.1F), glm::vec3(0.1F)};
+  EXPECT_TRUE(pixels_of(make_view(camera, 64, 48), {}).empty());
+  EXPECT_LT(pixels_of(make_view(camera, 64, 48), small).area(), 100);
+  EXPECT_EQ(pixels_of(make_view(camera, 64, 48), {glm::vec3(-1), glm::vec3(6)}), all);
+  camera.aperture = 0.1F;
+  EXPECT_EQ(pixels_of(make_view(camera, 64, 48), small), all);
+}
+
 TEST(Camera, ViewHasItsAxesAtRightAnglesAndItsFieldOfView) {
   const View view = make_view({{3, 2, 5}, {1, 0, -1}, {0, 1, 0}, 60, 0}, 640, 480);
   EXPECT_NEAR(glm::length(view.right), 1, 1e-6);
