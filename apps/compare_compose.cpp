@@ -22,7 +22,6 @@ namespace delray::apps {
 namespace {
 
 using composite::HollowImages;
-using composite::ImageMasks;
 using composite::MachineModel;
 
 constexpr const char* kThisMachine = "this-machine";
@@ -89,14 +88,13 @@ class Comparison {
 
   composite::ComposeOptions options() const { return {.interlace = request_.interlace}; }
 
-  // REQUIRES: hollow layers can stand for those of the codec.
-  HollowImages hollow(const std::vector<ImageMasks>& masks, const std::string& codec) const {
-    return {masks, *composite::hollow_of(codec), composite::kPixelBytes8,
-            static_cast<std::uint64_t>(request_.render.width)};
+  HollowImages hollow(int ranks, const std::string& codec) {
+    return shapes(ranks).hollow(codec, request_.render.width);
   }
 
-  std::vector<std::string> codecs_of(const raster::Share& share) const {
-    return is_transparent(share) ? std::vector<std::string>{"deep"} : request_.codecs;
+  // Transparent layers are lists of surfaces, for which there is one codec.
+  std::vector<std::string> codecs(bool are_transparent) const {
+    return are_transparent ? std::vector<std::string>{"deep"} : request_.codecs;
   }
 
   void append(const std::string& scheme, const std::string& codec, int ranks,
@@ -116,7 +114,7 @@ class Comparison {
   void measure_all(comm::Communicator& communicator, const raster::Share& share) {
     const int ranks = communicator.size();
     ShareLayers layers(share);
-    for (const std::string& codec : codecs_of(share)) {
+    for (const std::string& codec : codecs(is_transparent(share))) {
       for (const std::string& scheme : schemes_of(request_)) {
         // All ranks stop before the same scheme.
         const bool stop = communicator.rank() == 0 && steps_.stop_requested();
@@ -160,11 +158,9 @@ class Comparison {
     std::vector<raster::Share> shares;
     parallel::Arena(parallel::arena_threads()).execute([&] {
       ShareDrawer drawer(request_, prepared_, steps_.inside());
-      composite::MaskMaker maker;
       for (int rank = 0; rank < ranks; ++rank) {
         shares.push_back(drawer.draw(rank, ranks));
-        if (is_transparent(shares.back())) continue;
-        masks_[ranks].push_back(maker.add(std::get<image::Image8>(shares.back()).depth.span()));
+        shapes_[ranks].add(shares.back());
       }
     });
     Launch launch = request_.render.launch;
@@ -181,7 +177,7 @@ class Comparison {
       const raster::Share share = comm::all_or_none(communicator, comm::Phase::rasterize, [&] {
         ShareDrawer drawer(request_, prepared_, steps_.inside());
         if (communicator.rank() == 0 && communicator.size() <= kMostMeasuredRanks) {
-          masks_[communicator.size()] = drawer.masks(communicator.size());
+          shapes_.emplace(communicator.size(), drawer.shapes(communicator.size()));
         }
         return drawer.draw(communicator.rank(), communicator.size());
       });
@@ -189,52 +185,56 @@ class Comparison {
     });
   }
 
-  const std::vector<ImageMasks>& masks(int ranks) {
-    if (masks_.count(ranks) == 0) {
+  const ShareShapes& shapes(int ranks) {
+    if (shapes_.count(ranks) == 0) {
       parallel::Arena(parallel::arena_threads()).execute([&] {
-        masks_[ranks] = ShareDrawer(request_, prepared_, steps_.inside()).masks(ranks);
+        shapes_.emplace(ranks, ShareDrawer(request_, prepared_, steps_.inside()).shapes(ranks));
       });
     }
-    return masks_[ranks];
+    return shapes_.at(ranks);
   }
 
   // Counts what was not measured, and predicts everything.
   void predict() {
-    for (const std::string& codec : request_.codecs) {
-      if (!composite::hollow_of(codec)) {
-        spdlog::warn("nothing is predicted of codec {}, whose messages depend on what pixels show",
-                     codec);
-        continue;
+    const std::vector<int> counts = ranks_of_rows();
+    if (counts.empty()) return;
+    const bool are_transparent = shapes(counts.front()).are_transparent();
+    if (are_transparent && request_.codecs != CompareRequest().codecs)
+      spdlog::warn("something is transparent: lists of surfaces travel, whatever --codec says");
+    for (const std::string& codec : codecs(are_transparent)) predict(codec, counts);
+  }
+
+  void predict(const std::string& codec, const std::vector<int>& counts) {
+    if (!composite::hollow_of(codec)) {
+      spdlog::warn("nothing is predicted of codec {}, whose messages depend on what pixels show",
+                   codec);
+      return;
+    }
+    const composite::Codec* flat = composite::find_codec(codec);
+    const composite::LayerCosts costs =
+        flat != nullptr ? measure_layer_costs(*flat) : composite::measure_deep_layer_costs();
+    const std::vector<composite::TimedScheme> samples = samples_of(codec);
+    for (const int ranks : counts) {
+      const HollowImages images = hollow(ranks, codec);
+      if (ranks > kMostMeasuredRanks) count_simulated(codec, images);
+      std::vector<std::pair<std::string, MachineModel>> machines;
+      for (const comm::NamedNetwork& named : comm::networks()) {
+        machines.emplace_back(named.name, MachineModel{named.network, costs});
       }
-      const composite::LayerCosts costs = measure_layer_costs(*composite::find_codec(codec));
-      const std::vector<composite::TimedScheme> samples = samples_of(codec);
-      for (const int ranks : ranks_of_rows()) {
-        const std::vector<ImageMasks>& images = masks(ranks);
-        if (images.empty()) {
-          spdlog::warn("nothing is predicted of transparent layers");
-          return;
-        }
-        if (ranks > kMostMeasuredRanks) count_simulated(codec, ranks, images);
-        std::vector<std::pair<std::string, MachineModel>> machines;
-        for (const comm::NamedNetwork& named : comm::networks()) {
-          machines.emplace_back(named.name, MachineModel{named.network, costs});
-        }
-        if (ranks <= kMostRanksHere) {
-          machines.emplace_back(kThisMachine,
-                                fit_to_others({network_here(ranks), costs}, samples, ranks));
-        }
-        for (ComparedScheme& row : rows_) {
-          if (row.codec != codec || row.ranks != ranks) continue;
-          steps_.stop_if_asked();
-          steps_.done();
-          for (const auto& [name, machine] : machines) {
-            const composite::Simulated run =
-                simulate(row.scheme, hollow(images, codec), machine, options());
-            row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
-          }
-        }
-        masks_.erase(ranks > kMostFittedRanks ? ranks : -1);
+      if (ranks <= kMostRanksHere) {
+        machines.emplace_back(kThisMachine,
+                              fit_to_others({network_here(ranks), costs}, samples, ranks));
       }
+      for (ComparedScheme& row : rows_) {
+        if (row.codec != codec || row.ranks != ranks) continue;
+        steps_.stop_if_asked();
+        steps_.done();
+        for (const auto& [name, machine] : machines) {
+          const composite::Simulated run = simulate(row.scheme, images, machine, options());
+          row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
+        }
+      }
+      if (ranks > kMostFittedRanks) shapes_.erase(ranks);
     }
   }
 
@@ -251,16 +251,16 @@ class Comparison {
     return ranks;
   }
 
-  void count_simulated(const std::string& codec, int ranks, const std::vector<ImageMasks>& images) {
+  void count_simulated(const std::string& codec, const HollowImages& images) {
     for (const std::string& scheme : schemes_of(request_)) {
       steps_.stop_if_asked();
       steps_.done();
       const composite::Simulated run =
-          simulate(scheme, hollow(images, codec), {comm::networks()[0].network, {}}, options());
+          simulate(scheme, images, {comm::networks()[0].network, {}}, options());
       ComparedScheme row;
       row.scheme = scheme;
       row.codec = codec;
-      row.ranks = ranks;
+      row.ranks = images.count();
       row.counts = run.compose;
       row.gather = run.gather;
       rows_.push_back(std::move(row));
@@ -271,8 +271,8 @@ class Comparison {
     std::vector<composite::TimedScheme> samples;
     for (const ComparedScheme& row : rows_) {
       if (row.codec != codec || row.ranks > kMostFittedRanks || row.ranks < 2) continue;
-      if (!row.compose_seconds || masks(row.ranks).empty()) continue;
-      samples.push_back({row.scheme, hollow(masks(row.ranks), codec),
+      if (!row.compose_seconds) continue;
+      samples.push_back({row.scheme, hollow(row.ranks, codec),
                          std::max(1e-9, row.compose_seconds->median), 1, options()});
     }
     return samples;
@@ -284,7 +284,7 @@ class Comparison {
                                     const std::vector<composite::TimedScheme>& samples, int ranks) {
     std::vector<composite::TimedScheme> others;
     for (const composite::TimedScheme& sample : samples) {
-      const auto count = static_cast<int>(sample.images.ranks.size());
+      const auto count = sample.images.count();
       if (count == ranks || (count <= cores_here()) != (ranks <= cores_here())) continue;
       // Ranks that share cores as these do tell most.
       const double octaves = std::log2(static_cast<double>(count) / ranks);
@@ -300,7 +300,7 @@ class Comparison {
   Steps steps_;
   int session_ranks_ = 0;  // processes of mpirun
   ComposeComparison result_;
-  std::map<int, std::vector<ImageMasks>> masks_;  // by number of ranks
+  std::map<int, ShareShapes> shapes_;  // by number of ranks
   std::vector<ComparedScheme> rows_;
 };
 

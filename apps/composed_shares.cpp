@@ -10,6 +10,19 @@
 
 namespace delray::apps {
 
+void ShareShapes::add(const raster::Share& share) {
+  if (const auto* image = std::get_if<image::Image8>(&share)) {
+    masks_.push_back(maker_.add(image->depth.span()));
+  } else {
+    deep_.emplace_back(std::get<composite::DeepImage<image::RgbaF>>(share));
+  }
+}
+
+composite::HollowImages ShareShapes::hollow(const std::string& codec, int width) const {
+  return {masks_, *composite::hollow_of(codec), composite::kPixelBytes8,
+          static_cast<std::uint64_t>(width), deep_};
+}
+
 ShareDrawer::ShareDrawer(const CompareRequest& request, const Prepared& prepared,
                          parallel::Progress* progress)
     : prepared_(prepared), progress_(progress), renderer_(prepared.scene, prepared.shader) {
@@ -21,14 +34,12 @@ raster::Share ShareDrawer::draw(int rank, int ranks) {
   return renderer_.draw_share(rank, ranks, prepared_.camera, options_, progress_);
 }
 
-std::vector<composite::ImageMasks> ShareDrawer::masks(int ranks) {
-  std::vector<composite::ImageMasks> result;
-  composite::MaskMaker maker;
+ShareShapes ShareDrawer::shapes(int ranks) {
+  ShareShapes result;
   for (int rank = 0; rank < ranks; ++rank) {
     raster::Share share = draw(rank, ranks);
-    if (is_transparent(share)) return {};
-    result.push_back(maker.add(std::get<image::Image8>(share).depth.span()));
-    renderer_.recycle(std::get<image::Image8>(std::move(share)));
+    result.add(share);
+    if (auto* image = std::get_if<image::Image8>(&share)) renderer_.recycle(std::move(*image));
   }
   return result;
 }

@@ -7,10 +7,28 @@
 #include "apps/compare_compose.h"
 #include "apps/share_layers.h"
 #include "comm/communicator.h"
+#include "composite/deep_shape.h"
 #include "composite/mask.h"
+#include "composite/simulate.h"
 #include "raster/render.h"
 
 namespace delray::apps {
+
+// What is known without pixels of the shares of ranks: masks of flat ones, or where surfaces lie.
+class ShareShapes {
+ public:
+  // The next rank's.
+  void add(const raster::Share& share);
+  // REQUIRES: all shares were transparent for codec "deep", and flat for others, which hollow
+  // layers can stand for. Valid as long as this is.
+  composite::HollowImages hollow(const std::string& codec, int width) const;
+  bool are_transparent() const { return !deep_.empty(); }
+
+ private:
+  composite::MaskMaker maker_;
+  std::vector<composite::ImageMasks> masks_;
+  std::vector<composite::DeepShape> deep_;
+};
 
 // Draws the shares of so many ranks one by one. Parallel in the caller's arena.
 class ShareDrawer {
@@ -18,8 +36,8 @@ class ShareDrawer {
   ShareDrawer(const CompareRequest& request, const Prepared& prepared,
               parallel::Progress* progress);
   raster::Share draw(int rank, int ranks);
-  // Of all ranks, from the first to the last; empty for a scene of which something is transparent.
-  std::vector<composite::ImageMasks> masks(int ranks);
+  // Of all ranks, from the first to the last.
+  ShareShapes shapes(int ranks);
 
  private:
   const Prepared& prepared_;

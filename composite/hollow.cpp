@@ -1,45 +1,16 @@
 #include "composite/hollow.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "composite/internal/bounds.h"
+#include "composite/internal/hollow_layer.h"
 
 namespace delray::composite {
 namespace {
 
-class HollowLayer : public Layer {
- public:
-  HollowLayer(std::size_t pixel_bytes, const LayerClock& clock)
-      : pixel_bytes_(pixel_bytes), clock_(clock) {}
-
- protected:
-  std::size_t pixel_bytes() const { return pixel_bytes_; }
-
-  void charge_cut(PixelRange range, std::size_t bytes) const {
-    charge(clock_.costs.cut + clock_.costs.cut_pixel * static_cast<double>(range.size()) +
-           clock_.costs.cut_byte * static_cast<double>(bytes));
-  }
-  void charge_merge(PixelRange range) const {
-    charge(clock_.costs.merge + clock_.costs.merge_pixel * static_cast<double>(range.size()));
-  }
-  // Bytes are written once more, into the image.
-  void charge_replace(std::size_t bytes) const {
-    charge(clock_.costs.merge + clock_.costs.cut_byte * static_cast<double>(bytes));
-  }
-
- private:
-  void charge(double seconds) const {
-    if (!clock_.communicator || seconds <= 0) return;
-    clock_.communicator->work(comm::Work::seconds_e9,
-                              static_cast<std::uint64_t>(std::llround(seconds * 1e9)));
-  }
-
-  std::size_t pixel_bytes_;
-  LayerClock clock_;
-};
+using internal::HollowLayer;
 
 class HollowDenseLayer final : public HollowLayer {
  public:
@@ -192,6 +163,7 @@ std::optional<Hollow> hollow_of(std::string_view codec) {
   if (codec == "dense") return Hollow::dense;
   if (codec == "bounds") return Hollow::bounds;
   if (codec == "active") return Hollow::active;
+  if (codec == "deep") return Hollow::deep;
   return std::nullopt;
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "comm/communicator.h"
+#include "composite/deep_shape.h"
 #include "composite/layer.h"
 #include "composite/layer_costs.h"
 #include "composite/mask.h"
@@ -21,9 +22,9 @@ namespace delray::composite {
 inline constexpr std::size_t kPixelBytes8 = 8, kPixelBytesF = 20;
 inline constexpr std::size_t kColourBytes8 = 4, kColourBytesF = 16;
 
-// The codecs whose messages hollow layers know the size of. That of "lz4" depends on the values of
-// pixels: only real layers can tell.
-enum class Hollow : std::uint8_t { dense, bounds, active };
+// The codecs, and "deep" layers, whose messages hollow layers know the size of. That of "lz4"
+// depends on the values of pixels: only real layers can tell.
+enum class Hollow : std::uint8_t { dense, bounds, active, deep };
 // Nothing for other codecs.
 std::optional<Hollow> hollow_of(std::string_view codec);
 
@@ -46,5 +47,10 @@ std::unique_ptr<Layer> make_hollow_active(ImageMasks&& image, std::size_t pixel_
 // The same for codec "bounds". REQUIRES: width, the image's, is >= 1 where it has pixels.
 std::unique_ptr<Layer> make_hollow_bounds(ImageMasks&& image, std::uint64_t width,
                                           std::size_t pixel_bytes, const LayerClock& clock = {});
+
+// Stands for a deep layer: where its surfaces lie is known, and which of them are opaque.
+std::unique_ptr<Layer> make_hollow_deep(DeepShape image,
+                                        std::size_t fragment_bytes = sizeof(Fragment),
+                                        const LayerClock& clock = {});
 
 }  // namespace delray::composite

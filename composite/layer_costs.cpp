@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <functional>
+#include <map>
 #include <span>
 #include <thread>
 #include <utility>
@@ -10,6 +12,7 @@
 
 #include "comm/collectives.h"
 #include "comm/threads.h"
+#include "composite/deep.h"
 #include "composite/image_layer.h"
 #include "composite/scheme.h"
 
@@ -125,21 +128,71 @@ class TimedLayer final : public Layer {
   Spent& spent_;
 };
 
-// Composites copies of `image`, which all ranks have, in the memory of `spare`; the result is of
-// all ranks together, on rank 0.
-Spent compose_timed(comm::Communicator& communicator, const Codec& codec, const char* scheme,
-                    const image::Image8& image, image::Image8& spare) {
-  if (spare.pixels() != image.pixels()) spare = image::Image8(image.width, image.height);
-  std::copy_n(image.colour.data(), image.pixels(), spare.colour.data());
-  std::copy_n(image.depth.data(), image.pixels(), spare.depth.data());
+// The layers of one rank, in memory that is used again.
+class Layers {
+ public:
+  virtual ~Layers() = default;
+  virtual std::unique_ptr<Layer> make(const image::Image8& picture) = 0;
+  virtual void take_back(Part&& part) = 0;
+};
+
+class FlatLayers final : public Layers {
+ public:
+  explicit FlatLayers(const Codec& codec) : codec_(codec) {}
+
+  std::unique_ptr<Layer> make(const image::Image8& picture) override {
+    image::Image8& spare = spares_[picture.pixels()];
+    if (spare.pixels() == 0) spare = image::Image8(picture.width, picture.height);
+    std::copy_n(picture.colour.data(), picture.pixels(), spare.colour.data());
+    std::copy_n(picture.depth.data(), picture.pixels(), spare.depth.data());
+    return codec_.make(std::exchange(spare, {}));
+  }
+  void take_back(Part&& part) override {
+    image::Image8 image = take_image<image::Rgba8>(std::move(part));
+    image::Image8& spare = spares_[image.pixels()];
+    spare = std::move(image);
+  }
+
+ private:
+  const Codec& codec_;
+  std::map<std::size_t, image::Image8> spares_;  // by size
+};
+
+// A surface that is seen through before an opaque one wherever the picture is covered.
+class DeepLayers final : public Layers {
+ public:
+  explicit DeepLayers(int rank) : rank_(rank) {}
+
+  std::unique_ptr<Layer> make(const image::Image8& picture) override {
+    DeepImage<image::RgbaF> image(picture.width, picture.height);
+    for (std::size_t i = 0; i < picture.pixels(); ++i) {
+      const float depth = picture.depth[i];
+      if (depth == image::kEmptyDepth) continue;
+      const auto primitive = static_cast<std::uint32_t>(rank_);
+      std::array<Fragment, 2> list = {Fragment{{0.2F, 0.1F, 0.1F, 0.5F}, depth, primitive, 0},
+                                      Fragment{{0.2F, 0.3F, 0.4F, 1}, depth + 100, primitive, 1}};
+      image.set(i, list);
+    }
+    return make_deep(std::move(image));
+  }
+  void take_back(Part&&) override {}
+
+ private:
+  int rank_;
+};
+
+// Composites layers of `picture`, which all ranks have; the result is of all ranks together, on
+// rank 0.
+Spent compose_timed(comm::Communicator& communicator, Layers& layers, const char* scheme,
+                    const image::Image8& picture) {
   Spent spent;
-  auto layer = std::make_unique<TimedLayer>(codec.make(std::exchange(spare, {})), spent);
+  auto layer = std::make_unique<TimedLayer>(layers.make(picture), spent);
   // The first wait may be long; the others are over at once, and all are awake.
   for (int i = 0; i < 3; ++i) comm::barrier(communicator);
   Part part = compose(communicator, std::move(layer), scheme);
   comm::barrier(communicator);  // who goes on would slow down those who are not done
   part.layer = dynamic_cast<TimedLayer&>(*part.layer).release();
-  spare = take_image<image::Rgba8>(std::move(part));
+  layers.take_back(std::move(part));
   Spent all;
   for (const comm::Buffer& one : comm::gather(communicator, 0, comm::Buffer::of_value(spent))) {
     all += one.as<Spent>()[0];
@@ -181,20 +234,18 @@ Line median_of(const Variant& variant, Line Spent::*line) {
   return result;
 }
 
-}  // namespace
+using MakeLayers = std::function<std::unique_ptr<Layers>(int rank)>;
 
-LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels) {
+LayerCosts measure(std::uint64_t pixels, const MakeLayers& make) {
   std::vector<Variant> variants = variants_of(pixels);
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   const int ranks = std::clamp(cores / 2 * 2, 2, kMostRanks);
   comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
-    image::Image8 large, small;
+    const std::unique_ptr<Layers> layers = make(communicator.rank());
     // All take turns; the first one is to warm up.
     for (int repeat = 0; repeat <= kRepeats; ++repeat) {
       for (Variant& variant : variants) {
-        image::Image8& spare = variant.image.pixels() < pixels ? small : large;
-        const Spent spent =
-            compose_timed(communicator, codec, variant.scheme, variant.image, spare);
+        const Spent spent = compose_timed(communicator, *layers, variant.scheme, variant.image);
         if (communicator.rank() == 0 && repeat > 0) variant.spent.push_back(spent);
       }
     }
@@ -206,6 +257,16 @@ LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels) {
   }
   const auto cut = fit(cuts), merge = fit(merges);
   return {cut[0], cut[1], cut[2], merge[0], merge[1], merge[2]};
+}
+
+}  // namespace
+
+LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels) {
+  return measure(pixels, [&](int) { return std::make_unique<FlatLayers>(codec); });
+}
+
+LayerCosts measure_deep_layer_costs(std::uint64_t pixels) {
+  return measure(pixels, [](int rank) { return std::make_unique<DeepLayers>(rank); });
 }
 
 }  // namespace delray::composite

@@ -37,9 +37,13 @@ class Counter {
 };
 
 std::unique_ptr<Layer> make_layer(const HollowImages& images, int rank, const LayerClock& clock) {
+  if (images.codec == Hollow::deep) {
+    return make_hollow_deep(images.deep[static_cast<std::size_t>(rank)], sizeof(Fragment), clock);
+  }
   const ImageMasks& image = images.ranks[static_cast<std::size_t>(rank)];
   switch (images.codec) {
     case Hollow::dense:
+    case Hollow::deep:
       break;
     case Hollow::bounds:
       return make_hollow_bounds(image.copy(), images.width, images.pixel_bytes, clock);
@@ -80,7 +84,7 @@ Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Pha
 
 Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
                    const ComposeOptions& options) {
-  const auto ranks = static_cast<int>(images.ranks.size());
+  const int ranks = images.count();
   comm::Network network = machine.network;
   network.seconds_per_work[static_cast<std::size_t>(comm::Work::pixels_composited)] =
       machine.costs.merge_covered;

@@ -31,10 +31,13 @@ Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Pha
 
 // What ranks know of their images, and how they send them.
 struct HollowImages {
-  std::span<const ImageMasks> ranks;  // at least one; all of one size
+  std::span<const ImageMasks> ranks;  // at least one, all of one size; without Hollow::deep
   Hollow codec = Hollow::dense;
   std::size_t pixel_bytes = kPixelBytes8;  // or another of hollow.h
   std::uint64_t width = 1;                 // of the images, for Hollow::bounds
+  std::span<const DeepShape> deep = {};    // in place of `ranks`, with Hollow::deep
+
+  int count() const { return static_cast<int>(codec == Hollow::deep ? deep.size() : ranks.size()); }
 };
 
 // A machine on which layers are cut and merged.

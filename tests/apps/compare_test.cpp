@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "composite/codec.h"
 #include "composite/scheme.h"
@@ -78,6 +81,46 @@ TEST(CompareCompose, BlendsTransparentScenesAlikeAndTakesEveryCodec) {
     const Json json = Json::parse(folder.read("f.json"));
     EXPECT_GE(json["rows"].size(), 6U);
     for (const Json& row : json["rows"]) EXPECT_EQ(row["image_hash"], hash) << row.dump();
+  }
+}
+
+TEST(CompareCompose, SimulatesListsOfSurfacesAsItCountsThem) {
+  const Folder folder;
+  folder.write("glass.mtl", "newmtl glass\nKd 0.8 0.2 0.1\nd 0.4\nnewmtl wall\nKd 0.2 0.6 0.9\n");
+  std::string scene = "mtllib glass.mtl\n";
+  for (int i = 0; i < 300; ++i) {
+    const int x = i * 37 % 101, y = i * 59 % 97, z = i * 83 % 89;
+    scene += "usemtl " + std::string(i % 3 == 0 ? "wall" : "glass");
+    for (const int k : {0, 12, 25})
+      scene += "\nv " + std::to_string(x + k % 2 * 9) + " " + std::to_string(y + k) + " " +
+               std::to_string(z + k / 2);
+    scene += "\nf -3 -2 -1\n";
+  }
+  folder.write("glass.obj", scene);
+  const std::string arguments = "glass.obj --size 120x80";
+  const Ran ran = run("delray compare compose " + arguments +
+                          " --ranks 2,64,65 --codec dense --compose tree direct-send --quick "
+                          "--stats - -o report.html",
+                      folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.err.find("whatever --codec says"), std::string::npos) << ran.err;
+  const std::string hash = hash_of_render(folder, arguments);
+  const Json rows = Json::parse(ran.out)["rows"];
+  ASSERT_EQ(rows.size(), 6U);
+  std::map<std::string, std::vector<double>> fragments;  // by scheme, ascending ranks
+  for (const Json& row : rows) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_EQ(row["codec"], "deep");
+    EXPECT_EQ(row["predicted"].size(), 5U);
+    for (const Json& predicted : row["predicted"]) EXPECT_GT(predicted["seconds"], 0);
+    const bool is_measured = row["ranks"] <= 64;
+    EXPECT_EQ(row["image_hash"], is_measured ? Json(hash) : Json(nullptr));
+    fragments[row["scheme"]].push_back(row["pixels_composited_total"]);
+  }
+  // What is simulated continues what is counted: a rank more makes little difference.
+  for (const auto& [scheme, counts] : fragments) {
+    EXPECT_NEAR(counts[2] / counts[1], 1, 0.1) << scheme;
+    EXPECT_LT(counts[0], counts[1] * 0.9) << scheme;
   }
 }
 

@@ -14,6 +14,7 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "composite/codec.h"
+#include "composite/deep.h"
 #include "composite/scheme.h"
 #include "image/image.h"
 
@@ -77,6 +78,16 @@ void expect_equal(const comm::Totals& a, const comm::Totals& b) {
   EXPECT_EQ(a.work, b.work);
 }
 
+void expect_equal_counts(const std::vector<comm::Tally>& real,
+                         const std::vector<comm::Tally>& hollow) {
+  for (std::size_t rank = 0; rank < real.size(); ++rank) {
+    SCOPED_TRACE("rank " + std::to_string(rank));
+    for (const comm::Phase phase : {comm::Phase::compose, comm::Phase::gather}) {
+      expect_equal(real[rank].totals(phase), hollow[rank].totals(phase));
+    }
+  }
+}
+
 // What a picture is made of, and how.
 struct Case {
   const char* name;
@@ -121,17 +132,12 @@ void compare(const Scheme& scheme, const std::string& codec, const Case& c, int 
         return make_hollow_bounds(image.copy(), static_cast<std::uint64_t>(size.width),
                                   c.pixel_bytes);
       case Hollow::active:
+      case Hollow::deep:
         break;
     }
     return make_hollow_active(image.copy(), c.pixel_bytes);
   });
-  for (int rank = 0; rank < ranks; ++rank) {
-    SCOPED_TRACE("rank " + std::to_string(rank));
-    for (const comm::Phase phase : {comm::Phase::compose, comm::Phase::gather}) {
-      const auto i = static_cast<std::size_t>(rank);
-      expect_equal(real[i].totals(phase), hollow[i].totals(phase));
-    }
-  }
+  expect_equal_counts(real, hollow);
 }
 
 TEST(HollowLayers, CountWhatRealOnesDo) {
@@ -148,6 +154,48 @@ TEST(HollowLayers, CountWhatRealOnesDo) {
           }
           ASSERT_FALSE(::testing::Test::HasFailure());
         }
+      }
+    }
+  }
+}
+
+// Up to three surfaces at a pixel of a part of the image, of few depths, some of them opaque.
+DeepImage<image::RgbaF> deep_image(int rank, int ranks, Size size) {
+  DeepImage<image::RgbaF> image(size.width, size.height);
+  std::mt19937 random(55U + static_cast<unsigned>(rank));
+  const bool empty = random() % 5 == 0;
+  const std::size_t pixels = image.lists.size(), begin = random() % (pixels + 1);
+  for (std::size_t i = begin; i < pixels && !empty; ++i) {
+    std::vector<Fragment> list;
+    for (unsigned k = random() % 4; k > 0; --k) {
+      const auto primitive = static_cast<std::uint32_t>((random() % 9 * 4 + k) * ranks + rank);
+      list.push_back({{0, 0, 0, random() % 3 == 0 ? 1.0F : 0.5F},
+                      static_cast<float>(random() % 3),
+                      primitive,
+                      primitive % 2});
+    }
+    if (!list.empty()) image.set(i, list);
+  }
+  return image;
+}
+
+TEST(HollowLayers, CountWhatDeepOnesDo) {
+  bool interlace = false;
+  for (const int ranks : {1, 2, 3, 5, 8, 13, 31}) {
+    for (const Size size : {Size{1, 1}, Size{7, 3}, Size{97, 61}}) {
+      for (const Scheme& scheme : schemes()) {
+        SCOPED_TRACE(scheme.name + (", " + std::to_string(ranks)) + " ranks, " +
+                     std::to_string(size.width) + " x " + std::to_string(size.height));
+        interlace = !interlace;
+        const ComposeOptions options{.interlace = interlace};
+        const auto real = counts_of(scheme, ranks, options, [&](int rank) {
+          return make_deep(deep_image(rank, ranks, size));
+        });
+        const auto hollow = counts_of(scheme, ranks, options, [&](int rank) {
+          return make_hollow_deep(DeepShape(deep_image(rank, ranks, size)));
+        });
+        expect_equal_counts(real, hollow);
+        ASSERT_FALSE(::testing::Test::HasFailure());
       }
     }
   }
