@@ -345,8 +345,7 @@ class MpiCommunicator final : public Communicator {
 
   // MPI may still be writing messages that nobody asked for.
   void keep_unreceived() {
-    while (auto* message = queue_.any()) {
-      Transfer transfer = queue_.take(message);
+    for (Transfer& transfer : queue_.take_all()) {
       if (!completed(transfer.requests)) engine_->unfinished.push_back(std::move(transfer));
     }
   }

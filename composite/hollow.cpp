@@ -42,14 +42,23 @@ class HollowDenseLayer final : public HollowLayer {
   bool empty_;
 };
 
-// Knows which pixels are covered. A message holds how many pixels travel and which are covered.
+// Knows which pixels are covered. A message holds how many pixels travel and which are covered, and
+// nothing where none is.
 class HollowMaskLayer : public HollowLayer {
  public:
-  HollowMaskLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
-      : HollowLayer(pixel_bytes, clock), image_(std::move(image)) {}
+  HollowMaskLayer(ImageMasks&& image, std::size_t pixel_bytes, std::size_t bytes_of_nothing,
+                  const LayerClock& clock)
+      : HollowLayer(pixel_bytes, clock),
+        image_(std::move(image)),
+        bytes_of_nothing_(bytes_of_nothing) {}
 
   std::uint64_t pixels() const override { return image_.covered.pixels(); }
   comm::Buffer cut(PixelRange range) override {
+    // Most messages between thousands of ranks are of nothing.
+    if (image_.covered.empty(range)) {
+      charge_cut(range, bytes_of_nothing_);
+      return comm::Buffer::standing_for(bytes_of_nothing_, {});
+    }
     const Coverage coverage(
         range.size(), [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
           return image_.covered.read(range.begin + begin, range.begin + end, mask);
@@ -98,15 +107,16 @@ class HollowMaskLayer : public HollowLayer {
   const PixelMask& covered() const { return image_.covered; }
 
  private:
-  static Sizes sizes_in(const comm::Buffer& pixels) {
-    Sizes sizes;
-    std::memcpy(&sizes, pixels.data(), sizeof sizes);
+  Sizes sizes_in(const comm::Buffer& pixels) const {
+    Sizes sizes{bytes_of_nothing_, 0};
+    if (!pixels.empty()) std::memcpy(&sizes, pixels.data(), sizeof sizes);
     return sizes;
   }
 
   // Calls f(first pixel, mask) for the groups that a message covers.
   template <class F>
   static void for_each_group(PixelRange range, const comm::Buffer& pixels, F&& f) {
+    if (pixels.empty()) return;
     const Coverage coverage(range.size(), pixels.data() + sizeof(Sizes));
     for (std::size_t i = 0; i < coverage.groups(); ++i) {
       const Coverage::Group at = coverage.group(i);
@@ -126,11 +136,13 @@ class HollowMaskLayer : public HollowLayer {
   }
 
   ImageMasks image_;
+  std::size_t bytes_of_nothing_;  // of a message of pixels none of which is covered
 };
 
 class HollowActiveLayer final : public HollowMaskLayer {
  public:
-  using HollowMaskLayer::HollowMaskLayer;
+  HollowActiveLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
+      : HollowMaskLayer(std::move(image), pixel_bytes, sizeof(std::uint64_t), clock) {}
 
  private:
   Sizes sizes_of(PixelRange, const Coverage& coverage) const override {
@@ -142,7 +154,8 @@ class HollowBoundsLayer final : public HollowMaskLayer {
  public:
   HollowBoundsLayer(ImageMasks&& image, std::uint64_t width, std::size_t pixel_bytes,
                     const LayerClock& clock)
-      : HollowMaskLayer(std::move(image), pixel_bytes, clock), width_(width) {}
+      : HollowMaskLayer(std::move(image), pixel_bytes, sizeof(internal::Bounds), clock),
+        width_(width) {}
 
  private:
   Sizes sizes_of(PixelRange range, const Coverage&) const override {

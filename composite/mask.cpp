@@ -36,6 +36,21 @@ bool PixelMask::empty() const {
   });
 }
 
+bool PixelMask::empty(PixelRange range) const {
+  for (std::uint64_t at = range.begin; at < range.end;) {
+    const std::uint64_t group_end = std::min((at / kGroupPixels + 1) * kGroupPixels, range.end);
+    if (!groups_[at / kGroupPixels]) {
+      at = group_end;
+      continue;
+    }
+    const std::uint64_t shift = at % kElementPixels;
+    const std::uint64_t count = std::min(kElementPixels - shift, group_end - at);
+    if ((element(at / kElementPixels) >> shift & low_bits(count)) != 0) return false;
+    at += count;
+  }
+  return true;
+}
+
 std::uint64_t PixelMask::element(std::uint64_t i) const {
   if (i / kGroupElements >= groups_.size()) return 0;
   const auto& group = groups_[i / kGroupElements];

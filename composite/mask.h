@@ -25,6 +25,8 @@ class PixelMask {
   PixelMask copy() const;
   std::uint64_t pixels() const { return pixels_; }
   bool empty() const;
+  // Whether none of the range is in the set. REQUIRES: range.end <= pixels().
+  bool empty(PixelRange range) const;
 
   // Sets the bits of the pixels of [begin, end) that are in the set, bit 0 for `begin`, and returns
   // how many there are. REQUIRES: mask is zero; end - begin <= kGroupPixels; end <= pixels().

@@ -29,6 +29,7 @@ void run_tasks(std::size_t tasks, FunctionRef<void(std::size_t)> f) {
 void parallel_blocks(std::size_t begin, std::size_t end, std::size_t grain,
                      FunctionRef<void(std::size_t, std::size_t)> f) {
   if (begin >= end) return;
+  if (end - begin <= grain) return f(begin, end);  // the scheduler takes longer than many a block
 #ifdef DELRAY_PLAIN_THREADS
   std::vector<std::size_t> ends = {begin};
   internal::cut(begin, end, grain, ends);

@@ -60,6 +60,7 @@ using MakeLayer = std::function<std::unique_ptr<Layer>(int rank)>;
 std::vector<comm::Tally> counts_of(const Scheme& scheme, int ranks, const ComposeOptions& options,
                                    const MakeLayer& make) {
   std::vector<comm::Tally> result;
+  result.reserve(static_cast<std::size_t>(ranks));
   for (int rank = 0; rank < ranks; ++rank) result.emplace_back(rank);
   comm::run_simulated(ranks, {}, 1, [&](comm::Communicator& communicator) {
     const int rank = communicator.rank();

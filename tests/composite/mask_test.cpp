@@ -57,6 +57,9 @@ TEST(PixelMask, EqualsAVectorOfBoolUnderRandomChanges) {
       EXPECT_EQ(
           bits_of(mask, {from, pixels}),
           std::vector<bool>(expected.begin() + static_cast<std::ptrdiff_t>(from), expected.end()));
+      const auto first = expected.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto last = expected.begin() + static_cast<std::ptrdiff_t>(std::max(begin, end));
+      EXPECT_EQ(mask.empty({begin, std::max(begin, end)}), std::find(first, last, true) == last);
       EXPECT_EQ(mask.empty(), std::find(expected.begin(), expected.end(), true) == expected.end());
     }
     EXPECT_EQ(bits_of(mask.copy(), {0, pixels}), expected);
