@@ -59,7 +59,7 @@ class Comparison {
       : session_(session), request_(request), prepared_(prepared), steps_(progress) {}
 
   ComposeComparison run() {
-    // Each scheme, codec and number of ranks is measured or counted, then predicted.
+    // Each scheme, codec and number of ranks is measured where it can be, then predicted.
     const std::size_t variants = schemes_of(request_).size() * request_.codecs.size();
     steps_.start(2 * variants * (session_.under_mpi ? 1 : request_.ranks.size()));
     try {
@@ -84,6 +84,8 @@ class Comparison {
   }
 
  private:
+  using Machines = std::vector<std::pair<std::string, MachineModel>>;
+
   int repeats(int ranks) const { return request_.quick ? 3 : ranks > 16 ? 3 : ranks > 4 ? 9 : 15; }
 
   composite::ComposeOptions options() const { return {.interlace = request_.interlace}; }
@@ -216,8 +218,7 @@ class Comparison {
     const std::vector<composite::TimedScheme> samples = samples_of(codec);
     for (const int ranks : counts) {
       const HollowImages images = hollow(ranks, codec);
-      if (ranks > kMostMeasuredRanks) count_simulated(codec, images);
-      std::vector<std::pair<std::string, MachineModel>> machines;
+      Machines machines;
       for (const comm::NamedNetwork& named : comm::networks()) {
         machines.emplace_back(named.name, MachineModel{named.network, costs});
       }
@@ -225,13 +226,19 @@ class Comparison {
         machines.emplace_back(kThisMachine,
                               fit_to_others({network_here(ranks), costs}, samples, ranks));
       }
-      for (ComparedScheme& row : rows_) {
-        if (row.codec != codec || row.ranks != ranks) continue;
-        steps_.stop_if_asked();
-        steps_.done();
-        for (const auto& [name, machine] : machines) {
-          const composite::Simulated run = simulate(row.scheme, images, machine, options());
-          row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
+      if (ranks > kMostMeasuredRanks) {
+        for (const std::string& scheme : schemes_of(request_)) {
+          rows_.push_back(simulated_row(scheme, codec, images, machines));
+        }
+      } else {
+        for (ComparedScheme& row : rows_) {
+          if (row.codec != codec || row.ranks != ranks) continue;
+          steps_.stop_if_asked();
+          steps_.done();
+          for (const auto& [name, machine] : machines) {
+            const composite::Simulated run = simulate(row.scheme, images, machine, options());
+            row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
+          }
         }
       }
       if (ranks > kMostFittedRanks) shapes_.erase(ranks);
@@ -251,20 +258,23 @@ class Comparison {
     return ranks;
   }
 
-  void count_simulated(const std::string& codec, const HollowImages& images) {
-    for (const std::string& scheme : schemes_of(request_)) {
+  // Counted and predicted at once.
+  ComparedScheme simulated_row(const std::string& scheme, const std::string& codec,
+                               const HollowImages& images, const Machines& machines) {
+    ComparedScheme row;
+    row.scheme = scheme;
+    row.codec = codec;
+    row.ranks = images.count();
+    for (const auto& [name, machine] : machines) {
       steps_.stop_if_asked();
-      steps_.done();
-      const composite::Simulated run =
-          simulate(scheme, images, {comm::networks()[0].network, {}}, options());
-      ComparedScheme row;
-      row.scheme = scheme;
-      row.codec = codec;
-      row.ranks = images.count();
+      const composite::Simulated run = simulate(scheme, images, machine, options());
       row.counts = run.compose;
       row.gather = run.gather;
-      rows_.push_back(std::move(row));
+      row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
     }
+    steps_.done();
+    steps_.done();
+    return row;
   }
 
   std::vector<composite::TimedScheme> samples_of(const std::string& codec) {
