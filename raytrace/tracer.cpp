@@ -6,8 +6,18 @@
 namespace delray::raytrace {
 namespace {
 
-// With normals some 3 MB.
-constexpr std::size_t kManyTriangles = 1 << 17;
+// Of what meshes know of hits: the larger part of a cache that tracing fills as well.
+constexpr std::size_t kManyBytes = 2 << 20;
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
+std::size_t bytes_of(const scenes::Mesh& mesh) {
+  return bytes_of(mesh.triangles) + bytes_of(mesh.positions) + bytes_of(mesh.normals) +
+         bytes_of(mesh.uvs) + bytes_of(mesh.colours) + bytes_of(mesh.tangents);
+}
 
 }  // namespace
 
@@ -19,10 +29,10 @@ Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
   EmbreeScene embree(placements, options);
   LightTable lights(scene, shader);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  std::size_t triangles = 0;
-  for (const scenes::Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
-  return {std::move(shader), std::move(placements), std::move(embree),         std::move(lights),
-          degenerate,        seconds.count(),       triangles > kManyTriangles};
+  std::size_t bytes = 0;
+  for (const scenes::Mesh& mesh : scene.meshes) bytes += bytes_of(mesh);
+  return {std::move(shader), std::move(placements), std::move(embree), std::move(lights),
+          degenerate,        seconds.count(),       bytes > kManyBytes};
 }
 
 }  // namespace delray::raytrace
