@@ -18,7 +18,7 @@ constexpr Integrator kIntegrators[] = {
     {"direct", "lights with their shadows, and the environment", make_direct},
     {"identity", "numbers of instances, materials and triangles, from 1 on", make_identity},
     {"normal", "unit normals of the shading, x, y, z as red, green, blue", make_normal},
-    {"path", "light on all ways, by chance (Kajiya 1986)", make_path},
+    {"path", "light on all ways, by chance (Kajiya 1986)", make_path, 2 * kTaskSide},
     {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", make_whitted},
 };
 

@@ -14,6 +14,9 @@ struct Integrator {
   const char* name;
   const char* description;
   std::unique_ptr<Walk> (*make)(const Setting& setting);
+  // Pixels of this rank's scene are walked through in squares of this side, a multiple of
+  // kTaskSide, where tiles allow.
+  int side = kTaskSide;
 };
 
 std::span<const Integrator> integrators();

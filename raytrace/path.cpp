@@ -8,6 +8,7 @@
 #include "image/image.h"
 #include "raytrace/bsdf.h"
 #include "raytrace/internal/ask.h"
+#include "raytrace/internal/hits_by_material.h"
 #include "raytrace/internal/lane_sums.h"
 #include "raytrace/internal/path_vertices.h"
 #include "raytrace/internal/same_material.h"
@@ -38,13 +39,17 @@ bool finite(const glm::vec3& v) {
 
 class Path final : public Walk {
  public:
-  explicit Path(const Setting& setting) : Walk(setting, Positions::random) {}
+  explicit Path(const Setting& setting)
+      : Walk(setting, Positions::random),
+        plain_(setting.shader.materials.size()),
+        coloured_(setting.shader.materials.size()) {}
 
  private:
   void begin() override {
     asked_.clear();
     asked_lights_.clear();
-    used_ = used_lights_ = kPacketRays;
+    filling_ = straight_ = {};
+    used_lights_ = kPacketRays;
     for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
       PathLanes& lanes = asked_.add();
       lanes.whole = true;
@@ -57,7 +62,9 @@ class Path final : public Walk {
     std::swap(asked_lights_, answered_lights_);
     asked_.clear();
     asked_lights_.clear();
-    used_ = used_lights_ = kPacketRays;
+    filling_ = straight_ = {};
+    used_lights_ = kPacketRays;
+    textured_ = false;
     for (std::size_t g = 0; g < wave_.shadows.size(); ++g) {
       add_light(wave_.shadows[g], answered_lights_[g]);
     }
@@ -65,8 +72,10 @@ class Path final : public Walk {
       PathLanes& lanes = answered_[g];
       if (lanes.whole && wave_.rays[g].hits != 0) spell_out(lanes);
       add_sky(wave_.rays[g], lanes);
-      if (wave_.rays[g].hits != 0) meet(wave_.rays[g], lanes);
+      if (wave_.rays[g].hits != 0) find(static_cast<std::uint32_t>(g), lanes);
     }
+    meet_gathered(plain_.take(), false);
+    meet_gathered(coloured_.take(), true);
   }
 
   static void spell_out(PathLanes& lanes) {
@@ -124,15 +133,44 @@ class Path final : public Walk {
     }
   }
 
-  // The surfaces that a group's rays met.
-  void meet(const RayGroup& group, const PathLanes& lanes) {
-    for (LaneMask rest = group.hits; rest != 0;) {
+  // The surfaces that a group's rays met: looks at them at once where they fill it.
+  void find(std::uint32_t number, const PathLanes& lanes) {
+    const RayGroup& group = wave_.rays[number];
+    const LaneMask seen = see(group, lanes);
+    for (LaneMask rest = seen; rest != 0;) {
+      const LaneMask same = same_material(group, rest);
+      rest &= ~same;
+      const std::uint32_t material = group.material[std::countr_zero(same)];
+      if (same == shading::kAllLanes) return meet_all(number, lanes);
+      const bool known = material < setting_.shader.materials.size();
+      (group.points.coloured ? coloured_ : plain_).add(known ? material : 0, number, same);
+      textured_ = textured_ || setting_.shader.material(material).textured;
+    }
+  }
+
+  void meet_all(std::uint32_t number, const PathLanes& lanes) {
+    for (std::uint32_t i = 0; i < kPacketRays; ++i) sources_[i] = number * kPacketRays + i;
+    meet(wave_.rays[number], lanes, shading::kAllLanes);
+  }
+
+  void meet_gathered(std::span<const std::uint32_t> hits, bool coloured) {
+    while (!hits.empty()) {
+      const std::size_t count = std::min<std::size_t>(hits.size(), kPacketRays);
+      gather_hits(wave_.rays, answered_, hits.first(count), coloured, textured_, group_, lanes_);
+      std::copy_n(hits.begin(), count, sources_);
+      meet(group_, lanes_, shading::first_lanes(static_cast<int>(count)));
+      hits = hits.subspan(count);
+    }
+  }
+
+  // Surfaces side by side, of which lane i is that of hit sources_[i] of the wave.
+  void meet(const RayGroup& group, const PathLanes& lanes, LaneMask seen) {
+    for (LaneMask rest = seen; rest != 0;) {
       const LaneMask same = same_material(group, rest);
       shading::evaluate(setting_.shader, group.material[std::countr_zero(rest)], group.points,
                         group.view, same, surfaces_);
       rest &= ~same;
     }
-    const LaneMask seen = see(group, lanes);
     LaneMask alive = 0;
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -140,7 +178,7 @@ class Path final : public Walk {
       alive |= more ? 1U << i : 0U;
     }
     for (LaneMask rest = glowing_lanes(surfaces_, seen); rest != 0; rest &= rest - 1) {
-      add_glow(group, lanes, std::countr_zero(rest));
+      add_glow(lanes, std::countr_zero(rest));
     }
     if (alive != 0) make_bsdfs(surfaces_, group.view, alive, bsdfs_);
     alive &= ~bsdfs_.black;
@@ -166,23 +204,36 @@ class Path final : public Walk {
     sobol_pairs(numbers_, pairs);
   }
 
+  // The hits that may be seen through, with their alpha_.
+  LaneMask find_alphas(const RayGroup& group) {
+    LaneMask layered = 0;
+    for (LaneMask rest = group.hits; rest != 0;) {
+      const LaneMask same = same_material(group, rest);
+      const std::uint32_t material = group.material[std::countr_zero(rest)];
+      rest &= ~same;
+      if (setting_.shader.material(material).covers && !group.points.coloured) continue;
+      shading::coverage(setting_.shader, material, group.points, same, alpha_);
+      layered |= same;
+    }
+    return layered;
+  }
+
   // Asks for rays behind layers that a path goes through by chance. Returns the other hits, and
   // notes their depths.
   LaneMask see(const RayGroup& group, const PathLanes& lanes) {
     LaneMask seen = group.hits;
+    const LaneMask layered = find_alphas(group);
     bool drawn = false;
-    for (LaneMask rest = group.hits; rest != 0; rest &= rest - 1) {
+    for (LaneMask rest = layered; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const bool behind = lanes.triangle[i] != kMiss;
-      const float alpha = surfaces_.alpha[i];
-      if (!behind && !(alpha < 1.0F)) continue;
       const Hit hit = hit_of(group.packet, i);
+      // A ray that left a layer behind may meet it once more.
       const bool again = hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
       if (!again) {
-        if (!(alpha < 1.0F)) continue;
-        if (!drawn) draw_at(lanes, group.hits, kLayer, std::span(pairs_).first<1>());
+        if (!(alpha_[i] < 1.0F)) continue;
+        if (!drawn) draw_at(lanes, layered, kLayer, std::span(pairs_).first<1>());
         drawn = true;
-        if (pairs_[0].x[i] < alpha) continue;
+        if (pairs_[0].x[i] < alpha_[i]) continue;
       }
       go_behind(group, lanes, i, hit);
       seen &= ~(1U << i);
@@ -201,23 +252,28 @@ class Path final : public Walk {
     return seen;
   }
 
-  void add_glow(const RayGroup& group, const PathLanes& lanes, int i) {
+  void add_glow(const PathLanes& lanes, int i) {
     float share = 1.0F;
     if (lanes.pdf[i] > 0.0F) {
-      const Hit hit = hit_of(group.packet, i);
-      share = power_heuristic(lanes.pdf[i], setting_.lights.pdf_of_hit(hit.placement, hit.triangle,
-                                                                       origin_of(group.packet, i),
-                                                                       surfaces_.position.get(i)));
+      const RayPacket& packet = wave_.rays[sources_[i] / kPacketRays].packet;
+      const int lane = static_cast<int>(sources_[i] % kPacketRays);
+      const Hit hit = hit_of(packet, lane);
+      const float pdf = setting_.lights.pdf_of_hit(
+          hit.placement, hit.triangle, origin_of(packet, lane), surfaces_.position.get(i));
+      share = power_heuristic(lanes.pdf[i], pdf);
     }
     add(lanes.pixel[i], lanes.weight.get(i) * surfaces_.emission.get(i) * share);
   }
 
   void go_behind(const RayGroup& group, const PathLanes& lanes, int i, const Hit& hit) {
     if (lanes.vertex[i] >= kMostLayers + static_cast<std::uint32_t>(setting_.options.depth)) return;
-    make_room();
-    const int lane = used_++;
-    RayGroup& next = next_.rays.back();
-    PathLanes& to = asked_.back();
+    // The camera's rays have not been turned aside.
+    Filling& filling = lanes.bounce[i] == 0 ? straight_ : filling_;
+    make_room(filling);
+    const int lane = filling.used++;
+    RayGroup& next = next_.rays[filling.group];
+    PathLanes& to = asked_[filling.group];
+    next.coherent = lanes.bounce[i] == 0;
     set_ray(next, lane, origin_of(group.packet, i), direction_of(group.packet, i),
             group.view.get(i), next_up(hit.distance));
     next.width[lane] = group.width[i];
@@ -232,27 +288,33 @@ class Path final : public Walk {
     ++(lanes.bounce[i] == 0 ? rays_.primary : rays_.secondary);
   }
 
-  // Sees to it that the last group of next_ has lanes left.
-  void make_room() {
-    if (used_ < kPacketRays) return;
+  // A group of next_ whose lanes from `used` on are free.
+  struct Filling {
+    std::size_t group = 0;
+    int used = kPacketRays;
+  };
+
+  // Sees to it that some are.
+  void make_room(Filling& filling) {
+    if (filling.used < kPacketRays) return;
+    filling = {next_.rays.size(), 0};
     clear_rays(next_.rays.add());
     PathLanes& lanes = asked_.add();
     lanes.whole = false;
     std::fill_n(lanes.triangle, kPacketRays, kMiss);
-    used_ = 0;
   }
 
   void ask_scattered() {
-    make_room();
-    const int used = used_, all = used + next_rays_.count;
-    const std::size_t first = next_.rays.size() - 1;
-    used_ = std::min(all, kPacketRays);
+    make_room(filling_);
+    const int used = filling_.used, all = used + next_rays_.count;
+    const std::size_t first = filling_.group;
+    filling_.used = all;
     std::array<float*, 18> second{};
     if (all > kPacketRays) {
-      make_room();
-      used_ = all - kPacketRays;
+      make_room(filling_);
+      filling_.used = all - kPacketRays;
       second = path_fields(next_.rays.back(), asked_.back());
-      activate(next_.rays.back(), 0, used_);
+      activate(next_.rays.back(), 0, filling_.used);
     }
     append_lanes(next_rays_, used, path_fields(next_.rays[first], asked_[first]),
                  all > kPacketRays ? &second : nullptr);
@@ -296,8 +358,15 @@ class Path final : public Walk {
 
   Groups<PathLanes> asked_, answered_;  // of next_.rays and wave_.rays
   Groups<LightLanes> asked_lights_, answered_lights_;
-  int used_ = kPacketRays, used_lights_ = kPacketRays;  // lanes of the last groups of next_
+  Filling filling_, straight_;       // groups of next_.rays, straight_ of camera rays
+  int used_lights_ = kPacketRays;    // lanes of the last group of next_.shadows
+  HitsByMaterial plain_, coloured_;  // colours of vertices: of none, of some of a group
+  bool textured_ = false;            // whether any of their materials is
   // Of the surfaces that are looked at.
+  RayGroup group_;
+  PathLanes lanes_;
+  std::uint32_t sources_[kPacketRays] = {};
+  shading::Floats16 alpha_;
   shading::Surfaces surfaces_;
   Bsdfs bsdfs_;
   SampleLanes numbers_{};

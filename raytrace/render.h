@@ -25,10 +25,6 @@ namespace delray::raytrace {
 // same whoever traced them, or the processor time that they took.
 enum class CostSource : std::uint8_t { rays, seconds };
 
-// Pixels are walked through in squares of this side, cut from the frame's left upper corner on
-// however large tiles are: rays of so many stay in the cache between tracing and shading.
-inline constexpr int kTaskSide = 16;
-
 // What a call renders of a picture; all of it unless told otherwise.
 struct Part {
   geometry::Rect window;  // of the frame, its sides on multiples of kTaskSide or on the frame's;

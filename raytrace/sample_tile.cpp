@@ -53,18 +53,19 @@ int samples_of(const RenderOptions& options) {
                                   : options.samples - options.part.first_sample;
 }
 
-std::vector<Task> tasks_of(const TiledFrame& frame, const Rect& tile) {
+std::vector<Task> tasks_of(const TiledFrame& frame, const Rect& tile, int side) {
   const Part& part = frame.options.part;
   const Rect& window = frame.tiles.frame;
   const auto columns = static_cast<std::size_t>((window.width() + kTaskSide - 1) / kTaskSide);
+  if (!part.squares.empty()) side = kTaskSide;
   std::vector<Task> tasks;
-  for (int y = tile.y0; y < tile.y1; y += kTaskSide) {
-    for (int x = tile.x0; x < tile.x1; x += kTaskSide) {
+  for (int y = tile.y0; y < tile.y1; y += side) {
+    for (int x = tile.x0; x < tile.x1; x += side) {
       const std::size_t square = static_cast<std::size_t>((y - window.y0) / kTaskSide) * columns +
                                  static_cast<std::size_t>((x - window.x0) / kTaskSide);
       if (!part.squares.empty() && part.squares[square] == 0) continue;
       Task& task = tasks.emplace_back();
-      task.pixels = geometry::intersection(tile, {x, y, x + kTaskSide, y + kTaskSide});
+      task.pixels = geometry::intersection(tile, {x, y, x + side, y + side});
       task.first_sample = part.first_sample;
     }
   }
@@ -162,7 +163,7 @@ TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile) {
   TilePixels pixels = start_tile(frame, tile);
   const int samples = samples_of(frame.options);
   std::unique_ptr<Walk> walk = frame.walks.take();
-  for (Task& task : tasks_of(frame, pixels.rect)) {
+  for (Task& task : tasks_of(frame, pixels.rect, frame.walks.side())) {
     for (int s = 0; s < samples; ++s, ++task.first_sample) {
       for (walk->start(task); !walk->done(); walk->go_on()) answer(*frame.tracer, walk->wave());
       add_samples(frame, *walk, task, pixels);

@@ -56,6 +56,10 @@ struct Setting {
 
 inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)
 
+// Pixels are walked through in squares of this side, cut from the frame's left upper corner on
+// however large tiles are: rays of so many stay in the cache between tracing and shading.
+inline constexpr int kTaskSide = 16;
+
 // Samples [first_sample, first_sample + samples) of every pixel of a rectangle, whose left and
 // upper sides are on multiples of kBlockSide; blocks that its other sides cut are filled in part.
 // How pixels and samples are cut into tasks changes no pixel.

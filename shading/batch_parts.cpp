@@ -172,7 +172,8 @@ void coverage_block(const BatchShader& shader, std::uint32_t number, const Point
                           material.base_colour_texture != scenes::kNone;
     if (textured) {
       const Texture& texture = shader.shader->textures[material.base_colour_texture];
-      alpha = alpha * looked_up(texture, points, i, active).alpha;
+      alpha = alpha * sample_alpha(texture, load(points.u, i), load(points.v, i),
+                                   level_of(texture, points, i), active);
     }
     store(resolve_alpha(material, alpha), active, i, alphas);
   }

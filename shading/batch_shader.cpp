@@ -18,8 +18,23 @@ Specular specular_of(const scenes::Material& material, bool colour_varies) {
   return colour_varies ? Specular::varying : Specular::coloured;
 }
 
-BatchMaterial make_material(const scenes::Material& material) {
+// A texture that is opaque leaves a factor as it is.
+bool covers(const Shader& shader, const scenes::Material& material) {
+  if (material.alpha == scenes::Material::Alpha::opaque) return true;
+  const std::uint32_t texture = material.base_colour_texture;
+  if (texture != scenes::kNone && !shader.textures[texture].opaque) return false;
+  scenes::Material plain = material;
+  plain.base_colour_texture = scenes::kNone;
+  return coverage(shader, plain, glm::vec2(0.0F), {}, 1.0F) == 1.0F;
+}
+
+BatchMaterial make_material(const Shader& shader, const scenes::Material& material) {
   BatchMaterial result;
+  result.covers = covers(shader, material);
+  result.textured = material.base_colour_texture != scenes::kNone ||
+                    material.metallic_roughness_texture != scenes::kNone ||
+                    material.normal_texture != scenes::kNone ||
+                    material.emission_texture != scenes::kNone;
   result.material = material;
   result.material.name.clear();
   result.plain = specular_of(material, material.base_colour_texture != scenes::kNone);
@@ -73,7 +88,8 @@ BatchShader make_batch_shader(const Shader& shader, std::span<const scenes::Mate
   BatchShader result;
   result.shader = &shader;
   result.materials.resize(materials.size());
-  std::transform(materials.begin(), materials.end(), result.materials.begin(), make_material);
+  std::transform(materials.begin(), materials.end(), result.materials.begin(),
+                 [&](const scenes::Material& material) { return make_material(shader, material); });
   result.lights.resize(shader.lights.size());
   std::transform(shader.lights.begin(), shader.lights.end(), result.lights.begin(), make_light);
   return result;

@@ -17,6 +17,8 @@ struct BatchMaterial {
   scenes::Material material;
   Specular plain = Specular::varying;     // without colours of vertices
   Specular coloured = Specular::varying;  // with them
+  bool covers = false;                    // alpha is 1 everywhere, without colours of vertices
+  bool textured = false;                  // looks at uv
   Lobes lobes;                            // of the material's factors alone
 
   // specular_albedo of these lobes, channel by channel: at the first 16 cosines of its table, and

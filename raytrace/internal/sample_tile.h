@@ -29,7 +29,9 @@ TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile);
 
 // The parts of a tile that are walked through at once, the first sample of each. Rays of so many
 // pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
-std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile);
+// `side`: of the largest, a multiple of kTaskSide.
+std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile,
+                           int side = kTaskSide);
 
 // How many samples a task gets, one after the other.
 int samples_of(const RenderOptions& options);

@@ -16,6 +16,8 @@ class Walks {
   Walks(const Integrator& integrator, const Setting& setting)
       : integrator_(integrator), setting_(setting) {}
 
+  int side() const { return integrator_.side; }
+
   std::unique_ptr<Walk> take() {
     {
       const std::lock_guard lock(mutex_);

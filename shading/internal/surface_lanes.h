@@ -23,11 +23,13 @@ struct SurfaceLanes {
   F3 emission;
 };
 
+HWY_INLINE F level_of(const Texture& texture, const Points& points, int i) {
+  return mip_level(texture, {load(points.footprint_dx_u, i), load(points.footprint_dx_v, i),
+                             load(points.footprint_dy_u, i), load(points.footprint_dy_v, i)});
+}
 HWY_INLINE TexelLanes looked_up(const Texture& texture, const Points& points, int i, M active) {
-  const F level =
-      mip_level(texture, {load(points.footprint_dx_u, i), load(points.footprint_dx_v, i),
-                          load(points.footprint_dy_u, i), load(points.footprint_dy_v, i)});
-  return sample(texture, load(points.u, i), load(points.v, i), level, active);
+  return sample(texture, load(points.u, i), load(points.v, i), level_of(texture, points, i),
+                active);
 }
 
 HWY_INLINE F3 normal_mapped(const Texture& texture, const scenes::Material& material,

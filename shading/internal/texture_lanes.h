@@ -190,6 +190,58 @@ inline HWY_NOINLINE TexelLanes sample_coded(const Texture& texture, F u, F v, F 
   return result;
 }
 
+// The alphas around each lane's point in one level: [corner][lane].
+struct AlphaCorners {
+  alignas(64) std::int32_t alpha[4][kBlockPoints];
+};
+
+HWY_INLINE void find_alphas(const image::Rgba8* texels, const Corners& at, int k,
+                            AlphaCorners& to) {
+  to.alpha[0][k] = texels[at.top_left[k]].a;
+  to.alpha[1][k] = texels[at.top_right[k]].a;
+  to.alpha[2][k] = texels[at.bottom_left[k]].a;
+  to.alpha[3][k] = texels[at.bottom_right[k]].a;
+}
+
+HWY_INLINE F bilinear(const AlphaCorners& corners, const Corners& at) {
+  const auto corner = [&](int j) { return to_float(hn::Load(IntTag(), corners.alpha[j])); };
+  const F x = hn::Load(FloatTag(), at.x), y = hn::Load(FloatTag(), at.y);
+  const F a = corner(0), c = corner(2);
+  const F upper = a + (corner(1) - a) * x;
+  const F lower = c + (corner(3) - c) * x;
+  return upper + (lower - upper) * y;
+}
+
+// The alpha of `sample` alone.
+inline HWY_NOINLINE F sample_alpha(const Texture& texture, F u, F v, F level, M active) {
+  u = fold(u, texture.wrap_u);
+  v = fold(v, texture.wrap_v);
+  const I base = truncated(level);
+  const F weight = level - to_float(base);
+  const M between = hn::And(active, hn::Ne(weight, set(0.0F)));
+  alignas(64) std::int32_t bases[kBlockPoints];
+  hn::Store(base, IntTag(), bases);
+  Corners sharp, blurred;
+  AlphaCorners alphas{}, others{};
+  const image::Rgba8* texels = texture.texels.data();
+  find_corners(texture, u, v, base, sharp);
+  for (LaneMask rest = bits_of(active, 0); rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
+    find_alphas(texels + texture.levels[bases[k]].first, sharp, k, alphas);
+  }
+  F alpha = bilinear(alphas, sharp);
+  if (!hn::AllFalse(FloatTag(), between)) {
+    find_corners(texture, u, v, base + set(1), blurred);
+    for (LaneMask rest = bits_of(between, 0); rest != 0; rest &= rest - 1) {
+      const int k = std::countr_zero(rest);
+      find_alphas(texels + texture.levels[bases[k] + 1].first, blurred, k, others);
+    }
+    const F other = bilinear(others, blurred);
+    alpha = hn::IfThenElse(between, alpha + (other - alpha) * weight, alpha);
+  }
+  return alpha / set(255.0F);
+}
+
 // REQUIRES: level 0 has fewer than 2^32 texels.
 HWY_INLINE TexelLanes sample(const Texture& texture, F u, F v, F level, M active) {
   return texture.srgb ? sample_coded<true>(texture, u, v, level, active)

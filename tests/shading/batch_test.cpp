@@ -232,6 +232,46 @@ TEST(Batch, TexturesAndCoverageAreThoseOfTheScalarFunctions) {
   });
 }
 
+TEST(Batch, WhatCoversHasAnAlphaOfOne) {
+  scenes::Scene scene;
+  RandomScene random(8);
+  for (const std::uint8_t least : {255, 254}) {
+    scenes::Texture texture;
+    texture.width = texture.height = 5;
+    for (int i = 0; i < 25; ++i) texture.texels.push_back({1, 2, 3, 255});
+    texture.texels[7].a = least;
+    scene.textures.push_back(texture);
+  }
+  using Alpha = scenes::Material::Alpha;
+  const auto add = [&](Alpha alpha, float factor, std::uint32_t texture) {
+    scenes::Material& material = scene.materials.emplace_back();
+    material.alpha = alpha;
+    material.base_colour.w = factor;
+    material.base_colour_texture = texture;
+  };
+  for (const Alpha alpha : {Alpha::opaque, Alpha::mask, Alpha::blend}) {
+    for (const float factor : {1.0F, 0.75F}) {
+      for (const std::uint32_t texture : {scenes::kNone, 0U, 1U}) add(alpha, factor, texture);
+    }
+  }
+  const Shader shader = make_shader(scene);
+  const BatchShader batch = make_batch_shader(shader);
+  int covering = 0;
+  for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+    if (!batch.material(m).covers) continue;
+    ++covering;
+    for (int turn = 0; turn < 20; ++turn) {
+      Points points;
+      for (int i = 0; i < kBlockPoints; ++i) set_point(points, i, random.point());
+      Floats16 alpha;
+      coverage(batch, m, points, kAllLanes, alpha);
+      for (int i = 0; i < kBlockPoints; ++i) ASSERT_EQ(alpha[i], 1.0F) << m << " lane " << i;
+    }
+  }
+  // Opaque; masked, without the texture that has a hole; blended, without a factor either.
+  EXPECT_EQ(covering, 6 + 4 + 2);
+}
+
 TEST(Batch, DirectionsLeadToTheEye) {
   tests::for_each_target([] {
     const glm::vec3 eye(1, 2, 3), otherwise(0, 0, 1);
