@@ -29,6 +29,8 @@ constexpr const char* kThisMachine = "this-machine";
 constexpr int kMostFittedRanks = 16;
 // Pictures of more ranks would not fit a page.
 constexpr int kMostShownRanks = 8;
+// Of the progress bar; a run is one.
+constexpr std::size_t kStepsOfPrediction = 10;
 // Simulating this many takes long, and nobody has so many on one machine.
 constexpr int kMostRanksHere = 256;
 
@@ -59,9 +61,13 @@ class Comparison {
       : session_(session), request_(request), prepared_(prepared), steps_(progress) {}
 
   ComposeComparison run() {
-    // Each scheme, codec and number of ranks is measured where it can be, then predicted.
-    const std::size_t variants = schemes_of(request_).size() * request_.codecs.size();
-    steps_.start(2 * variants * (session_.under_mpi ? 1 : request_.ranks.size()));
+    // Each scheme and codec is run several times where it can be, then predicted.
+    std::size_t steps = 0;
+    for (const int ranks : session_.under_mpi ? std::vector<int>{2} : request_.ranks) {
+      steps += kStepsOfPrediction;
+      if (ranks <= kMostMeasuredRanks) steps += static_cast<std::size_t>(repeats(ranks)) + 1;
+    }
+    steps_.start(steps * schemes_of(request_).size() * request_.codecs.size());
     try {
       if (session_.under_mpi) {
         measure_processes();
@@ -99,36 +105,45 @@ class Comparison {
     return are_transparent ? std::vector<std::string>{"deep"} : request_.codecs;
   }
 
-  void append(const std::string& scheme, const std::string& codec, int ranks,
-              const MeasuredScheme& measured) {
-    rows_.push_back({scheme,
-                     codec,
-                     ranks,
-                     measured.compose,
-                     measured.gather,
-                     measured.compose_seconds,
-                     measured.gather_seconds,
-                     measured.hash,
-                     {}});
+  // Those that were timed at least once.
+  void append(const std::vector<MeasuredScheme>& all, int ranks) {
+    for (const MeasuredScheme& measured : all) {
+      if (measured.compose_seconds.empty()) continue;
+      rows_.push_back({measured.scheme,
+                       measured.codec,
+                       ranks,
+                       measured.compose,
+                       measured.gather,
+                       spread_of(measured.compose_seconds),
+                       spread_of(measured.gather_seconds),
+                       measured.hash,
+                       {}});
+    }
   }
 
-  // On every rank.
+  // On every rank. All schemes and codecs take turns, so that none has the better minutes of the
+  // machine.
   void measure_all(comm::Communicator& communicator, const raster::Share& share) {
     const int ranks = communicator.size();
+    const bool root = communicator.rank() == 0;
     ShareLayers layers(share);
-    for (const std::string& codec : codecs(is_transparent(share))) {
-      for (const std::string& scheme : schemes_of(request_)) {
+    std::vector<MeasuredScheme> all;
+    for (const std::string& codec : codecs(is_transparent(share)))
+      for (const std::string& scheme : schemes_of(request_))
+        all.push_back({scheme, codec, {}, {}, {}, {}, {}});
+    for (int turn = 0; turn <= repeats(ranks); ++turn) {
+      for (MeasuredScheme& measured : all) {
         // All ranks stop before the same scheme.
-        const bool stop = communicator.rank() == 0 && steps_.stop_requested();
-        if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0)
+        const bool stop = root && steps_.stop_requested();
+        if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0) {
+          if (root) append(all, ranks);
           throw parallel::Interrupted{};
-        const MeasuredScheme measured = measure_scheme(communicator, layers, scheme, codec,
-                                                       repeats(ranks), request_, prepared_);
-        if (communicator.rank() != 0) continue;
-        append(scheme, codec, ranks, measured);
-        steps_.done();
+        }
+        measure(communicator, layers, request_, prepared_, turn == 0, measured);
+        if (root) steps_.done();
       }
     }
+    if (root) append(all, ranks);
     if (!request_.output.empty() && ranks == shown_ranks()) show_fastest(communicator, share);
   }
 
@@ -234,7 +249,7 @@ class Comparison {
         for (ComparedScheme& row : rows_) {
           if (row.codec != codec || row.ranks != ranks) continue;
           steps_.stop_if_asked();
-          steps_.done();
+          steps_.done(kStepsOfPrediction);
           for (const auto& [name, machine] : machines) {
             const composite::Simulated run = simulate(row.scheme, images, machine, options());
             row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
@@ -272,8 +287,7 @@ class Comparison {
       row.gather = run.gather;
       row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
     }
-    steps_.done();
-    steps_.done();
+    steps_.done(kStepsOfPrediction);
     return row;
   }
 

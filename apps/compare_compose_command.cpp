@@ -73,7 +73,7 @@ void add_compare_compose(CLI::App& compare, Session& session) {
   command->add_flag("--interlace", request->interlace,
                     "deal pieces of the image out to the ranks in turn");
   command->add_option("--compose", request->schemes, "schemes, separated by spaces (default all)");
-  add_comparison_options(*command, *request, "measure once each", "schemes, codecs, networks");
+  add_comparison_options(*command, *request, "measure less often", "schemes, codecs, networks");
   add_common_options(*command, session,
                      "compare compose model.glb --ranks 2,4,8,1024 --codec active,dense\n"
                      "compare compose gen:terrain:1000000 --size 1920x1080 --stats compose.json");

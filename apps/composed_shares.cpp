@@ -44,47 +44,39 @@ ShareShapes ShareDrawer::shapes(int ranks) {
   return result;
 }
 
-MeasuredScheme measure_scheme(comm::Communicator& communicator, ShareLayers& layers,
-                              const std::string& scheme, const std::string& codec, int repeats,
-                              const CompareRequest& request, const Prepared& prepared) {
-  MeasuredScheme result;
-  std::vector<double> compose_seconds, gather_seconds;
-  for (int repeat = 0; repeat <= repeats; ++repeat) {
-    comm::Tally tally(communicator.world_rank(communicator.rank()));
-    comm::Recording recording(communicator, tally);
-    comm::Communicator& used = repeat == 0 ? recording : communicator;
-    auto layer = layers.make(codec);
-    // The first wait may be long, and who has slept comes out late; the last is over at once.
-    for (int i = 0; i < 3; ++i) comm::barrier(communicator);
-    const double begin = communicator.seconds();
-    composite::Part part =
-        composite::compose(used, std::move(layer), scheme, {.interlace = request.interlace});
-    const double composed = communicator.seconds();
-    comm::barrier(communicator);
-    const double waited = communicator.seconds();
-    part = composite::gather(used, std::move(part), 0);
-    std::array times = {composed - begin, communicator.seconds() - waited};
-    comm::reduce(communicator, 0, std::span<double>(times),
-                 [](double a, double b) { return std::max(a, b); });
-    comm::barrier(communicator);  // what follows would slow down those who are not done
-    if (repeat > 0) {
-      compose_seconds.push_back(times[0]);
-      gather_seconds.push_back(times[1]);
-    } else {
-      result.compose = composite::count(communicator, tally, comm::Phase::compose);
-      result.gather = composite::count(communicator, tally, comm::Phase::gather);
-    }
-    image::Image8 image = layers.image_of(std::move(part));
-    if (repeat == 0 && communicator.rank() == 0) {
-      put_behind(image, prepared.background, prepared.shading(),
-                 scenes::make_view(prepared.camera, request.render.width, request.render.height));
-      result.hash = image::hash(image);
-    }
-    layers.recycle(std::move(image));
+void measure(comm::Communicator& communicator, ShareLayers& layers, const CompareRequest& request,
+             const Prepared& prepared, bool is_first, MeasuredScheme& measured) {
+  comm::Tally tally(communicator.world_rank(communicator.rank()));
+  comm::Recording recording(communicator, tally);
+  comm::Communicator& used = is_first ? recording : communicator;
+  auto layer = layers.make(measured.codec);
+  // The first wait may be long, and who has slept comes out late; the last is over at once.
+  for (int i = 0; i < 3; ++i) comm::barrier(communicator);
+  const double begin = communicator.seconds();
+  composite::Part part =
+      composite::compose(used, std::move(layer), measured.scheme, {.interlace = request.interlace});
+  const double composed = communicator.seconds();
+  comm::barrier(communicator);
+  const double waited = communicator.seconds();
+  part = composite::gather(used, std::move(part), 0);
+  std::array times = {composed - begin, communicator.seconds() - waited};
+  comm::reduce(communicator, 0, std::span<double>(times),
+               [](double a, double b) { return std::max(a, b); });
+  comm::barrier(communicator);  // what follows would slow down those who are not done
+  if (is_first) {
+    measured.compose = composite::count(communicator, tally, comm::Phase::compose);
+    measured.gather = composite::count(communicator, tally, comm::Phase::gather);
+  } else {
+    measured.compose_seconds.push_back(times[0]);
+    measured.gather_seconds.push_back(times[1]);
   }
-  result.compose_seconds = spread_of(std::move(compose_seconds));
-  result.gather_seconds = spread_of(std::move(gather_seconds));
-  return result;
+  image::Image8 image = layers.image_of(std::move(part));
+  if (is_first && communicator.rank() == 0) {
+    put_behind(image, prepared.background, prepared.shading(),
+               scenes::make_view(prepared.camera, request.render.width, request.render.height));
+    measured.hash = image::hash(image);
+  }
+  layers.recycle(std::move(image));
 }
 
 }  // namespace delray::apps

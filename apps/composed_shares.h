@@ -46,17 +46,18 @@ class ShareDrawer {
   raster::Renderer renderer_;
 };
 
+// One scheme with one codec, run again and again.
 struct MeasuredScheme {
-  composite::Counts compose, gather;
-  Spread compose_seconds, gather_seconds;  // until the last rank is done
-  std::string hash;                        // on rank 0
+  std::string scheme, codec;
+  composite::Counts compose, gather;                    // on rank 0
+  std::string hash;                                     // on rank 0
+  std::vector<double> compose_seconds, gather_seconds;  // of each run, until the last rank is done
 };
 
-// Collective: composites copies of the shares `repeats` times after once to warm up, which is when
-// it counts. Schemes that are to be compared should use the same memory, which may be faster or
-// slower by a third: give them the same layers. The result is rank 0's.
-MeasuredScheme measure_scheme(comm::Communicator& communicator, ShareLayers& layers,
-                              const std::string& scheme, const std::string& codec, int repeats,
-                              const CompareRequest& request, const Prepared& prepared);
+// Collective: composites copies of the shares once more. The first time is to warm up, which is
+// when it counts; those that follow are timed, on rank 0. Schemes that are to be compared should
+// take turns and use the same memory: the machine may become faster or slower by a third.
+void measure(comm::Communicator& communicator, ShareLayers& layers, const CompareRequest& request,
+             const Prepared& prepared, bool is_first, MeasuredScheme& measured);
 
 }  // namespace delray::apps
