@@ -46,6 +46,11 @@ void Charged::send(int to, Tag tag, Buffer&& message) {
   inner_.send(to, tag, std::move(message));
 }
 
+void Charged::multicast(std::span<const int> to, Tag tag, Buffer&& message) {
+  const Call call(*this);
+  inner_.multicast(to, tag, std::move(message));
+}
+
 Buffer Charged::receive(int from_or_any, Tag tag_or_any) {
   const Call call(*this);
   return inner_.receive(from_or_any, tag_or_any);

@@ -25,6 +25,7 @@ class Charged final : public Communicator {
   double seconds() const override;
 
   void send(int to, Tag tag, Buffer&& message) override;
+  void multicast(std::span<const int> to, Tag tag, Buffer&& message) override;
   Buffer receive(int from_or_any, Tag tag_or_any) override;
   std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) override;
   std::unique_ptr<Communicator> split(int color, int key) override;

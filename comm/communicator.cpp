@@ -1,6 +1,14 @@
 #include "comm/communicator.h"
 
+#include <utility>
+
 namespace delray::comm {
+
+void Communicator::multicast(std::span<const int> to, Tag tag, Buffer&& message) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    send(to[i], tag, i + 1 < to.size() ? message.copy() : std::move(message));
+  }
+}
 
 const char* name(Phase phase) {
   switch (phase) {

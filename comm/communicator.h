@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "comm/buffer.h"
@@ -88,6 +89,10 @@ class Communicator {
   // Hands `message` over; never blocks. A rank may send to itself. Any size, 2 GiB and more
   // included. Every message should be received before the communicator is destroyed.
   virtual void send(int to, Tag tag, Buffer&& message) = 0;
+  // The same message to several ranks: counts as a send to each, in this order, and is one unless
+  // the communicator knows better. A bus that all ranks listen to carries it once
+  // (Network::is_bus).
+  virtual void multicast(std::span<const int> to, Tag tag, Buffer&& message);
   // Waits for a message and takes it; first in, first out per source and tag.
   virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;
   // The next message that receive(envelope.source, envelope.tag) would take, without waiting for

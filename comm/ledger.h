@@ -17,6 +17,7 @@ struct Event {
   Kind kind = Kind::mark;
   Phase phase = Phase::other;
   Work work = Work::seconds_e9;  // of kind work
+  bool is_repeated = false;      // a send of the message of the send before, to one more rank
   std::int32_t round = 0;
   std::int32_t peer = -1;     // world rank of the other side of a message
   Tag tag = -1;               // of a message; collectives' are >= kReservedTags

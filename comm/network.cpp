@@ -31,7 +31,7 @@ const std::array kNetworks = {
                  network_of({12e-6, 3e-6, 1.177e9, 5e9})},
     NamedNetwork{"hdr-infiniband", "200 Gbit/s InfiniBand HDR, RDMA",
                  network_of({1.0e-6, 0.25e-6, 24.5e9, 0})},
-    NamedNetwork{"shared-bus", "100 Mbit/s Ethernet, one cable for all, TCP",
+    NamedNetwork{"shared-bus", "100 Mbit/s Ethernet, one cable that all listen to",
                  network_of({60e-6, 5e-6, 11.77e6, 5e9}, true)},
 };
 

@@ -18,7 +18,8 @@ struct Network {
   double seconds_per_byte = 1 / 1.25e9;
   // Of the processor, for each send and each receive: where it moves the bytes itself.
   double copy_seconds_per_byte = 0;
-  // All ranks share one link, a bus: one message at a time, first come, first served.
+  // All ranks share one link, a bus: one message at a time, first come, first served; a multicast
+  // is one message.
   bool is_bus = false;
   // Ranks take turns on so many cores, first come, first served; 0: each has a core of its own.
   int shared_cores = 0;

@@ -40,6 +40,21 @@ void Recording::send(int to, Tag tag, Buffer&& message) {
   write(sent);
 }
 
+void Recording::multicast(std::span<const int> to, Tag tag, Buffer&& message) {
+  const std::uint64_t bytes = message.counted_bytes();
+  const double begin = inner_.seconds();
+  inner_.multicast(to, tag, std::move(message));
+  Event sent = event(Event::Kind::send, begin);
+  sent.tag = tag;
+  sent.amount = bytes;
+  for (const int rank : to) {
+    sent.peer = inner_.world_rank(rank);
+    write(sent);
+    sent.is_repeated = true;
+    sent.begin = sent.end;
+  }
+}
+
 Buffer Recording::receive(int from_or_any, Tag tag_or_any) {
   const double begin = inner_.seconds();
   int from = from_or_any;

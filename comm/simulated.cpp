@@ -185,17 +185,29 @@ class SimulatedCommunicator final : public Communicator {
   void send(int to, Tag tag, Buffer&& message) override {
     assert(0 <= to && to < size() && tag >= 0);
     if (machine_.failure.happened()) throw RunEnded{};
-    const int receiver = world_rank(to);
     if (to != rank_) {
       occupy(machine_.handling_seconds(message.counted_bytes()));
       wait_for_turn();
     }
-    const double arrival = machine_.arrival(world_rank(rank_), receiver, message.counted_bytes());
-    group_->queues[to].push(rank_, tag, arrival, std::move(message));
-    const Rank& r = machine_.ranks[receiver];
-    if (r.group != group_.get() || !internal::matches(rank_, tag, r.from, r.tag)) return;
-    const double wake = std::min(r.limit, std::max(r.clock, arrival));
-    if (!r.scheduled || wake < r.wake) machine_.schedule(receiver, wake);
+    const double arrival =
+        machine_.arrival(world_rank(rank_), world_rank(to), message.counted_bytes());
+    deliver(to, tag, arrival, std::move(message));
+  }
+
+  void multicast(std::span<const int> to, Tag tag, Buffer&& message) override {
+    const auto other = std::find_if(to.begin(), to.end(), [&](int rank) { return rank != rank_; });
+    if (!machine_.network.is_bus || other == to.end()) {
+      Communicator::multicast(to, tag, std::move(message));
+      return;
+    }
+    if (machine_.failure.happened()) throw RunEnded{};
+    const Buffer taken = std::move(message);
+    occupy(machine_.handling_seconds(taken.counted_bytes()));
+    wait_for_turn();
+    const double arrival =
+        machine_.arrival(world_rank(rank_), world_rank(*other), taken.counted_bytes());
+    for (const int rank : to)
+      deliver(rank, tag, rank == rank_ ? own_.clock : arrival, taken.copy());
   }
 
   Buffer receive(int from_or_any, Tag tag_or_any) override {
@@ -238,6 +250,15 @@ class SimulatedCommunicator final : public Communicator {
   }
 
  private:
+  void deliver(int to, Tag tag, double arrival, Buffer&& message) {
+    group_->queues[to].push(rank_, tag, arrival, std::move(message));
+    const int receiver = world_rank(to);
+    const Rank& r = machine_.ranks[receiver];
+    if (r.group != group_.get() || !internal::matches(rank_, tag, r.from, r.tag)) return;
+    const double wake = std::min(r.limit, std::max(r.clock, arrival));
+    if (!r.scheduled || wake < r.wake) machine_.schedule(receiver, wake);
+  }
+
   // Lets all ranks go on that are not as far in time, where ranks compete for something.
   void wait_for_turn() {
     if (!machine_.takes_turns() || machine_.is_settled(own_.clock)) return;

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
 #include "composite/internal/exchange.h"
 #include "composite/internal/schemes.h"
 
@@ -7,14 +11,15 @@ Part bus(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
          const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int rank = communicator.rank(), size = communicator.size();
+  std::vector<int> listeners(static_cast<std::size_t>(std::max(0, size - rank - 1)));
+  std::iota(listeners.begin(), listeners.end(), rank + 1);
+  if (rank > 0) listeners.push_back(0);
   for (int turn = 0; turn < size; ++turn) {
     if (rank > 0 && turn > rank) break;
     if (size > 1) communicator.mark(comm::Phase::compose, turn);
     for_each_message(all, options.samples_per_pixel, [&](PixelRange piece) {
       if (turn == rank) {
-        const comm::Buffer pixels = layer->cut(piece);
-        for (int to = rank + 1; to < size; ++to) communicator.send(to, kTagCompose, pixels.copy());
-        if (rank > 0) communicator.send(0, kTagCompose, pixels.copy());
+        communicator.multicast(listeners, kTagCompose, layer->cut(piece));
         return;
       }
       const comm::Buffer pixels = communicator.receive(turn, kTagCompose);

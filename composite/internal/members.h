@@ -29,6 +29,12 @@ class Members final : public comm::Communicator {
   void send(int to, comm::Tag tag, comm::Buffer&& message) override {
     all_.send(in_all(to), tag, std::move(message));
   }
+  void multicast(std::span<const int> to, comm::Tag tag, comm::Buffer&& message) override {
+    std::vector<int> in_all_ranks;
+    in_all_ranks.reserve(to.size());
+    for (const int member : to) in_all_ranks.push_back(in_all(member));
+    all_.multicast(in_all_ranks, tag, std::move(message));
+  }
   comm::Buffer receive(int from_or_any, comm::Tag tag_or_any) override {
     return all_.receive(from_or_any == comm::kAnyRank ? from_or_any : in_all(from_or_any),
                         tag_or_any);

@@ -196,6 +196,25 @@ TEST_P(CommunicatorTest, SendsToItself) {
   });
 }
 
+TEST_P(CommunicatorTest, MulticastsToEachInOrderWithOtherMessages) {
+  for_ranks(1, [](Communicator& c) {
+    const std::uint64_t big = 100'000;
+    std::vector<int> all;
+    for (int rank = c.size(); rank-- > 0;) all.push_back(rank);
+    c.send(0, kData, numbers({1}));
+    c.multicast(all, kData, pattern(big, static_cast<std::uint64_t>(c.rank())));
+    c.multicast({}, kData, numbers({3}));
+    c.multicast(all, kData, numbers({4}));
+    for (int from = 0; from < c.size(); ++from) {
+      if (c.rank() == 0) {
+        EXPECT_EQ(number(c.receive(from, kData)), 1U);
+      }
+      EXPECT_TRUE(is_pattern(c.receive(from, kData), big, static_cast<std::uint64_t>(from)));
+      EXPECT_EQ(number(c.receive(from, kData)), 4U);
+    }
+  });
+}
+
 TEST_P(CommunicatorTest, AnyTagLeavesCollectivesAlone) {
   for_ranks(2, [](Communicator& c) {
     // The others are in the barrier while rank 0 waits for anything.

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <mutex>
 #include <vector>
 
 #include "comm/collectives.h"
+#include "comm/replay.h"
 #include "comm/simulated.h"
 #include "comm/threads.h"
 
@@ -129,6 +131,47 @@ TEST_P(RecordingTest, ATallyAddsUpLikeTheEvents) {
     body(recording);
     EXPECT_EQ(tally.totals(Phase::compose).messages_sent, 3U);
   });
+}
+
+TEST_P(RecordingTest, CountsAMulticastAsAMessageToEach) {
+  const Ledger ledger = record(GetParam(), 4, [](Communicator& c) {
+    c.mark(Phase::compose, 2);
+    if (c.rank() == 2) {
+      c.send(3, 4, Buffer(1));
+      c.multicast(std::vector{3, 0, 1}, 4, Buffer(100));
+      c.multicast(std::vector{0}, 4, Buffer(10));
+      c.multicast({}, 4, Buffer(1000));
+    } else {
+      if (c.rank() == 3) c.receive(2, 4);
+      EXPECT_EQ(c.receive(2, 4).size(), 100U);
+      if (c.rank() == 0) {
+        EXPECT_EQ(c.receive(2, 4).size(), 10U);
+      }
+    }
+  });
+  const std::vector<Event>& events = ledger.ranks[2];
+  ASSERT_EQ(events.size(), 6U);
+  const std::array peers = {3, 3, 0, 1, 0};
+  const std::array<std::uint64_t, 5> bytes = {1, 100, 100, 100, 10};
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    EXPECT_EQ(events[i + 1].kind, Event::Kind::send);
+    EXPECT_EQ(events[i + 1].peer, peers[i]);
+    EXPECT_EQ(events[i + 1].amount, bytes[i]);
+    EXPECT_EQ(events[i + 1].round, 2);
+    EXPECT_EQ(events[i + 1].is_repeated, i == 2 || i == 3);
+  }
+  EXPECT_EQ(totals(ledger).bytes_sent, 311U);
+  EXPECT_EQ(totals(ledger).bytes_received, 311U);
+  EXPECT_EQ(totals(ledger).messages_sent, 5U);
+  // Once over the bus, the message of 100 bytes.
+  Network bus;
+  bus.latency = bus.overhead = 0;
+  bus.seconds_per_byte = 1;
+  bus.is_bus = true;
+  const std::vector<double> finished = replay(ledger, bus);
+  EXPECT_DOUBLE_EQ(finished[0], 111);
+  EXPECT_DOUBLE_EQ(finished[1], 101);
+  EXPECT_DOUBLE_EQ(finished[3], 101);
 }
 
 TEST_P(RecordingTest, TranslatesPeersOfSplitCommunicators) {

@@ -85,6 +85,31 @@ TEST(Simulated, ABusCarriesOneMessageAtATimeFirstComeFirstServed) {
   EXPECT_NEAR(std::min(pairs[2], pairs[3]), 0.01 + 5 + 1 + 0.01, 1e-12);
 }
 
+TEST(Simulated, ABusCarriesAMulticastOnce) {
+  for (const bool is_bus : {true, false}) {
+    Network n = simple();
+    n.is_bus = is_bus;
+    double sent = 0;
+    const auto finished = run_simulated(4, n, 0, [&](Communicator& c) {
+      if (c.rank() == 1) {
+        c.multicast(std::vector{3, 1, 0, 2}, 1, Buffer(50));
+        sent = c.seconds();
+      }
+      EXPECT_EQ(c.receive(1, 1).size(), 50U);
+    });
+    if (is_bus) {
+      EXPECT_NEAR(sent, 0.01, 1e-12);
+      for (const int rank : {0, 2, 3}) EXPECT_NEAR(finished[rank], 0.01 + 5 + 1 + 0.01, 1e-12);
+    } else {
+      EXPECT_NEAR(sent, 0.03, 1e-12);
+      EXPECT_NEAR(finished[3], 0.01 + 5 + 1 + 0.01, 1e-12);
+      EXPECT_NEAR(finished[0], 0.01 + 10 + 1 + 0.01, 1e-12);
+      EXPECT_NEAR(finished[2], 0.01 + 15 + 1 + 0.01, 1e-12);
+    }
+    EXPECT_NEAR(finished[1], sent, 1e-12);
+  }
+}
+
 TEST(Simulated, RanksTakeTurnsOnSharedCores) {
   Network n;
   n.shared_cores = 2;

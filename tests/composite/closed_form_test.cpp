@@ -257,5 +257,29 @@ TEST(ClosedForms, TellWhatEveryRankSendsAndComposites) {
   }
 }
 
+// Where all ranks listen to one bus that carries a pixel a second, it takes as many seconds as
+// there are pixels in the images that travel: of `bus` one of each rank, however many listen.
+TEST(ClosedForms, OverABusTheSchemeOfThatNameSendsEachImageOnce) {
+  comm::Network network;
+  network.latency = network.overhead = 0;
+  network.seconds_per_byte = 1.0 / kBytes;
+  network.is_bus = true;
+  network.seconds_per_work.fill(0);
+  for (const std::string name : {"bus", "direct-send"}) {
+    for (int n = 2; n <= 17; ++n) {
+      SCOPED_TRACE(name + ", " + std::to_string(n) + " ranks");
+      const std::uint64_t a = 720720;
+      const std::vector<double> finished =
+          comm::run_simulated(n, network, 1, [&](comm::Communicator& communicator) {
+            compose(communicator, make_hollow_dense(a, kBytes, false), name);
+          });
+      // An all-reduce of a few bytes comes before.
+      const std::uint64_t images = name == "bus" ? u(n) : u(n - 1);
+      EXPECT_NEAR(*std::max_element(finished.begin(), finished.end()),
+                  static_cast<double>(images * a), 200);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace delray::composite
