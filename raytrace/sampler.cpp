@@ -57,6 +57,51 @@ HWY_INLINE F unit(W x) {
   return to_float(number) * set(0x1p-24F);
 }
 
+struct Product {
+  W low, high;
+};
+
+HWY_INLINE Product product(W x, std::uint32_t by) {
+  const WordTag d;
+#if HWY_TARGET == HWY_SCALAR
+  const std::uint64_t both = std::uint64_t{hn::GetLane(x)} * by;
+  return {hn::Set(d, static_cast<std::uint32_t>(both)),
+          hn::Set(d, static_cast<std::uint32_t>(both >> 32))};
+#else
+  const hn::RepartitionToWide<WordTag> wide;
+  const auto even = hn::MulEven(x, word(by));
+  const auto odd = hn::MulEven(hn::BitCast(d, hn::ShiftRight<32>(hn::BitCast(wide, x))), word(by));
+  return {hn::OddEven(hn::BitCast(d, hn::ShiftLeft<32>(odd)), hn::BitCast(d, even)),
+          hn::OddEven(hn::BitCast(d, odd), hn::BitCast(d, hn::ShiftRight<32>(even)))};
+#endif
+}
+
+// Philox4x32 of ten rounds; the first two of its four words.
+void keys_block(std::uint64_t seed, int x, int y, PixelKeys& keys) {
+  const WordTag tag;
+  HWY_ALIGN static constexpr std::uint32_t kColumns[shading::kBlockPoints] = {
+      0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  HWY_ALIGN static constexpr std::uint32_t kRows[shading::kBlockPoints] = {0, 0, 0, 0, 1, 1, 1, 1,
+                                                                           2, 2, 2, 2, 3, 3, 3, 3};
+  for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
+    W a = word(static_cast<std::uint32_t>(x)) + hn::Load(tag, kColumns + i);
+    W b = word(static_cast<std::uint32_t>(y)) + hn::Load(tag, kRows + i);
+    W c = word(0), d = word(0);
+    auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32);
+    for (int round = 0; round < 10; ++round) {
+      const Product p = product(a, 0xD2511F53U), q = product(c, 0xCD9E8D57U);
+      a = q.high ^ b ^ word(low);
+      b = q.low;
+      c = p.high ^ d ^ word(high);
+      d = p.low;
+      low += 0x9E3779B9U;
+      high += 0xBB67AE85U;
+    }
+    hn::Store(a, tag, keys.low + i);
+    hn::Store(b, tag, keys.high + i);
+  }
+}
+
 void pairs_block(const SampleLanes& from, std::span<Pairs16> pairs) {
   const WordTag d;
   for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
@@ -83,6 +128,7 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 namespace {
 
+HWY_EXPORT(keys_block);
 HWY_EXPORT(pairs_block);
 
 std::uint32_t reversed(std::uint32_t x) {
@@ -145,6 +191,10 @@ std::uint64_t pixel_key(std::uint64_t seed, int x, int y) {
       r123::Philox4x32()({{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0}},
                          {{low(seed), high(seed)}});
   return std::uint64_t{block[1]} << 32 | block[0];
+}
+
+void pixel_keys(std::uint64_t seed, int x, int y, PixelKeys& keys) {
+  HWY_DYNAMIC_DISPATCH(keys_block)(seed, x, y, keys);
 }
 
 float sobol(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension) {

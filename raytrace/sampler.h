@@ -20,6 +20,16 @@ namespace delray::raytrace {
 // al. 2011).
 std::uint64_t pixel_key(std::uint64_t seed, int x, int y);
 
+// The keys of sixteen pixels, in halves, by vectors.
+struct PixelKeys {
+  alignas(64) std::uint32_t low[shading::kBlockPoints], high[shading::kBlockPoints];
+
+  std::uint64_t key(int i) const { return std::uint64_t{high[i]} << 32 | low[i]; }
+};
+
+// Of 4 x 4 pixels: lane i is (x + i % 4, y + i / 4).
+void pixel_keys(std::uint64_t seed, int x, int y, PixelKeys& keys);
+
 // Number `sample` of a dimension, and of a pair of dimensions: multiples of 2^-24 from [0, 1). A
 // dimension and a pair with the same number have nothing to do with each other.
 float sobol(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
@@ -34,8 +44,11 @@ struct SampleLanes {
   alignas(64) std::uint32_t sample[shading::kBlockPoints], dimension[shading::kBlockPoints];
 
   void set(int i, std::uint64_t pixel, std::uint32_t number, std::uint32_t at) {
-    key_low[i] = static_cast<std::uint32_t>(pixel);
-    key_high[i] = static_cast<std::uint32_t>(pixel >> 32);
+    set(i, static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(pixel >> 32), number, at);
+  }
+  void set(int i, std::uint32_t low, std::uint32_t high, std::uint32_t number, std::uint32_t at) {
+    key_low[i] = low;
+    key_high[i] = high;
     sample[i] = number;
     dimension[i] = at;
   }

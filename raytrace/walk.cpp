@@ -39,7 +39,8 @@ void Walk::ask_primary_rays() {
   const bool lens = setting_.view.lens_radius > 0.0F;
   const bool jittered =
       (positions_ == Positions::random || setting_.scattered) && setting_.samples > 1;
-  keys_.assign(static_cast<std::size_t>(task_.blocks()) * kPacketRays, 0);
+  keys_.resize(static_cast<std::size_t>(task_.blocks()));
+  has_keys_.assign(keys_.size(), false);
   PrimaryPlaces places;
   std::size_t block = 0;
   for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
@@ -47,14 +48,13 @@ void Walk::ask_primary_rays() {
     block = 0;
     for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
       for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide, ++block) {
-        const auto first = static_cast<std::uint32_t>(block * kPacketRays);
         const auto sample = static_cast<std::uint32_t>(s);
-        for (std::uint32_t i = 0; jittered && i < kPacketRays; ++i) {
-          places.set_position(static_cast<int>(i), sobol_pair(key(first + i), sample, kPosition));
+        const auto number = static_cast<std::uint32_t>(block);
+        for (int i = 0; jittered && i < kPacketRays; ++i) {
+          places.set_position(i, sobol_pair(keys(number).key(i), sample, kPosition));
         }
-        for (std::uint32_t i = 0; lens && i < kPacketRays; ++i) {
-          places.set_lens(static_cast<int>(i),
-                          disc_point(sobol_pair(key(first + i), sample, kLens)));
+        for (int i = 0; lens && i < kPacketRays; ++i) {
+          places.set_lens(i, disc_point(sobol_pair(keys(number).key(i), sample, kLens)));
         }
         const shading::LaneMask mask = inside(task_.pixels, x, y);
         RayGroup& group = next_.rays.add();
@@ -67,33 +67,33 @@ void Walk::ask_primary_rays() {
   }
 }
 
-std::uint64_t Walk::key(std::uint32_t pixel) {
-  std::uint64_t& key = keys_[pixel];
-  if (key == 0) {
-    const auto block = static_cast<int>(pixel / kPacketRays);
-    const auto lane = static_cast<int>(pixel % kPacketRays);
-    const int columns = task_.columns();
-    key = pixel_key(setting_.options.seed,
-                    task_.pixels.x0 + block % columns * kBlockSide + lane % kBlockSide,
-                    task_.pixels.y0 + block / columns * kBlockSide + lane / kBlockSide);
+const PixelKeys& Walk::keys(std::uint32_t block) {
+  if (!has_keys_[block]) {
+    has_keys_[block] = true;
+    const int columns = task_.columns(), number = static_cast<int>(block);
+    pixel_keys(setting_.options.seed, task_.pixels.x0 + number % columns * kBlockSide,
+               task_.pixels.y0 + number / columns * kBlockSide, keys_[block]);
   }
-  return key;
+  return keys_[block];
 }
 
 Sampler Walk::sampler(std::uint32_t pixel) {
-  const auto pixels = static_cast<std::uint32_t>(keys_.size());
-  return {key(pixel % pixels), static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels,
-          kFirstFree};
+  const auto pixels = static_cast<std::uint32_t>(keys_.size()) * kPacketRays;
+  const std::uint32_t first = pixel % pixels;
+  return {keys(first / kPacketRays).key(static_cast<int>(first % kPacketRays)),
+          static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels, kFirstFree};
 }
 
 void Walk::draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples) {
-  const auto count = static_cast<std::uint32_t>(keys_.size());
+  const auto count = static_cast<std::uint32_t>(keys_.size()) * kPacketRays;
   for (shading::LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     std::uint32_t pixel = pixels[i];
     auto sample = static_cast<std::uint32_t>(task_.first_sample);
     for (; pixel >= count; pixel -= count) ++sample;  // tasks have few samples
-    samples.set(i, key(pixel), sample, kFirstFree);
+    const PixelKeys& of_block = keys(pixel / kPacketRays);
+    const std::uint32_t lane = pixel % kPacketRays;
+    samples.set(i, of_block.low[lane], of_block.high[lane], sample, kFirstFree);
   }
 }
 

@@ -124,11 +124,12 @@ class Walk {
 
  private:
   void ask_primary_rays();
-  std::uint64_t key(std::uint32_t pixel);
+  const PixelKeys& keys(std::uint32_t block);
 
   Positions positions_;
-  std::vector<std::uint64_t>
-      keys_;  // of the task's pixels, 16 for each block; 0: not yet asked for
+  // Of the task's blocks, where they were asked for.
+  std::vector<PixelKeys> keys_;
+  std::vector<bool> has_keys_;
 };
 
 }  // namespace delray::raytrace

@@ -81,7 +81,7 @@ float coverage(const Shader& shader, const scenes::Material& material, const glm
   if (material.alpha == Alpha::opaque) return 1.0F;
   float alpha = material.base_colour.w * vertex_alpha;
   if (material.base_colour_texture != scenes::kNone) {
-    alpha *= sample(shader.textures[material.base_colour_texture], uv, footprint).w;
+    alpha *= sample_alpha(shader.textures[material.base_colour_texture], uv, footprint);
   }
   return resolve_alpha(material, alpha);
 }

@@ -116,32 +116,31 @@ Pair pair(float folded, int size, Wrap wrap) {
   return {first, second, weight};
 }
 
-// Filtered are the linear light of sRGB colours, and codes of 0 to 255 of all else.
-glm::vec4 bilinear(const Texture& texture, float u, float v, int level) {
+// Of what `value` makes of texels: a number, or one for each channel.
+template <class Value>
+auto bilinear(const Texture& texture, float u, float v, int level, const Value& value) {
   const Texture::Level& at = texture.levels[level];
   const image::Rgba8* texels = texture.texels.data() + at.first;
-  const float* colours = texel_values(texture.srgb);
-  const float* codes = texel_values(false);
   const Pair x = pair(u, at.width, texture.wrap_u);
   const Pair y = pair(v, at.height, texture.wrap_v);
   const auto texel = [&](int i, int j) {
-    const image::Rgba8 t = texels[static_cast<std::size_t>(j) * at.width + i];
-    return glm::vec4(colours[t.r], colours[t.g], colours[t.b], codes[t.a]);
+    return value(texels[static_cast<std::size_t>(j) * at.width + i]);
   };
-  const glm::vec4 a = texel(x.first, y.first), b = texel(x.second, y.first);
-  const glm::vec4 c = texel(x.first, y.second), d = texel(x.second, y.second);
-  const glm::vec4 top = a + (b - a) * x.weight;
-  const glm::vec4 bottom = c + (d - c) * x.weight;
+  const auto a = texel(x.first, y.first), b = texel(x.second, y.first);
+  const auto c = texel(x.first, y.second), d = texel(x.second, y.second);
+  const auto top = a + (b - a) * x.weight;
+  const auto bottom = c + (d - c) * x.weight;
   return top + (bottom - top) * y.weight;
 }
 
-glm::vec4 filtered(const Texture& texture, const glm::vec2& uv, float level) {
+template <class Value>
+auto filtered(const Texture& texture, const glm::vec2& uv, float level, const Value& value) {
   const float u = fold(uv.x, texture.wrap_u), v = fold(uv.y, texture.wrap_v);
   const auto base = static_cast<int>(level);
   const float weight = level - static_cast<float>(base);
-  const glm::vec4 sharp = bilinear(texture, u, v, base);
+  const auto sharp = bilinear(texture, u, v, base, value);
   if (weight == 0.0F) return sharp;
-  return sharp + (bilinear(texture, u, v, base + 1) - sharp) * weight;
+  return sharp + (bilinear(texture, u, v, base + 1, value) - sharp) * weight;
 }
 
 }  // namespace
@@ -191,8 +190,18 @@ float mip_level(const Texture& texture, const Footprint& footprint) {
 }
 
 glm::vec4 sample(const Texture& texture, const glm::vec2& uv, float level) {
-  const glm::vec4 value = filtered(texture, uv, level);
+  // Filtered are the linear light of sRGB colours, and codes of 0 to 255 of all else.
+  const float* colours = texel_values(texture.srgb);
+  const float* codes = texel_values(false);
+  const glm::vec4 value = filtered(texture, uv, level, [&](const image::Rgba8& t) {
+    return glm::vec4(colours[t.r], colours[t.g], colours[t.b], codes[t.a]);
+  });
   return texture.srgb ? glm::vec4(glm::vec3(value), value.w / 255.0F) : value / 255.0F;
+}
+
+float sample_alpha(const Texture& texture, const glm::vec2& uv, float level) {
+  const auto code = [](const image::Rgba8& t) { return static_cast<float>(t.a); };
+  return filtered(texture, uv, level, code) / 255.0F;
 }
 
 }  // namespace delray::shading

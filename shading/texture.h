@@ -43,8 +43,14 @@ float mip_level(const Texture& texture, const Footprint& footprint);
 // +-2^24 or NaN count as 0. REQUIRES: 0 <= level <= levels - 1.
 glm::vec4 sample(const Texture& texture, const glm::vec2& uv, float level);
 
+// The alpha of that alone.
+float sample_alpha(const Texture& texture, const glm::vec2& uv, float level);
+
 inline glm::vec4 sample(const Texture& texture, const glm::vec2& uv, const Footprint& footprint) {
   return sample(texture, uv, mip_level(texture, footprint));
+}
+inline float sample_alpha(const Texture& texture, const glm::vec2& uv, const Footprint& footprint) {
+  return sample_alpha(texture, uv, mip_level(texture, footprint));
 }
 
 }  // namespace delray::shading

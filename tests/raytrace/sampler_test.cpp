@@ -154,6 +154,20 @@ TEST(Sampler, VectorsGiveTheSameNumbersOnEveryInstructionSet) {
   });
 }
 
+TEST(Sampler, BlocksHaveTheKeysOfTheirPixels) {
+  tests::for_each_target([] {
+    for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{0xFEDCBA9876543210U}}) {
+      for (const glm::ivec2 at : {glm::ivec2(0, 0), glm::ivec2(1916, 4), glm::ivec2(8, 1 << 20)}) {
+        PixelKeys keys;
+        pixel_keys(seed, at.x, at.y, keys);
+        for (int i = 0; i < shading::kBlockPoints; ++i) {
+          ASSERT_EQ(keys.key(i), pixel_key(seed, at.x + i % 4, at.y + i / 4)) << at.x << " " << i;
+        }
+      }
+    }
+  });
+}
+
 TEST(Sampler, GoesThroughDimensionsInOrder) {
   const std::uint64_t pixel = pixel_key(9, 10, 11);
   Sampler sampler(pixel, 12, 3);

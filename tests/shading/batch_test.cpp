@@ -226,6 +226,8 @@ TEST(Batch, TexturesAndCoverageAreThoseOfTheScalarFunctions) {
           const glm::vec4 texel = sample(texture, c.point[i].uv, c.point[i].footprint);
           ASSERT_TRUE(equal(texels.colour.get(i), glm::vec3(texel))) << "seed " << seed;
           ASSERT_TRUE(same(texels.alpha[i], texel.w)) << "seed " << seed << " lane " << i;
+          ASSERT_TRUE(same(sample_alpha(texture, c.point[i].uv, c.point[i].footprint), texel.w))
+              << "seed " << seed << " lane " << i;
         }
       }
     }
