@@ -17,7 +17,7 @@ namespace delray::apps {
 struct ScheduleRequest : SceneComparison {
   std::vector<std::string> schedules;  // empty: all
   std::string network = "10-gigabit-ethernet";
-  int tile = 32;  // pixels, the side
+  int tile = 16;  // pixels, the side
 };
 
 // A schedule on the simulated machine, of whose ranks each has a core: counted there.

@@ -57,7 +57,7 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       ->check(CLI::Range(1, 65536));
   command->add_option("--depth", request->render.depth, "reflections and refractions (default 8)")
       ->check(CLI::Range(0, 64));
-  command->add_option("--tile", request->tile, "pixels, the side of a tile (default 32)")
+  command->add_option("--tile", request->tile, "pixels, the side of a tile (default 16)")
       ->check(CLI::Range(16, 4096));
   command
       ->add_option("--schedule", request->schedules, "schedules, separated by commas (default all)")

@@ -20,7 +20,6 @@ namespace delray::apps {
 namespace {
 
 constexpr int kLargestSide = 32768;
-constexpr int kTile = 32;  // pixels, the side of a ray tracer's block
 
 // Throws UsageError if one of the options was given.
 void refuse(const CLI::App& command, std::initializer_list<const char*> options,
@@ -102,7 +101,7 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
   if (request.data == "replicated") refuse(command, {"--deal", "--cache"}, "--data replicated");
   if (request.data == "ray" || request.data == "ring")
     refuse(command, {"--cache"}, "--data " + request.data + ": rays travel");
-  if (command.count("--block") == 0) request.block = kTile;
+  if (command.count("--block") == 0) request.block = raytrace::integrator(request.integrator).side;
   if (request.block % raytrace::kTaskSide != 0) {
     throw UsageError(
         fmt::format("--block: the ray tracer's are a multiple of {} pixels", raytrace::kTaskSide));
@@ -214,8 +213,8 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raster);
   command
       .add_option("--block", request.block,
-                  "pixels, the side of a block that --schedule hands out (default 64; 32, a "
-                  "multiple of 16, with rays)")
+                  "pixels, the side of a block that --schedule hands out (default 64; with rays a "
+                  "multiple of 16, by default 32 of path, else 16)")
       ->check(CLI::Range(1, 4096))
       ->group(raster);
   command

@@ -1,20 +1,13 @@
 #include "comm/charged.h"
 
-#include <time.h>
-
 #include <exception>
 #include <utility>
 
+#include "parallel/processor_time.h"
+
 namespace delray::comm {
-namespace {
 
-std::int64_t processor_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-}  // namespace
+using parallel::processor_nanoseconds;
 
 // While it lives, the thread does not work for this rank.
 class Charged::Call {

@@ -10,6 +10,10 @@ namespace {
 // How often a rank that waits for messages looks whether one of its threads has failed.
 constexpr auto kFailureCheck = std::chrono::milliseconds(5);
 
+// Tasks that a thread takes from the queue at once: at most so many, and such a part of its share
+// of what waits.
+constexpr std::uint64_t kMost = 8, kShare = 16;
+
 }  // namespace
 
 Crew::Crew(comm::Communicator& communicator, const ScheduleOptions& options, TaskFunction work,
@@ -57,15 +61,14 @@ std::vector<TaskRange> Crew::give(std::uint64_t amount) {
 }
 
 bool Crew::run_one() {
-  std::optional<std::uint32_t> task;
-  {
+  TaskRange& next = lanes_[0].next;
+  if (next.count() == 0) {
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(failure_);
-    task = queue_.pop();
-    if (!task) return false;
-    ++begun_;
+    next = pop();
+    if (next.count() == 0) return false;
   }
-  run(*task, 0);
+  run(next.first++, 0);
   return true;
 }
 
@@ -138,6 +141,16 @@ void Crew::run(std::uint32_t task, int thread) {
   mark(thread, Interval::Kind::work, 1);
 }
 
+// Several at once where threads would meet at the queue too often, few beside what waits.
+TaskRange Crew::pop() {
+  const auto threads = static_cast<std::uint64_t>(lanes_.size());
+  const std::uint64_t most =
+      threads == 1 ? 1 : std::clamp<std::uint64_t>(queue_.size() / (kShare * threads), 1, kMost);
+  const TaskRange tasks = queue_.pop(most);
+  begun_ += tasks.count();
+  return tasks;
+}
+
 void Crew::run_thread(int thread) {
   try {
     std::unique_lock lock(mutex_);
@@ -146,11 +159,11 @@ void Crew::run_thread(int thread) {
         changed_.wait(lock, [this] { return queue_.size() > 0 || closed_; });
         mark(thread, Interval::Kind::wait);
       }
-      const std::optional<std::uint32_t> task = queue_.pop();
-      if (!task) return;
-      ++begun_;
+      TaskRange& next = lanes_[static_cast<std::size_t>(thread)].next;
+      next = pop();
+      if (next.count() == 0) return;
       lock.unlock();
-      run(*task, thread);
+      while (next.count() > 0) run(next.first++, thread);
       lock.lock();
     }
   } catch (...) {

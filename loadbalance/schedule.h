@@ -22,15 +22,16 @@ struct ScheduleOptions {
   int threads = 0;
   // Whether ranks that hand out tasks do some themselves, between messages. One that is alone does.
   bool master_works = true;
-  // demand, hierarchical: tasks handed out to a rank at once; 0: one for each of the master's
-  // threads.
+  // demand, guided, hierarchical: tasks handed out to a rank at once; 0: one for each of the
+  // master's threads.
   std::uint32_t batch = 0;
   // A rank asks for more when no more than this many tasks wait: by default when none do, with
   // neighbour-stealing two for each thread.
   std::optional<std::uint32_t> ahead;
-  // guided: part of the rest, divided by the number of ranks, that is handed out at once. 1 as in
-  // guided self-scheduling (Polychronopoulos and Kuck 1987); less leaves more for evening out.
-  double share = 0.5;
+  // guided: part of the rest, divided by the number of ranks, that is handed out at once, but no
+  // fewer than `batch`. 1 as in guided self-scheduling (Polychronopoulos and Kuck 1987); less
+  // leaves more for evening out.
+  double share = 0.25;
   int fan_out = 4;         // hierarchical: ranks below a master, at most; >= 2
   std::uint64_t seed = 1;  // random
   // What this rank begins with, with static and both kinds of stealing; each task is in the list of

@@ -202,6 +202,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
 
   ProgressiveResult result;
   RenderOptions pass_options = options.frame;
+  const int side = tile_side(pass_options);
   pass_options.part.window = film_window;
   pass_options.scattered = options.noise > 0.0F || std::isfinite(options.seconds);
   if (one_pass_does(options)) {
@@ -254,8 +255,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
         last_work = work(film, pass);
         film.add(traced.image, pass.samples, pass.cells);
         renderer.recycle(std::move(traced.image));
-        add_costs(traced.tile_costs, {film_window, pass_options.tile, pass_options.tile}, pass,
-                  film);
+        add_costs(traced.tile_costs, {film_window, side, side}, pass, film);
         if (options.after_pass) options.after_pass(film);
         last_seconds = elapsed() - before;
         if (several) whole->advance(static_cast<std::uint64_t>(pass.samples));

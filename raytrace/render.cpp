@@ -26,7 +26,7 @@ void check(const RenderOptions& options) {
     throw std::invalid_argument("there is no schedule '" + options.schedule + "'");
   if (!options.partition.empty() && loadbalance::find_partitioner(options.partition) == nullptr)
     throw std::invalid_argument("there is no partition '" + options.partition + "'");
-  if (options.tile < 1 || options.tile % kTaskSide != 0)
+  if (options.tile < 0 || options.tile % kTaskSide != 0)
     throw std::invalid_argument("the side of a tile is a multiple of " + std::to_string(kTaskSide) +
                                 " pixels");
 }
@@ -46,9 +46,15 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
   parallel::Progress* const progress = frame.options.progress;
   // Ranks of one process may have one progress in common.
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
-  std::vector<std::vector<TilePixels>> by_thread(static_cast<std::size_t>(how.threads));
+  struct alignas(64) OfThread {
+    std::unique_ptr<Walk> walk;
+    std::vector<TilePixels> tiles;
+  };
+  std::vector<OfThread> by_thread(static_cast<std::size_t>(how.threads));
   const auto trace_tile = [&](std::uint32_t tile, int thread) {
-    const TilePixels& done = by_thread[thread].emplace_back(sample_tile(frame, tile));
+    OfThread& mine = by_thread[thread];
+    if (!mine.walk) mine.walk = frame.walks.take();
+    const TilePixels& done = mine.tiles.emplace_back(sample_tile(frame, tile, *mine.walk));
     if (thread == 0) communicator.work(comm::Work::rays, sum(done.rays));
     if (progress != nullptr) progress->advance();
   };
@@ -56,7 +62,7 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
   traced.report = loadbalance::find_schedule(frame.options.schedule)
                       ->run(communicator, frame.tiles.grid(), how, trace_tile);
   for (std::size_t thread = 0; thread < by_thread.size(); ++thread) {
-    for (TilePixels& tile : by_thread[thread]) {
+    for (TilePixels& tile : by_thread[thread].tiles) {
       if (thread > 0) communicator.work(comm::Work::rays, sum(tile.rays));
       traced.busy += tile.busy;
       traced.tiles.push_back(std::move(tile));
@@ -120,6 +126,10 @@ void summarize(std::vector<RankStatistics>&& ranks, Statistics& statistics) {
 
 }  // namespace
 
+int tile_side(const RenderOptions& options) {
+  return options.tile > 0 ? options.tile : integrator(options.integrator).side;
+}
+
 loadbalance::ScheduleOptions tile_schedule(std::uint32_t tiles, int ranks, int threads) {
   loadbalance::ScheduleOptions how;
   how.threads = threads;
@@ -179,18 +189,15 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
                         options.scattered,
                         scenes::pixels_of(view, memory_->bounds())};
   Walks walks(integrator(options.integrator), setting);
+  const int side = tile_side(options);
   const bool root = communicator.rank() == 0;
   Result result;
   if (root) {
     result.image = memory_->picture(window);
     if (!options.part.squares.empty()) image::clear(result.image);
   }
-  const TiledFrame frame{tracer,
-                         options,
-                         setting,
-                         walks,
-                         {window, options.tile, options.tile},
-                         root ? &result.image : nullptr};
+  const TiledFrame frame{
+      tracer, options, setting, walks, {window, side, side}, root ? &result.image : nullptr};
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
   Statistics& statistics = result.statistics;

@@ -46,10 +46,10 @@ struct RenderOptions {
   // Of loadbalance::schedules(): tiles are handed out to ranks and threads.
   std::string schedule = "interlaced";
   bool master_works = true;  // whether ranks that hand out tiles trace some themselves
-  // Pixels, the side of a tile; a multiple of kTaskSide, so that no walk goes over two tiles.
-  // Large enough that a tile takes a good part of a millisecond, small enough that there are many
-  // for each rank.
-  int tile = 32;
+  // Pixels, the side of a tile, a multiple of kTaskSide; 0: Integrator::side. The smaller the more
+  // evenly work is shared out; there is more to hand out and to collect then, and tasks are no
+  // larger than tiles.
+  int tile = 0;
   // Of loadbalance::partitioners(), over what the tiles cost in the last frame of a Renderer: with
   // the schedules that begin with shares (static and both kinds of stealing) a rank begins with the
   // tiles of its region. Empty: with as many consecutive ones.
@@ -117,6 +117,9 @@ struct Result {
   Statistics statistics;
   std::vector<TileCost> tile_costs;  // in no particular order; tiles are cut from the window
 };
+
+// Pixels: RenderOptions::tile where it is set. Throws as integrator().
+int tile_side(const RenderOptions& options);
 
 // How so many tiles are handed out to ranks with so many threads, but for the shares that they
 // begin with.

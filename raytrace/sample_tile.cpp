@@ -1,7 +1,5 @@
 #include "raytrace/internal/sample_tile.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -9,6 +7,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "parallel/processor_time.h"
 #include "raytrace/answer.h"
 #include "raytrace/flush_to_zero.h"
 
@@ -19,9 +18,7 @@ using geometry::Rect;
 static_assert(kTaskSide % kBlockSide == 0);
 
 double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  return 1e-9 * static_cast<double>(parallel::quick_processor_nanoseconds());
 }
 
 TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile) {
@@ -157,19 +154,17 @@ void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, Ti
   pixels.rays += walk.rays();
 }
 
-TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile) {
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk) {
   const FlushToZero flush;
   const double start = thread_seconds();
   TilePixels pixels = start_tile(frame, tile);
   const int samples = samples_of(frame.options);
-  std::unique_ptr<Walk> walk = frame.walks.take();
   for (Task& task : tasks_of(frame, pixels.rect, frame.walks.side())) {
     for (int s = 0; s < samples; ++s, ++task.first_sample) {
-      for (walk->start(task); !walk->done(); walk->go_on()) answer(*frame.tracer, walk->wave());
-      add_samples(frame, *walk, task, pixels);
+      for (walk.start(task); !walk.done(); walk.go_on()) answer(*frame.tracer, walk.wave());
+      add_samples(frame, walk, task, pixels);
     }
   }
-  frame.walks.give(std::move(walk));
   pixels.busy = thread_seconds() - start;
   return pixels;
 }

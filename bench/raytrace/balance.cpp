@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   std::string name = "gen:corner";
   std::vector<int> ranks = {8};
   raytrace::RenderOptions options;
-  std::vector<int> tiles = {options.tile};
+  std::vector<int> tiles = {raytrace::tile_side(options)};
   program.add_option("SCENE", name);
   program.add_option("--ranks", ranks)->delimiter(',');
   program.add_option("--tile", tiles, "sides in pixels")->delimiter(',');

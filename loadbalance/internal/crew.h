@@ -51,10 +51,12 @@ class Crew {
 
  private:
   // What a thread did and how far its time is accounted for.
-  struct Lane {
+  struct alignas(64) Lane {
     std::vector<Interval> intervals;
     double until = 0;
+    TaskRange next;  // tasks that it is about to do
   };
+  TaskRange pop();  // REQUIRES: the mutex is held
   double now(int thread) const;
   void mark(int thread, Interval::Kind kind, std::uint64_t tasks = 0);
   void run(std::uint32_t task, int thread);

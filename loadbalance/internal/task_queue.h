@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,13 +27,16 @@ class TaskQueue {
     size_ = 0;
   }
 
-  std::optional<std::uint32_t> pop() {
-    if (size_ == 0) return std::nullopt;
+  // Up to `most` consecutive tasks from the front; none where none wait. REQUIRES: most >= 1.
+  TaskRange pop(std::uint64_t most) {
+    if (size_ == 0) return {};
     TaskRange& front = ranges_.front();
-    const std::uint32_t task = front.first++;
+    const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, front.count()));
+    const TaskRange taken{front.first, front.first + count};
+    front.first += count;
     if (front.first == front.last) ranges_.pop_front();
-    --size_;
-    return task;
+    size_ -= count;
+    return taken;
   }
 
   // Up to `amount` tasks from the front, or from the back.

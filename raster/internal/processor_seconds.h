@@ -8,14 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace delray::raster {
+#include "parallel/processor_time.h"
 
-// Waiting for a core does not count: ranks that share cores are as busy as if each had its own.
-inline std::int64_t processor_nanoseconds() {
-  timespec time;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
+namespace delray::raster {
 
 // Processor time that several threads add up.
 class ProcessorSeconds {
@@ -23,9 +18,9 @@ class ProcessorSeconds {
   // Runs f on this thread and adds the time it took.
   template <class F>
   void measure(F&& f) {
-    const std::int64_t begin = processor_nanoseconds();
+    const std::int64_t begin = parallel::processor_nanoseconds();
     f();
-    add(processor_nanoseconds() - begin);
+    add(parallel::processor_nanoseconds() - begin);
   }
   void add(std::int64_t nanoseconds) {
     nanoseconds_.fetch_add(nanoseconds, std::memory_order_relaxed);
@@ -42,7 +37,7 @@ class ProcessorSeconds {
 template <std::size_t kStages>
 class StageClock {
  public:
-  StageClock() : begin_(processor_nanoseconds()), last_(passed()) {}
+  StageClock() : begin_(parallel::processor_nanoseconds()), last_(passed()) {}
 
   // What was done since the last call, or since the beginning, belonged to `stage`.
   void finish(std::size_t stage) {
@@ -53,7 +48,7 @@ class StageClock {
 
   // Adds the processor time of stage k to *seconds[k]. To be called once, after the last stage.
   void add_to(const std::array<ProcessorSeconds*, kStages>& seconds) const {
-    const auto all = static_cast<double>(processor_nanoseconds() - begin_);
+    const auto all = static_cast<double>(parallel::processor_nanoseconds() - begin_);
     double sum = 0;
     for (const std::int64_t stage : passed_) sum += static_cast<double>(stage);
     if (!(sum > 0)) return;

@@ -39,8 +39,8 @@ int samples_of(const RenderOptions& options);
 // What a walk that is done found. Samples of a pixel have to be added in ascending order.
 void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels);
 
-// All samples, on the calling thread.
-TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile);
+// All samples, on the calling thread. `walk` is of frame.walks and at rest.
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk);
 
 // Processor time of this thread: ranks may share a core, and waiting is no work.
 double thread_seconds();

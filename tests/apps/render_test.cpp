@@ -51,7 +51,7 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
   EXPECT_EQ(statistics(mpirun(4) + base, folder)["image"]["hash"], hash);
   EXPECT_EQ(statistics(mpirun(4) + base + "--data ray", folder)["image"]["hash"], hash);
   for (const std::string options :
-       {"--ranks 4 --schedule demand --block 16",
+       {"--ranks 4 --schedule demand --block 32",
         "--ranks 3 --schedule stealing --partition mahd --costs measured --frames 2",
         "--ranks 2 --threads 2 --schedule guided",
         "--ranks 3 --data ray --deal random --schedule demand", "--ranks 2 --data ring",
@@ -67,7 +67,7 @@ TEST(RenderCommand, RayTracerGivesOnePictureToo) {
       EXPECT_TRUE(rank["requests"].is_number());
       for (const json& interval : rank["timeline"]) EXPECT_GE(interval["end"], interval["begin"]);
     }
-    EXPECT_EQ(tasks, options.find("--block") != std::string::npos ? 24U : 6U);
+    EXPECT_EQ(tasks, options.find("--block") != std::string::npos ? 6U : 24U);
     EXPECT_EQ(rays, stats["rays"]["primary"].get<std::uint64_t>());
   }
 }

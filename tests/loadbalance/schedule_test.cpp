@@ -339,7 +339,7 @@ TEST(Demand, CountsWhatItSends) {
 }
 
 // Who gets what from the start on: the tasks of a batch are consecutive.
-TEST(Guided, HandsOutEverFewerWholeRows) {
+TEST(Guided, HandsOutEverFewerWholeRowsAndThenPartsOfOne) {
   const TaskGrid grid{10, 64};
   ScheduleOptions options;
   options.master_works = false;
@@ -358,10 +358,10 @@ TEST(Guided, HandsOutEverFewerWholeRows) {
   });
   EXPECT_EQ(order.size(), grid.count());
 
-  // Two who work, half of the rest each time: 32 rows, 16, 8, 4, 2, 1 and 1.
+  // Two who work, half of the rest each time: 32 rows, 16, 8, 4, 2, 1; 5 tasks, 2, 1, 1 and 1.
   const Reports reports = run_simulated(schedule("guided"), 3, grid, options, log, {}, 1).reports;
-  EXPECT_EQ(reports[0].messages, 7U + 2U);
-  for (std::uint32_t row = 0; row < 64; ++row) {
+  EXPECT_EQ(reports[0].messages, 11U + 2U);
+  for (std::uint32_t row = 0; row < 63; ++row) {
     for (std::uint32_t i = 1; i < 10; ++i) EXPECT_EQ(log.rank[row * 10 + i], log.rank[row * 10]);
   }
 }

@@ -36,12 +36,12 @@ TEST(TaskQueue, GivesEveryTaskOnceFromBothEnds) {
   const TaskRange ranges[] = {{0, 5}, {7, 7}, {10, 12}, {20, 21}};
   queue.put(ranges);
   EXPECT_EQ(queue.size(), 8U);
-  EXPECT_EQ(queue.pop(), 0U);
+  EXPECT_EQ(queue.pop(1), (TaskRange{0, 1}));
   EXPECT_EQ(queue.take_back(2), (std::vector<TaskRange>{{11, 12}, {20, 21}}));
   EXPECT_EQ(queue.take_front(4), (std::vector<TaskRange>{{1, 5}}));
   EXPECT_EQ(queue.take_back(9), (std::vector<TaskRange>{{10, 11}}));
   EXPECT_EQ(queue.size(), 0U);
-  EXPECT_FALSE(queue.pop());
+  EXPECT_EQ(queue.pop(5).count(), 0U);
   EXPECT_TRUE(queue.take_front(1).empty());
 }
 
