@@ -1,8 +1,10 @@
 #include "raytrace/answer.h"
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
+#include "raytrace/internal/glass_layers.h"
 #include "raytrace/internal/hit_points.h"
 #include "raytrace/intersection.h"
 #include "raytrace/optics.h"
@@ -11,7 +13,18 @@
 namespace delray::raytrace {
 namespace {
 
-void occlude(const Tracer& tracer, ShadowGroup& group) {
+// Memory that is not written to before it is used.
+template <class T>
+union PerHit {
+  PerHit() {}
+  T element[kPacketRays * SeeThrough::kMost];
+};
+
+bool transmits(const Tracer& tracer, const Hit& hit) {
+  return tracer.shader.materials[tracer.placements[hit.placement].material].transmission > 0.0F;
+}
+
+void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGroup& group) {
   const shading::LaneMask active = active_lanes(group.active);
   SeeThrough passed[kPacketRays];
   tracer.embree.occluded(group.active, group.packet, passed, group.coherent);
@@ -21,24 +34,39 @@ void occlude(const Tracer& tracer, ShadowGroup& group) {
   }
   group.lit &= active;
   if (!tracer.embree.has_see_through()) return;
+  PerHit<PaneHit> panes;
+  PerHit<Layer> layers;
+  std::size_t pane_count = 0, first = 0;
   for (int i = 0; i < kPacketRays; ++i) {
     if ((group.lit >> i & 1) == 0 || passed[i].count == 0) continue;
+    group.dimmed |= 1U << i;
     const glm::vec3 direction(group.packet.direction_x[i], group.packet.direction_y[i],
                               group.packet.direction_z[i]);
-    Layer layers[SeeThrough::kMost];
-    const auto count = static_cast<std::size_t>(passed[i].count);
-    for (std::size_t k = 0; k < count; ++k) {
-      layers[k] = layer_of(tracer.placements, tracer.shader, passed[i].hits[k], direction,
-                           (group.through_glass >> i & 1) != 0);
+    for (int k = 0; k < passed[i].count; ++k) {
+      const Hit& hit = passed[i].hits[k];
+      Layer& layer = layers.element[first++];
+      const bool through_glass = (group.through_glass >> i & 1) != 0;
+      if (through_glass && transmits(tracer, hit)) {
+        layer = {hit.distance, hit.placement, hit.triangle, {}};
+        panes.element[pane_count++] = {hit, direction, &layer.left};
+      } else {
+        layer = layer_of(tracer.placements, tracer.shader, hit, direction, through_glass);
+      }
     }
-    group.dimmed |= 1U << i;
-    group.left.set(i, left_by({layers, count}));
+  }
+  if (pane_count != 0) find_left(tracer.placements, shader, {panes.element, pane_count});
+  first = 0;
+  for (shading::LaneMask rest = group.dimmed; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const auto count = static_cast<std::size_t>(passed[i].count);
+    group.left.set(i, left_by({layers.element + first, count}));
+    first += count;
   }
 }
 
 }  // namespace
 
-void answer(const Tracer& tracer, Wave& wave) {
+void answer(const Tracer& tracer, const shading::BatchShader& shader, Wave& wave) {
   const RayGroup* before = nullptr;
   for (RayGroup& group : wave.rays) {
     if (group.misses) continue;
@@ -53,7 +81,7 @@ void answer(const Tracer& tracer, Wave& wave) {
     group.hits = 0;
     if (!group.misses) find_points(tracer.placements, group);
   }
-  for (ShadowGroup& group : wave.shadows) occlude(tracer, group);
+  for (ShadowGroup& group : wave.shadows) occlude(tracer, shader, group);
 }
 
 Layer layer_of(std::span<const Placement> placements, const shading::Shader& shader, const Hit& hit,

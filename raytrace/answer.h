@@ -3,11 +3,12 @@
 
 #include "raytrace/tracer.h"
 #include "raytrace/wave.h"
+#include "shading/batch_shader.h"
 
 namespace delray::raytrace {
 
-// Answers all questions of the wave, group by group as packets.
-void answer(const Tracer& tracer, Wave& wave);
+// Answers all questions of the wave, group by group as packets. `shader` is made of the tracer's.
+void answer(const Tracer& tracer, const shading::BatchShader& shader, Wave& wave);
 
 // One thing that can be seen through and is in the way of light.
 struct Layer {

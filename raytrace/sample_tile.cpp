@@ -161,7 +161,9 @@ TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk) 
   const int samples = samples_of(frame.options);
   for (Task& task : tasks_of(frame, pixels.rect, frame.walks.side())) {
     for (int s = 0; s < samples; ++s, ++task.first_sample) {
-      for (walk.start(task); !walk.done(); walk.go_on()) answer(*frame.tracer, walk.wave());
+      for (walk.start(task); !walk.done(); walk.go_on()) {
+        answer(*frame.tracer, frame.setting.shader, walk.wave());
+      }
       add_samples(frame, walk, task, pixels);
     }
   }

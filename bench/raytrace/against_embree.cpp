@@ -103,7 +103,7 @@ Recorded record(const raytrace::Tracer& tracer, const scenes::Camera& camera,
           for (const raytrace::ShadowGroup& group : walk->wave().shadows) {
             record(group.active, group.packet, recorded[group.coherent ? 2 : 3]);
           }
-          answer(tracer, walk->wave());
+          answer(tracer, shader, walk->wave());
         }
       }
     }

@@ -78,7 +78,7 @@ Samples walk_over(const Tracer& tracer, const char* name, int width, int height,
                         std::min(samples_at_a_time, samples - s)};
         for (walk->start(task); !walk->done(); walk->go_on()) {
           for (const RayGroup& group : walk->wave().rays) result.misses += group.misses ? 1 : 0;
-          answer(tracer, walk->wave());
+          answer(tracer, shader, walk->wave());
         }
         result.rays += walk->rays();
         for (std::size_t b = 0; b < walk->samples().size(); ++b) {
