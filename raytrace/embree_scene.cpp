@@ -21,10 +21,11 @@
 namespace delray::raytrace {
 namespace {
 
-static_assert(sizeof(Ray) == sizeof(RTCRayHit) && offsetof(Ray, far) == offsetof(RTCRay, tfar) &&
+static_assert(sizeof(Ray) >= sizeof(RTCRayHit) && alignof(Ray) >= alignof(RTCRayHit) &&
+              offsetof(Ray, far) == offsetof(RTCRay, tfar) &&
               offsetof(Ray, normal_x) == offsetof(RTCRayHit, hit) &&
               offsetof(Ray, instance) == offsetof(RTCRayHit, hit.instID));
-static_assert(sizeof(RayPacket) == sizeof(RTCRayHit16) &&
+static_assert(sizeof(RayPacket) >= sizeof(RTCRayHit16) &&
               offsetof(RayPacket, far) == offsetof(RTCRay16, tfar) &&
               offsetof(RayPacket, normal_x) == offsetof(RTCRayHit16, hit) &&
               offsetof(RayPacket, instance) == offsetof(RTCRayHit16, hit.instID));

@@ -21,8 +21,9 @@ struct alignas(16) Ray {
   float normal_x, normal_y, normal_z;  // as Embree has it: not normalised, in space of the mesh
   float u, v;
   std::uint32_t triangle = kMiss;
-  std::uint32_t geometry = kMiss;  // number of the placement, unless instance is set
-  std::uint32_t instance = kMiss;  // number of the placement, if that is an Embree instance
+  std::uint32_t geometry = kMiss;       // number of the placement, unless instance is set
+  std::uint32_t instance = kMiss;       // number of the placement, if that is an Embree instance
+  std::uint32_t instance_part = kMiss;  // not used: Embree from 4.3 on may write there
 };
 
 inline constexpr int kPacketRays = 16;
@@ -37,6 +38,7 @@ struct alignas(64) RayPacket {
   float normal_x[kPacketRays], normal_y[kPacketRays], normal_z[kPacketRays];
   float u[kPacketRays], v[kPacketRays];
   std::uint32_t triangle[kPacketRays], geometry[kPacketRays], instance[kPacketRays];
+  std::uint32_t instance_part[kPacketRays];  // not used
 };
 
 // The part of a packet that shadow rays need.
