@@ -158,27 +158,41 @@ class FlatLayers final : public Layers {
   std::map<std::size_t, image::Image8> spares_;  // by size
 };
 
-// A surface that is seen through before an opaque one wherever the picture is covered.
+// One to three surfaces wherever the picture is covered, the same for some pixels beside each
+// other, as triangles have them: for how long one lies in front, no processor can guess.
 class DeepLayers final : public Layers {
  public:
-  explicit DeepLayers(int rank) : rank_(rank) {}
+  explicit DeepLayers(int rank) : rank_(rank), random_(static_cast<std::uint32_t>(rank)) {}
 
   std::unique_ptr<Layer> make(const image::Image8& picture) override {
     DeepImage<image::RgbaF> image(picture.width, picture.height);
+    std::uint32_t bits = 0;
     for (std::size_t i = 0; i < picture.pixels(); ++i) {
+      random_ = random_ * 1664525 + 1013904223;  // (Knuth and Lewis)
+      if ((random_ >> 20) % kPixelsOfRun == 0) bits = random_ >> 8;
       const float depth = picture.depth[i];
       if (depth == image::kEmptyDepth) continue;
-      const auto primitive = static_cast<std::uint32_t>(rank_);
-      std::array<Fragment, 2> list = {Fragment{{0.2F, 0.1F, 0.1F, 0.5F}, depth, primitive, 0},
-                                      Fragment{{0.2F, 0.3F, 0.4F, 1}, depth + 100, primitive, 1}};
-      image.set(i, list);
+      const std::uint32_t size = 1 + bits % 3;
+      std::array<Fragment, 3> list;
+      for (std::uint32_t k = 0; k < size; ++k) {
+        const bool is_opaque = k + 1 == size && (bits >> 10 & 1) != 0;
+        list[k] = {{0.2F, 0.3F, 0.4F, is_opaque ? 1.0F : 0.5F},
+                   depth + static_cast<float>((bits >> (4 * k) & 15) + 20 * k),
+                   static_cast<std::uint32_t>(rank_),
+                   k};
+      }
+      image.set(i, std::span(list).first(size));
     }
     return make_deep(std::move(image));
   }
   void take_back(Part&&) override {}
 
  private:
+  // On a row, until any of the surfaces begins or ends; in the mean.
+  static constexpr std::uint32_t kPixelsOfRun = 8;
+
   int rank_;
+  std::uint32_t random_;
 };
 
 // Composites layers of `picture`, which all ranks have; the result is of all ranks together, on

@@ -25,8 +25,8 @@ struct LayerCosts {
 // REQUIRES: pixels >= 4096.
 LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels = std::uint64_t{1} << 21);
 
-// The same of deep layers, which composite fragments, of RgbaF: where the images are covered, two
-// each.
+// The same of deep layers, which composite fragments, of RgbaF: where the images are covered, one
+// to three each.
 LayerCosts measure_deep_layer_costs(std::uint64_t pixels = std::uint64_t{1} << 18);
 
 }  // namespace delray::composite

@@ -77,6 +77,17 @@ TEST(LayerCosts, AreOfEveryCodecAndNeverNegative) {
   }
 }
 
+TEST(LayerCosts, AreOfDeepLayersToo) {
+  const LayerCosts costs = measure_deep_layer_costs(kPixels);
+  for (const double cost : {costs.cut, costs.cut_pixel, costs.cut_byte, costs.merge,
+                            costs.merge_pixel, costs.merge_covered}) {
+    EXPECT_GE(cost, 0);
+    EXPECT_TRUE(std::isfinite(cost));
+  }
+  EXPECT_GT(cut_seconds(costs), 0);
+  EXPECT_GT(merge_seconds(costs), 0);
+}
+
 // Nothing here is about how fast a machine is: what takes a hundred times as long is to cost more,
 // and what does not is not to be charged for it.
 TEST(LayerCosts, TellCuttingFromMerging) {
