@@ -36,7 +36,9 @@ bool PixelMask::empty() const {
   });
 }
 
-bool PixelMask::empty(PixelRange range) const {
+template <class F>
+bool PixelMask::for_elements(PixelRange range, F&& f) const {
+  assert(range.begin <= range.end && range.end <= pixels_);
   for (std::uint64_t at = range.begin; at < range.end;) {
     const std::uint64_t group_end = std::min((at / kGroupPixels + 1) * kGroupPixels, range.end);
     if (!groups_[at / kGroupPixels]) {
@@ -45,10 +47,15 @@ bool PixelMask::empty(PixelRange range) const {
     }
     const std::uint64_t shift = at % kElementPixels;
     const std::uint64_t count = std::min(kElementPixels - shift, group_end - at);
-    if ((element(at / kElementPixels) >> shift & low_bits(count)) != 0) return false;
+    if (!f(at / kElementPixels, low_bits(count) << shift)) return false;
     at += count;
   }
   return true;
+}
+
+bool PixelMask::empty(PixelRange range) const {
+  return for_elements(
+      range, [&](std::uint64_t i, std::uint64_t bits) { return (element(i) & bits) == 0; });
 }
 
 std::uint64_t PixelMask::element(std::uint64_t i) const {
@@ -106,18 +113,10 @@ void PixelMask::remove(std::uint64_t begin, const GroupMask& mask) {
 }
 
 void PixelMask::remove(PixelRange range) {
-  assert(range.begin <= range.end && range.end <= pixels_);
-  for (std::uint64_t at = range.begin; at < range.end;) {
-    const std::uint64_t group_end = std::min((at / kGroupPixels + 1) * kGroupPixels, range.end);
-    if (!groups_[at / kGroupPixels]) {
-      at = group_end;
-      continue;
-    }
-    const std::uint64_t shift = at % kElementPixels;
-    const std::uint64_t count = std::min(kElementPixels - shift, group_end - at);
-    writable_element(at / kElementPixels) &= ~(low_bits(count) << shift);
-    at += count;
-  }
+  for_elements(range, [&](std::uint64_t i, std::uint64_t bits) {
+    writable_element(i) &= ~bits;
+    return true;
+  });
 }
 
 ImageMasks MaskMaker::add(std::span<const float> depth) {

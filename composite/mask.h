@@ -39,6 +39,10 @@ class PixelMask {
  private:
   std::uint64_t element(std::uint64_t i) const;
   std::uint64_t& writable_element(std::uint64_t i);
+  // Calls f(element, its bits in the range) where a group is there, in order, while it returns
+  // true; returns whether it always did.
+  template <class F>
+  bool for_elements(PixelRange range, F&& f) const;
 
   std::uint64_t pixels_;
   std::vector<std::unique_ptr<GroupMask>> groups_;  // null: none of its pixels
