@@ -28,11 +28,12 @@ void multiply(const shading::Vectors16& by, shading::Vectors16& v) {
 void LitWalk::begin() {
   asked_.clear();
   asked_lights_.clear();
-  used_ = kPacketRays;
+  std::fill_n(open_, kBundles, Open{});
   for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
     RayLanes& lanes = asked_.add();
     lanes.whole = true;
     lanes.block = block;
+    lanes.bundle = Bundle::straight;
     lanes.weighted = false;
   }
 }
@@ -42,15 +43,19 @@ void LitWalk::look() {
   std::swap(asked_lights_, answered_lights_);
   asked_.clear();
   asked_lights_.clear();
-  used_ = kPacketRays;
+  std::fill_n(open_, kBundles, Open{});
   add_lights();
-  for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
-    RayGroup& group = wave_.rays[g];
-    source_ = g;
-    // Once for each ray, as two rays of one sample may or may not share a group.
-    LaneMask shown = show_environment(group, answered_[g]);
-    if (group.hits != 0) shown |= shade(group, answered_[g], shown_);
-    if (shown != 0) add(answered_[g], shown, shown_.colour);
+  // Bundle by bundle, so that the rays of a sample have one order however groups were filled.
+  for (int bundle = 0; bundle < kBundles; ++bundle) {
+    for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
+      if (answered_[g].bundle != static_cast<Bundle>(bundle)) continue;
+      RayGroup& group = wave_.rays[g];
+      source_ = g;
+      // Once for each ray, as two rays of one sample may or may not share a group.
+      LaneMask shown = show_environment(group, answered_[g]);
+      if (group.hits != 0) shown |= shade(group, answered_[g], shown_);
+      if (shown != 0) add(answered_[g], shown, shown_.colour);
+    }
   }
 }
 
@@ -177,7 +182,7 @@ void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
   ray.layers = layers;
   ray.placement = hit.placement;
   ray.triangle = hit.triangle;
-  ask(ray);
+  ask(ray, Bundle::straight);
 }
 
 void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16& radiance) {
@@ -241,22 +246,24 @@ void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask
   }
 }
 
-void LitWalk::ask(const NextRay& ray) {
-  if (used_ == kPacketRays) {
+void LitWalk::ask(const NextRay& ray, Bundle bundle) {
+  Open& open = open_[static_cast<int>(bundle)];
+  if (open.used == kPacketRays) {
+    open = {next_.rays.size(), 0};
     RayGroup& fresh = next_.rays.add();
     clear_lanes(fresh);
     fresh.coherent = true;  // neighbours' rays are mirrored and refracted alike
     RayLanes& lanes = asked_.add();
     lanes.whole = false;
+    lanes.bundle = bundle;
     lanes.weighted = true;
-    used_ = 0;
   }
-  const int i = used_++;
-  RayGroup& group = next_.rays.back();
+  const int i = open.used++;
+  RayGroup& group = next_.rays[open.group];
   set_ray(group, i, ray.origin, ray.direction, ray.view, ray.near);
   group.width[i] = ray.width;
   group.spread[i] = ray.spread;
-  RayLanes& lanes = asked_.back();
+  RayLanes& lanes = asked_[open.group];
   lanes.weight.set(i, ray.weight);
   lanes.pixel[i] = ray.pixel;
   lanes.depth[i] = ray.depth;

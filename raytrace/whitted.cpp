@@ -92,7 +92,7 @@ class Whitted final : public LitWalk {
       ray.origin = s.position + s.geometric_normal * group.offset[i];
       ray.direction = kept_on_side(mirrored(view, s.normal), s.geometric_normal);
       ray.view = -ray.direction;
-      ask(ray);
+      ask(ray, Bundle::mirrored);
     }
     if (glass > 0.0F && refraction.reflected < 1.0F) {
       ray.weight = weight * s.base_colour * (glass * (1.0F - refraction.reflected));
@@ -100,7 +100,7 @@ class Whitted final : public LitWalk {
         ray.origin = s.position - s.geometric_normal * group.offset[i];
         ray.direction = kept_on_side(refraction.direction, -s.geometric_normal);
         ray.view = -ray.direction;
-        ask(ray);
+        ask(ray, Bundle::refracted);
       }
     }
     return blurred;

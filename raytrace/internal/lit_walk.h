@@ -12,12 +12,17 @@ namespace delray::raytrace {
 // A ray that could change its sample by less than this is not sent.
 inline constexpr float kLeastWeight = 1.0F / 256.0F;
 
+// Rays of neighbouring pixels that were sent for one reason are alike, and share groups.
+enum class Bundle : std::uint8_t { straight, mirrored, refracted };
+inline constexpr int kBundles = 3;
+
 // What an integrator knows of the rays of a group besides.
 struct RayLanes {
-  bool whole = true;          // the primary rays of `block`: of the rest only `weight` is set
-  std::uint32_t block = 0;    // of samples()
-  bool weighted = false;      // whether weights are set; all are 1 if not
-  shading::Vectors16 weight;  // what the sample makes of radiance along the ray
+  bool whole = true;        // the primary rays of `block`: of the rest only `weight` is set
+  std::uint32_t block = 0;  // of samples()
+  Bundle bundle = Bundle::straight;
+  bool weighted = false;                          // whether weights are set; all are 1 if not
+  shading::Vectors16 weight;                      // what the sample makes of radiance along the ray
   alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * block + lane in it
   alignas(64) std::int32_t depth[kPacketRays];    // how often it may be mirrored or refracted
   alignas(64) std::uint32_t layers[kPacketRays];  // passed before
@@ -67,7 +72,7 @@ class LitWalk : public Walk {
                    const shading::Floats16& distances, const shading::Vectors16& reflected,
                    bool coherent);
 
-  void ask(const NextRay& ray);
+  void ask(const NextRay& ray, Bundle bundle);
 
   std::int32_t depth_of(const RayLanes& lanes, int i) const {
     return lanes.whole ? setting_.options.depth : lanes.depth[i];
@@ -98,7 +103,12 @@ class LitWalk : public Walk {
   shading::Shaded shown_;
   shading::Arriving arriving_;
   std::size_t source_ = 0;  // the group that is looked at
-  int used_ = kPacketRays;  // lanes of the last group of next_.rays
+  // The group of next_.rays that each bundle fills, and how many of its lanes are in use.
+  struct Open {
+    std::size_t group = 0;
+    int used = kPacketRays;
+  };
+  Open open_[kBundles];
 };
 
 }  // namespace delray::raytrace
