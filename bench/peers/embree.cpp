@@ -51,6 +51,18 @@ void fill(const RecordedGroup& group, int i, RTCRay& ray) {
 
 bool used(const RecordedGroup& group, int i) { return group.near[i] <= group.far[i]; }
 
+// Refuses hits of triangles that can be seen through.
+void pass(const RTCFilterFunctionNArguments* arguments) {
+  const auto* solid = static_cast<const std::uint64_t*>(arguments->geometryUserPtr);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
+    if (solid == nullptr || (solid[triangle / 64] >> (triangle % 64) & 1) == 0) {
+      arguments->valid[i] = 0;
+    }
+  }
+}
+
 void check(RTCDevice device) {
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree failed");
 }
@@ -135,7 +147,7 @@ void BareEmbree::State::loop(std::span<const RecordedGroup> rays, bool shadows, 
   }
 }
 
-BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool robust,
+BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool same_answers,
                        const char* isa)
     : state_(std::make_unique<State>()) {
   std::string configuration = "set_affinity=0";
@@ -144,7 +156,7 @@ BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool rob
   RTCDevice device = state_->device;
   const auto new_scene = [&] {
     RTCScene scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneFlags(scene, same_answers ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     return scene;
   };
   const auto attach = [&](RTCScene scene, unsigned number, const raytrace::Placement& p) {
@@ -156,6 +168,12 @@ BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool rob
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                p.mesh->triangles.data(), 0, sizeof(glm::uvec3),
                                p.mesh->triangles.size());
+    if (same_answers && p.see_through) {
+      rtcSetGeometryOccludedFilterFunction(geometry, pass);
+      if (p.solid) {
+        rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(p.solid->data()));
+      }
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, number);
     rtcReleaseGeometry(geometry);

@@ -29,7 +29,9 @@ class BareEmbree {
  public:
   // An acceleration structure of its own over the same triangles, instances as instances. `isa` may
   // be empty. Coherent loops of shadow rays over instances are left out where Embree hangs in them.
-  BareEmbree(std::span<const raytrace::Placement> placements, bool robust, const char* isa);
+  // The structure has Embree's default flags, and shadow rays end at whatever they meet. With
+  // `same_answers` it is robust, and they pass what can be seen through, unnoted.
+  BareEmbree(std::span<const raytrace::Placement> placements, bool same_answers, const char* isa);
   ~BareEmbree();
 
   bool can(Loop loop, bool shadows) const;

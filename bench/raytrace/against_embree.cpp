@@ -1,7 +1,7 @@
 // Delray's integrators beside loops over the same rays that call Embree and do nothing else:
 //
 //   raytrace_against_embree [--width W] [--height H] [--turns N] [--threads N,N...] [--spp N]
-//                           [--robust-peer] [--isa ISA] [--alone] [CASE...]
+//                           [--same-answers] [--isa ISA] [--alone] [CASE...]
 //
 // CASE is INTEGRATOR:SCENE, SCENE a file or gen:KIND[:TRIANGLES[:SEED]]; INTEGRATOR is one of the
 // table's or "primary": direct light without shadows. The rays of one frame are recorded, in groups
@@ -10,8 +10,9 @@
 // shadows by camera rays; other shadows) the fastest loop counts. Both sides take turns; the table
 // has rays per second of all kinds, Delray's frame (from the camera to the image) over the sum of
 // the fastest loops', medians, and Delray's speed-up over the first number of threads. The bare
-// structure has Embree's default flags; Delray's is robust, and with --robust-peer so is the other.
-// The last ratio is of processor time, which tells more on a busy machine. With --alone, for
+// structure has Embree's default flags and bare shadow rays end at the first hit; Delray's is
+// robust and its shadow rays pass glass and blended surfaces, and with --same-answers so it is
+// there. The last ratio is of processor time, which tells more on a busy machine. With --alone, for
 // profiles, only Delray's frames are timed.
 #include <time.h>
 
@@ -41,7 +42,7 @@ using namespace delray;
 struct Arguments {
   int width = 1920, height = 1080, turns = 5, spp = 1;
   std::vector<int> threads = {1, 2};
-  bool robust_peer = false, alone = false;
+  bool same_answers = false, alone = false;
   std::string isa;
   std::vector<std::string> cases = {"primary:gen:terrain:10000000", "whitted:gen:spheres",
                                     "path:gen:field"};
@@ -175,7 +176,7 @@ void compare(const std::string& name, const Arguments& arguments) {
   std::unique_ptr<bench::BareEmbree> bare;
   Recorded recorded;
   if (!arguments.alone) {
-    bare = std::make_unique<bench::BareEmbree>(tracer.placements, arguments.robust_peer,
+    bare = std::make_unique<bench::BareEmbree>(tracer.placements, arguments.same_answers,
                                                arguments.isa.c_str());
     recorded = record(tracer, camera, options);
     choose_loops(*bare, recorded);
@@ -225,7 +226,7 @@ int main(int argc, char** argv) try {
   app.add_option("--spp", arguments.spp);
   app.add_option("--threads", arguments.threads)->delimiter(',');
   app.add_option("--isa", arguments.isa);
-  app.add_flag("--robust-peer", arguments.robust_peer);
+  app.add_flag("--same-answers", arguments.same_answers);
   app.add_flag("--alone", arguments.alone);
   app.add_option("case", arguments.cases);
   CLI11_PARSE(app, argc, argv);
