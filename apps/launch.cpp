@@ -41,7 +41,7 @@ int threads_per_rank(const Launch& launch, int ranks) {
 }
 
 void run_ranks(const Session& session, const Launch& launch,
-               const std::function<void(comm::Communicator&)>& body) {
+               const std::function<void(comm::Communicator&)>& body, Waiting waiting) {
   if (!session.under_mpi) {
     const int ranks = std::max(1, launch.ranks);
     comm::run_threads(ranks, threads_per_rank(launch, ranks), body);
@@ -49,11 +49,16 @@ void run_ranks(const Session& session, const Launch& launch,
   }
   if (launch.ranks > 0) throw UsageError("--ranks: under mpirun the ranks are its processes");
   const int threads = threads_per_rank(launch, processes_here());
-  comm::run_mpi(nullptr, nullptr, [&](comm::Communicator& communicator) {
-    const parallel::AllowThreads allowed(threads);
-    parallel::Arena arena(threads);
-    arena.execute([&] { body(communicator); });
-  });
+  comm::MpiOptions options;
+  if (waiting == Waiting::stops) options.progress = &session.progress;
+  comm::run_mpi(
+      nullptr, nullptr,
+      [&](comm::Communicator& communicator) {
+        const parallel::AllowThreads allowed(threads);
+        parallel::Arena arena(threads);
+        arena.execute([&] { body(communicator); });
+      },
+      options);
 }
 
 }  // namespace delray::apps

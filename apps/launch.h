@@ -1,6 +1,7 @@
 // Ranks: threads of this process, or the processes that mpirun started.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "apps/session.h"
@@ -24,8 +25,11 @@ int threads_per_rank(const Launch& launch, int ranks);
 
 // Runs `body` on every rank, each inside an arena of its own, and returns when all have. Throws
 // what a rank threw (bad input, interruption) or comm::RankFailure. UsageError: --ranks under
-// mpirun.
+// mpirun. `waiting` says what processes do that wait for others when the session is asked to stop:
+// go on, as the others agree on when to stop; or throw parallel::Interrupted at once.
+enum class Waiting : std::uint8_t { goes_on, stops };
 void run_ranks(const Session& session, const Launch& launch,
-               const std::function<void(comm::Communicator&)>& body);
+               const std::function<void(comm::Communicator&)>& body,
+               Waiting waiting = Waiting::goes_on);
 
 }  // namespace delray::apps

@@ -82,7 +82,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     shared = arena.execute([&] { return prepare(request, progress); });
   }
   std::exception_ptr wrong_usage;  // found while loading, by every process alike
-  run_ranks(session, request.launch, [&](comm::Communicator& communicator) {
+  const auto render = [&](comm::Communicator& communicator) {
     std::shared_ptr<const Prepared> prepared = shared;
     if (!prepared) {
       communicator.mark(comm::Phase::load, 0);
@@ -112,7 +112,8 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() == 0) finish(request, session, *prepared, frames);
     });
-  });
+  };
+  run_ranks(session, request.launch, render, Waiting::stops);
   if (wrong_usage) std::rethrow_exception(wrong_usage);
   return kDone;
 }

@@ -328,6 +328,9 @@ class MpiCommunicator final : public Communicator {
       const std::uint32_t rings_seen = patience.rings();
       pull();
       if (Message* message = find(from, tag, whole)) return message;
+      if (engine_->options.progress != nullptr && engine_->options.progress->stop_requested()) {
+        throw parallel::Interrupted{};
+      }
       if (deadline.wait <= std::chrono::nanoseconds{0}) return nullptr;
       engine_->reap();
       if (first) {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "comm/communicator.h"
+#include "parallel/progress.h"
 
 namespace delray::comm {
 
@@ -19,6 +20,9 @@ struct MpiOptions {
   // where they are travels through MPI. Where the system does not let them, MPI copies as usual.
   // Alike on all ranks.
   bool share_memory = true;
+  // A rank that waits for a message throws parallel::Interrupted once this is asked to stop. May be
+  // null.
+  const parallel::Progress* progress = nullptr;
 };
 
 // Whether a launcher (mpirun, mpiexec, srun) started this process, and as which rank (0 when none
@@ -31,10 +35,11 @@ int launched_rank();
 //
 // An exception in one rank ends all: a line on stderr with rank, phase and reason, then MPI_Abort
 // with exit code 5 (for errors of one rank alone that are nobody's fault: 3 for bad input, 1 for a
-// failing device, 130 when interrupted). An exception that all ranks agreed on
+// failing device, 130 when interrupted: then rank 0, which may have something to save, ends the
+// others as long as it does so within seconds). An exception that all ranks agreed on
 // (comm/agree_on_failure.h) is rethrown on every rank after MPI was finalised. When the launcher
 // ends this process (SIGTERM, as after the death of another rank), a line on stderr names the
-// phase.
+// phase, before a handler that the program had installed is called.
 void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& body,
              const MpiOptions& options = {});
 

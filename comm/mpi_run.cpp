@@ -5,10 +5,12 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
 
 #include "comm/agree_on_failure.h"
 #include "comm/failure.h"
@@ -47,6 +49,7 @@ constexpr std::array kSizeVariables = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX
 constexpr std::array kRankVariables = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
 
 int world_rank_for_signals = 0;
+void (*handler_of_program)(int) = nullptr;
 
 // Async-signal-safe: writes fixed pieces only.
 extern "C" void report_termination(int signal) {
@@ -68,21 +71,25 @@ extern "C" void report_termination(int signal) {
   put(name(internal::noted_phase()));
   put("\n");
   [[maybe_unused]] const auto written = write(STDERR_FILENO, line.data(), length);
+  if (handler_of_program != nullptr) return handler_of_program(signal);
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
 
-// Has SIGTERM reported as long as it lives, unless the program does something about it itself.
+// Has SIGTERM reported as long as it lives.
 class TerminationReport {
  public:
   explicit TerminationReport(int rank) {
     world_rank_for_signals = rank;
     struct sigaction old = {};
-    installed_ = sigaction(SIGTERM, nullptr, &old) == 0 && old.sa_handler == SIG_DFL;
-    if (installed_) std::signal(SIGTERM, report_termination);
+    if (sigaction(SIGTERM, nullptr, &old) != 0 || old.sa_handler == SIG_IGN) return;
+    installed_ = true;
+    handler_of_program = old.sa_handler == SIG_DFL ? nullptr : old.sa_handler;
+    std::signal(SIGTERM, report_termination);
   }
   ~TerminationReport() {
-    if (installed_) std::signal(SIGTERM, SIG_DFL);
+    if (!installed_) return;
+    std::signal(SIGTERM, handler_of_program != nullptr ? handler_of_program : SIG_DFL);
   }
   TerminationReport(const TerminationReport&) = delete;
   TerminationReport& operator=(const TerminationReport&) = delete;
@@ -90,6 +97,24 @@ class TerminationReport {
  private:
   bool installed_ = false;
 };
+
+bool is_interruption(const std::exception_ptr& exception) {
+  try {
+    std::rethrow_exception(exception);
+  } catch (const parallel::Interrupted&) {
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
+// Where all ranks are interrupted rank 0 may be about to save what there is, and ends the others
+// afterwards; this one does nothing until then, or until it seems to be alone.
+void wait_for_the_end() {
+  constexpr std::chrono::seconds kLongest{10};
+  std::signal(SIGTERM, SIG_DFL);
+  std::this_thread::sleep_for(kLongest);
+}
 
 // Open MPI moves large messages between processes of one machine by process_vm_readv, believes that
 // it works wherever the kernel has it, and fails in containers that forbid it.
@@ -161,6 +186,7 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
       failure = std::current_exception();
     }
     if (failure && !is_agreed(failure)) {
+      if (communicator->rank() != 0 && is_interruption(failure)) wait_for_the_end();
       internal::end_all_ranks(world, communicator->rank(), internal::noted_phase(),
                               internal::describe(failure), exit_code_of(failure));
     }
