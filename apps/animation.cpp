@@ -51,7 +51,7 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
                            parallel::Progress* progress) {
   const std::vector<scenes::Camera>& cameras = prepared.cameras;
   const bool first_rank = communicator.rank() == 0;
-  FrameRenderer renderer(prepared, request, progress);
+  FrameRenderer renderer(communicator, prepared, request, progress);
   Animation animation;
   animation.slots = request.frames_at_once > 0 ? static_cast<std::size_t>(request.frames_at_once)
                                                : default_slots();
@@ -111,6 +111,7 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
   while (done < std::min<std::size_t>(2, cameras.size())) animation.alone = pass(1);
   animation.overlapped = cameras.size() - done;
   animation.overlapped_seconds = pass(animation.overlapped).seconds;
+  animation.frames.launched = launched(communicator, renderer);
   return animation;
 }
 

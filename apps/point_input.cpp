@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "delaunay/duplicates.h"
 #include "delaunay/read_points.h"
 #include "files/error.h"
@@ -40,7 +41,7 @@ void add_point_options(CLI::App& command, PointInput& input) {
   command
       .add_option("--cell-size", input.cell_size,
                   "distance of the pixels of an elevation picture, in units of its heights")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--duplicates", input.duplicates,
                      "height of places that have several: first (default), min, max, mean");
 }

@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/render_options.h"
 #include "apps/shown_channel.h"
 #include "image/tone.h"
@@ -55,18 +56,18 @@ void add_practice_options(CLI::App& command, Practice& practice) {
   command
       .add_option("--time", practice.seconds,
                   "seconds that sampling may take; then the picture is done, however noisy")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(group);
   command
       .add_option("--noise", practice.noise,
                   "stop sampling where the standard deviation of values on the screen (0 to 1) is "
                   "below this, 0.005 say; --spp is the most then")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(group);
   command
       .add_option("--preview-every", practice.preview_every,
                   "seconds: write the picture so far to the output file so often")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(group);
   command
       .add_option("--checkpoint", practice.checkpoint,
@@ -75,7 +76,7 @@ void add_practice_options(CLI::App& command, Practice& practice) {
   command
       .add_option("--checkpoint-every", practice.checkpoint_every,
                   "seconds from one checkpoint to the next (default 60)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->group(group);
   command
       .add_flag("--resume", practice.resume,
@@ -97,7 +98,7 @@ void add_practice_options(CLI::App& command, Practice& practice) {
   command
       .add_option("--exposure", practice.exposure,
                   "stops: light is multiplied by 2 to the power of this; not in EXR")
-      ->check(CLI::Range(-30.0, 30.0))
+      ->check(number_between(-30.0, 30.0))
       ->group(group);
   command
       .add_option("--tone", practice.tone, "from light to the screen: linear (default) or filmic")
@@ -105,12 +106,12 @@ void add_practice_options(CLI::App& command, Practice& practice) {
   command
       .add_option("--aperture", practice.aperture,
                   "diameter of the lens, in units of the scene (default 0: all is sharp)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->group(group);
   command
       .add_option("--focus", practice.focus,
                   "distance of what is sharp, along the view (default: that of what is looked at)")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(group);
   command.add_option("--seed", practice.seed, "of all random numbers (default 0)")->group(group);
 }

@@ -50,6 +50,14 @@ std::string settings_of(const RenderRequest& request, const scenes::Camera& came
       camera.up.y, camera.up.z, camera.vertical_fov, camera.near, camera.aperture, camera.focus);
 }
 
+// The same whether ranks have the whole scene or parts of it.
+std::string mark_of(const RenderRequest& request, const scenes::Camera& camera,
+                    const Prepared& prepared) {
+  const std::string settings = settings_of(request, camera, prepared.triangles);
+  if (!prepared.told_by_name) return raytrace::fingerprint(prepared.scene, settings);
+  return raytrace::fingerprint({}, settings + " scene " + request.scene.file.path);
+}
+
 std::vector<float> variance_of(const raytrace::Film& film, const geometry::Rect& window) {
   const std::vector<float> all = raytrace::variance(film);
   std::vector<float> result;
@@ -81,8 +89,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   if (!practice.checkpoint.empty()) {
     comm::all_or_none(communicator, comm::Phase::load, [&] {
       if (!root) return;
-      mark =
-          raytrace::fingerprint(prepared.scene, settings_of(request, camera, prepared.triangles));
+      mark = mark_of(request, camera, prepared);
       if (practice.resume) saved = raytrace::load_checkpoint(practice.checkpoint, mark);
     });
   }

@@ -17,6 +17,7 @@
 #include "comm/agree_on_failure.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
+#include "files/atomic_file.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
@@ -68,6 +69,14 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
                stages, animation.slots, animation.speed_up(), animation.predicted_speed_up());
 }
 
+// Nobody wants to know of these after an hour.
+void check_folders(const RenderRequest& request) {
+  for (const std::string& path :
+       {request.output, request.statistics, request.practice.checkpoint}) {
+    files::check_folder(path);
+  }
+}
+
 int run(Session& session, const CLI::App& command, RenderRequest request) {
   if (request.list) return print_lists();
   check(command, request);
@@ -75,6 +84,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   parallel::Progress* const progress = &session.progress;
   std::shared_ptr<const Prepared> shared;  // by the ranks of this process
   if (!session.under_mpi) {
+    check_folders(request);
     const int ranks = std::max(1, request.launch.ranks);
     const int threads = threads_per_rank(request.launch, ranks) * ranks;
     const parallel::AllowThreads allowed(threads);
@@ -87,6 +97,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     if (!prepared) {
       communicator.mark(comm::Phase::load, 0);
       prepared = comm::all_or_none(communicator, comm::Phase::load, [&] {
+        if (communicator.rank() == 0) check_folders(request);
         try {
           return prepare(request, progress);
         } catch (const UsageError&) {

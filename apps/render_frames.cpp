@@ -4,6 +4,7 @@
 #include "apps/ray_frame.h"
 #include "apps/statistics.h"
 #include "comm/collectives.h"
+#include "parallel/arena.h"
 #include "scenes/generate.h"
 
 namespace delray::apps {
@@ -90,12 +91,9 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   return options;
 }
 
-// Whether no rank need ever have the whole scene: the generator makes parts, and nothing asks for
-// the bounds of all.
-bool comes_in_parts(const RenderRequest& request) {
-  if (request.kind != Engine::raytrace || request.data == "replicated" ||
-      !request.scene.colour_by.empty() || !request.camera.view.empty())
-    return false;
+// Whether the generator can make parts of the scene, and nothing changes what it makes.
+bool has_parts(const RenderRequest& request) {
+  if (!request.scene.colour_by.empty()) return false;
   try {
     return scenes::has_parts(request.scene.file.path);
   } catch (const std::invalid_argument&) {
@@ -103,13 +101,10 @@ bool comes_in_parts(const RenderRequest& request) {
   }
 }
 
-raytrace::SharedScene share(comm::Communicator& communicator, const Prepared& prepared,
-                            const RenderRequest& request, const raytrace::ShareOptions& options) {
-  if (!prepared.in_parts) return raytrace::SharedScene::make(communicator, prepared.scene, options);
-  return raytrace::SharedScene::make(
-      communicator,
-      scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size()),
-      options);
+// Whether no rank need ever have the whole scene, as nothing asks for the bounds of all.
+bool comes_in_parts(const RenderRequest& request) {
+  return request.kind == Engine::raytrace && request.data != "replicated" &&
+         request.camera.view.empty() && has_parts(request);
 }
 
 raytrace::ShareOptions share_options(const RenderRequest& request) {
@@ -129,6 +124,7 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   auto prepared = std::make_shared<Prepared>();
   Stopwatch watch;
   prepared->in_parts = comes_in_parts(request);
+  prepared->told_by_name = has_parts(request);
   if (prepared->in_parts) {
     constexpr int kParts = 1 << 30;  // of which the first is nothing but camera and lights
     scenes::ScenePart part = scenes::generate_part(request.scene.file.path, 0, kParts);
@@ -165,14 +161,29 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   return prepared;
 }
 
-FrameRenderer::FrameRenderer(const Prepared& prepared, const RenderRequest& request,
-                             parallel::Progress* progress)
+FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
+                             const RenderRequest& request, parallel::Progress* progress)
     : prepared_(prepared), request_(request), progress_(progress) {
   if (request.kind == Engine::raster) {
     raster_.emplace(prepared.scene, prepared.shader);
-  } else if (prepared.tracer) {
-    raytrace_.emplace(*prepared.tracer);
+    return;
   }
+  if (prepared.tracer) {
+    raytrace_.emplace(*prepared.tracer);
+    return;
+  }
+  Stopwatch watch;
+  const raytrace::ShareOptions options = share_options(request);
+  if (prepared.in_parts) {
+    scenes::ScenePart part =
+        scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
+    load_seconds_ = watch.lap();
+    shared_.emplace(raytrace::SharedScene::make(communicator, std::move(part), options));
+  } else {
+    shared_.emplace(raytrace::SharedScene::make(communicator, prepared.scene, options));
+  }
+  build_seconds_ = watch.lap();
+  raytrace_.emplace(*shared_, *raytrace::find_distribution(request.data));
 }
 
 Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera) {
@@ -183,10 +194,6 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
     frame.picture = std::move(result.picture);
     frame.statistics = std::move(result.statistics);
   } else {
-    if (!raytrace_) {
-      shared_.emplace(share(communicator, prepared_, request_, share_options(request_)));
-      raytrace_.emplace(*shared_, *raytrace::find_distribution(request_.data));
-    }
     RayFrame done = render_rays(communicator, *raytrace_, prepared_, request_, camera,
                                 raytrace_options(request_, progress_), preview_);
     frame.picture = std::move(done.picture);
@@ -208,7 +215,7 @@ std::unique_ptr<raster::FrameInSteps> FrameRenderer::begin(comm::Communicator& c
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
                      const RenderRequest& request, parallel::Progress* progress,
                      const std::function<void(Picture&&)>& preview) {
-  FrameRenderer renderer(prepared, request, progress);
+  FrameRenderer renderer(communicator, prepared, request, progress);
   renderer.set_preview(preview);
   if (request.frames > 1) renderer.render(communicator, prepared.camera);
   Frames frames;
@@ -221,7 +228,20 @@ Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
     frames.statistics = std::move(frame.statistics);
     frames.extras = std::move(frame.extras);
   }
+  frames.launched = launched(communicator, renderer);
   return frames;
+}
+
+Launched launched(comm::Communicator& communicator, const FrameRenderer& renderer) {
+  Launched result;
+  result.threads = parallel::arena_threads();
+  result.load_seconds = renderer.load_seconds();
+  result.build_seconds = renderer.build_seconds();
+  for (const comm::Buffer& peak :
+       comm::gather(communicator, 0, comm::Buffer::of_value(peak_memory()))) {
+    result.peak_rss.push_back(peak.as<std::uint64_t>()[0]);
+  }
+  return result;
 }
 
 }  // namespace delray::apps

@@ -25,6 +25,7 @@ struct Prepared {
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
   // Ranks make parts of the geometry for themselves, and `scene` has none.
   bool in_parts = false;
+  bool told_by_name = false;                  // the name of the scene alone tells what is in it
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
   double load_seconds = 0, build_seconds = 0;
 
@@ -56,8 +57,12 @@ struct Frame {
 // Either engine, ready for any number of frames. One per rank; refers to what it is given.
 class FrameRenderer {
  public:
-  FrameRenderer(const Prepared& prepared, const RenderRequest& request,
-                parallel::Progress* progress);
+  // Collective: with some --data this rank makes its part of the scene.
+  FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
+                const RenderRequest& request, parallel::Progress* progress);
+  // What that part took.
+  double load_seconds() const { return load_seconds_; }
+  double build_seconds() const { return build_seconds_; }
   // Is given pictures that are not yet done, as often as the options want it.
   void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
   // Collective.
@@ -72,9 +77,18 @@ class FrameRenderer {
   const RenderRequest& request_;
   parallel::Progress* progress_;
   std::function<void(Picture&&)> preview_;
-  std::optional<raster::Renderer> raster_;  // one of the two
+  std::optional<raster::Renderer> raster_;       // one of the two
+  std::optional<raytrace::SharedScene> shared_;  // of the next, with some --data
   std::optional<raytrace::Renderer> raytrace_;
-  std::optional<raytrace::SharedScene> shared_;  // of the last, with some --data
+  double load_seconds_ = 0, build_seconds_ = 0;
+};
+
+// How ranks were at work; on rank 0.
+struct Launched {
+  int threads = 0;                      // of each rank
+  double load_seconds = 0;              // beside what `Prepared` tells, of this rank
+  double build_seconds = 0;             // likewise
+  std::vector<std::uint64_t> peak_rss;  // by rank: bytes, of its process
 };
 
 // The last of some frames from the same camera.
@@ -83,7 +97,11 @@ struct Frames {
   EngineStatistics statistics;
   Extras extras;
   std::vector<double> seconds;  // per frame, from the scene in memory to the picture on rank 0
+  Launched launched;
 };
+
+// Collective.
+Launched launched(comm::Communicator& communicator, const FrameRenderer& renderer);
 
 // Collective. With more than one frame a further one goes before, to warm up.
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,

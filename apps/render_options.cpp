@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "image/io.h"
@@ -209,7 +210,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--keep", request.keep_factor,
                   "keep the last frame's partition while no rank does more than so many times an "
                   "equal share (default 1.2)")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(number_between(1.0, 1000.0))
       ->group(raster);
   command
       .add_option("--block", request.block,
@@ -245,7 +246,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--reach", request.reach,
                   "ao: what is further away hides nothing (default: everything hides)")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(raytrace);
   command.add_flag("--no-shadows", request.no_shadows, "direct: nothing hides lights")
       ->group(raytrace);
@@ -284,7 +285,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--cache", request.cache_mebibytes,
                   "MiB of other ranks' clusters that a rank keeps (default a tenth of the scene)")
-      ->check(CLI::Range(1e-3, 1e9))
+      ->check(number_between(1e-3, 1e9))
       ->group(raytrace);
   add_practice_options(command, request.practice);
   command.add_option("--stats", request.statistics, "write statistics as JSON; - for stdout");

@@ -11,7 +11,7 @@ double median(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
-Json options_of(const RenderRequest& request, int ranks) {
+Json options_of(const RenderRequest& request, int ranks, int threads) {
   Json options = {{"size", request.size},
                   {"engine", request.engine},
                   {"frames", request.frames},
@@ -22,7 +22,7 @@ Json options_of(const RenderRequest& request, int ranks) {
                   {"view", request.camera.view},
                   {"color_by", request.scene.colour_by},
                   {"ranks", ranks},
-                  {"threads", request.launch.threads}};
+                  {"threads", threads}};
   if (request.kind == Engine::raster) {
     options["strategy"] = request.strategy;
     options["shading"] = request.lighting;
@@ -69,7 +69,12 @@ Json options_of(const RenderRequest& request, int ranks) {
     options["seed"] = practice.seed;
     options["time"] = practice.seconds;
     options["noise"] = practice.noise;
+    options["preview_every"] = practice.preview_every;
+    options["checkpoint"] = practice.checkpoint;
+    options["checkpoint_every"] = practice.checkpoint_every;
+    options["resume"] = practice.resume;
     options["crop"] = practice.crop;
+    options["aovs"] = practice.channels;
     options["denoise"] = practice.denoise;
     options["exposure"] = practice.exposure;
     options["tone"] = practice.tone;
@@ -125,7 +130,9 @@ Json embree_of(const raytrace::Statistics& s) {
 
 // What only the ray tracer counts.
 Json raytrace_of(const raytrace::Statistics& s) {
-  Json counts = {{"imbalance_rays", s.imbalance_rays}, {"structure_bytes", s.structure_bytes}};
+  Json counts = {{"imbalance_rays", s.imbalance_rays},
+                 {"structure_bytes", s.structure_bytes},
+                 {"degenerate", s.degenerate}};
   if (s.partition) {
     counts["partition"] = {{"predicted_imbalance", s.partition->predicted},
                            {"measured", s.partition->measured},
@@ -167,7 +174,7 @@ void add_own(const raytrace::RankStatistics& rank, Json& row) {
 
 // In-process ranks share the memory of the process: each is told its peak.
 template <class Ranks>
-Json ranks_of(const Ranks& ranks) {
+Json ranks_of(const Ranks& ranks, const std::vector<std::uint64_t>& peak_rss) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     rows.push_back({{"rank", i},
@@ -179,7 +186,7 @@ Json ranks_of(const Ranks& ranks) {
                     {"bytes_sent", ranks[i].bytes_sent},
                     {"bytes_received", ranks[i].bytes_received},
                     {"messages", ranks[i].messages},
-                    {"peak_rss", peak_memory()}});
+                    {"peak_rss", peak_rss[i]}});
     add_own(ranks[i], rows.back());
   }
   return rows;
@@ -227,12 +234,13 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
               {"vertices", prepared.vertices},
               {"instances", prepared.scene.instances.size()}}},
             {"camera", json_of(prepared.camera)},
-            {"options", options_of(request, static_cast<int>(s.ranks.size()))},
+            {"options",
+             options_of(request, static_cast<int>(s.ranks.size()), frames.launched.threads)},
             {"image",
              {{"width", width_of(request)}, {"height", height_of(request)}, {"hash", hash}}},
             {"seconds",
-             {{"load", prepared.load_seconds},
-              {"build", prepared.build_seconds},
+             {{"load", prepared.load_seconds + frames.launched.load_seconds},
+              {"build", prepared.build_seconds + frames.launched.build_seconds},
               {"frame", median(frames.seconds)},
               {"frame_min", *std::min_element(frames.seconds.begin(), frames.seconds.end())},
               {"write", write_seconds}}},
@@ -246,7 +254,7 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
               {"samples", frames.extras.samples},
               {"out_of_time", frames.extras.out_of_time}}},
             {"imbalance", imbalance_of(s.ranks)},
-            {"ranks", ranks_of(s.ranks)},
+            {"ranks", ranks_of(s.ranks, frames.launched.peak_rss)},
         };
       },
       frames.statistics);

@@ -7,6 +7,7 @@
 
 #include "apps/colour_by.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/relief.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/triangulate.h"
@@ -104,7 +105,7 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
   command
       .add_option("--exaggeration", input.exaggeration,
                   "stretches the heights of points (default 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   add_point_options(command, input.file);
 }
 

@@ -8,6 +8,7 @@
 
 #include "apps/commands.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/point_input.h"
 #include "apps/progress_bar.h"
 #include "apps/statistics.h"
@@ -217,7 +218,7 @@ void add_triangulate(CLI::App& program, Session& session) {
       ->add_option("--max-error", options->max_error,
                    "keep only points of a terrain such that no other is farther than this above or "
                    "below it, in units of z; the mesh has the points that are kept")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command->add_option("--threads", options->threads, "workers (default: cores)")
       ->check(CLI::Range(1, 4096));
   command->add_option("--seed", options->how.seed, "seed of everything random (default 1)");

@@ -46,6 +46,19 @@ void AtomicFile::commit() {
   committed_ = true;
 }
 
+void check_folder(const std::filesystem::path& path) {
+  if (path.empty() || path == "-") return;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const auto fail = [&](int error) {
+    throw FileError(Cause::device, path.string(), "",
+                    std::string("cannot write: ") + std::strerror(error));
+  };
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(errno);
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) fail(ENOTDIR);
+  if (std::filesystem::is_directory(path, ignored)) fail(EISDIR);
+}
+
 void write_file(const std::filesystem::path& path, std::string_view content) {
   if (path == "-") return write_all(stdout, content, "standard output");
   AtomicFile target(path);

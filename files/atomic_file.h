@@ -24,6 +24,10 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+// Throws the FileError (device) that writing `path` would throw for its folder, before the work
+// that makes the content; "-" and an empty path are fine.
+void check_folder(const std::filesystem::path& path);
+
 // Writes `content` to `path` whole or not at all; "-" is standard output. Throws FileError
 // (device).
 void write_file(const std::filesystem::path& path, std::string_view content);

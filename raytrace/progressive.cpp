@@ -105,6 +105,7 @@ void add_statistics(Statistics&& pass, Statistics& total) {
   total.gather_seconds += pass.gather_seconds;
   total.rays += pass.rays;
   total.partition = pass.partition;
+  total.structure_bytes = pass.structure_bytes;
   std::vector<double> rays;
   for (std::size_t r = 0; r < total.ranks.size(); ++r) {
     RankStatistics& sum = total.ranks[r];
@@ -119,6 +120,14 @@ void add_statistics(Statistics&& pass, Statistics& total) {
     sum.requests += more.requests;
     sum.steals += more.steals;
     sum.tasks_stolen += more.tasks_stolen;
+    sum.rays_sent += more.rays_sent;
+    sum.answers_sent += more.answers_sent;
+    sum.tests += more.tests;
+    sum.clusters_fetched += more.clusters_fetched;
+    sum.clusters_fetched_bytes += more.clusters_fetched_bytes;
+    sum.clusters_moved += more.clusters_moved;
+    sum.clusters_dropped += more.clusters_dropped;
+    sum.geometry_bytes = more.geometry_bytes;  // the most since the scene was shared out
     sum.timeline.insert(sum.timeline.end(), more.timeline.begin(), more.timeline.end());
     rays.push_back(static_cast<double>(sum.rays.primary + sum.rays.shadow + sum.rays.secondary));
   }

@@ -172,6 +172,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
                         const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check(options);
+  const std::uint64_t dropped = memory_->scene != nullptr ? memory_->scene->evicted() : 0;
   const Tracer* const tracer = memory_->tracer;
   const int width = std::max(0, options.width), height = std::max(0, options.height);
   scenes::View view;
@@ -239,7 +240,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
     statistics.structure_bytes = scene.bytes();
     statistics.embree_version = scene.embree_version();
     statistics.embree_isa = scene.embree_isa();
-    mine.clusters_dropped = scene.evicted();
+    mine.clusters_dropped = scene.evicted() - dropped;
     mine.geometry_bytes = scene.most_bytes();
   }
   summarize(gather_statistics(communicator, mine), statistics);

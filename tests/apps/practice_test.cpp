@@ -71,6 +71,19 @@ TEST(Practice, APictureThatIsToldToEndIsKept) {
   EXPECT_TRUE(std::filesystem::exists(folder / "a.film"));
 }
 
+// Ranks that share a scene out have no geometry when they look for a checkpoint.
+TEST(Practice, ACheckpointBelongsToOneSceneHoweverItIsSharedOut) {
+  const Folder folder;
+  const std::string rest = kSmall + "--spp 8 -o a.png --checkpoint a.film ";
+  const std::string shared = "--ranks 2 --data ray ";
+  const std::string terrain = "delray render gen:terrain:500:";
+  ASSERT_EQ(run(terrain + "1" + rest + shared, folder.path()).exit_code, 0);
+  EXPECT_EQ(run(terrain + "2" + rest + shared + "--resume", folder.path()).exit_code, 3);
+  EXPECT_EQ(run(terrain + "2" + rest + "--resume", folder.path()).exit_code, 3);
+  EXPECT_EQ(run(terrain + "1" + rest + "--resume", folder.path()).exit_code, 0);
+  EXPECT_EQ(run(terrain + "1" + rest + "--resume --data object", folder.path()).exit_code, 0);
+}
+
 TEST(Practice, NoiseAndTimeEndSampling) {
   const Folder folder;
   const json noisy = stats_of("--integrator path --spp 512 --noise 0.1 -o a.png", folder,

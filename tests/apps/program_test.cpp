@@ -108,6 +108,22 @@ TEST(Program, RefusesOptionsWithoutEffect) {
   }
 }
 
+TEST(Program, RefusesWhatIsNoNumber) {
+  const Folder folder;
+  for (const std::string option :
+       {"--time", "--noise", "--preview-every", "--exposure", "--aperture", "--aperture 1 --focus",
+        "--integrator ao --reach", "--data object --cache",
+        "--schedule static --partition mahd --keep", "--checkpoint a --checkpoint-every"}) {
+    for (const std::string value : {"nan", "inf", "-31"}) {
+      const Ran ran = run("delray render gen:cornell -o a.png --size 32x32 --engine raytrace " +
+                              option + " " + value,
+                          folder.path());
+      EXPECT_EQ(ran.exit_code, 2) << option << " " << value << "\n" << ran.err;
+      EXPECT_TRUE(folder.files().empty()) << option << " " << value;
+    }
+  }
+}
+
 TEST(Program, ListsAreNameTabDescription) {
   const Folder folder;
   for (const std::string command : {"render --list", "compose --list", "triangulate --list",

@@ -208,6 +208,47 @@ TEST(RenderCommand, StatisticsHaveEveryKey) {
   }
 }
 
+TEST(RenderCommand, ProcessesTellTheirOwnMemoryAndWhatTheirPartTook) {
+  const Folder folder;
+  for (const std::string options : {"", "--engine raytrace --data ray"}) {
+    const json stats = statistics(
+        mpirun(4) + "delray render gen:terrain:100000 -o a.png --size 64x48 " + options, folder);
+    std::set<std::uint64_t> peaks;
+    for (const json& rank : stats["ranks"]) peaks.insert(rank["peak_rss"].get<std::uint64_t>());
+    EXPECT_GT(peaks.size(), 1U) << options;
+    EXPECT_GE(stats["options"]["threads"], 1) << options;
+    if (options.empty()) continue;
+    // No machine makes a part of the terrain, or the structures over it, any sooner.
+    EXPECT_GT(stats["seconds"]["load"], 1e-4);
+    EXPECT_GT(stats["seconds"]["build"], 1e-4);
+  }
+}
+
+TEST(RenderCommand, CountsTrianglesWithoutArea) {
+  const Folder folder;
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 4 2 1\n");
+  for (const std::string data : {"replicated", "ray"}) {
+    const json stats = statistics(
+        "delray render a.obj -o a.png --size 64x48 --engine raytrace --data " + data, folder);
+    EXPECT_EQ(stats["raytrace"]["degenerate"], 2) << data;
+  }
+}
+
+TEST(RenderCommand, SaysAtOnceThatAFolderIsMissing) {
+  const Folder folder;
+  const std::string base = "delray render gen:spheres:500 --size 16x16 --engine raytrace -v ";
+  for (const std::string options :
+       {"-o missing/a.png", "-o a.png --stats missing/a.json", "-o a.png --checkpoint missing/a"}) {
+    for (const std::string& launcher : {std::string(), mpirun(2)}) {
+      if (!launcher.empty() && !options.starts_with("-o missing")) continue;
+      const Ran ran = run(launcher + base + options, folder.path());
+      EXPECT_EQ(ran.exit_code, 1) << options << "\n" << ran.err;
+      EXPECT_NE(ran.err.find("missing/a"), std::string::npos) << options << "\n" << ran.err;
+      EXPECT_TRUE(folder.files().empty()) << options;
+    }
+  }
+}
+
 TEST(RenderCommand, BlendsByCellOfSpaceWithSortLastAlone) {
   const Folder folder;
   const std::string base = "delray render gen:city:2000 -o a.png --size 80x60 --blend by-cell ";

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "comm/threads.h"
+#include "raytrace/shared_scene.h"
 #include "tests/raytrace/small_scenes.h"
 
 namespace delray::raytrace {
@@ -66,6 +67,42 @@ void expect_same(const image::ImageF& a, const image::ImageF& b) {
   for (std::size_t i = 0; i < a.pixels(); ++i) {
     ASSERT_EQ(a.colour[i], b.colour[i]) << "pixel " << i;
     ASSERT_EQ(a.depth[i], b.depth[i]) << "pixel " << i;
+  }
+}
+
+// All that ranks count of a scene that is shared out, as far as the same is counted every time.
+std::vector<std::uint64_t> counts_of(const ProgressiveOptions& options, const char* data) {
+  std::vector<std::uint64_t> counts(6, 0);
+  comm::run_threads(3, 1, [&](comm::Communicator& communicator) {
+    ShareOptions share;
+    share.cache_bytes = 1;
+    SharedScene shared = SharedScene::make(communicator, balls(), share);
+    Renderer renderer(shared, *find_distribution(data));
+    const ProgressiveResult result =
+        render_progressively(communicator, renderer, before_balls(), options);
+    for (const RankStatistics& rank : result.statistics.ranks) {
+      counts[0] += rank.rays_sent;
+      counts[1] += rank.answers_sent;
+      counts[2] += rank.tests;
+      counts[3] += rank.clusters_fetched;
+      counts[4] += rank.clusters_fetched_bytes;
+      counts[5] += rank.clusters_dropped;
+    }
+  });
+  return counts;
+}
+
+TEST(Progressive, CountsOfAllPassesAreAddedUp) {
+  for (const char* data : {"ray", "object"}) {
+    ProgressiveOptions options = balls_of(4);
+    const std::vector<std::uint64_t> one = counts_of(options, data);
+    options.frame.samples = 16;
+    const std::vector<std::uint64_t> four = counts_of(options, data);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_GE(four[i], 2 * one[i]) << data << " " << i;
+      EXPECT_LE(four[i], 8 * one[i]) << data << " " << i;
+    }
+    EXPECT_GT(one[2], 0U);
   }
 }
 

@@ -1,0 +1,37 @@
+#include "apps/numbers.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace delray::apps {
+namespace {
+
+// `fits` is only asked about finite numbers.
+template <class Fits>
+CLI::Validator numbers(Fits&& fits, const std::string& range, const std::string& shown) {
+  const auto check = [fits, range](std::string& text) {
+    double value = 0;
+    const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && fits(value);
+    return fine ? std::string() : fmt::format("'{}' is not a number {}", text, range);
+  };
+  return CLI::Validator(check, shown);
+}
+
+}  // namespace
+
+CLI::Validator positive_number() {
+  return numbers([](double value) { return value > 0.0; }, "above 0", "POSITIVE");
+}
+
+CLI::Validator non_negative_number() {
+  return numbers([](double value) { return value >= 0.0; }, "from 0 on", "NONNEGATIVE");
+}
+
+CLI::Validator number_between(double least, double most) {
+  return numbers([least, most](double value) { return least <= value && value <= most; },
+                 fmt::format("from {} to {}", least, most),
+                 fmt::format("FLOAT in [{} - {}]", least, most));
+}
+
+}  // namespace delray::apps
