@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -94,7 +95,12 @@ TEST_P(Distributions, GiveThePictureOfTheWholeScene) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Distributions,
                          testing::Values(Case{"gen:terrain:4000", "path"},
                                          Case{"gen:cornell:600", "whitted"},
-                                         Case{"gen:spheres:4000", "whitted"}));
+                                         Case{"gen:spheres:4000", "whitted"}),
+                         [](const testing::TestParamInfo<Case>& of) {
+                           std::string name = of.param.scene;
+                           std::replace(name.begin(), name.end(), ':', '_');
+                           return name + '_' + of.param.integrator;
+                         });
 
 // A process has room for some hundreds of Embree's devices, but not for a thousand.
 TEST(SharedScene, ThousandsOfClustersFitIntoAProcess) {
