@@ -276,20 +276,34 @@ void RayTraffic::choose_next(T& ray, std::vector<Crossing>& crossings) const {
   if (is_decided(ray)) return;
   scene_.tree().find(ray.origin, ray.direction, ray.near, ray.far, crossings);
   const bool is_back = ring_ && ray.way.hops == static_cast<std::uint32_t>(communicator_.size());
+  // What came to this rank while the ray was under way may have been nowhere when it was there.
+  const auto times_it_came = [&](const Crossing& crossing) {
+    return std::count(taken_over_.begin() + static_cast<std::ptrdiff_t>(ray.way.stamp),
+                      taken_over_.end(), crossing.cluster);
+  };
   for (const Crossing& crossing : crossings) {
     if (!(ray.way.last < crossing)) continue;
-    if (ring_) {
-      // What came to this rank while the ray was under way may have been nowhere when it was there.
-      if (!scene_.owns(crossing.cluster)) continue;
-      if (is_back && std::find(taken_over_.begin() + static_cast<std::ptrdiff_t>(ray.way.stamp),
-                               taken_over_.end(), crossing.cluster) == taken_over_.end())
-        continue;
-    }
+    if (ring_ && !scene_.owns(crossing.cluster)) continue;
+    if (is_back && times_it_came(crossing) == 0) continue;
     ray.way.last = crossing;
     ray.way.next = crossing.cluster;
     return;
   }
-  if (ring_ && !is_back) ray.way.next = kOnward;
+  if (!ring_) return;
+  if (!is_back) {
+    ray.way.next = kOnward;
+    return;
+  }
+  // What has gone on since is behind the ray, which goes round once more then.
+  const bool missed =
+      std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
+        return times_it_came(crossing) > (scene_.owns(crossing.cluster) ? 1 : 0);
+      });
+  if (!missed) return;
+  ray.way.hops = 0;
+  ray.way.stamp = taken_over_.size();
+  ray.way.last = {-1.0F, 0};
+  choose_next(ray, crossings);
 }
 
 template <class T>

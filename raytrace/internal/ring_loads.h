@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 namespace delray::raytrace {
 
@@ -22,7 +21,7 @@ class RingLoads {
   void gave(std::uint64_t load) { given_at_ = load; }
 
  private:
-  std::optional<std::uint64_t> next_;
+  std::uint64_t next_ = kTestsBetween;  // at most that, until it tells
   std::uint64_t told_ = 0, given_at_ = 0;
 };
 

@@ -47,6 +47,41 @@ std::size_t different(const Result& a, const Result& b) {
   return count;
 }
 
+// Clusters that pass the rank that asked, before what it asked is back, are behind rays.
+TEST(Ring, RaysFollowClustersThatHavePassedThem) {
+  const parallel::AllowThreads allowed(4);
+  scenes::Scene scene;
+  // What is seen is the first third of it, and only the first rank has that.
+  for (int i = 0; i < 9; ++i) {
+    const glm::vec3 at(i < 3 ? 0.8F * static_cast<float>(i - 1) : 60.0F, 0, -i);
+    add(scene, sphere(16), placed(1.0F, at)).base_colour.a = 0.5F;
+    scene.materials.back().alpha = scenes::Material::Alpha::blend;
+  }
+  scene.cameras.emplace_back();
+  scene.cameras[0].eye = {0, 0, 4};
+  scenes::complete(scene, scene.cameras[0]);
+  RenderOptions options = small(96, 64);
+  options.samples = 8;
+  options.integrator = "direct";
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  std::uint64_t moved = 0;
+  for (const std::uint64_t seed : {1, 2}) {
+    Result result;
+    comm::run_simulated(3, comm::any_order(), seed, [&](comm::Communicator& communicator) {
+      ShareOptions share;
+      share.most_triangles = 16;
+      SharedScene mine = SharedScene::make(communicator, scene, share);
+      Renderer renderer(mine, *find_distribution("ring"));
+      Result one = renderer.render(communicator, scene.cameras[0], options);
+      if (communicator.rank() == 0) result = std::move(one);
+    });
+    EXPECT_EQ(different(result, whole), 0U) << seed;
+    EXPECT_EQ(result.statistics.rays, whole.statistics.rays) << seed;
+    for (const RankStatistics& rank : result.statistics.ranks) moved += rank.clusters_moved;
+  }
+  EXPECT_GT(moved, 0U);
+}
+
 struct Case {
   const char* scene;
   const char* integrator;

@@ -17,7 +17,8 @@ TEST(RingLoads, AreToldNowAndThen) {
 
 TEST(RingLoads, GiveToAMuchLessLoadedNeighbourOnly) {
   RingLoads loads;
-  EXPECT_FALSE(loads.should_give(10 * kStep));  // nothing is known of it
+  EXPECT_FALSE(loads.should_give(kStep));
+  EXPECT_TRUE(loads.should_give(2 * kStep));  // it would have told if it had done a step
   loads.hear(9 * kStep);
   EXPECT_FALSE(loads.should_give(10 * kStep));
   EXPECT_TRUE(loads.should_give(11 * kStep));
