@@ -26,9 +26,12 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
   command.add_flag("--list", options.list, "list " + listed);
 }
 
-void check(const ComparisonOptions& options) {
+void check(const Session& session, const ComparisonOptions& options) {
   if (!options.output.empty() && !options.output.ends_with(".html"))
     throw UsageError(fmt::format("-o: '{}' does not end in .html", options.output));
+  if (!session.first_process) return;
+  files::check_folder(options.output);
+  files::check_folder(options.statistics);
 }
 
 void print_aligned(const TextTable& table) {
@@ -51,6 +54,10 @@ void print_aligned(const TextTable& table) {
 
 Json spread_json(const Spread& times) {
   return {{"least", times.least}, {"most", times.most}, {"runs", times.runs}};
+}
+
+std::string range_text(const Spread& times) {
+  return fmt::format("{:.4g}..{:.4g}", times.least * 1e3, times.most * 1e3);
 }
 
 int tell(const ComparisonOptions& options, Found&& found) {

@@ -22,8 +22,8 @@ struct ComparisonOptions {
 // Adds -o, --quick, --stats and --list with what the last ones do here.
 void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
                             const std::string& listed);
-// Throws UsageError.
-void check(const ComparisonOptions& options);
+// Throws UsageError, FileError where nothing could be written in the end.
+void check(const Session& session, const ComparisonOptions& options);
 
 // A heading, then lines of as many texts.
 using TextTable = std::vector<std::vector<std::string>>;
@@ -32,6 +32,8 @@ void print_aligned(const TextTable& table);
 
 // Least, most and number of the runs; their median stands elsewhere.
 Json spread_json(const Spread& times);
+// Of so many milliseconds, for tables.
+std::string range_text(const Spread& times);
 
 // Runs of a comparison. A stop that was asked for is heard between two of them, where it loses
 // nothing.

@@ -61,6 +61,22 @@ TEST_F(AtomicFileTest, MissingFolderIsADeviceError) {
   }
 }
 
+TEST_F(AtomicFileTest, TellsBeforehandWhereNothingCanBeWritten) {
+  write_file(folder_ / "a.txt", "old");
+  for (const fs::path& path : {folder_ / "a.txt", folder_ / "new.txt", fs::path(), fs::path("-")})
+    EXPECT_NO_THROW(check_folder(path)) << path;
+  EXPECT_EQ(read_file(folder_ / "a.txt"), "old");
+  EXPECT_EQ(entries(), 1);
+  for (const fs::path& path : {folder_ / "no" / "a.txt", folder_, folder_ / "a.txt" / "b.txt"}) {
+    try {
+      check_folder(path);
+      ADD_FAILURE() << path;
+    } catch (const FileError& error) {
+      EXPECT_EQ(error.cause(), Cause::device) << path;
+    }
+  }
+}
+
 TEST_F(AtomicFileTest, ReadingAFolderOrNothingIsBadInput) {
   for (const fs::path& path : {folder_, folder_ / "missing"}) {
     try {
