@@ -10,7 +10,8 @@ struct Spread {
   int runs = 0;
 };
 
-// The upper median. REQUIRES: at least one value.
+// Of an even number of values the median lies between the two in the middle. REQUIRES: at least one
+// value.
 Spread spread_of(std::vector<double> values);
 
 }  // namespace delray::apps
