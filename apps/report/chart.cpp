@@ -40,8 +40,14 @@ class LinePlot {
     Html result = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
                               kHeight, escaped(chart_.title));
     result += grid();
-    for (std::size_t i = 0; i < chart_.series.size(); ++i) result += line(i);
-    return result + "</svg>";
+    Html lines;
+    for (std::size_t i = 0; i < chart_.series.size(); ++i) lines += line(i);
+    if (lines.empty())
+      lines = fmt::format(
+          "<text class=\"axis\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">nothing but "
+          "zeros</text>",
+          (kLeft + kWidth - kRight) / 2, (kTop + kHeight - kBottom) / 2);
+    return result + lines + "</svg>";
   }
 
  private:
@@ -134,10 +140,10 @@ Html line_chart(const LineChart& chart) {
   Html legend;
   for (std::size_t i = 0; i < chart.series.size(); ++i)
     legend += fmt::format(
-        "<button type=\"button\" class=\"key {}\" data-series=\"{}\" aria-pressed=\"true\">"
+        "<button type=\"button\" class=\"key {}{}\" data-series=\"{}\" aria-pressed=\"true\">"
         "<svg viewBox=\"0 0 24 8\"><path class=\"line\" d=\"M0 4H24\"/></svg>{}{}</button>",
-        look(chart, i), i, escaped(chart.series[i].name),
-        mixed ? label(chart.series[i].source) : "");
+        look(chart, i), chart.series[i].source == Source::predicted ? " predicted" : "", i,
+        escaped(chart.series[i].name), mixed ? label(chart.series[i].source) : "");
   return fmt::format(
       "<figure class=\"chart\"><figcaption>{}{}</figcaption>{}<div class=\"legend\">{}</div>"
       "</figure>\n",
@@ -163,23 +169,28 @@ Html bar_chart(const BarChart& chart) {
         "<text class=\"tick\" x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4}</text>",
         at(tick.value), kTop, bottom, bottom + 16, escaped(tick.label));
   double y = kTop;
+  Html amounts;  // above the mark, or it would cross them out
   for (const Bar& bar : chart.bars) {
     const double value = std::isfinite(bar.value) ? std::max(bar.value, 0.0) : 0.0;
     svg += fmt::format(
         "<text class=\"tick\" x=\"{0}\" y=\"{1:.1f}\" text-anchor=\"end\" "
         "dominant-baseline=\"middle\">{2}</text>"
         "<rect class=\"bar{3}\" x=\"{4}\" y=\"{5:.1f}\" width=\"{6:.1f}\" height=\"{7}\" "
-        "tabindex=\"0\"><title>{2}: {8} {9} ({10}){11}</title></rect>"
-        "<text class=\"tick\" x=\"{12:.1f}\" y=\"{1:.1f}\" dominant-baseline=\"middle\">{8}</text>",
+        "tabindex=\"0\"><title>{2}: {8} {9} ({10}){11}</title></rect>",
         names - 6, y + kBarHeight / 2, escaped(bar.name), bar.emphasised ? " emphasised" : "",
         names, y + 2, at(value) - names, kBarHeight - 4, short_number(bar.value),
         escaped(chart.label), name_of(chart.source),
-        bar.note.empty() ? "" : "; " + escaped(bar.note), at(value) + 4);
+        bar.note.empty() ? "" : "; " + escaped(bar.note));
+    amounts += fmt::format(
+        "<text class=\"tick value\" x=\"{:.1f}\" y=\"{:.1f}\" "
+        "dominant-baseline=\"middle\">{}</text>",
+        at(value) + 4, y + kBarHeight / 2, short_number(bar.value));
     y += kBarHeight;
   }
   if (chart.mark > 0)
     svg += fmt::format("<line class=\"mark\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>",
                        at(chart.mark), kTop, bottom);
+  svg += amounts;
   svg += fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
                      names + room / 2, height - 8, escaped(chart.label));
   return fmt::format(

@@ -6,6 +6,14 @@
 #include <cmath>
 
 namespace delray::apps::report {
+namespace {
+
+// By the root, or small amounts could not be seen.
+double shade_of(double value, double most) {
+  return 0.15 + 0.85 * std::sqrt(std::min(1.0, value / most));
+}
+
+}  // namespace
 
 Html matrix(const Matrix& matrix, double most) {
   constexpr double kSide = 360, kLeft = 34, kTop = 34;
@@ -37,19 +45,26 @@ Html matrix(const Matrix& matrix, double most) {
     for (int i = 0; i < matrix.columns; ++i) {
       const double value = matrix.values[static_cast<std::size_t>(j) * matrix.columns + i];
       if (!(value > 0)) continue;
-      // By the root, or small amounts could not be seen.
-      const double shade = 0.15 + 0.85 * std::sqrt(std::min(1.0, value / most));
       svg += fmt::format(
           "<rect class=\"cell\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
           "fill-opacity=\"{:.3f}\"><title>{} {}, {} {}: {} {} ({})</title></rect>",
-          kLeft + i * width, kTop + j * height, width, height, shade, escaped(matrix.row_name), j,
-          escaped(matrix.column_name), i, short_number(value), escaped(matrix.unit),
-          name_of(matrix.source));
+          kLeft + i * width, kTop + j * height, width, height, shade_of(value, most),
+          escaped(matrix.row_name), j, escaped(matrix.column_name), i, short_number(value),
+          escaped(matrix.unit), name_of(matrix.source));
     }
+  Html legend;
+  if (std::none_of(matrix.values.begin(), matrix.values.end(), [](double v) { return v > 0; }))
+    legend = "<span class=\"key\">nothing</span>";
+  else
+    for (const double part : {1.0, 0.25, 0.01})
+      legend += fmt::format(
+          "<span class=\"key\"><svg viewBox=\"0 0 24 8\"><rect class=\"cell\" width=\"24\" "
+          "height=\"8\" fill-opacity=\"{:.3f}\"/></svg>{} {}</span>",
+          shade_of(part, 1), short_number(part * most), escaped(matrix.unit));
   return fmt::format(
       "<figure class=\"matrix\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
-      "</svg></figure>\n",
-      escaped(matrix.title), name_of(matrix.source), svg);
+      "</svg><div class=\"legend\">{}</div></figure>\n",
+      escaped(matrix.title), name_of(matrix.source), svg, legend);
 }
 
 }  // namespace delray::apps::report

@@ -22,6 +22,7 @@ p{max-width:46rem}
 .answer p{margin:.3rem 0}
 .answer .table{max-height:none}
 .answer th{background:var(--panel)}
+.answer th,.answer td{padding:.2rem .5rem}
 .answer strong{font-weight:650}
 .unfinished{color:var(--warn);font-weight:600}
 nav{display:flex;flex-wrap:wrap;gap:.3rem;border-bottom:1px solid var(--line);position:sticky;top:0;
@@ -33,13 +34,14 @@ nav button[aria-selected=true]{border-color:var(--accent);font-weight:600}
 button:focus-visible,[tabindex]:focus-visible{outline:2px solid var(--accent);outline-offset:1px}
 section.hidden{display:none}
 section>h2{position:absolute;left:-99rem}
-.beside{display:grid;grid-template-columns:repeat(auto-fit,minmax(20rem,1fr));gap:1rem}
-.pairs{grid-template-columns:repeat(auto-fit,minmax(29rem,1fr))}
+.beside{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(20rem,100%),1fr));gap:1rem}
+.pairs{grid-template-columns:repeat(auto-fit,minmax(min(29rem,100%),1fr))}
 .beside figure{margin:.4rem 0}
 figure{margin:1rem 0;padding:0}
 figcaption{font-weight:600;font-size:.95rem;margin-bottom:.3rem}
 figure svg{display:block;width:100%;height:auto}
 .chart{max-width:52rem}
+.pairs text{font-size:15px}.pairs text.tick{font-size:14px}
 .picture img{max-width:100%;height:auto;border:1px solid var(--line);
 background:repeating-conic-gradient(var(--panel) 0 25%,var(--line) 0 50%) 0 0/16px 16px}
 .picture figcaption{font-weight:400;color:var(--soft)}
@@ -50,7 +52,7 @@ text.tick{fill:var(--soft);font-size:11px}
 .line,.spread{pointer-events:none}
 .line{fill:none;stroke-width:2}
 .spread{fill:none;stroke-width:1.5;opacity:.5}
-.predicted .line{stroke-dasharray:2 4}
+.predicted .line,.key.predicted .line{stroke-dasharray:2 4}
 .predicted .point{fill:var(--paper)}
 .point{stroke-width:1.5}
 .d1 .line,.key.d1 .line{stroke-dasharray:7 3}
@@ -63,6 +65,7 @@ text.tick{fill:var(--soft);font-size:11px}
 .series.off{display:none}
 .series.dim{opacity:.15}
 .bar{fill:var(--c4)}.bar.emphasised{fill:var(--c1)}
+text.value{paint-order:stroke;stroke:var(--paper);stroke-width:4px;stroke-linejoin:round}
 .mark{stroke:var(--ink);stroke-width:1.5;stroke-dasharray:5 3}
 .cell{fill:var(--c0)}
 .span{stroke:none}
@@ -100,8 +103,13 @@ dl{display:grid;grid-template-columns:max-content 1fr;gap:.15rem 1rem}
 dt{color:var(--soft)}dd{margin:0;overflow-wrap:anywhere}
 #tip{position:fixed;display:none;pointer-events:none;background:var(--ink);color:var(--paper);
 font-size:.82rem;padding:.25rem .5rem;border-radius:4px;max-width:24rem;z-index:2}
-@media print{nav,#tip{display:none}section.hidden{display:block}section>h2{position:static}
-.table{max-height:none;overflow:visible}figure,tr{break-inside:avoid}}
+@media(max-width:40rem){.chart text{font-size:17px}.chart text.tick{font-size:16px}
+.timeline{overflow-x:auto}.timeline svg{min-width:38rem}}
+@media print{body{padding:0}nav,#tip{display:none}section.hidden{display:block}section>h2{position:static}
+h2,h3,figcaption{break-after:avoid}.legend,.overlay,.picture,.cell{print-color-adjust:exact}
+.table{max-height:none;overflow:visible}figure,tr{break-inside:avoid}
+table{font-size:.55rem}th,td{padding:.1rem .25rem}th{white-space:normal}
+.table .source{font-size:.5rem;padding:0 .1rem}}
 )css";
 
 const char* const kScript = R"js(

@@ -103,8 +103,10 @@ TEST(ReportCharts, BarsMatricesAndTimelinesTellTheirNumbers) {
       bar_chart({"t", "bytes", Source::counted, {{"r0", 3, "x", true}, {"r1", 4, ""}}, 3.5});
   EXPECT_EQ(count(bars, "<rect class=\"bar"), 2U);
   EXPECT_NE(bars.find("r0: 3 bytes (counted); x"), std::string::npos);
+  EXPECT_LT(bars.find("class=\"mark\""), bars.find("tick value"));  // numbers lie above the mark
   const Html cells = matrix({"m", "from", "to", "bytes", Source::counted, 2, 2, {0, 7, 0, 9}});
-  EXPECT_EQ(count(cells, "class=\"cell\""), 2U);
+  EXPECT_EQ(count(cells, "class=\"cell\""), 2U + 3U);  // and in the legend
+  EXPECT_NE(cells.find("2.25 bytes"), std::string::npos);
   EXPECT_NE(cells.find("from 1, to 1: 9 bytes (counted)"), std::string::npos);
   const Html lanes = timeline(
       {"t", Source::measured, {"work", "wait"}, {{"rank 0", {{0, 1, 1.5, ""}, {1, 1.5, 3, "q"}}}}});
@@ -112,6 +114,19 @@ TEST(ReportCharts, BarsMatricesAndTimelinesTellTheirNumbers) {
   EXPECT_EQ(lanes.find("idle"), std::string::npos);
   Timeline waits{"t", Source::counted, {"work", "wait"}, {{"rank 0", {{1, 1.5, 3, ""}}}}, 1};
   EXPECT_EQ(count(timeline(waits), "span idle"), 2U);  // and in the legend
+}
+
+TEST(ReportCharts, SayWhereThereIsNothingToSee) {
+  LineChart chart;
+  chart.y_scale = Scale::logarithmic;
+  chart.series = {{"none", Source::predicted, {{1, 0}, {2, 0}}}};
+  EXPECT_NE(line_chart(chart).find("nothing but zeros"), std::string::npos);
+  chart.series[0].points[1].y = 3;
+  const Html html = line_chart(chart);
+  EXPECT_EQ(html.find("nothing but zeros"), std::string::npos);
+  EXPECT_EQ(count(html, "d0 predicted\""), 2U);  // the line, and its key looks like it
+  const Html cells = matrix({"m", "from", "to", "bytes", Source::counted, 1, 2, {0, 0}}, 9);
+  EXPECT_NE(cells.find("nothing"), std::string::npos);
 }
 
 TEST(ReportCharts, SeriesKeepTheirLookWhateverTheirPlace) {
