@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "apps/simulated_frames.h"
 #include "comm/network.h"
@@ -235,11 +236,21 @@ PartitionComparison compare_partition(const PartitionRequest& request, const Pre
   return Comparison(request, prepared, progress).run();
 }
 
+double over_share(const ComparedPartition& row) {
+  return row.drawn ? row.drawn->work_over_share : row.predicted_over_share;
+}
+
 const ComparedPartition* best_partition(const std::vector<ComparedPartition>& rows, int ranks) {
+  const auto is_asked_for = [&](const ComparedPartition& row) {
+    return row.ranks == ranks && row.regions_per_rank == rows.front().regions_per_rank;
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const ComparedPartition& row : rows)
+    if (is_asked_for(row)) least = std::min(least, over_share(row));
   const ComparedPartition* best = nullptr;
   for (const ComparedPartition& row : rows)
-    if (row.ranks == ranks && row.drawn && row.regions_per_rank == rows.front().regions_per_rank &&
-        (best == nullptr || row.drawn->work_over_share < best->drawn->work_over_share))
+    if (is_asked_for(row) && over_share(row) <= least * kAsEven &&
+        (best == nullptr || row.cut_seconds.median < best->cut_seconds.median))
       best = &row;
   return best;
 }

@@ -88,8 +88,13 @@ int shown_ranks(const PartitionRequest& request);
 PartitionComparison compare_partition(const PartitionRequest& request, const Prepared& prepared,
                                       parallel::Progress& progress);
 
-// Of so many ranks with as many regions each as in the first row, the partition that finishes
-// first; null if none was drawn.
+// Shares that are so little less even are as good: another scene would turn them round.
+inline constexpr double kAsEven = 1.05;
+
+// Of so many ranks with as many regions each as in the first row the partition that is cut soonest
+// among those whose work_over_share is the least or within kAsEven of it; of more ranks than are
+// drawn, by what the costs foretell. Null if there is none.
+double over_share(const ComparedPartition& row);
 const ComparedPartition* best_partition(const std::vector<ComparedPartition>& rows, int ranks);
 
 }  // namespace delray::apps

@@ -88,8 +88,9 @@ Json partition_statistics(const PartitionRequest& request, const Prepared& prepa
 TextTable partition_table(const std::vector<ComparedPartition>& rows) {
   TextTable table = {{"ranks", "regions", "partition", "primitives", "shared", "overlap",
                       "triangles max", "samples max", "work max/mean", "work over share",
-                      "MB first", "MB next", "cut ms", "busiest ms", "time max/mean",
-                      "max/mean, predicted", "over share, predicted"}};
+                      "MB first", "MB next", "cut ms", "cut from..to ms", "busiest ms",
+                      "busiest from..to ms", "time max/mean", "max/mean, predicted",
+                      "over share, predicted"}};
   for (const ComparedPartition& row : rows) {
     const auto of = [&](auto&& text) { return row.drawn ? text(*row.drawn) : std::string("-"); };
     const auto megabytes = [](std::uint64_t bytes) {
@@ -103,8 +104,9 @@ TextTable partition_table(const std::vector<ComparedPartition>& rows) {
                      of([](const DrawnFrames& d) { return ratio(d.work_over_share); }),
                      of([&](const DrawnFrames& d) { return megabytes(d.bytes_total); }),
                      of([&](const DrawnFrames& d) { return megabytes(d.bytes_next); }),
-                     milliseconds(row.cut_seconds.median),
+                     milliseconds(row.cut_seconds.median), range_text(row.cut_seconds),
                      of([](const DrawnFrames& d) { return milliseconds(d.busiest.median); }),
+                     of([](const DrawnFrames& d) { return range_text(d.busiest); }),
                      of([](const DrawnFrames& d) { return ratio(d.imbalance.median); }),
                      ratio(row.predicted_imbalance), ratio(row.predicted_over_share)});
   }

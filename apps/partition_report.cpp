@@ -64,29 +64,32 @@ const ComparedStrategy* best_strategy(const std::vector<ComparedStrategy>& strat
   return best;
 }
 
+std::string runs_of(const Spread& seconds) {
+  return fmt::format("{} (measured, median of {} runs, {} to {})", time_of(seconds.median),
+                     seconds.runs, time_of(seconds.least), time_of(seconds.most));
+}
+
 Html sentence(const PartitionComparison& comparison, const ComparedPartition& best) {
-  const DrawnFrames& drawn = *best.drawn;
   Html text = fmt::format(
       "<p>For {} ranks cut the screen by {}: the busiest rank does {:.3g} times an equal share of "
-      "the work of one alone (counted), cutting takes {} (measured, median of {} runs, {} to {}), "
-      "and {:.3g} ranks get a primitive on average (counted). One rank alone takes {} for a frame "
-      "(measured).",
-      best.ranks, strong(best.partition), drawn.work_over_share, time_of(best.cut_seconds.median),
-      best.cut_seconds.runs, time_of(best.cut_seconds.least), time_of(best.cut_seconds.most),
-      best.overlap, time_of(comparison.alone_seconds));
-  const ComparedPartition* anew = nullptr;
-  const ComparedPartition* next = nullptr;
+      "the work of one alone ({}), cutting takes {}, and a primitive goes to {:.3g} ranks on "
+      "average (counted). One rank alone takes {} for a frame (measured, median).",
+      best.ranks, strong(best.partition), over_share(best), best.drawn ? "counted" : "predicted",
+      runs_of(best.cut_seconds), best.overlap, time_of(comparison.alone_seconds));
+  const ComparedPartition *anew = &best, *evenest = &best, *next = nullptr;
   for (const ComparedPartition& row : comparison.rows) {
-    if (row.ranks != best.ranks || !row.drawn || row.regions_per_rank != best.regions_per_rank)
+    if (row.ranks != best.ranks || row.regions_per_rank != best.regions_per_rank || &row == &best)
       continue;
-    if (anew == nullptr || row.finish_seconds < anew->finish_seconds) anew = &row;
-    if (&row != &best &&
-        (next == nullptr || row.drawn->work_over_share < next->drawn->work_over_share))
-      next = &row;
+    if (row.drawn && row.finish_seconds < anew->finish_seconds) anew = &row;
+    if (over_share(row) < over_share(*evenest)) evenest = &row;
+    if (next == nullptr || over_share(row) < over_share(*next)) next = &row;
   }
-  if (next != nullptr)
-    text += fmt::format(" Next comes {} with {:.3g}.", escaped(next->partition),
-                        next->drawn->work_over_share);
+  if (evenest != &best)
+    text += fmt::format(" {} shares out more evenly, {:.3g}, but cutting takes {}.",
+                        escaped(evenest->partition), over_share(*evenest),
+                        time_of(evenest->cut_seconds.median));
+  else if (next != nullptr)
+    text += fmt::format(" Next comes {} with {:.3g}.", escaped(next->partition), over_share(*next));
   if (anew != &best)
     text += fmt::format(
         " Where the screen is cut anew for every frame {} is done first, {} instead of {} "
@@ -119,7 +122,7 @@ Html answer(const PartitionComparison& comparison) {
   Table best_of;
   best_of.columns = {{"ranks", true, false, {}},
                      {"partition", false, true, Source::counted},
-                     {"over share", true, true, Source::counted},
+                     {"work over share", true, true, Source::counted},
                      {"cut ms", true, true, Source::measured}};
   for (const comm::NamedNetwork& named : comm::networks())
     best_of.columns.push_back({named.name, false, true, Source::predicted});
@@ -140,14 +143,16 @@ Html answer(const PartitionComparison& comparison) {
     best_of.rows.push_back(std::move(line));
   }
   Html result;
-  if (last != nullptr) result += sentence(comparison, *last);
-  result += fastest_frames(comparison.strategies);
   if (best_of.rows.empty())
-    return paragraph("No partition was run: all numbers of ranks are above what is measured.");
+    return sentence(comparison, *best_partition(comparison.rows, comparison.rows.back().ranks)) +
+           paragraph("Frames are drawn by fewer ranks: of so many the balance is foretold.");
+  result += sentence(comparison, *last) + fastest_frames(comparison.strategies);
   return result +
-         paragraph(
-             "By number of ranks, the partition that comes closest to equal shares, and over each "
-             "network the strategy whose frames take least:") +
+         paragraph(fmt::format(
+             "By number of ranks, the partition that is cut soonest of those within {:.0f} % of "
+             "the most even shares, and over each network the strategy whose frames take "
+             "least:",
+             (kAsEven - 1) * 100)) +
          table(best_of);
 }
 
