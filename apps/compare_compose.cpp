@@ -243,7 +243,12 @@ class Comparison {
       }
       if (ranks > kMostMeasuredRanks) {
         for (const std::string& scheme : schemes_of(request_)) {
-          rows_.push_back(simulated_row(scheme, codec, images, machines));
+          if (takes_long(scheme, codec, ranks)) {
+            result_.left_out.push_back({scheme, codec, ranks});
+            steps_.done(kStepsOfPrediction);
+          } else {
+            rows_.push_back(simulated_row(scheme, codec, images, machines));
+          }
         }
       } else {
         for (ComparedScheme& row : rows_) {
@@ -258,6 +263,20 @@ class Comparison {
       }
       if (ranks > kMostFittedRanks) shapes_.erase(ranks);
     }
+  }
+
+  // By the messages of fewer ranks, which grow with their square at most.
+  bool takes_long(const std::string& scheme, const std::string& codec, int ranks) const {
+    if (request_.most_messages == 0) return false;
+    const ComparedScheme* known = nullptr;
+    for (const ComparedScheme& row : rows_)
+      if (row.scheme == scheme && row.codec == codec && row.ranks < ranks &&
+          (known == nullptr || row.ranks > known->ranks))
+        known = &row;
+    if (known == nullptr) return false;
+    const double growth = static_cast<double>(ranks) / known->ranks;
+    return static_cast<double>(known->counts.messages) * growth * growth >
+           static_cast<double>(request_.most_messages);
   }
 
   std::vector<int> ranks_of_rows() const {

@@ -17,6 +17,9 @@ struct CompareRequest : SceneComparison {
   std::vector<std::string> codecs = {"active"};
   std::vector<std::string> schemes;  // empty: all
   bool interlace = false;            // ComposeOptions
+  // More ranks than are measured are left out of schemes that might send more messages than this,
+  // each of which is simulated; 0: none is left out.
+  std::uint64_t most_messages = 0;
 };
 
 // How long a scheme would take.
@@ -35,10 +38,17 @@ struct ComparedScheme {
   std::vector<Predicted> predicted;
 };
 
+// Not simulated: CompareRequest::most_messages.
+struct LeftOut {
+  std::string scheme, codec;
+  int ranks = 0;
+};
+
 struct ShownScheme;
 
 struct ComposeComparison {
   std::vector<ComparedScheme> rows;          // by number of ranks
+  std::vector<LeftOut> left_out;             // by number of ranks
   std::shared_ptr<const ShownScheme> shown;  // of the fastest one, if a page is asked for
   bool unfinished = false;                   // told to stop before the end
 };

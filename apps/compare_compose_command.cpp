@@ -24,9 +24,12 @@ int list() {
   return kDone;
 }
 
-void check_codecs(const CompareRequest& request) {
-  const bool simulates = std::any_of(request.ranks.begin(), request.ranks.end(),
-                                     [](int ranks) { return ranks > kMostMeasuredRanks; });
+// What is simulated without being asked for.
+constexpr std::uint64_t kMostMessages = 4'000'000, kMostMessagesQuick = 600'000;
+
+void check_codecs(const CompareRequest& request, bool asked) {
+  const bool simulates = asked && std::any_of(request.ranks.begin(), request.ranks.end(),
+                                              [](int ranks) { return ranks > kMostMeasuredRanks; });
   for (const std::string& codec : request.codecs) {
     find_entry(composite::codecs(), codec, "--codec");
     if (simulates && !composite::hollow_of(codec))
@@ -39,7 +42,9 @@ void check_codecs(const CompareRequest& request) {
 
 int run(Session& session, const CLI::App& command, CompareRequest request) {
   if (request.list) return list();
-  check_codecs(request);
+  const bool asked = command.count("--ranks") > 0;
+  check_codecs(request, asked);
+  if (!asked) request.most_messages = request.quick ? kMostMessagesQuick : kMostMessages;
   for (const std::string& scheme : request.schemes)
     if (composite::find_scheme(scheme) == nullptr)
       find_entry(composite::schemes(), scheme, "--compose");
@@ -60,9 +65,11 @@ void add_compare_compose(CLI::App& compare, Session& session) {
   CLI::App* command =
       compare.add_subcommand("compose", "every compositing scheme: counted, measured, predicted");
   const auto request = std::make_shared<CompareRequest>();
-  request->ranks = {2, 3, 4, 8, 16, 64};
-  add_scene_comparison_options(*command, *request,
-                               "(default 2,3,4,8,16,64); more than 64 are simulated");
+  request->ranks = {2, 3, 4, 8, 16, 64, 256, 1024, 4096};
+  add_scene_comparison_options(
+      *command, *request,
+      "(default 2,3,4,8,16,64, and 256,1024,4096 of schemes that are soon simulated); more than 64 "
+      "are simulated");
   command->add_option("--threads", request->render.launch.threads, "workers per rank (default 1)")
       ->check(CLI::Range(1, 4096));
   command

@@ -60,6 +60,9 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
     one["image_hash"] = row.hash.empty() ? Json(nullptr) : Json(row.hash);
     table.push_back(std::move(one));
   }
+  Json left_out = Json::array();
+  for (const LeftOut& one : comparison.left_out)
+    left_out.push_back({{"scheme", one.scheme}, {"codec", one.codec}, {"ranks", one.ranks}});
   return {{"schema", "delray.compare.compose/1"},
           {"scene", scene_json(request, prepared)},
           {"options",
@@ -71,6 +74,7 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
             {"quick", request.quick}}},
           {"unfinished", comparison.unfinished},
           {"networks", networks_json()},
+          {"left_out", std::move(left_out)},
           {"rows", std::move(table)}};
 }
 
@@ -85,7 +89,8 @@ TextTable compose_table(const std::vector<ComparedScheme>& rows) {
   }
   std::vector<std::string> head = {"ranks",    "scheme",     "codec",      "rounds",
                                    "messages", "MB",         "MB sent",    "MB received",
-                                   "Mpixel",   "Mpixel max", "compose ms", "gather ms"};
+                                   "Mpixel",   "Mpixel max", "compose ms", "compose from..to ms",
+                                   "gather ms"};
   for (const std::string& network : networks) head.push_back(network + " ms, predicted");
   std::vector<std::vector<std::string>> table = {std::move(head)};
   for (const ComparedScheme& row : rows) {
@@ -101,6 +106,7 @@ TextTable compose_table(const std::vector<ComparedScheme>& rows) {
                                      millions(counts.pixels_composited_total),
                                      millions(counts.pixels_composited_max),
                                      milliseconds(row.compose_seconds),
+                                     row.compose_seconds ? range_text(*row.compose_seconds) : "-",
                                      milliseconds(row.gather_seconds)};
     for (const std::string& network : networks) {
       const auto at = std::find_if(row.predicted.begin(), row.predicted.end(),

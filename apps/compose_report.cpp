@@ -71,8 +71,11 @@ Html chart_over_ranks(const std::vector<ComparedScheme>& rows, const std::string
 }
 
 std::string in_milliseconds(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
-std::string in_megabytes(std::uint64_t bytes) {
-  return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6);
+std::string in_bytes(std::uint64_t bytes) {
+  const auto amount = static_cast<double>(bytes);
+  if (bytes < 1000) return fmt::format("{} bytes", bytes);
+  return bytes < 1'000'000 ? fmt::format("{:.3g} kB", amount / 1e3)
+                           : fmt::format("{:.3g} MB", amount / 1e6);
 }
 
 const Predicted* prediction(const ComparedScheme& row, const std::string& network) {
@@ -125,7 +128,7 @@ Html sentence(const std::vector<ComparedScheme>& rows, const ComparedScheme& bes
               ? fmt::format(" (measured, median of {} runs, {} to {})", best.compose_seconds->runs,
                             in_milliseconds(spread.low / 1e3), in_milliseconds(spread.high / 1e3))
               : " (measured once)";
-  text += fmt::format(", {} sent in {} messages (counted).", in_megabytes(best.counts.bytes_total),
+  text += fmt::format(", {} sent in {} messages (counted).", in_bytes(best.counts.bytes_total),
                       best.counts.messages);
   const ComparedScheme* next = runner_up(rows, best);
   if (next == nullptr) return text + "</p>\n";
@@ -135,7 +138,40 @@ Html sentence(const std::vector<ComparedScheme>& rows, const ComparedScheme& bes
   return text + (certain ? ".</p>\n" : ", which other runs may turn round.</p>\n");
 }
 
-Html answer(const std::vector<ComparedScheme>& rows) {
+// What takes least over a network, where nothing was measured.
+Html predicted_sentence(const std::vector<ComparedScheme>& rows, const std::string& network,
+                        bool codecs) {
+  const int ranks = rows.back().ranks;
+  const ComparedScheme* best = fastest_over(rows, ranks, network);
+  if (best == nullptr) return "";
+  const Predicted& p = *prediction(*best, network);
+  return fmt::format(
+      "<p>On {} ranks over {} use {}: {} with the gather (predicted), {} sent in {} messages "
+      "(counted). So many ranks are simulated, not measured.</p>\n",
+      ranks, escaped(network), strong(name_of(*best, codecs)),
+      in_milliseconds(p.seconds + p.gather_seconds), in_bytes(best->counts.bytes_total),
+      best->counts.messages);
+}
+
+// Which schemes are not among the many ranks, and why.
+Html omissions(const std::vector<LeftOut>& left_out) {
+  if (left_out.empty()) return "";
+  std::string text;
+  for (const int ranks : unique_of(left_out, [](const LeftOut& one) { return one.ranks; })) {
+    std::vector<std::string> names;
+    for (const LeftOut& one : left_out)
+      if (one.ranks == ranks && std::find(names.begin(), names.end(), one.scheme) == names.end())
+        names.push_back(one.scheme);
+    text += fmt::format("{}{} ranks without {}", text.empty() ? "" : "; ", ranks,
+                        fmt::join(names, ", "));
+  }
+  return paragraph(text +
+                   ": their many messages take long to simulate, which --ranks asks for all the "
+                   "same.");
+}
+
+Html answer(const ComposeComparison& comparison) {
+  const std::vector<ComparedScheme>& rows = comparison.rows;
   const bool codecs = codecs_of(rows).size() > 1;
   Html result;
   std::vector<std::string> networks = networks_of(rows);
@@ -162,8 +198,12 @@ Html answer(const std::vector<ComparedScheme>& rows) {
     }
     best_of.rows.push_back(std::move(line));
   }
-  if (last != nullptr) result += sentence(rows, *last, codecs);
-  return result + paragraph("Fastest with so many ranks, gather included:") + table(best_of);
+  if (last != nullptr)
+    result += sentence(rows, *last, codecs);
+  else if (!networks.empty())
+    result += predicted_sentence(rows, networks.front(), codecs);
+  return result + paragraph("Fastest with so many ranks, gather included:") + table(best_of) +
+         omissions(comparison.left_out);
 }
 
 Html times(const std::vector<ComparedScheme>& rows) {
@@ -209,7 +249,8 @@ Html bytes(const std::vector<ComparedScheme>& rows) {
   return result;
 }
 
-Html predictions(const std::vector<ComparedScheme>& rows) {
+Html predictions(const ComposeComparison& comparison) {
+  const std::vector<ComparedScheme>& rows = comparison.rows;
   Html result;
   for (const std::string& network : networks_of(rows))
     for (const std::string& codec : codecs_of(rows))
@@ -221,11 +262,14 @@ Html predictions(const std::vector<ComparedScheme>& rows) {
                                    const double ms = p->seconds * 1e3;
                                    return ChartPoint{static_cast<double>(row.ranks), ms, ms, ms};
                                  });
-  if (result.empty()) return paragraph("Nothing is predicted of these layers.");
-  return result + paragraph(
-                      "Predicted: the schemes' own code runs on a simulated machine whose ranks "
-                      "have a core each. On this machine by a model that was fitted to the times "
-                      "measured on the other numbers of ranks.");
+  if (result.empty())
+    return paragraph(comparison.unfinished ? "Predictions had not begun."
+                                           : "Nothing is predicted of these layers.");
+  return result + omissions(comparison.left_out) +
+         paragraph(
+             "Predicted: the schemes' own code runs on a simulated machine whose ranks "
+             "have a core each. On this machine by a model that was fitted to the times "
+             "measured on the other numbers of ranks.");
 }
 
 constexpr const char* kActs[] = {"composite", "send", "wait and receive", "gather"};
@@ -294,8 +338,10 @@ std::vector<Html> byte_matrices(const ShownScheme& shown) {
 Html one_run(const ShownScheme& shown) {
   const std::size_t ranks = shown.ledger.ranks.size();
   Html result =
-      paragraph(fmt::format("One run of {} with codec {} on {} ranks, as it was recorded.",
-                            shown.scheme, shown.codec, ranks));
+      paragraph(fmt::format("One run of {} with codec {} on {} ranks, as it was recorded: of {} "
+                            "runs the one in the middle. Ranks that are blank have not had a core "
+                            "yet or are done.",
+                            shown.scheme, shown.codec, ranks, kShownRuns));
   result += picture(shown.picture, "The picture");
   result += heading("What each rank had drawn");
   std::vector<Html> partial, pieces;
@@ -337,10 +383,10 @@ std::string compose_report(const Session& session, const CompareRequest& request
   const std::filesystem::path file(request.render.scene.file.path);
   result.title = fmt::format("Compositing {}, {}", file.filename().string(), request.render.size);
   result.unfinished = comparison.unfinished;
-  result.answer = answer(rows);
+  result.answer = answer(comparison);
   result.tabs.push_back({"Times", times(rows)});
   result.tabs.push_back({"Bytes", bytes(rows)});
-  result.tabs.push_back({"Predictions", predictions(rows)});
+  result.tabs.push_back({"Predictions", predictions(comparison)});
   if (comparison.shown) result.tabs.push_back({"One run", one_run(*comparison.shown)});
   result.tabs.push_back({"All figures", all_rows(request, rows)});
   result.data = compose_statistics(request, prepared, comparison);

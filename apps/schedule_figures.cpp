@@ -68,8 +68,9 @@ Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepare
 }
 
 TextTable schedule_table(const ScheduleComparison& comparison) {
-  std::vector<std::string> head = {"ranks",    "schedule", "requests",      "steals",
-                                   "messages", "KiB",      "rays max/mean", "frame ms"};
+  std::vector<std::string> head = {"ranks",         "schedule", "requests",
+                                   "steals",        "messages", "KiB",
+                                   "rays max/mean", "frame ms", "frame from..to ms"};
   for (const ScheduleOver& over : comparison.rows.front().over)
     head.push_back(over.network + " ms, predicted");
   TextTable table = {std::move(head)};
@@ -83,7 +84,8 @@ TextTable schedule_table(const ScheduleComparison& comparison) {
         std::to_string(counted.messages),
         fmt::format("{:.1f}", static_cast<double>(counted.bytes) / 1024),
         ratio(counted.ray_imbalance),
-        row.traced ? milliseconds(row.traced->seconds.median) : "-"};
+        row.traced ? milliseconds(row.traced->seconds.median) : "-",
+        row.traced ? range_text(row.traced->seconds) : "-"};
     for (const ScheduleOver& over : row.over) line.push_back(milliseconds(over.seconds));
     table.push_back(std::move(line));
   }

@@ -14,6 +14,7 @@
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 #include "apps/schedule_figures.h"
+#include "comm/network.h"
 
 namespace delray::apps {
 namespace {
@@ -32,6 +33,10 @@ double costliest(const ScheduleComparison& comparison) {
   double most = 0;
   for (const Tile& tile : comparison.tiles) most = std::max(most, tile.seconds.median);
   return most;
+}
+
+int frames_of(const ScheduleComparison& comparison) {
+  return comparison.tiles.empty() ? 0 : comparison.tiles.front().seconds.runs;
 }
 
 // The least time that any schedule could take.
@@ -59,12 +64,11 @@ Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison
   const ScheduleOver& over = best.over.front();
   Html text = fmt::format(
       "<p>For {} ranks hand out tiles by {}: the last one is done after {} over {} (predicted), "
-      "{:.3g} times an equal share of the {} that all take (measured); the rank with most rays "
-      "sends "
-      "{:.3g} times the mean (counted).",
+      "{:.3g} times an equal share of the {} that all take (measured, medians of {} frames); the "
+      "rank with most rays sends {:.3g} times the mean (counted).",
       ranks, strong(best.schedule), time_of(over.seconds), escaped(over.network),
       comparison.seconds > 0 ? over.seconds * ranks / comparison.seconds : 1.0,
-      time_of(comparison.seconds), over.ray_imbalance);
+      time_of(comparison.seconds), frames_of(comparison), over.ray_imbalance);
   const ComparedSchedule* next = nullptr;
   for (const ComparedSchedule& row : comparison.rows)
     if (&row != &best && row.ranks == ranks &&
@@ -156,8 +160,10 @@ Html evenness(const ScheduleComparison& comparison) {
          paragraph(fmt::format(
              "The schedules' own code runs on a simulated machine that has a core for each rank, "
              "over {}; a tile takes the processor time that it took here, median of {} frames on "
-             "one core. Work is counted in rays and in processor time, not in time that passes.",
-             network, comparison.tiles.empty() ? 0 : comparison.tiles.front().seconds.runs));
+             "one core. Work is counted in rays and in processor time, not in time that passes. "
+             "Where ranks answer others they look for messages after every tile, which takes them "
+             "{:.3g} us over this network.",
+             network, frames_of(comparison), comm::find_network(network)->network.overhead * 1e6));
 }
 
 Html traced_here(const ScheduleComparison& comparison) {
@@ -317,7 +323,7 @@ Html figures(const ScheduleRequest& request, const ScheduleComparison& compariso
   Table result;
   for (std::size_t i = 0; i < text[0].size(); ++i) {
     std::string name = text[0][i];
-    Source source = name == "frame ms" ? Source::measured : Source::counted;
+    Source source = name.ends_with(" ms") ? Source::measured : Source::counted;
     if (name.ends_with("predicted")) {
       source = Source::predicted;
       name = name.substr(0, name.find(','));

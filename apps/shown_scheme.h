@@ -18,7 +18,10 @@ struct ShownScheme {
   image::Image8 picture;
 };
 
-// Collective: composites a copy of the shares once more. The result is rank 0's.
+// Of so many the one that takes the median time is shown.
+inline constexpr int kShownRuns = 5;
+
+// Collective: composites copies of the shares once more. The result is rank 0's.
 ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& share,
                         const std::string& scheme, const std::string& codec,
                         const CompareRequest& request, const Prepared& prepared);

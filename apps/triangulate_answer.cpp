@@ -95,8 +95,14 @@ std::string agreement(const TriangulateComparison& comparison, const Row& best) 
   if (!agree)
     return "<strong>The ways to triangulate did not give the same simplices: that is a defect, "
            "please tell us.</strong>";
+  const char* what = simplices_text(comparison.dim);
+  if (best.simplices == 0)
+    return fmt::format(
+        "The points are too few or lie on a {}: there are no {}, and {} ways to triangulate find "
+        "that out (counted). Their times tell nothing of points that are not so.",
+        comparison.dim == 2 ? "line" : "plane", what, same.size());
   return fmt::format("All {} ways to triangulate gave the same {} {} (counted; hash {}).",
-                     same.size(), best.simplices, simplices_text(comparison.dim), best.hash);
+                     same.size(), best.simplices, what, best.hash);
 }
 
 // What to type, without files.

@@ -124,6 +124,30 @@ TEST(CompareCompose, SimulatesListsOfSurfacesAsItCountsThem) {
   }
 }
 
+TEST(CompareCompose, ForetellsManyRanksUnaskedOfSchemesThatAreSoonSimulated) {
+  const Folder folder;
+  const std::string command =
+      "delray compare compose gen:city:3000 --size 64x48 --compose tree tiles -q --quick ";
+  const Ran ran = run(command + "-o report.html --stats f.json", folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(folder.read("f.json"));
+  std::map<std::string, int> most;
+  for (const Json& row : json["rows"]) most[row["scheme"]] = row["ranks"];
+  EXPECT_EQ(most["tree"], 4096);
+  EXPECT_LT(most["tiles"], 4096);
+  EXPECT_EQ(json["rows"].size() + json["left_out"].size(), 2 * json["options"]["ranks"].size());
+  for (const Json& one : json["left_out"]) {
+    EXPECT_EQ(one["scheme"], "tiles");
+    EXPECT_GT(one["ranks"], most["tiles"]);
+  }
+  EXPECT_NE(folder.read("report.html").find("4096 ranks without tiles"), std::string::npos);
+  // What is asked for is not left out, and answered although nothing is measured of it.
+  const Ran asked = run(command + "--ranks 256 -o report.html --stats -", folder.path());
+  ASSERT_EQ(asked.exit_code, 0) << asked.err;
+  EXPECT_EQ(Json::parse(asked.out)["rows"].size(), 2U);
+  EXPECT_NE(folder.read("report.html").find("On 256 ranks over "), std::string::npos);
+}
+
 TEST(CompareCompose, RefusesWhatItCannotDo) {
   const Folder folder;
   for (const std::string arguments : {"", "gen:spheres --ranks 2,x", "gen:spheres --codec nothing",
@@ -133,6 +157,13 @@ TEST(CompareCompose, RefusesWhatItCannotDo) {
     EXPECT_EQ(ran.exit_code, 2) << arguments << ran.err;
     EXPECT_EQ(ran.out, "");
   }
+  // Where nothing can be written it says so before anything is read or run.
+  for (const std::string output : {"-o no/report.html", "--stats no/f.json"})
+    for (const std::string report : {"compose", "partition", "schedule", "triangulate"}) {
+      const Ran ran = run("delray compare " + report + " missing.obj " + output, folder.path());
+      EXPECT_EQ(ran.exit_code, 1) << report << ran.err;
+      EXPECT_NE(ran.err.find("cannot write"), std::string::npos) << ran.err;
+    }
 }
 
 TEST(CompareCompose, ListsSchemesCodecsAndNetworks) {
