@@ -18,7 +18,7 @@ constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // 3e9 corners still ha
 constexpr std::array kGenerators = {
     Generator{"terrain", "fractal height field with lakes, woods and snow", 1'000'000,
               &internal::generate_terrain, &internal::generate_terrain_part},
-    Generator{"cornell", "the Cornell box: two blocks under an area light", 32,
+    Generator{"cornell", "the Cornell box: two blocks under an area light", 40,
               &internal::generate_cornell},
     Generator{"spheres", "reflective and refractive spheres over a chequered plane", 500'000,
               &internal::generate_spheres},

@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kSide = 5.55F;        // of the box
 constexpr std::uint64_t kQuads = 16;  // five walls, the light, two blocks of five faces
+constexpr std::uint64_t kFrame = 4;   // and as many that are never divided
 constexpr glm::vec3 kLightRadiance{27.0F, 22.5F, 15.5F};
 
 // Five faces of an upright block: all but the bottom. `along` is the horizontal edge from `corner`,
@@ -37,7 +38,8 @@ Mesh wall(const char* name, const glm::vec3& corner, const glm::vec3& u, const g
 }  // namespace
 
 Scene generate_cornell(std::uint64_t triangles, std::uint64_t /*seed*/) {
-  const double cells = std::sqrt(static_cast<double>(triangles) / (2.0 * kQuads));
+  const double cells =
+      std::sqrt(std::max(0.0, static_cast<double>(triangles) - 2.0 * kFrame) / (2.0 * kQuads));
   const auto n = static_cast<std::uint32_t>(std::max(1L, std::lround(cells)));
   enum : std::uint32_t { kWhite, kRed, kGreen, kLamp };
   Scene scene;
@@ -53,9 +55,18 @@ Scene generate_cornell(std::uint64_t triangles, std::uint64_t /*seed*/) {
   add_mesh(scene, wall("back", glm::vec3(0), x, y, n, kWhite));
   add_mesh(scene, wall("left", z, -z, y, n, kRed));
   add_mesh(scene, wall("right", x, z, y, n, kGreen));
-  // The lamp hangs a little below the ceiling, so that neither hides the other.
+  // The lamp hangs a little below the ceiling, so that neither hides the other, in a frame that
+  // keeps in what its back sheds.
   const glm::vec3 lamp(2.13F, s - 0.01F, 2.27F), lamp_u(1.3F, 0, 0), lamp_v(0, 0, 1.05F);
+  const glm::vec3 up(0, s - lamp.y, 0);
   add_mesh(scene, wall("lamp", lamp, lamp_u, lamp_v, n, kLamp));
+  Mesh frame;
+  frame.name = "frame";
+  append_quad(frame, lamp + lamp_v, lamp_u, up, 1);
+  append_quad(frame, lamp + lamp_u + lamp_v, -lamp_v, up, 1);
+  append_quad(frame, lamp + lamp_u, -lamp_u, up, 1);
+  append_quad(frame, lamp, lamp_v, up, 1);
+  add_mesh(scene, std::move(frame));
   Mesh low = block({2.75F, 0, 4.60F}, {1.60F, -0.47F}, 1.65F, n);
   low.name = "low block";
   add_mesh(scene, std::move(low));
