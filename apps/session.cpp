@@ -23,7 +23,7 @@ int report_failure() {
     spdlog::error("{}", error.what());
     return error.cause() == files::Cause::input ? kBadInput : kFailed;
   } catch (const parallel::Interrupted&) {
-    spdlog::error("interrupted: nothing was written");
+    spdlog::error("interrupted");
     return kInterrupted;
   } catch (const comm::RankFailure& failure) {
     spdlog::error("{}", failure.what());

@@ -134,10 +134,20 @@ void find_gathered_points(const Gathered& g, RayGroup& group) {
     const F3 ab = b - a, ac = c - a;
     const F offset = set(kOffset) * (max_of(max_of(largest(a), largest(b)), largest(c)) +
                                      max_of(largest(ab), largest(ac)) + at(g.transform_scale, i));
-    const F3 normal_of_corners = cross(ab, ac);
-    const F area = hn::Sqrt(dot(normal_of_corners, normal_of_corners));
+    F3 normal_of_corners = cross(ab, ac);
+    const F squared = dot(normal_of_corners, normal_of_corners);
+    F area = hn::Sqrt(squared), length = area;
+    const M fits = hn::And(hn::Ge(squared, set(kLeastSquare)), hn::Le(squared, set(kMostSquare)));
+    if (!hn::AllTrue(d, hn::Or(fits, hn::Not(active)))) {
+      const F size = max_of(largest(ab), largest(ac)), per = set(1.0F) / size;
+      const F3 scaled = cross(ab * per, ac * per);
+      const F scaled_length = hn::Sqrt(dot(scaled, scaled));
+      normal_of_corners = choose(fits, normal_of_corners, scaled);
+      length = hn::IfThenElse(fits, length, scaled_length);
+      area = hn::IfThenElse(fits, area, scaled_length * size * size);
+    }
     const F3 geometric_normal =
-        choose(hn::Gt(area, set(0.0F)), normal_of_corners * (at(g.orientation, i) / area),
+        choose(hn::Gt(length, set(0.0F)), normal_of_corners * (at(g.orientation, i) / length),
                set(glm::vec3(0, 0, 1)));
     F3 normal = geometric_normal;
     if (g.smooth != 0) {

@@ -54,10 +54,17 @@ Intersection intersection(const Placement& placement, const Hit& hit, const glm:
   result.offset = kOffset * (std::max(std::max(largest(a), largest(b)), largest(c)) +
                              std::max(largest(ab), largest(ac)) + placement.transform_scale);
 
-  const glm::vec3 cross = glm::cross(ab, ac);
-  const float area = std::sqrt(glm::dot(cross, cross));
+  glm::vec3 cross = glm::cross(ab, ac);
+  const float squared = glm::dot(cross, cross);
+  float area = std::sqrt(squared), length = area;
+  if (!(squared >= kLeastSquare && squared <= kMostSquare)) {
+    const float size = std::max(largest(ab), largest(ac)), per = 1.0F / size;
+    cross = glm::cross(ab * per, ac * per);
+    length = std::sqrt(glm::dot(cross, cross));
+    area = length * size * size;
+  }
   point.geometric_normal =
-      area > 0.0F ? cross * (placement.orientation / area) : glm::vec3(0, 0, 1);
+      length > 0.0F ? cross * (placement.orientation / length) : glm::vec3(0, 0, 1);
   point.normal = point.geometric_normal;
   if (!mesh.normals.empty()) {
     glm::vec3 normal = interpolate(mesh.normals, corners, hit);

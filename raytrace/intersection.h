@@ -17,6 +17,10 @@ struct Cone {
 // A slant beyond which a footprint grows no further.
 inline constexpr float kSteepest = 0.05F;
 
+// Squares of twice the areas of triangles that leave room for rounding and below overflow; others
+// are measured with their longest edge for a unit.
+inline constexpr float kLeastSquare = 1e-36F, kMostSquare = 1e36F;
+
 // 2^-18 is 64 roundings of a float; Embree's intersection and the sums of a point take about 20.
 inline constexpr float kOffset = 0x1p-18F;
 

@@ -1,6 +1,7 @@
 #include "raytrace/placement.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "parallel/parallel_for.h"
 #include "raytrace/solid_triangles.h"
@@ -50,10 +51,14 @@ void look_at_transform(Placement& placement, float mesh_reach) {
   const glm::mat3 linear(placement.to_world);
   placement.identity = placement.to_world == glm::mat4x3(1.0F);
   if (placement.identity) return;
-  // The matrix of cofactors is the inverse transpose times the determinant, and exists always.
-  const glm::mat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                            glm::cross(linear[0], linear[1]));
-  placement.orientation = glm::dot(linear[0], cofactors[0]) < 0.0F ? -1.0F : 1.0F;
+  // The matrix of cofactors is the inverse transpose times the determinant, and exists always. Its
+  // size does not matter: it is that of a transform of about size 1, lest numbers overflow.
+  int exponent = 0;
+  std::frexp(std::max(std::max(largest(linear[0]), largest(linear[1])), largest(linear[2])),
+             &exponent);
+  const glm::mat3 m = linear * std::ldexp(1.0F, -exponent);
+  const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  placement.orientation = glm::dot(m[0], cofactors[0]) < 0.0F ? -1.0F : 1.0F;
   placement.normal_to_world = cofactors * placement.orientation;
   const float stretch =
       std::max(std::max(glm::length(linear[0]), glm::length(linear[1])), glm::length(linear[2]));

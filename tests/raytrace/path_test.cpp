@@ -170,6 +170,40 @@ TEST(Path, InstancesAreTracedOnEveryInstructionSet) {
   }
 }
 
+// Powers of two leave all mantissas as they are.
+TEST(Path, PicturesDoNotDependOnTheUnitOfLength) {
+  const auto picture = [](float scale, bool by_transform, const char* integrator) {
+    scenes::Scene scene;
+    scenes::Mesh ball = sphere(8);
+    scenes::Mesh floor = quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6});
+    for (scenes::Mesh* mesh : {&ball, &floor}) {
+      for (glm::vec3& p : mesh->positions) p *= by_transform ? 1.0F : scale;
+    }
+    const glm::mat4x3 transform = placed(by_transform ? scale : 1.0F, {0, 0, 0});
+    add(scene, ball, transform);
+    add(scene, floor, transform);
+    scenes::Light light;
+    light.direction = {-0.3F, -1, -0.4F};
+    light.colour = glm::vec3(3);
+    scene.lights.push_back(light);
+    scene.environment.zenith = scene.environment.horizon = glm::vec3(0.5F);
+    scenes::Camera camera;
+    camera.eye = glm::vec3(1, 2, 6) * scale;
+    RenderOptions options = path_options(24, 4);
+    options.integrator = integrator;
+    return render_alone(scene, camera, options);
+  };
+  for (const char* integrator : {"path", "whitted"}) {
+    const Result expected = picture(1.0F, false, integrator);
+    for (const float scale : {0x1p-24F, 0x1p36F}) {
+      for (const bool by_transform : {false, true}) {
+        const Result found = picture(scale, by_transform, integrator);
+        EXPECT_LT(difference(found, expected), 1e-4) << scale << by_transform << integrator;
+      }
+    }
+  }
+}
+
 TEST(Path, TransparentBackgroundShowsInAlpha) {
   scenes::Scene scene;
   add(scene, quad({0, -50, 0}, {50, 0, 0}, {0, 100, 0}));
