@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -54,12 +55,33 @@ Owners join(const std::vector<Owners>& children, PixelRange all, int samples) {
   return result;
 }
 
-Owners owners_of(const Subtree& tree, PixelRange all, int samples) {
-  if (tree.height == 0) return {tree.first};
-  std::vector<Owners> children;
-  for (const Subtree& child : tree.children()) children.push_back(owners_of(child, all, samples));
-  return join(children, all, samples);
-}
+// Subtrees of one size and height look alike but for the number of their first rank, and there are
+// few sizes: a rank knows who owns what in O(ranks) steps, not in that many on every level.
+class Plan {
+ public:
+  Plan(PixelRange all, int samples) : all_(all), samples_(samples) {}
+
+  Owners owners_of(const Subtree& tree) {
+    Owners result = alike(tree);
+    for (int& rank : result) rank += tree.first;
+    return result;
+  }
+
+ private:
+  // As if its first rank were 0.
+  const Owners& alike(const Subtree& tree) {
+    const auto [at, is_new] = known_.try_emplace({tree.count, tree.height}, Owners{0});
+    if (!is_new || tree.height == 0) return at->second;
+    std::vector<Owners> children;
+    for (const Subtree& child : Subtree{0, tree.count, tree.height}.children())
+      children.push_back(owners_of(child));
+    return at->second = join(children, all_, samples_);
+  }
+
+  PixelRange all_;
+  int samples_;
+  std::map<std::pair<int, int>, Owners> known_;
+};
 
 // Pieces change hands: this rank is of child `mine`.
 void regroup(comm::Communicator& communicator, Layer& layer, const std::vector<Owners>& children,
@@ -92,24 +114,21 @@ void regroup(comm::Communicator& communicator, Layer& layer, const std::vector<O
   });
 }
 
-Owners compose(comm::Communicator& communicator, Layer& layer, const Subtree& tree, PixelRange all,
-               int samples) {
-  if (tree.height == 0) return {tree.first};
+void compose(comm::Communicator& communicator, Layer& layer, const Subtree& tree, Plan& plan,
+             PixelRange all, int samples) {
+  if (tree.height == 0) return;
   const int rank = communicator.rank();
   std::vector<Owners> children;
   int mine = 0;
   for (const Subtree& child : tree.children()) {
     if (child.first <= rank && rank < child.first + child.count) {
       mine = static_cast<int>(children.size());
-      children.push_back(compose(communicator, layer, child, all, samples));
-    } else {
-      children.push_back(owners_of(child, all, samples));
+      compose(communicator, layer, child, plan, all, samples);
     }
+    children.push_back(plan.owners_of(child));
   }
   communicator.mark(comm::Phase::compose, tree.height - 1);
-  Owners joined = join(children, all, samples);
-  regroup(communicator, layer, children, mine, joined, all, samples);
-  return joined;
+  regroup(communicator, layer, children, mine, plan.owners_of(tree), all, samples);
 }
 
 }  // namespace
@@ -119,10 +138,11 @@ Part two_three_swap(comm::Communicator& communicator, std::unique_ptr<Layer> lay
   const PixelRange all{0, layer->pixels()};
   const int size = communicator.size();
   const int height = std::bit_width(static_cast<unsigned>(size)) - 1;
-  const Owners owners =
-      compose(communicator, *layer, {0, size, height}, all, options.samples_per_pixel);
+  const Subtree tree{0, size, height};
+  Plan plan(all, options.samples_per_pixel);
+  compose(communicator, *layer, tree, plan, all, options.samples_per_pixel);
   const PixelRange mine =
-      piece_of_rank(all, owners, communicator.rank(), options.samples_per_pixel);
+      piece_of_rank(all, plan.owners_of(tree), communicator.rank(), options.samples_per_pixel);
   return part_of(mine, std::move(layer));
 }
 

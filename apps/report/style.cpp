@@ -105,11 +105,14 @@ dt{color:var(--soft)}dd{margin:0;overflow-wrap:anywhere}
 font-size:.82rem;padding:.25rem .5rem;border-radius:4px;max-width:24rem;z-index:2}
 @media(max-width:40rem){.chart text{font-size:17px}.chart text.tick{font-size:16px}
 .timeline{overflow-x:auto}.timeline svg{min-width:38rem}}
-@media print{body{padding:0}nav,#tip{display:none}section.hidden{display:block}section>h2{position:static}
+@media print{html{font-size:12.5px}body{padding:0;font-size:1rem}nav,#tip{display:none}section.hidden{display:block}section>h2{position:static}
 h2,h3,figcaption{break-after:avoid}.legend,.overlay,.picture,.cell{print-color-adjust:exact}
 .table{max-height:none;overflow:visible}figure,tr{break-inside:avoid}
-table{font-size:.55rem}th,td{padding:.1rem .25rem}th{white-space:normal}
-.table .source{font-size:.5rem;padding:0 .1rem}}
+.beside{grid-template-columns:repeat(auto-fit,minmax(30%,1fr));gap:.5rem}.pairs{grid-template-columns:1fr 1fr}
+.pairs text,.pairs text.tick{font-size:18px}
+table{font-size:.65rem}th,td{padding:.1rem .25rem}th{white-space:normal}
+.answer table{font-size:.8rem}.answer th,.answer td{padding:.1rem .3rem}
+.table .source{font-size:.55rem;padding:0 .1rem}}
 )css";
 
 const char* const kScript = R"js(
