@@ -185,6 +185,13 @@ class Comparison {
       row.finish_seconds =
           row.cut_seconds.median + row.drawn->work_over_share * result_.alone_seconds / ranks;
       const auto& cut = frames.first.statistics.partition;
+      if (cut) {  // by the costs that the ranks summed, as `delray render` tells it
+        row.primitives = cut->primitives;
+        row.shared = cut->shared;
+        row.overlap = cut->overlap;
+        row.predicted_imbalance = loadbalance::imbalance(cut->loads);
+        row.predicted_over_share = cut->over_share;
+      }
       if (cut && ranks == shown_ranks(request_) && regions == request_.regions.front())
         result_.shown.push_back(
             {row.partition, cut->partition, cut->loads, row.drawn->work, row.drawn->busy});

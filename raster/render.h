@@ -122,8 +122,9 @@ struct PartitionStatistics {
   double predicted = 1;   // imbalance that the costs foretell
   double over_share = 1;  // largest load over an equal share, what falls to several owners counted
   double overlap = 1;     // owners of a primitive, on average
-  double seconds = 0;     // that cutting took on rank 0; 0 when kept
-  bool kept = false;      // from the last frame
+  std::uint64_t primitives = 0, shared = 0;  // in the frame; of those, with several owners
+  double seconds = 0;                        // that cutting took on rank 0; 0 when kept
+  bool kept = false;                         // from the last frame
   loadbalance::Partition partition;
   std::vector<double> loads;  // by owner, as the costs foretell
 };

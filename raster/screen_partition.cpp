@@ -196,6 +196,8 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);
   statistics_->over_share = balance.over_share;
   statistics_->overlap = balance.overlap;
+  statistics_->primitives = balance.primitives;
+  statistics_->shared = balance.shared;
   statistics_->partition = partition;
   statistics_->loads = std::move(balance.loads);
   return partition;

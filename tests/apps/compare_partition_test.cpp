@@ -13,10 +13,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string hash_of_render(const Folder& folder, const std::string& scene_and_size) {
-  const Ran ran = run("delray render " + scene_and_size + " -o a.png --stats - -q", folder.path());
+Json render(const Folder& folder, const std::string& scene_and_options) {
+  const Ran ran =
+      run("delray render " + scene_and_options + " -o a.png --stats - -q", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
-  return Json::parse(ran.out)["image"]["hash"];
+  return Json::parse(ran.out);
 }
 
 void check_frames(const Json& row, const std::string& hash) {
@@ -72,7 +73,9 @@ TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
   const Json json = Json::parse(ran.out);
   EXPECT_EQ(json["schema"], "delray.compare.partition/1");
   EXPECT_EQ(json["unfinished"], false);
-  const std::string hash = hash_of_render(folder, scene);
+  const Json rendered =
+      render(folder, scene + " --ranks 3 --strategy sort-first --partition mahd --regions 1");
+  const std::string hash = rendered["image"]["hash"];
   const std::size_t partitions = loadbalance::partitioners().size();
   ASSERT_EQ(json["rows"].size(), 4 * partitions);  // 3 ranks with 1 and 2 regions, 17, 80 ranks
   std::set<std::string> rows;
@@ -86,6 +89,11 @@ TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
     EXPECT_GE(row["predicted_over_share"].get<double>(), 0.999);
     EXPECT_LE(row["primitives_shared"], row["primitives"]);
     EXPECT_GE(row["seconds"]["cut"], 0);
+    if (row["ranks"] == 3 && row["partition"] == "mahd" && row["regions_per_rank"] == 1) {
+      const Json& cut = rendered["raster"]["partition"];
+      EXPECT_EQ(row["overlap"], cut["overlap"]);
+      EXPECT_EQ(row["predicted_over_share"], cut["over_share"]);
+    }
     if (row["ranks"] <= 64) {
       check_frames(row, hash);
     } else {
