@@ -11,7 +11,6 @@ namespace {
 std::atomic<parallel::Progress*> target{nullptr};
 std::atomic<std::int64_t> first_signal{0};  // milliseconds of a clock that only runs; 0: none yet
 
-constexpr int kSignals[] = {SIGINT, SIGTERM};
 constexpr std::int64_t kSame = 500;  // milliseconds in which a second signal is the first again
 
 // Async-signal-safe.
@@ -37,12 +36,15 @@ extern "C" void request_stop(int signal) {
 StopOnInterrupt::StopOnInterrupt(parallel::Progress& progress) {
   target = &progress;
   first_signal = 0;
-  for (const int signal : kSignals) std::signal(signal, request_stop);
+  std::signal(SIGINT, request_stop);
 }
 
 StopOnInterrupt::~StopOnInterrupt() {
-  for (const int signal : kSignals) std::signal(signal, SIG_DFL);
+  std::signal(SIGINT, SIG_DFL);
   target = nullptr;
 }
+
+StopOnTermination::StopOnTermination() { std::signal(SIGTERM, request_stop); }
+StopOnTermination::~StopOnTermination() { std::signal(SIGTERM, SIG_DFL); }
 
 }  // namespace delray::apps

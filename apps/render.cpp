@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <optional>
 
 #include "apps/animation.h"
 #include "apps/commands.h"
+#include "apps/interrupt.h"
 #include "apps/list.h"
 #include "apps/progress_bar.h"
 #include "apps/render_frames.h"
@@ -81,6 +83,8 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   if (request.list) return print_lists();
   check(command, request);
   const ProgressBar bar(session, "render");
+  std::optional<StopOnTermination> stop;
+  if (!request.practice.checkpoint.empty()) stop.emplace();
   parallel::Progress* const progress = &session.progress;
   std::shared_ptr<const Prepared> shared;  // by the ranks of this process
   if (!session.under_mpi) {

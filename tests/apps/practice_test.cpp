@@ -86,7 +86,7 @@ TEST(Practice, ACheckpointBelongsToOneSceneHoweverItIsSharedOut) {
 
 TEST(Practice, NoiseAndTimeEndSampling) {
   const Folder folder;
-  const json noisy = stats_of("--integrator path --spp 512 --noise 0.1 -o a.png", folder,
+  const json noisy = stats_of("--integrator path --spp 512 --noise 0.04 -o a.png", folder,
                               "delray render gen:cornell" + kSmall);
   EXPECT_GT(noisy["sampling"]["samples"], 16);
   EXPECT_LT(noisy["sampling"]["samples"], 256);

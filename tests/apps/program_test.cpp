@@ -124,6 +124,15 @@ TEST(Program, RefusesWhatIsNoNumber) {
   }
 }
 
+TEST(Program, EndsWhenToldToUnlessThereIsSomethingToKeep) {
+  const Folder folder;
+  const Ran ran =
+      run("delray generate scene terrain -n 20000000 -o t.glb & p=$!; sleep 0.1; "
+          "kill -TERM $p; wait $p",
+          folder.path());
+  EXPECT_EQ(ran.exit_code, 128 + 15) << ran.err;
+}
+
 TEST(Program, ListsAreNameTabDescription) {
   const Folder folder;
   for (const std::string command : {"render --list", "compose --list", "triangulate --list",
