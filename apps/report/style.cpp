@@ -104,11 +104,13 @@ dt{color:var(--soft)}dd{margin:0;overflow-wrap:anywhere}
 #tip{position:fixed;display:none;pointer-events:none;background:var(--ink);color:var(--paper);
 font-size:.82rem;padding:.25rem .5rem;border-radius:4px;max-width:24rem;z-index:2}
 @media(max-width:40rem){.chart text{font-size:17px}.chart text.tick{font-size:16px}
-.timeline{overflow-x:auto}.timeline svg{min-width:38rem}}
+.timeline text,.timeline text.tick{font-size:20px}}
 @media print{html{font-size:12.5px}body{padding:0;font-size:1rem}nav,#tip{display:none}section.hidden{display:block}section>h2{position:static}
 h2,h3,figcaption{break-after:avoid}.legend,.overlay,.picture,.cell{print-color-adjust:exact}
 .table{max-height:none;overflow:visible}figure,tr{break-inside:avoid}
-.beside{grid-template-columns:repeat(auto-fit,minmax(30%,1fr));gap:.5rem}.pairs{grid-template-columns:1fr 1fr}
+.beside{display:block}.beside figure{display:inline-block;width:32%;margin:.2rem 0;vertical-align:top}
+.pairs figure,.beside figure:first-child:nth-last-child(2),
+.beside figure:first-child:nth-last-child(2)~figure{width:49%}
 .pairs text,.pairs text.tick{font-size:18px}
 table{font-size:.65rem}th,td{padding:.1rem .25rem}th{white-space:normal}
 .answer table{font-size:.8rem}.answer th,.answer td{padding:.1rem .3rem}
