@@ -390,7 +390,7 @@ std::string compose_report(const Session& session, const CompareRequest& request
   if (comparison.shown) result.tabs.push_back({"One run", one_run(*comparison.shown)});
   result.tabs.push_back({"All figures", all_rows(request, rows)});
   result.data = compose_statistics(request, prepared, comparison);
-  result.provenance = provenance(session);
+  result.provenance = provenance(session, request.render.scene.file.path);
   return page(result);
 }
 

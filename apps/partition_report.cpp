@@ -409,7 +409,7 @@ std::string partition_report(const Session& session, const PartitionRequest& req
   result.tabs.push_back({"Strategies", strategies(comparison)});
   result.tabs.push_back({"All figures", all_rows(request, comparison.rows)});
   result.data = partition_statistics(request, prepared, comparison);
-  result.provenance = provenance(session);
+  result.provenance = provenance(session, request.render.scene.file.path);
   return page(result);
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "apps/statistics.h"
+#include "scenes/generate.h"
 
 namespace delray::apps {
 namespace {
@@ -35,6 +36,14 @@ std::vector<std::pair<std::string, std::string>> provenance(const Session& sessi
           {"system", fmt::format("{} {}", system.sysname, system.release)},
           {"ranks", session.under_mpi ? "processes of mpirun" : "threads of one process"},
           {"date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}};
+}
+
+std::vector<std::pair<std::string, std::string>> provenance(const Session& session,
+                                                            const std::string& scene) {
+  auto result = provenance(session);
+  if (scenes::is_generated(scene))
+    result.emplace_back("scene", scenes::full_name(scene) + ": kind, triangles, seed");
+  return result;
 }
 
 }  // namespace delray::apps

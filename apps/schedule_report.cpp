@@ -86,7 +86,7 @@ Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison
   return text +
          fmt::format(
              "<p>The costliest tile alone takes {} (measured): with tiles of {} pixels no schedule "
-             "gains from more than {:.0f} ranks.</p>\n",
+             "is done sooner. An equal share of the work is as short with {:.0f} ranks.</p>\n",
              time_of(costliest(comparison)), request.tile,
              costliest(comparison) > 0 ? comparison.seconds / costliest(comparison) : 1.0);
 }
@@ -355,7 +355,9 @@ std::string schedule_report(const Session& session, const ScheduleRequest& reque
   result.tabs.push_back({"Requests and steals", traffic(comparison)});
   result.tabs.push_back({"All figures", figures(request, comparison)});
   result.data = schedule_statistics(request, prepared, comparison);
-  result.provenance = provenance(session);
+  result.provenance = provenance(session, request.render.scene.file.path);
+  result.provenance.emplace_back(
+      "seed", fmt::format("{}, of the schedule random", loadbalance::ScheduleOptions().seed));
   return page(result);
 }
 

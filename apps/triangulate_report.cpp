@@ -210,7 +210,7 @@ Html locks(const TriangulateComparison& comparison, const Charts& charts) {
   const Rows several = rows_of(rows, [](const Row& row) {
     return row.how.threads > 1 && row.statistics.synchronization.free > 0;
   });
-  if (rows.empty()) return paragraph("None of these methods has locks.");
+  if (rows.empty()) return paragraph("No locks were taken.");
   Html result;
   for (const int threads : unique_of(several, [](const Row& row) { return row.how.threads; })) {
     const Rows such = rows_of(several, [&](const Row& row) { return row.how.threads == threads; });
@@ -309,13 +309,13 @@ Html fragments(const TriangulateComparison& comparison, const Charts& charts) {
   for (int thread = 0; thread < threads; ++thread)
     shares.kinds.push_back(fmt::format("thread {}", thread));
   for (const Row& row : rows) {
-    if (row.points != points) continue;
+    if (row.points != points || row.simplices == 0) continue;
     StackedBar bar{name_of(row.how), {}};
     for (const std::uint64_t count : row.simplices_by_thread)
       bar.parts.push_back(static_cast<double>(count));
     shares.bars.push_back(std::move(bar));
   }
-  if (threads <= 8) result += stacked_bars(shares);
+  if (threads <= 8 && !shares.bars.empty()) result += stacked_bars(shares);
   return result +
          paragraph(
              "A fragment is a connected set of simplices that one thread made: at best there are "
@@ -329,7 +329,7 @@ Html history(const TriangulateComparison& comparison) {
   const Rows rows = rows_of(comparison.rows, [&](const Row& row) {
     return row.statistics.dag_nodes > 0 && row.how.threads <= comparison.cores;
   });
-  if (rows.empty()) return paragraph("None of these methods keeps a history.");
+  if (rows.empty()) return paragraph("No history was kept.");
   LineChart chart;
   chart.title = "Time against nodes of the history";
   chart.x_label = "nodes";

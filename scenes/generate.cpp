@@ -82,6 +82,12 @@ std::span<const Generator> generators() { return kGenerators; }
 
 bool is_generated(std::string_view name) { return name.starts_with(kPrefix); }
 
+std::string full_name(std::string_view name) {
+  const Wanted wanted = parsed(name);
+  return std::string(kPrefix) + wanted.generator->name + ":" + std::to_string(wanted.triangles) +
+         ":" + std::to_string(wanted.seed);
+}
+
 Scene generate(std::string_view name) {
   const Wanted wanted = parsed(name);
   Scene scene = wanted.generator->generate(wanted.triangles, wanted.seed);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "scenes/scene.h"
@@ -35,6 +36,8 @@ std::span<const Generator> generators();
 // "gen:KIND[:TRIANGLES[:SEED]]" -> the scene. Throws std::invalid_argument naming the legal kinds.
 Scene generate(std::string_view name);
 bool is_generated(std::string_view name);  // starts with "gen:"
+// The name with triangles and seed, whatever was left to the defaults. Throws as generate.
+std::string full_name(std::string_view name);
 
 // The same in parts. Throws as generate.
 bool has_parts(std::string_view name);

@@ -63,6 +63,8 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
   EXPECT_EQ(rows.size(), json["rows"].size());
   const std::string page = folder.read("report.html");
   EXPECT_NE(page.find("Who traced which tile: a colour for each of 5 ranks"), std::string::npos);
+  EXPECT_NE(page.find("gen:spheres:500:1"), std::string::npos);  // with the seed
+  EXPECT_NE(page.find("<dt>seed</dt><dd>1"), std::string::npos);
 }
 
 TEST(CompareSchedule, RefusesWhatItCannotDo) {

@@ -45,6 +45,13 @@ std::uint64_t fingerprint(const Scene& scene) {
 
 class Generated : public testing::TestWithParam<Generator> {};
 
+TEST(GeneratedName, TellsWhatWasLeftToTheDefaults) {
+  EXPECT_EQ(full_name("gen:city:300:7"), "gen:city:300:7");
+  EXPECT_EQ(full_name("gen:city:300"), "gen:city:300:1");
+  EXPECT_EQ(full_name("gen:terrain"), "gen:terrain:1000000:1");
+  EXPECT_THROW(full_name("gen:nothing"), std::invalid_argument);
+}
+
 TEST_P(Generated, HasAboutAsManyTrianglesAsAskedFor) {
   for (const std::uint64_t wanted : {kTriangles, 4 * kTriangles}) {
     const auto count = static_cast<double>(triangle_count(GetParam().generate(wanted, 1)));
