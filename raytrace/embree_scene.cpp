@@ -114,9 +114,6 @@ RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
 }
 #endif
 
-// Beyond what rounding does to distances of triangles that meet in a point.
-float a_little_further(float distance) { return distance + std::abs(distance) * 1e-6F; }
-
 // Notes a hit and lets the ray go on, unless the triangle is solid. Embree may report one hit
 // several times.
 void note_and_pass(const RTCFilterFunctionNArguments* arguments) {

@@ -1,21 +1,13 @@
 #include "raytrace/internal/meet_cluster.h"
 
 #include <algorithm>
-#include <bit>
-#include <limits>
 #include <tuple>
 
+#include "raytrace/internal/edges.h"
 #include "raytrace/internal/hit_points.h"
 
 namespace delray::raytrace {
 namespace {
-
-// The next float above a distance, so that Embree reports hits at the same distance too.
-float next_up(float x) {
-  return x < std::numeric_limits<float>::max() && x >= 0.0F
-             ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) + 1)
-             : x;
-}
 
 void set_lane(RayGroup& group, int i, const TravellingRay& ray) {
   RayPacket& p = group.packet;
@@ -25,7 +17,7 @@ void set_lane(RayGroup& group, int i, const TravellingRay& ray) {
   p.direction_x[i] = ray.direction.x, p.direction_y[i] = ray.direction.y;
   p.direction_z[i] = ray.direction.z;
   p.time[i] = 0.0F;
-  p.far[i] = next_up(ray.far);
+  p.far[i] = a_little_further(ray.far);  // hits at the same distance count
   p.mask[i] = 0xFFFFFFFFU;
   p.id[i] = p.flags[i] = 0;
   p.triangle[i] = p.geometry[i] = p.instance[i] = kMiss;

@@ -231,6 +231,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
     statistics.build_seconds = tracer->build_seconds;
     statistics.degenerate = tracer->degenerate;
     statistics.structure_bytes = tracer->embree.memory();
+    mine.geometry_bytes = tracer->bytes;
     statistics.embree_version = tracer->embree.device().version();
     statistics.embree_isa = tracer->embree.device().isa();
   } else {

@@ -73,8 +73,8 @@ struct RankCounts {
   std::uint64_t requests = 0, steals = 0, tasks_stolen = 0;        // of the schedule
   // Of a scene that is shared out: rays sent to other ranks and answers sent back; rays against
   // clusters; clusters that came from another rank, with their bytes, and that were dropped again
-  // or moved to a neighbour for good; the most bytes of geometry and acceleration structures at any
-  // time.
+  // or moved to a neighbour for good. Of any scene: the most bytes of geometry and acceleration
+  // structures at any time (ranks that are threads may have those of a whole scene in common).
   std::uint64_t rays_sent = 0, answers_sent = 0, tests = 0, clusters_fetched = 0,
                 clusters_fetched_bytes = 0, clusters_dropped = 0, clusters_moved = 0,
                 geometry_bytes = 0;

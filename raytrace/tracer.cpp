@@ -31,8 +31,17 @@ Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::size_t bytes = 0;
   for (const scenes::Mesh& mesh : scene.meshes) bytes += bytes_of(mesh);
-  return {std::move(shader), std::move(placements), std::move(embree), std::move(lights),
-          degenerate,        seconds.count(),       bytes > kManyBytes};
+  const bool large = bytes > kManyBytes;
+  for (const Placement& placement : placements) bytes += bytes_of(placement.moved);
+  bytes += embree.memory();
+  return {std::move(shader),
+          std::move(placements),
+          std::move(embree),
+          std::move(lights),
+          degenerate,
+          seconds.count(),
+          large,
+          bytes};
 }
 
 }  // namespace delray::raytrace

@@ -21,7 +21,8 @@ struct Tracer {
   LightTable lights;
   std::uint64_t degenerate = 0;  // triangles that can never be hit
   double build_seconds = 0.0;
-  bool large = false;  // its meshes do not fit into a cache that is near
+  bool large = false;       // its meshes do not fit into a cache that is near
+  std::uint64_t bytes = 0;  // of geometry and acceleration structures
 };
 
 // Parallel in the caller's arena. Throws what EmbreeScene throws.
