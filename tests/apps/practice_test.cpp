@@ -168,9 +168,9 @@ TEST(Practice, RaysGoAsFarAndThroughWhatIsAsked) {
                 options,
             folder.path());
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    const image::ImageF image = image::read_image_float(folder / "a.exr");
     double sum = 0;
-    for (const image::RgbaF& c : image::read_image_float(folder / "a.exr").colour.span())
-      sum += c.g;
+    for (const image::RgbaF& c : image.colour.span()) sum += c.g;
     return sum / (48 * 48);
   };
   const double open = mean("--integrator ao --spp 4");

@@ -42,6 +42,8 @@ std::string with_program(std::string command) {
 
 Ran run(const std::string& command, const fs::path& folder) {
   const fs::path out = fresh_path(), err = fresh_path();
+  // Looking for leaks fails with programs that switch stacks, and finds Open MPI's own.
+  ::setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
   const std::string line = "cd '" + folder.string() + "' && ( " + with_program(command) + " ) >'" +
                            out.string() + "' 2>'" + err.string() + "' </dev/null";
   const int status = std::system(line.c_str());
