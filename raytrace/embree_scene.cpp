@@ -1,9 +1,11 @@
 #include "raytrace/embree_scene.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -186,11 +188,13 @@ struct EmbreeDevice::State {
   std::atomic<std::int64_t> memory{0};
   Device device;
   std::string isa;
+  int widest_packet = 4;  // that Embree traces as it is, in rays
 };
 
 struct EmbreeScene::State {
   EmbreeDevice common;
   RTCDevice device;  // the same
+  int widest_packet;
   std::uint64_t memory = 0;
   std::vector<Tree> meshes = {};  // element i: of mesh i where it is shared, else null
   Tree top = {};
@@ -269,19 +273,54 @@ void attach_instance(EmbreeScene::State& state, unsigned number, const Placement
   check(device, "adding an instance");
 }
 
-std::string isa_in_use(RTCDevice device) {
+int widest_packet(RTCDevice device) {
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) return 16;
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) return 8;
+  return 4;
+}
+
+std::string isa_in_use(int widest_packet) {
 #if defined(__x86_64__)
-  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) {
-    return "avx512";
-  }
-  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
-    return __builtin_cpu_supports("avx2") != 0 ? "avx2" : "avx";
-  }
+  if (widest_packet == 16) return "avx512";
+  if (widest_packet == 8) return __builtin_cpu_supports("avx2") != 0 ? "avx2" : "avx";
   return __builtin_cpu_supports("sse4.2") != 0 ? "sse4.2" : "sse2";
 #else
-  (void)device;
+  (void)widest_packet;
   return "neon";
 #endif
+}
+
+// Traces rays `first` to `first` + kWidth - 1 of `packet` as a packet of that width.
+template <int kWidth, typename Packet, typename Trace, typename Function>
+void trace_part(const ActiveRays& active, Packet& packet, int first, const Trace& trace,
+                Function* function) {
+  constexpr std::size_t kField = sizeof(ActiveRays), kPart = kWidth * sizeof(std::int32_t);
+  constexpr std::size_t kFields = sizeof(Packet) / kField;
+  alignas(64) std::int32_t part_active[kWidth];
+  std::memcpy(part_active, active.ray + first, kPart);
+  if (std::ranges::all_of(part_active, [](std::int32_t ray) { return ray == 0; })) return;
+  alignas(64) std::byte part[kFields * kPart];
+  std::byte* whole = reinterpret_cast<std::byte*>(&packet) + first * sizeof(std::int32_t);
+  for (std::size_t f = 0; f < kFields; ++f)
+    std::memcpy(part + f * kPart, whole + f * kField, kPart);
+  trace(function, part_active, part);
+  for (std::size_t f = 0; f < kFields; ++f)
+    std::memcpy(whole + f * kField, part + f * kPart, kPart);
+}
+
+// Calls trace(function, active rays, rays) with Embree's function for its widest packets: for wider
+// ones Embree 3 takes all rays for active. The functions are those for 16, 8 and 4 rays.
+template <typename Packet, typename Trace, typename Of16, typename Of8, typename Of4>
+void trace_packet(int widest, const ActiveRays& active, Packet& packet, const Trace& trace,
+                  Of16* of16, Of8* of8, Of4* of4) {
+  if (widest == kPacketRays) return trace(of16, active.ray, &packet);
+  for (int first = 0; first < kPacketRays; first += widest) {
+    if (widest == 8) {
+      trace_part<8>(active, packet, first, trace, of8);
+    } else {
+      trace_part<4>(active, packet, first, trace, of4);
+    }
+  }
 }
 
 // With `nearest` hits are found there instead of in the ray or packet.
@@ -299,24 +338,32 @@ void find_hits(RTCScene tree, Ray& ray, Nearest* nearest = nullptr) {
 #endif
 }
 
-void find_hits(RTCScene tree, const ActiveRays& active, RayPacket& packet, bool coherent,
-               Nearest* nearest = nullptr) {
+void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPacket& packet,
+               bool coherent, Nearest* nearest = nullptr) {
   Query query;
   start(query, coherent);
   query.nearest = nearest;
-  auto* rays = reinterpret_cast<RTCRayHit16*>(&packet);
 #if RTC_VERSION_MAJOR >= 4
   RTCIntersectArguments arguments = intersect_arguments(query, coherent);
-  rtcIntersect16(active.ray, tree, rays, &arguments);
+  const auto trace = [&]<typename Rays>(
+                         void (*function)(const int*, RTCScene, Rays*, RTCIntersectArguments*),
+                         const int* rays_active, void* rays) {
+    function(rays_active, scene.top.get(), static_cast<Rays*>(rays), &arguments);
+  };
 #else
   if (nearest != nullptr) query.context.filter = find_least;
-  rtcIntersect16(active.ray, tree, &query.context, rays);
+  const auto trace = [&]<typename Rays>(void (*function)(const int*, RTCScene, Context*, Rays*),
+                                        const int* rays_active, void* rays) {
+    function(rays_active, scene.top.get(), &query.context, static_cast<Rays*>(rays));
+  };
 #endif
+  trace_packet(scene.widest_packet, active, packet, trace, rtcIntersect16, rtcIntersect8,
+               rtcIntersect4);
 }
 
 // Decides between triangles that rays hit at the same distance.
-[[gnu::noinline, gnu::cold]] void settle(RTCScene tree, const ActiveRays& edges, RayPacket& packet,
-                                         bool coherent) {
+[[gnu::noinline, gnu::cold]] void settle(const EmbreeScene::State& scene, const ActiveRays& edges,
+                                         RayPacket& packet, bool coherent) {
   RayPacket again = packet;
   Nearest nearest[kPacketRays];
   for (int i = 0; i < kPacketRays; ++i) {
@@ -325,7 +372,7 @@ void find_hits(RTCScene tree, const ActiveRays& active, RayPacket& packet, bool 
     nearest[i] = {};
     nearest[i].hit.distance = std::numeric_limits<float>::infinity();
   }
-  find_hits(tree, edges, again, coherent, nearest);
+  find_hits(scene, edges, again, coherent, nearest);
   for (int i = 0; i < kPacketRays; ++i) {
     const Nearest& least = nearest[i];
     if (edges.ray[i] == 0 || least.hit.triangle == kMiss) continue;
@@ -349,7 +396,8 @@ EmbreeDevice::EmbreeDevice(const BuildOptions& options) : state_(std::make_share
   if (!state_->device) check(nullptr, "starting");
   RTCDevice device = state_->device.get();
   rtcSetDeviceMemoryMonitorFunction(device, count_memory, &state_->memory);
-  state_->isa = isa_in_use(device);
+  state_->widest_packet = widest_packet(device);
+  state_->isa = isa_in_use(state_->widest_packet);
 }
 
 std::uint64_t EmbreeDevice::memory() const {
@@ -368,7 +416,7 @@ std::string EmbreeDevice::isa() const { return state_->isa; }
 
 EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptions& options,
                          const EmbreeDevice& common)
-    : state_(new State{common, common.state_->device.get()}) {
+    : state_(new State{common, common.state_->device.get(), common.state_->widest_packet}) {
   RTCDevice device = state_->device;
   const std::uint64_t before = common.memory();
 
@@ -414,9 +462,9 @@ void EmbreeScene::intersect(Ray& ray) const {
 }
 
 void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const {
-  find_hits(state_->top.get(), active, packet, coherent);
+  find_hits(*state_, active, packet, coherent);
   ActiveRays edges;
-  if (find_edges(active, packet, edges)) settle(state_->top.get(), edges, packet, coherent);
+  if (find_edges(active, packet, edges)) settle(*state_, edges, packet, coherent);
 }
 
 bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {
@@ -446,13 +494,21 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
     packet.id[i] = static_cast<std::uint32_t>(i);
     passed[i].count = 0;
   }
-  auto* rays = reinterpret_cast<RTCRay16*>(&packet);
 #if RTC_VERSION_MAJOR >= 4
   RTCOccludedArguments arguments = occluded_arguments(query, coherent);
-  rtcOccluded16(active.ray, state_->top.get(), rays, &arguments);
+  const auto trace = [&]<typename Rays>(
+                         void (*function)(const int*, RTCScene, Rays*, RTCOccludedArguments*),
+                         const int* rays_active, void* rays) {
+    function(rays_active, state_->top.get(), static_cast<Rays*>(rays), &arguments);
+  };
 #else
-  rtcOccluded16(active.ray, state_->top.get(), &query.context, rays);
+  const auto trace = [&]<typename Rays>(void (*function)(const int*, RTCScene, Context*, Rays*),
+                                        const int* rays_active, void* rays) {
+    function(rays_active, state_->top.get(), &query.context, static_cast<Rays*>(rays));
+  };
 #endif
+  trace_packet(state_->widest_packet, active, packet, trace, rtcOccluded16, rtcOccluded8,
+               rtcOccluded4);
 }
 
 std::uint64_t EmbreeScene::memory() const { return state_->memory; }

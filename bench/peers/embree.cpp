@@ -18,17 +18,22 @@ namespace {
 constexpr std::size_t kGroupsPerChunk = 256;
 constexpr std::size_t kGroupsPerStream = 16;
 
+// Rays `first` and following of a group, as many as a packet of Embree's has.
 template <class Packet>
-void fill(const RecordedGroup& group, Packet& packet) {
-  std::memcpy(packet.org_x, group.origin_x, sizeof(group.origin_x));
-  std::memcpy(packet.org_y, group.origin_y, sizeof(group.origin_x));
-  std::memcpy(packet.org_z, group.origin_z, sizeof(group.origin_x));
-  std::memcpy(packet.tnear, group.near, sizeof(group.origin_x));
-  std::memcpy(packet.dir_x, group.direction_x, sizeof(group.origin_x));
-  std::memcpy(packet.dir_y, group.direction_y, sizeof(group.origin_x));
-  std::memcpy(packet.dir_z, group.direction_z, sizeof(group.origin_x));
-  std::memcpy(packet.tfar, group.far, sizeof(group.origin_x));
-  for (int i = 0; i < 16; ++i) {
+void fill(const RecordedGroup& group, int first, Packet& packet) {
+  constexpr int kWidth = sizeof(packet.org_x) / sizeof(float);
+  const auto copy = [&](const float* from, float* to) {
+    std::memcpy(to, from + first, sizeof(packet.org_x));
+  };
+  copy(group.origin_x, packet.org_x);
+  copy(group.origin_y, packet.org_y);
+  copy(group.origin_z, packet.org_z);
+  copy(group.near, packet.tnear);
+  copy(group.direction_x, packet.dir_x);
+  copy(group.direction_y, packet.dir_y);
+  copy(group.direction_z, packet.dir_z);
+  copy(group.far, packet.tfar);
+  for (int i = 0; i < kWidth; ++i) {
     packet.time[i] = 0.0F;
     packet.mask[i] = 0xFFFFFFFFU;
     packet.id[i] = packet.flags[i] = 0;
@@ -50,6 +55,31 @@ void fill(const RecordedGroup& group, int i, RTCRay& ray) {
 }
 
 bool used(const RecordedGroup& group, int i) { return group.near[i] <= group.far[i]; }
+
+template <class Packet, class Intersect, class Occluded>
+void trace(const RecordedGroup& group, bool shadows, RTCScene scene, RTCIntersectContext* context,
+           Intersect intersect, Occluded occluded) {
+  constexpr int kWidth = sizeof(Packet::hit.geomID) / sizeof(unsigned);
+  for (int first = 0; first < 16; first += kWidth) {
+    alignas(64) int valid[kWidth];
+    bool any = false;
+    for (int i = 0; i < kWidth; ++i) {
+      valid[i] = used(group, first + i) ? -1 : 0;
+      any = any || valid[i] != 0;
+    }
+    if (!any) continue;
+    Packet packet;
+    fill(group, first, packet.ray);
+    if (shadows) {
+      occluded(valid, scene, context, &packet.ray);
+      continue;
+    }
+    for (int i = 0; i < kWidth; ++i) {
+      packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    intersect(valid, scene, context, &packet);
+  }
+}
 
 // Refuses hits of triangles that can be seen through.
 void pass(const RTCFilterFunctionNArguments* arguments) {
@@ -88,6 +118,7 @@ struct BareEmbree::State {
   RTCScene top = nullptr;
   std::vector<RTCScene> meshes;
   bool instances = false;
+  int widest = 4;  // packet that Embree traces as it is
 
   void loop(std::span<const RecordedGroup> rays, bool shadows, Loop how) const;
 };
@@ -132,17 +163,12 @@ void BareEmbree::State::loop(std::span<const RecordedGroup> rays, bool shadows, 
       }
       continue;
     }
-    alignas(64) int valid[16];
-    for (int i = 0; i < 16; ++i) valid[i] = used(group, i) ? -1 : 0;
-    RTCRayHit16 packet;
-    fill(group, packet.ray);
-    if (shadows) {
-      rtcOccluded16(valid, top, &context, &packet.ray);
+    if (widest == 16) {
+      trace<RTCRayHit16>(group, shadows, top, &context, rtcIntersect16, rtcOccluded16);
+    } else if (widest == 8) {
+      trace<RTCRayHit8>(group, shadows, top, &context, rtcIntersect8, rtcOccluded8);
     } else {
-      for (int i = 0; i < 16; ++i) {
-        packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-      }
-      rtcIntersect16(valid, top, &context, &packet);
+      trace<RTCRayHit4>(group, shadows, top, &context, rtcIntersect4, rtcOccluded4);
     }
   }
 }
@@ -154,6 +180,12 @@ BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool sam
   if (*isa != '\0') configuration += std::string(",isa=") + isa;
   state_->device = rtcNewDevice(configuration.c_str());
   RTCDevice device = state_->device;
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) {
+    state_->widest = 8;
+  }
+  if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) {
+    state_->widest = 16;
+  }
   const auto new_scene = [&] {
     RTCScene scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, same_answers ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);

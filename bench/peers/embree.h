@@ -18,7 +18,7 @@ struct alignas(64) RecordedGroup {
 
 enum class Loop : std::uint8_t {
   single,    // rtcIntersect1, rtcOccluded1
-  packet,    // rtcIntersect16, rtcOccluded16
+  packet,    // rtcIntersect16, rtcOccluded16; of 8 or 4 rays where Embree has no wider packets
   coherent,  // the same, told that the rays stay together
   stream,    // rtcIntersect1M, rtcOccluded1M over 256 rays
 };

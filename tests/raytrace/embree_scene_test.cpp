@@ -24,6 +24,15 @@ Ray ray(const glm::vec3& origin, const glm::vec3& direction) {
   return r;
 }
 
+// With packets of sixteen, eight and four rays, where the machine has them.
+std::vector<std::string> instruction_sets() {
+#if defined(__x86_64__)
+  return {"", "sse2", "avx2"};
+#else
+  return {""};
+#endif
+}
+
 TEST(EmbreeScene, FindsPlacementAndTriangle) {
   scenes::Scene scene;
   add(scene, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}));
@@ -50,35 +59,42 @@ TEST(EmbreeScene, FindsPlacementAndTriangle) {
 }
 
 TEST(EmbreeScene, PacketsAgreeWithSingleRays) {
-  scenes::Scene scene;
-  add(scene, sphere(20));
-  scene.instances.push_back({0, placed(0.5F, {1.2F, 0, 0})});
-  const Tracer tracer = make_tracer(scene);
-  for (int block = 0; block < 100; ++block) {
-    RayPacket packet{};
-    ActiveRays active;
-    for (int i = 0; i < kPacketRays; ++i) {
-      active.ray[i] = i == 5 ? 0 : -1;
-      packet.origin_x[i] = -1.5F + 0.33F * static_cast<float>(block % 10) + 0.08F * (i % 4);
-      packet.origin_y[i] = -1.5F + 0.33F * static_cast<float>(block / 10) + 0.08F * (i / 4);
-      packet.origin_z[i] = 5;
-      packet.direction_z[i] = -1;
-      packet.far[i] = std::numeric_limits<float>::infinity();
-      packet.mask[i] = 0xFFFFFFFFU;
-      packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
-    }
-    tracer.embree.intersect(active, packet, true);
-    for (int i = 0; i < kPacketRays; ++i) {
-      Ray one = ray({packet.origin_x[i], packet.origin_y[i], 5}, {0, 0, -1});
-      tracer.embree.intersect(one);
-      if (active.ray[i] == 0) {
-        EXPECT_EQ(packet.triangle[i], kMiss);
-        continue;
+  for (const std::string& isa : instruction_sets()) {
+    scenes::Scene scene;
+    add(scene, sphere(20));
+    scene.instances.push_back({0, placed(0.5F, {1.2F, 0, 0})});
+    BuildOptions options;
+    options.isa = isa;
+    const Tracer tracer = make_tracer(scene, options);
+    for (int block = 0; block < 100; ++block) {
+      RayPacket packet{};
+      ActiveRays active;
+      for (int i = 0; i < kPacketRays; ++i) {
+        active.ray[i] = i == 5 || (i / 4 == 2 && block % 2 == 1) ? 0 : -1;
+        packet.origin_x[i] = -1.5F + 0.33F * static_cast<float>(block % 10) + 0.08F * (i % 4);
+        packet.origin_y[i] = -1.5F + 0.33F * static_cast<float>(block / 10) + 0.08F * (i / 4);
+        packet.origin_z[i] = 5;
+        packet.direction_z[i] = -1;
+        packet.far[i] = std::numeric_limits<float>::infinity();
+        packet.mask[i] = 0xFFFFFFFFU;
+        packet.triangle[i] = packet.geometry[i] = packet.instance[i] = kMiss;
       }
-      ASSERT_EQ(packet.triangle[i] == kMiss, one.triangle == kMiss);
-      if (one.triangle == kMiss) continue;
-      EXPECT_EQ(hit_of(packet, i).placement, hit_of(one).placement);
-      EXPECT_NEAR(packet.far[i], one.far, 1e-5);
+      packet.direction_x[5] = std::numeric_limits<float>::quiet_NaN();
+      const RayPacket sent = packet;
+      tracer.embree.intersect(active, packet, block % 3 != 0);
+      for (int i = 0; i < kPacketRays; ++i) {
+        if (active.ray[i] == 0) {
+          EXPECT_EQ(packet.triangle[i], kMiss) << isa;
+          EXPECT_EQ(packet.far[i], sent.far[i]);
+          continue;
+        }
+        Ray one = ray({packet.origin_x[i], packet.origin_y[i], 5}, {0, 0, -1});
+        tracer.embree.intersect(one);
+        ASSERT_EQ(packet.triangle[i] == kMiss, one.triangle == kMiss) << isa;
+        if (one.triangle == kMiss) continue;
+        EXPECT_EQ(hit_of(packet, i).placement, hit_of(one).placement);
+        EXPECT_NEAR(packet.far[i], one.far, 1e-5);
+      }
     }
   }
 }
@@ -86,11 +102,6 @@ TEST(EmbreeScene, PacketsAgreeWithSingleRays) {
 // A lattice and rays through its corners and the middles of its edges: whoever has all triangles
 // finds what three that have a third of them each find together.
 TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
-#if defined(__x86_64__)
-  const std::vector<std::string> sets = {"", "sse2", "avx2"};
-#else
-  const std::vector<std::string> sets = {""};
-#endif
   constexpr int kSide = 9;
   constexpr std::size_t kParts = 3;
   scenes::Mesh lattice;
@@ -106,7 +117,7 @@ TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
   std::mt19937 random(7);
   std::shuffle(lattice.triangles.begin(), lattice.triangles.end(), random);
   const glm::vec3 direction(0.5F, -0.25F, -1);
-  for (const std::string& isa : sets) {
+  for (const std::string& isa : instruction_sets()) {
     for (const bool instanced : {false, true}) {
       std::vector<std::uint32_t> numbers[kParts];
       scenes::Mesh part[kParts];
@@ -182,12 +193,7 @@ TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
 
 // Coherent occlusion packets have looped forever on instances with some instruction sets.
 TEST(EmbreeScene, OcclusionPacketsAgreeWithSingleRays) {
-#if defined(__x86_64__)
-  const std::vector<std::string> sets = {"", "sse2", "avx2"};
-#else
-  const std::vector<std::string> sets = {""};
-#endif
-  for (const std::string& isa : sets) {
+  for (const std::string& isa : instruction_sets()) {
     for (const bool share : {false, true}) {
       scenes::Scene scene;
       add(scene, sphere(20));
@@ -213,7 +219,10 @@ TEST(EmbreeScene, OcclusionPacketsAgreeWithSingleRays) {
         SeeThrough passed[kPacketRays];
         tracer.embree.occluded(active, packet, passed, true);
         for (int i = 0; i < kPacketRays; ++i) {
-          if (active.ray[i] == 0) continue;
+          if (active.ray[i] == 0) {
+            EXPECT_EQ(packet.far[i], sent.far[i]) << isa;
+            continue;
+          }
           Ray one = ray({sent.origin_x[i], sent.origin_y[i], sent.origin_z[i]}, {0.1F, 0, -1});
           SeeThrough nothing;
           EXPECT_EQ(packet.far[i] < 0, tracer.embree.occluded(one, nothing)) << isa << share;
