@@ -17,6 +17,7 @@
 #include "composite/fit_machine.h"
 #include "composite/scheme.h"
 #include "parallel/arena.h"
+#include "parallel/parallel_for.h"
 
 namespace delray::apps {
 namespace {
@@ -255,10 +256,7 @@ class Comparison {
           if (row.codec != codec || row.ranks != ranks) continue;
           steps_.stop_if_asked();
           steps_.done(kStepsOfPrediction);
-          for (const auto& [name, machine] : machines) {
-            const composite::Simulated run = simulate(row.scheme, images, machine, options());
-            row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
-          }
+          predict(row, images, machines);
         }
       }
       if (ranks > kMostFittedRanks) shapes_.erase(ranks);
@@ -299,15 +297,25 @@ class Comparison {
     row.scheme = scheme;
     row.codec = codec;
     row.ranks = images.count();
-    for (const auto& [name, machine] : machines) {
-      steps_.stop_if_asked();
-      const composite::Simulated run = simulate(scheme, images, machine, options());
-      row.counts = run.compose;
-      row.gather = run.gather;
-      row.predicted.push_back({name, run.compose_seconds, run.gather_seconds});
-    }
+    const composite::Simulated run = predict(row, images, machines);
+    row.counts = run.compose;
+    row.gather = run.gather;
     steps_.done(kStepsOfPrediction);
     return row;
+  }
+
+  // The machines at the same time. Returns any one, as what is counted is the same on all.
+  composite::Simulated predict(ComparedScheme& row, const HollowImages& images,
+                               const Machines& machines) {
+    std::vector<composite::Simulated> runs(machines.size());
+    parallel::parallel_for(0, machines.size(), 1, [&](std::size_t i) {
+      steps_.stop_if_asked();
+      runs[i] = simulate(row.scheme, images, machines[i].second, options());
+    });
+    for (std::size_t i = 0; i < machines.size(); ++i) {
+      row.predicted.push_back({machines[i].first, runs[i].compose_seconds, runs[i].gather_seconds});
+    }
+    return runs.back();
   }
 
   std::vector<composite::TimedScheme> samples_of(const std::string& codec) {

@@ -1,13 +1,12 @@
 #include "comm/internal/fiber.h"
 
 #include <cxxabi.h>
-#include <sys/mman.h>
-#include <ucontext.h>
-#include <unistd.h>
 
+#include <boost/context/fiber.hpp>
+#include <boost/context/protected_fixedsize_stack.hpp>
 #include <cassert>
-#include <cstdint>
-#include <new>
+#include <cstddef>
+#include <memory>
 #include <utility>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -51,23 +50,17 @@ void exchange_exceptions(ExceptionState& state) {
 }  // namespace
 
 struct Fiber::State {
-  std::function<void()> body;
-  bool finished = false;
-  ucontext_t own{}, owner{};
-  ExceptionState exceptions;  // of whichever side is not running
-  void* memory = nullptr;     // a guard page, then the stack
-  std::size_t memory_bytes = 0, guard_bytes = 0;
+  boost::context::fiber own, owner;  // the one that is not running; `own` is none when finished
+  ExceptionState exceptions;         // of that one
 #if defined(DELRAY_FIBER_ASAN)
+  const void* stack = nullptr;
   const void* owner_stack = nullptr;
-  std::size_t owner_stack_bytes = 0;
+  std::size_t stack_bytes = 0, owner_stack_bytes = 0;
 #endif
 #if defined(DELRAY_FIBER_TSAN)
   void* own_fiber = nullptr;
   void* owner_fiber = nullptr;
 #endif
-
-  void* stack() const { return static_cast<std::byte*>(memory) + guard_bytes; }
-  std::size_t stack_bytes() const { return memory_bytes - guard_bytes; }
 
   void enter() {
 #if defined(DELRAY_FIBER_TSAN)
@@ -76,82 +69,74 @@ struct Fiber::State {
 #endif
 #if defined(DELRAY_FIBER_ASAN)
     void* fake_stack = nullptr;
-    __sanitizer_start_switch_fiber(&fake_stack, stack(), stack_bytes());
+    __sanitizer_start_switch_fiber(&fake_stack, stack, stack_bytes);
 #endif
-    swapcontext(&owner, &own);
+    own = std::move(own).resume();
 #if defined(DELRAY_FIBER_ASAN)
     __sanitizer_finish_switch_fiber(fake_stack, nullptr, nullptr);
 #endif
   }
 
-  void leave(bool for_good) {
+  // `fake_stack`: null when the fiber leaves for good.
+  void tell_of_leaving([[maybe_unused]] void** fake_stack) const {
 #if defined(DELRAY_FIBER_TSAN)
     __tsan_switch_to_fiber(owner_fiber, 0);
 #endif
 #if defined(DELRAY_FIBER_ASAN)
-    void* fake_stack = nullptr;
-    __sanitizer_start_switch_fiber(for_good ? nullptr : &fake_stack, owner_stack,
-                                   owner_stack_bytes);
-#endif
-    (void)for_good;
-    swapcontext(&own, &owner);
-#if defined(DELRAY_FIBER_ASAN)
-    __sanitizer_finish_switch_fiber(fake_stack, &owner_stack, &owner_stack_bytes);
+    __sanitizer_start_switch_fiber(fake_stack, owner_stack, owner_stack_bytes);
 #endif
   }
 
-  // makecontext hands over ints only.
-  static void start(unsigned int high, unsigned int low) {
-    auto* state = reinterpret_cast<State*>((static_cast<std::uintptr_t>(high) << 32) | low);
+  void tell_of_entering([[maybe_unused]] void* fake_stack) {
 #if defined(DELRAY_FIBER_ASAN)
-    __sanitizer_finish_switch_fiber(nullptr, &state->owner_stack, &state->owner_stack_bytes);
+    __sanitizer_finish_switch_fiber(fake_stack, &owner_stack, &owner_stack_bytes);
 #endif
-    state->body();
-    state->finished = true;
-    state->leave(true);
   }
 };
 
 Fiber::Fiber(std::size_t stack_bytes, std::function<void()> body)
     : state_(std::make_unique<State>()) {
+  namespace context = boost::context;
   State& state = *state_;
-  state.body = std::move(body);
-  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  state.guard_bytes = page;
-  state.memory_bytes = page + (stack_bytes + page - 1) / page * page;
-  state.memory = mmap(nullptr, state.memory_bytes, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
-  if (state.memory == MAP_FAILED) throw std::bad_alloc();
-  mprotect(state.memory, page, PROT_NONE);
-  getcontext(&state.own);
-  state.own.uc_stack.ss_sp = state.stack();
-  state.own.uc_stack.ss_size = state.stack_bytes();
-  state.own.uc_link = nullptr;
-  const auto address = reinterpret_cast<std::uintptr_t>(&state);
-  static_assert(sizeof(void*) == 8);
-  makecontext(&state.own, reinterpret_cast<void (*)()>(&State::start), 2,
-              static_cast<unsigned int>(address >> 32), static_cast<unsigned int>(address));
+  context::protected_fixedsize_stack stacks(stack_bytes);
+  const context::stack_context stack = stacks.allocate();
+#if defined(DELRAY_FIBER_ASAN)
+  state.stack = static_cast<const std::byte*>(stack.sp) - stack.size;
+  state.stack_bytes = stack.size;
+#endif
 #if defined(DELRAY_FIBER_TSAN)
   state.own_fiber = __tsan_create_fiber(0);
 #endif
+  state.own = context::fiber(std::allocator_arg, context::preallocated(stack.sp, stack.size, stack),
+                             stacks, [&state, body = std::move(body)](context::fiber&& owner) {
+                               state.tell_of_entering(nullptr);
+                               state.owner = std::move(owner);
+                               body();
+                               state.tell_of_leaving(nullptr);
+                               return std::move(state.owner);
+                             });
 }
 
 Fiber::~Fiber() {
 #if defined(DELRAY_FIBER_TSAN)
   __tsan_destroy_fiber(state_->own_fiber);
 #endif
-  munmap(state_->memory, state_->memory_bytes);
 }
 
 void Fiber::resume() {
-  assert(!state_->finished);
+  assert(!finished());
   exchange_exceptions(state_->exceptions);
   state_->enter();
   exchange_exceptions(state_->exceptions);
 }
 
-void Fiber::suspend() { state_->leave(false); }
+void Fiber::suspend() {
+  void* fake_stack = nullptr;
+  state_->tell_of_leaving(&fake_stack);
+  state_->owner = std::move(state_->owner).resume();
+  state_->tell_of_entering(fake_stack);
+}
 
-bool Fiber::finished() const { return state_->finished; }
+bool Fiber::finished() const { return !state_->own; }
 
 }  // namespace delray::comm::internal
