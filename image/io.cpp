@@ -50,6 +50,21 @@ void check_suffix(const std::filesystem::path& path) {
                          "cannot write: the suffix of a picture is one of " + known);
 }
 
+Rgba8 straight(const Rgba8& c) {
+  if (c.a == 255) return c;
+  if (c.a == 0) return {};
+  const float alpha = decode_alpha(c.a);
+  const auto code = [alpha](std::uint8_t v) { return encode_srgb(decode_srgb(v) / alpha); };
+  return {code(c.r), code(c.g), code(c.b), c.a};
+}
+
+std::vector<Rgba8> straight(const Image8& image) {
+  std::vector<Rgba8> codes(image.pixels());
+  std::transform(image.colour.data(), image.colour.data() + image.pixels(), codes.begin(),
+                 [](const Rgba8& c) { return straight(c); });
+  return codes;
+}
+
 }  // namespace
 
 PictureInfo read_info(const std::filesystem::path& path) { return codec().read_info(path); }
@@ -85,10 +100,18 @@ void write_image(const std::filesystem::path& path, const Image8& image,
   check_suffix(path);
   const std::string suffix = lower_suffix(path);
   if (suffix == ".exr") return write_image(path, to_float(image), options);
-  const bool jpeg = suffix == ".jpg" || suffix == ".jpeg";
+  if (suffix == ".png") {
+    const std::vector<std::byte> bytes =
+        encode_png(image.width, image.height, straight(image), options.attributes);
+    return files::write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
   files::AtomicFile target(path);
-  (jpeg ? codec().write_jpeg : codec().write_codes)({target.temporary(), path.string()}, image,
-                                                    options);
+  if (suffix == ".jpg" || suffix == ".jpeg") {
+    codec().write_jpeg({target.temporary(), path.string()}, image, options);
+  } else {
+    codec().write_tiff({target.temporary(), path.string()}, image.width, image.height,
+                       straight(image), options);
+  }
   target.commit();
 }
 
@@ -103,12 +126,6 @@ void write_image(const std::filesystem::path& path, const ImageF& image,
   files::AtomicFile target(path);
   codec().write_exr({target.temporary(), path.string()}, image, options);
   target.commit();
-}
-
-std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels) {
-  assert(width >= 1 && height >= 1);
-  assert(texels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  return codec().encode_png(width, height, texels);
 }
 
 }  // namespace delray::image

@@ -102,7 +102,9 @@ void write_image(const std::filesystem::path& path, const Image8& image,
 void write_image(const std::filesystem::path& path, const ImageF& image,
                  const WriteOptions& options = {});
 
-// Texels as a PNG in memory, unchanged. REQUIRES: texels.size() == width * height, both >= 1.
-std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels);
+// Texels as a PNG in memory, unchanged, with those of the attributes that are text.
+// REQUIRES: texels.size() == width * height, both >= 1.
+std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels,
+                                  std::span<const Attribute> attributes = {});
 
 }  // namespace delray::image

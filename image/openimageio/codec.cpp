@@ -10,9 +10,8 @@ extern "C" const delray::image::openimageio::Codec* delray_openimageio_codec() {
       .decode_image8 = openimageio::decode_image8,
       .read_float_channels = openimageio::read_float_channels,
       .write_exr = openimageio::write_exr,
-      .write_codes = openimageio::write_codes,
+      .write_tiff = openimageio::write_tiff,
       .write_jpeg = openimageio::write_jpeg,
-      .encode_png = openimageio::encode_png,
   };
   return &kCodec;
 }

@@ -24,9 +24,10 @@ struct Codec {
   Texels (*decode_image8)(std::span<const std::byte> bytes, const std::string& name);
   RawChannels (*read_float_channels)(const std::filesystem::path& path);
   void (*write_exr)(const Target& target, const ImageF& image, const WriteOptions& options);
-  void (*write_codes)(const Target& target, const Image8& image, const WriteOptions& options);
+  // Straight alpha.
+  void (*write_tiff)(const Target& target, int width, int height, std::span<const Rgba8> texels,
+                     const WriteOptions& options);
   void (*write_jpeg)(const Target& target, const Image8& image, const WriteOptions& options);
-  std::vector<std::byte> (*encode_png)(int width, int height, std::span<const Rgba8> texels);
 };
 
 // The entries of a Codec, in read.cpp and write.cpp.
@@ -36,8 +37,8 @@ Texels read_texels(const std::filesystem::path& path);
 Texels decode_image8(std::span<const std::byte> bytes, const std::string& name);
 RawChannels read_float_channels(const std::filesystem::path& path);
 void write_exr(const Target& target, const ImageF& image, const WriteOptions& options);
-void write_codes(const Target& target, const Image8& image, const WriteOptions& options);
+void write_tiff(const Target& target, int width, int height, std::span<const Rgba8> texels,
+                const WriteOptions& options);
 void write_jpeg(const Target& target, const Image8& image, const WriteOptions& options);
-std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels);
 
 }  // namespace delray::image::openimageio

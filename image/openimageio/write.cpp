@@ -1,4 +1,3 @@
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -50,20 +49,10 @@ void write_values(const Target& target, const OIIO::ImageSpec& spec, OIIO::TypeD
   }
 }
 
-Rgba8 straight(const Rgba8& c) {
-  if (c.a == 255) return c;
-  if (c.a == 0) return {};
-  const float alpha = decode_alpha(c.a);
-  const auto code = [alpha](std::uint8_t v) { return encode_srgb(decode_srgb(v) / alpha); };
-  return {code(c.r), code(c.g), code(c.b), c.a};
-}
-
 OIIO::ImageSpec spec_of_codes(int width, int height, int channels) {
   OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
-  // Of pictures, 6 (the default) takes half as long again for files 6 % smaller.
-  spec.attribute("png:compressionLevel", 4);
   return spec;
 }
 
@@ -95,13 +84,11 @@ void write_exr(const Target& target, const ImageF& image, const WriteOptions& op
   write_values(target, spec, OIIO::TypeDesc::FLOAT, values.data());
 }
 
-void write_codes(const Target& target, const Image8& image, const WriteOptions& options) {
-  OIIO::ImageSpec spec = spec_of_codes(image.width, image.height, 4);
+void write_tiff(const Target& target, int width, int height, std::span<const Rgba8> texels,
+                const WriteOptions& options) {
+  OIIO::ImageSpec spec = spec_of_codes(width, height, 4);
   add_attributes(spec, options.attributes);
-  std::vector<Rgba8> codes(image.pixels());
-  std::transform(image.colour.data(), image.colour.data() + image.pixels(), codes.begin(),
-                 straight);
-  write_values(target, spec, OIIO::TypeDesc::UINT8, codes.data());
+  write_values(target, spec, OIIO::TypeDesc::UINT8, texels.data());
 }
 
 void write_jpeg(const Target& target, const Image8& image, const WriteOptions& options) {
@@ -113,21 +100,6 @@ void write_jpeg(const Target& target, const Image8& image, const WriteOptions& o
   codes.reserve(3 * image.pixels());
   for (const Rgba8& c : image.colour.span()) codes.insert(codes.end(), {c.r, c.g, c.b});
   write_values(target, spec, OIIO::TypeDesc::UINT8, codes.data());
-}
-
-std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output || !output->set_ioproxy(&memory) ||
-      !output->open("png", spec_of_codes(width, height, 4)) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, texels.data()) || !output->close()) {
-    fail({{}, "png"}, output ? output->geterror() : OIIO::geterror());
-  }
-  std::vector<std::byte> result(bytes.size());
-  std::transform(bytes.begin(), bytes.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<std::byte>(c); });
-  return result;
 }
 
 }  // namespace delray::image::openimageio

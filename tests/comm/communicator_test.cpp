@@ -21,19 +21,24 @@ constexpr Tag kData = 5, kOther = 6;
 class CommunicatorTest : public ::testing::TestWithParam<Machine> {
  protected:
   // On every number of ranks that the machine has, to 5, and its largest.
-  void for_ranks(int least, const Body& body) {
+  void for_ranks(int least, const Body& body) { for_ranks(least, body, GetParam().run); }
+  void for_ranks_once(int least, const Body& body) { for_ranks(least, body, GetParam().run_once); }
+  void with_ranks(int ranks, const Body& body) {
+    if (ranks > GetParam().most_ranks) GTEST_SKIP() << "needs " << ranks << " ranks";
+    GetParam().run(ranks, body);
+  }
+
+ private:
+  template <class Run>
+  void for_ranks(int least, const Body& body, const Run& run) {
     int last = 0;
     for (const int ranks : {1, 2, 3, 4, 5, GetParam().most_ranks}) {
       if (ranks < least || ranks > GetParam().most_ranks || ranks <= last) continue;
       SCOPED_TRACE(std::to_string(ranks) + " ranks");
-      GetParam().run(ranks, body);
+      run(ranks, body);
       last = ranks;
     }
     if (last == 0) GTEST_SKIP() << "needs " << least << " ranks";
-  }
-  void with_ranks(int ranks, const Body& body) {
-    if (ranks > GetParam().most_ranks) GTEST_SKIP() << "needs " << ranks << " ranks";
-    GetParam().run(ranks, body);
   }
 };
 
@@ -241,7 +246,7 @@ TEST_P(CommunicatorTest, NeverBlocksOnLargeMessages) {
 }
 
 TEST_P(CommunicatorTest, LetsMessagesBeKeptAndSentOn) {
-  for_ranks(2, [](Communicator& communicator) {
+  for_ranks_once(2, [](Communicator& communicator) {
     constexpr std::size_t kBytes = 150'000;
     const int rank = communicator.rank(), size = communicator.size();
     const auto seed = [&](int from, int i) { return static_cast<std::uint64_t>(10 * from + i); };

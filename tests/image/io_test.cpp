@@ -156,12 +156,13 @@ TEST_F(Io, HalfRoundsColourOnly) {
 }
 
 TEST_F(Io, PngKeepsTextAttributes) {
-  const std::vector<Attribute> attributes = {{"scene", "a view"}};
+  const std::vector<Attribute> attributes = {
+      {"scene", "a view"}, {"view", "S\xc3\xa4ule"}, {"frames", 3.0}};
   WriteOptions options;
   options.attributes = attributes;
   write_image(path("a.png"), opaque_or_clear(2, 2), options);
   const auto back = read_info(path("a.png")).attributes;
-  EXPECT_NE(std::find(back.begin(), back.end(), attributes[0]), back.end());
+  for (int i = 0; i < 2; ++i) EXPECT_NE(std::ranges::find(back, attributes[i]), back.end()) << i;
 }
 
 TEST_F(Io, JpegIsThePictureOverBlack) {
