@@ -50,6 +50,7 @@ void ignore_warning(png_structp, png_const_charp) {}
 // Has nothing to destroy, as an error jumps out of it.
 [[gnu::noinline]] void write(png_structp png, png_infop info, int width, int height,
                              const Rgba8* texels, const std::vector<png_text>& texts) {
+  png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_set_compression_level(png, kCompressionLevel);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
   png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,

@@ -216,6 +216,12 @@ TEST_F(Io, EncodedTexelsAreDecodedUnchanged) {
   EXPECT_EQ(back.texels, texels);
 }
 
+TEST_F(Io, PicturesMayBeMoreThanAMillionPixelsWide) {
+  const std::vector<Rgba8> texels(1'000'001);
+  EXPECT_GT(encode_png(1'000'001, 1, texels).size(), 100U);
+  EXPECT_GT(encode_png(1, 1'000'001, texels).size(), 100U);
+}
+
 TEST_F(Io, DecodesJpegFromMemory) {
   Image8 image(8, 8);
   clear(image, Rgba8{200, 100, 50, 255});
