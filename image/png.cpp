@@ -1,4 +1,4 @@
-// PNG files are written by libpng itself: what writes nothing else need not load OpenImageIO.
+// PNG is written by libpng itself, so that who writes nothing else need not load OpenImageIO.
 #include <png.h>
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -19,6 +18,7 @@
 #endif
 
 #include "raytrace/internal/edges.h"
+#include "raytrace/internal/packet_parts.h"
 
 namespace delray::raytrace {
 namespace {
@@ -290,36 +290,38 @@ std::string isa_in_use(int widest_packet) {
 #endif
 }
 
-// Traces rays `first` to `first` + kWidth - 1 of `packet` as a packet of that width.
-template <int kWidth, typename Packet, typename Trace, typename Function>
-void trace_part(const ActiveRays& active, Packet& packet, int first, const Trace& trace,
-                Function* function) {
-  constexpr std::size_t kField = sizeof(ActiveRays), kPart = kWidth * sizeof(std::int32_t);
-  constexpr std::size_t kFields = sizeof(Packet) / kField;
-  alignas(64) std::int32_t part_active[kWidth];
-  std::memcpy(part_active, active.ray + first, kPart);
-  if (std::ranges::all_of(part_active, [](std::int32_t ray) { return ray == 0; })) return;
-  alignas(64) std::byte part[kFields * kPart];
-  std::byte* whole = reinterpret_cast<std::byte*>(&packet) + first * sizeof(std::int32_t);
-  for (std::size_t f = 0; f < kFields; ++f)
-    std::memcpy(part + f * kPart, whole + f * kField, kPart);
-  trace(function, part_active, part);
-  for (std::size_t f = 0; f < kFields; ++f)
-    std::memcpy(whole + f * kField, part + f * kPart, kPart);
+// What Embree 4 takes as arguments of a query, and Embree 3 as its context.
+#if RTC_VERSION_MAJOR >= 4
+template <typename Rays, typename Argument>
+void call(void (*function)(const int*, RTCScene, Rays*, Argument*), const int* active,
+          RTCScene tree, Argument& argument, void* rays) {
+  function(active, tree, static_cast<Rays*>(rays), &argument);
 }
+#else
+template <typename Rays>
+void call(void (*function)(const int*, RTCScene, Context*, Rays*), const int* active, RTCScene tree,
+          Context& argument, void* rays) {
+  function(active, tree, &argument, static_cast<Rays*>(rays));
+}
+#endif
 
-// Calls trace(function, active rays, rays) with Embree's function for its widest packets: for wider
-// ones Embree 3 takes all rays for active. The functions are those for 16, 8 and 4 rays.
-template <typename Packet, typename Trace, typename Of16, typename Of8, typename Of4>
-void trace_packet(int widest, const ActiveRays& active, Packet& packet, const Trace& trace,
-                  Of16* of16, Of8* of8, Of4* of4) {
-  if (widest == kPacketRays) return trace(of16, active.ray, &packet);
-  for (int first = 0; first < kPacketRays; first += widest) {
-    if (widest == 8) {
-      trace_part<8>(active, packet, first, trace, of8);
-    } else {
-      trace_part<4>(active, packet, first, trace, of4);
-    }
+// By Embree's function for its widest packets, of those for 16, 8 and 4 rays: where it has to cut
+// packets itself, Embree 3 takes all rays for active.
+template <typename Packet, typename Argument, typename Of16, typename Of8, typename Of4>
+void trace(const EmbreeScene::State& scene, const ActiveRays& active, Packet& packet,
+           Argument& argument, Of16* of16, Of8* of8, Of4* of4) {
+  RTCScene tree = scene.top.get();
+  switch (scene.widest_packet) {
+    case 16:
+      return call(of16, active.ray, tree, argument, &packet);
+    case 8:
+      return for_each_part<8>(active, packet, [&](const std::int32_t* some, void* part) {
+        call(of8, some, tree, argument, part);
+      });
+    default:
+      return for_each_part<4>(active, packet, [&](const std::int32_t* some, void* part) {
+        call(of4, some, tree, argument, part);
+      });
   }
 }
 
@@ -344,21 +346,12 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
   start(query, coherent);
   query.nearest = nearest;
 #if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments = intersect_arguments(query, coherent);
-  const auto trace = [&]<typename Rays>(
-                         void (*function)(const int*, RTCScene, Rays*, RTCIntersectArguments*),
-                         const int* rays_active, void* rays) {
-    function(rays_active, scene.top.get(), static_cast<Rays*>(rays), &arguments);
-  };
+  RTCIntersectArguments argument = intersect_arguments(query, coherent);
 #else
   if (nearest != nullptr) query.context.filter = find_least;
-  const auto trace = [&]<typename Rays>(void (*function)(const int*, RTCScene, Context*, Rays*),
-                                        const int* rays_active, void* rays) {
-    function(rays_active, scene.top.get(), &query.context, static_cast<Rays*>(rays));
-  };
+  Context& argument = query.context;
 #endif
-  trace_packet(scene.widest_packet, active, packet, trace, rtcIntersect16, rtcIntersect8,
-               rtcIntersect4);
+  trace(scene, active, packet, argument, rtcIntersect16, rtcIntersect8, rtcIntersect4);
 }
 
 // Decides between triangles that rays hit at the same distance.
@@ -495,20 +488,11 @@ void EmbreeScene::occluded(const ActiveRays& active, ShadowPacket& packet,
     passed[i].count = 0;
   }
 #if RTC_VERSION_MAJOR >= 4
-  RTCOccludedArguments arguments = occluded_arguments(query, coherent);
-  const auto trace = [&]<typename Rays>(
-                         void (*function)(const int*, RTCScene, Rays*, RTCOccludedArguments*),
-                         const int* rays_active, void* rays) {
-    function(rays_active, state_->top.get(), static_cast<Rays*>(rays), &arguments);
-  };
+  RTCOccludedArguments argument = occluded_arguments(query, coherent);
 #else
-  const auto trace = [&]<typename Rays>(void (*function)(const int*, RTCScene, Context*, Rays*),
-                                        const int* rays_active, void* rays) {
-    function(rays_active, state_->top.get(), &query.context, static_cast<Rays*>(rays));
-  };
+  Context& argument = query.context;
 #endif
-  trace_packet(state_->widest_packet, active, packet, trace, rtcOccluded16, rtcOccluded8,
-               rtcOccluded4);
+  trace(*state_, active, packet, argument, rtcOccluded16, rtcOccluded8, rtcOccluded4);
 }
 
 std::uint64_t EmbreeScene::memory() const { return state_->memory; }

@@ -21,24 +21,20 @@ constexpr Tag kData = 5, kOther = 6;
 class CommunicatorTest : public ::testing::TestWithParam<Machine> {
  protected:
   // On every number of ranks that the machine has, to 5, and its largest.
-  void for_ranks(int least, const Body& body) { for_ranks(least, body, GetParam().run); }
-  void for_ranks_once(int least, const Body& body) { for_ranks(least, body, GetParam().run_once); }
-  void with_ranks(int ranks, const Body& body) {
-    if (ranks > GetParam().most_ranks) GTEST_SKIP() << "needs " << ranks << " ranks";
-    GetParam().run(ranks, body);
-  }
-
- private:
-  template <class Run>
-  void for_ranks(int least, const Body& body, const Run& run) {
+  // `once`: as Machine::run_once.
+  void for_ranks(int least, const Body& body, bool once = false) {
     int last = 0;
     for (const int ranks : {1, 2, 3, 4, 5, GetParam().most_ranks}) {
       if (ranks < least || ranks > GetParam().most_ranks || ranks <= last) continue;
       SCOPED_TRACE(std::to_string(ranks) + " ranks");
-      run(ranks, body);
+      (once ? GetParam().run_once : GetParam().run)(ranks, body);
       last = ranks;
     }
     if (last == 0) GTEST_SKIP() << "needs " << least << " ranks";
+  }
+  void with_ranks(int ranks, const Body& body) {
+    if (ranks > GetParam().most_ranks) GTEST_SKIP() << "needs " << ranks << " ranks";
+    GetParam().run(ranks, body);
   }
 };
 
@@ -246,13 +242,12 @@ TEST_P(CommunicatorTest, NeverBlocksOnLargeMessages) {
 }
 
 TEST_P(CommunicatorTest, LetsMessagesBeKeptAndSentOn) {
-  for_ranks_once(2, [](Communicator& communicator) {
-    constexpr std::size_t kBytes = 150'000;
+  const auto keep_and_send_on = [](Communicator& communicator, std::size_t bytes) {
     const int rank = communicator.rank(), size = communicator.size();
     const auto seed = [&](int from, int i) { return static_cast<std::uint64_t>(10 * from + i); };
     std::vector<Buffer> kept;
     for (int i = 0; i < 10; ++i) {
-      communicator.send((rank + 1) % size, kData, pattern(kBytes, seed(rank, i)));
+      communicator.send((rank + 1) % size, kData, pattern(bytes, seed(rank, i)));
       Buffer taken = communicator.receive((rank + size - 1) % size, kData);
       if (i % 2 == 0) {
         communicator.send((rank + 1) % size, kOther, std::move(taken));
@@ -262,9 +257,13 @@ TEST_P(CommunicatorTest, LetsMessagesBeKeptAndSentOn) {
     }
     for (int i = 0; i < 10; ++i) {
       const int from = (rank + 2 * size - (i % 2 == 0 ? 2 : 1)) % size;
-      EXPECT_TRUE(is_pattern(kept[static_cast<std::size_t>(i)], kBytes, seed(from, i))) << i;
+      EXPECT_TRUE(is_pattern(kept[static_cast<std::size_t>(i)], bytes, seed(from, i))) << i;
     }
-  });
+  };
+  // In every order that is tried, then in blocks of shared memory.
+  for_ranks(2, [&](Communicator& communicator) { keep_and_send_on(communicator, 1500); });
+  for_ranks(
+      2, [&](Communicator& communicator) { keep_and_send_on(communicator, 150'000); }, true);
 }
 
 TEST_P(CommunicatorTest, DeliversSizesAroundAPiece) {
