@@ -163,7 +163,8 @@ PlyHeader parse_ply_header(const Input& input) {
   PlyHeader header;
   TextPlace place;
   std::string_view line = take_line(input.content, place);
-  if (line != "ply" && line != "ply\r") fail(input, at_line(1), "does not begin with \"ply\"");
+  if (line.substr(0, line.find_last_not_of(" \t\r") + 1) != "ply")
+    fail(input, at_line(1), "does not begin with \"ply\"");
   bool has_format = false;
   while (place.byte < input.content.size()) {
     const std::size_t number = place.line;

@@ -91,6 +91,13 @@ bool is_count(std::string_view word, std::uint64_t& count) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
+// "ply" alone in its line, blanks aside.
+bool is_ply(std::string_view start) {
+  if (!start.starts_with("ply")) return false;
+  const std::size_t end = start.find_first_not_of(" \t", 3);
+  return end != std::string_view::npos && (start[end] == '\n' || start[end] == '\r');
+}
+
 bool ply_has_faces(std::string_view text) {
   while (!text.empty()) {
     std::string_view line = take_line(text);
@@ -183,7 +190,7 @@ Format format_of_content(std::string_view start, std::uint64_t size) {
     if (start.starts_with(magic)) return format;
   }
   if (start.starts_with("\xef\xbb\xbf")) start.remove_prefix(3);  // UTF-8 byte order mark
-  if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Format::ply;
+  if (is_ply(start)) return Format::ply;
   if (is_binary_stl(start, size)) return Format::stl;
   if (const Format json = json_format(start); json != Format::unknown) return json;
   if (const Format xml = xml_format(start); xml != Format::unknown) return xml;

@@ -192,6 +192,20 @@ TEST(ReadPoints, ReadsPlyOfEveryEncoding) {
   }
 }
 
+TEST(ReadPoints, ReadsPlyWhoseBodyBeginsLikeALineAndWhoseFirstLineEndsWithABlank) {
+  for (const char* line_end : {"\n", "\r\n", " \n", "\t\r\n"}) {
+    std::string text;
+    for (const char* line : {"ply", "format binary_big_endian 1.0", "element vertex 2",
+                             "property short x", "property short y", "end_header"}) {
+      text += line + (text.empty()                  ? std::string(line_end)
+                      : std::strchr(line_end, '\r') ? "\r\n"
+                                                    : "\n");
+    }
+    for (const std::int16_t x : {0x0A0D, 0x0D0A, 0x0A0A, 1}) append(text, x, true);
+    EXPECT_EQ(read("a.ply", text).positions, (Positions{{0x0A0D, 0x0D0A, 0}, {0x0A0A, 1, 0}}));
+  }
+}
+
 TEST(ReadPoints, WidensFloatsOfPlyExactly) {
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"

@@ -22,6 +22,7 @@ Format format_of(std::string_view content, std::string_view path = "noname") {
 TEST(Format, FollowsFromContentWhateverTheSuffix) {
   for (const char* path : {"noname", "a.xyz", "a.obj", "a.png", "a.json"}) {
     EXPECT_EQ(format_of("ply\nformat ascii 1.0\n", path), Format::ply);
+    EXPECT_EQ(format_of("ply \t\r\nformat ascii 1.0\n", path), Format::ply);
     EXPECT_EQ(format_of("LASF\0\0\0\0"s, path), Format::las);
     EXPECT_EQ(format_of("OFF\n3 1 0\n", path), Format::off);
     EXPECT_EQ(format_of("# c\nCOFF 3 1 0\n", path), Format::off);
