@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "scenes/internal/check_file.h"
+#include "scenes/internal/vertex_values.h"
 
 namespace delray::scenes::internal {
 namespace {
@@ -83,18 +83,6 @@ std::vector<glm::vec3> read_positions(const JsonView& primitive, const GltfDocum
     }
   }
   return positions;
-}
-
-// Directions of unit length; all or none, as normals that are missing can be computed.
-template <class T>
-void normalize_or_clear(std::vector<T>& directions) {
-  for (T& d : directions) {
-    const float length = glm::length(glm::vec3(d));
-    if (!(length > 1e-6F) || !std::isfinite(length)) return directions.clear();
-    // What has unit length already keeps its bits.
-    if (std::abs(length - 1.0F) < 1e-6F) continue;
-    for (int k = 0; k < 3; ++k) d[k] /= length;
-  }
 }
 
 void read_colours(const Attributes& attributes, Mesh& mesh) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/internal/check_file.h"
-
 namespace delray::scenes::internal {
 
 JsonView JsonView::operator[](const char* key) const {

@@ -4,12 +4,11 @@
 
 #include "files/format.h"
 #include "files/read_file.h"
-#include "scenes/internal/check_file.h"
 #include "scenes/internal/finish.h"
-#include "scenes/internal/import.h"
 #include "scenes/internal/load_content.h"
 #include "scenes/internal/load_gltf.h"
 #include "scenes/internal/order.h"
+#include "scenes/internal/readers.h"
 #include "scenes/internal/up_axis.h"
 
 namespace delray::scenes {
@@ -31,22 +30,15 @@ std::string join_continued_lines(std::string text) {
 }
 
 Scene read(Format format, const Source& source) {
-  std::string clean;
   switch (format) {
     case Format::obj:
-      clean = internal::clean_obj(source);
-      return internal::import({source.path, clean, source.warnings},
-                              {.suffix = "obj", .keep_vertices = false});
+      return internal::read_obj(source);
     case Format::ply:
-      internal::check_ply(source);
-      return internal::import(source, {.suffix = "ply"});
+      return internal::read_ply(source);
     case Format::off:
-      clean = internal::clean_off(source);
-      return internal::import({source.path, clean, source.warnings}, {.suffix = "off"});
+      return internal::read_off(source);
     case Format::stl:
-      internal::check_stl(source);
-      return internal::import(source,
-                              {.suffix = "stl", .keep_normals = false, .keep_vertices = false});
+      return internal::read_stl(source);
     case Format::gltf:
     case Format::glb:
       return internal::load_gltf(source);

@@ -35,7 +35,7 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
 
 }  // namespace
 
-void weld(Mesh& mesh) {
+std::vector<std::uint32_t> weld(Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
   const auto hash = [&mesh](std::size_t i) {
     std::uint64_t h = hash_value(0, mesh.positions, i);
@@ -66,6 +66,7 @@ void weld(Mesh& mesh) {
   keep(mesh.tangents, kept);
   keep(mesh.colours, kept);
   for (glm::uvec3& t : mesh.triangles) t = {new_index[t.x], new_index[t.y], new_index[t.z]};
+  return new_index;
 }
 
 }  // namespace delray::scenes::internal

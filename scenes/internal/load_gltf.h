@@ -10,9 +10,6 @@ namespace delray::scenes::internal {
 // with the extensions KHR_materials_transmission, _ior, _emissive_strength and _unlit,
 // KHR_lights_punctual, KHR_texture_transform and KHR_mesh_quantization. Animations and skins are
 // left out with a warning. Every number of the file is checked before it is used.
-//
-// Read here and not by Assimp, which trusts such files with its own memory, rounds texture
-// coordinates, forgets indices of refraction and allocates every face by itself.
 Scene load_gltf(const Source& source);
 
 }  // namespace delray::scenes::internal

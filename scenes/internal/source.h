@@ -10,6 +10,12 @@
 
 namespace delray::scenes::internal {
 
+// Coordinates larger than this are refused: products of two would overflow single precision.
+inline constexpr double kLargestCoordinate = 1e18;
+
+inline constexpr const char* kNoTriangles =
+    "there are no triangles in the file (if it holds points, triangulate them)";
+
 struct Source {
   std::filesystem::path path;
   std::string_view content;

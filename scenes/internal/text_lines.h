@@ -26,6 +26,13 @@ class Words {
     rest_.remove_prefix(end);
     return word;
   }
+  // All that is left, without the blanks around it.
+  std::string_view rest() const {
+    std::string_view rest = rest_;
+    while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+    while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
+    return rest;
+  }
 
  private:
   static bool is_blank(char c) {

@@ -9,11 +9,6 @@
 
 #include "files/error.h"
 
-// Assimp 5.2 loses some memory of files that it begins to read and then refuses.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-  return "leak:libassimp";
-}
-
 // Whatever the bytes, the reader of scenes returns triangles of finite vertices or throws
 // FileError.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -13,11 +13,6 @@
 #include "tests/scenes/sample_files.h"
 #include "tests/support/temporary_folder.h"
 
-// Assimp 5.2 loses some memory of files that it begins to read and then refuses.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-  return "leak:libassimp";
-}
-
 namespace delray::scenes {
 namespace {
 
