@@ -36,6 +36,13 @@ std::string frame_path(const std::string& output, std::size_t frame) {
   return (path.parent_path() / name).string();
 }
 
+std::optional<std::size_t> frame_number(const std::string& path) {
+  const std::string stem = std::filesystem::path(path).stem().string();
+  const std::size_t digits = stem.size() - (stem.find_last_not_of("0123456789") + 1);
+  if (digits == 0 || digits > 9) return {};
+  return std::stoul(stem.substr(stem.size() - digits));
+}
+
 std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
                                               const scenes::Scene& scene,
                                               const scenes::Camera& camera) {

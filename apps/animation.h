@@ -1,6 +1,7 @@
 // `delray render` of many frames from changing cameras.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace delray::apps {
 
 // Where frame `frame` of an animation goes: "a.png" gives "a-0007.png".
 std::string frame_path(const std::string& output, std::size_t frame);
+// The only frame that may go to `path`, by the number at the end of its stem.
+std::optional<std::size_t> frame_number(const std::string& path);
 
 // The cameras that --turntable and --camera-path ask for; none for a single picture. Throws
 // UsageError, files::FileError.

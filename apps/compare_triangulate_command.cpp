@@ -49,7 +49,7 @@ int run(Session& session, TriangulateRequest request) {
   if (request.input.path.empty()) throw UsageError("compare triangulate: POINTS is missing");
   if (session.under_mpi)
     throw UsageError("compare triangulate: threads are compared, there is nothing for mpirun");
-  check(session, request);
+  check(session, request, request.input.path);
   std::sort(request.threads.begin(), request.threads.end());
   request.threads.erase(std::unique(request.threads.begin(), request.threads.end()),
                         request.threads.end());

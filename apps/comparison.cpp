@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apps/outputs.h"
 #include "files/atomic_file.h"
 
 namespace delray::apps {
@@ -26,12 +27,11 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
   command.add_flag("--list", options.list, "list " + listed);
 }
 
-void check(const Session& session, const ComparisonOptions& options) {
+void check(const Session& session, const ComparisonOptions& options, const std::string& input) {
   if (!options.output.empty() && !options.output.ends_with(".html"))
     throw UsageError(fmt::format("-o: '{}' does not end in .html", options.output));
   if (!session.first_process) return;
-  files::check_folder(options.output);
-  files::check_folder(options.statistics);
+  check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {input});
 }
 
 void print_aligned(const TextTable& table) {

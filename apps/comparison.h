@@ -23,7 +23,7 @@ struct ComparisonOptions {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
                             const std::string& listed);
 // Throws UsageError, FileError where nothing could be written in the end.
-void check(const Session& session, const ComparisonOptions& options);
+void check(const Session& session, const ComparisonOptions& options, const std::string& input);
 
 // A heading, then lines of as many texts.
 using TextTable = std::vector<std::vector<std::string>>;

@@ -9,6 +9,7 @@
 #include "apps/commands.h"
 #include "apps/launch.h"
 #include "apps/list.h"
+#include "apps/outputs.h"
 #include "apps/statistics.h"
 #include "apps/write_picture.h"
 #include "comm/agree_on_failure.h"
@@ -20,6 +21,7 @@
 #include "composite/scheme.h"
 #include "composite/write_parts.h"
 #include "files/error.h"
+#include "files/output_path.h"
 #include "image/io.h"
 
 namespace delray::apps {
@@ -129,8 +131,13 @@ Outcome compose_parts(comm::Communicator& communicator, const ComposeRequest& re
   const std::size_t begin = share(communicator.rank()), end = share(communicator.rank() + 1);
   Outcome outcome;
   Stopwatch stopwatch;
-  image::ImageF image = comm::all_or_none(communicator, comm::Phase::load,
-                                          [&] { return read_parts(request, how, begin, end); });
+  image::ImageF image = comm::all_or_none(communicator, comm::Phase::load, [&] {
+    if (communicator.rank() == 0) {
+      files::check_writable(request.output);
+      files::check_writable(request.statistics);
+    }
+    return read_parts(request, how, begin, end);
+  });
   agree_on_size(communicator, begin < end ? request.parts[begin] : "", image);
   outcome.read = stopwatch.lap();
 
@@ -170,6 +177,7 @@ void check(const ComposeRequest& request) {
   if (request.in_pieces && !request.output.ends_with(".exr")) {
     throw UsageError("--in-pieces: only .exr files have a place for every pixel beforehand");
   }
+  refuse_overwriting({{"-o", request.output}, {"--stats", request.statistics}}, request.parts);
 }
 
 int run(const Session& session, const ComposeRequest& request) {

@@ -5,6 +5,7 @@
 
 #include "apps/commands.h"
 #include "apps/list.h"
+#include "apps/outputs.h"
 #include "delaunay/generate.h"
 #include "delaunay/write_points.h"
 #include "scenes/generate.h"
@@ -24,6 +25,7 @@ struct GenerateOptions {
 void require(const GenerateOptions& options) {
   if (options.kind.empty()) throw UsageError("generate: KIND is missing (--list names them)");
   if (options.output.empty()) throw UsageError("generate: -o FILE is missing");
+  check_outputs({{"-o", options.output}}, {});
 }
 
 int generate_points(const GenerateOptions& options) {

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "apps/commands.h"
+#include "apps/outputs.h"
 #include "apps/scene_input.h"
 #include "apps/statistics.h"
 #include "delaunay/read_mesh.h"
@@ -131,6 +132,7 @@ void add_info(CLI::App& program, Session& session) {
   command->callback([&session, options] {
     session.run = [options] {
       if (options->path.empty()) throw UsageError("info: FILE is missing");
+      check_outputs({{"--stats", options->statistics}}, {options->path});
       const Json description = describe(options->path);
       if (options->statistics != "-") print(description);
       Json statistics = {{"schema", "delray.info/1"}, {"file", options->path}};

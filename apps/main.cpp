@@ -1,10 +1,15 @@
 // The program `delray`.
+#include <fcntl.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 
 #include "apps/commands.h"
@@ -27,6 +32,26 @@ std::string joined(int argc, char** argv) {
   std::string line;
   for (int i = 0; i < argc; ++i) line += (i ? " " : "") + std::string(argv[i]);
   return line;
+}
+
+// Where one of the standard streams is closed, the next file that is opened would take its number,
+// and get what was meant for the stream. These fail for who uses them, as closed ones do.
+void occupy_closed_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (::fcntl(stream, F_GETFD) < 0) {
+      ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+  }
+}
+
+// What is left in the buffer is lost where nobody looks whether it could be written.
+int flushed(int code) {
+  errno = 0;
+  const bool whole = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (whole || code == kFailed) return code;  // told of already
+  std::fprintf(stderr, "error: standard output: cannot write: %s\n",
+               std::strerror(errno != 0 ? errno : EIO));
+  return code == kDone ? int{kFailed} : code;
 }
 
 int run(int argc, char** argv) {
@@ -60,8 +85,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_closed_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // writing then fails with EFBIG, which is told of
   try {
-    return run(argc, argv);
+    return flushed(run(argc, argv));
   } catch (const std::exception& error) {  // before a subcommand began
     std::fprintf(stderr, "error: %s\n", error.what());
     return kFailed;

@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/list.h"
+#include "apps/outputs.h"
 #include "apps/progress_bar.h"
 #include "apps/render_frames.h"
 #include "apps/render_options.h"
@@ -19,7 +20,7 @@
 #include "comm/agree_on_failure.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
-#include "files/atomic_file.h"
+#include "files/output_path.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
@@ -71,17 +72,41 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
                stages, animation.slots, animation.speed_up(), animation.predicted_speed_up());
 }
 
+// Whose names are known before anything is read.
+std::vector<std::string> inputs_of(const RenderRequest& request) {
+  return {request.scene.file.path, request.camera_path};
+}
+
 // Nobody wants to know of these after an hour.
 void check_folders(const RenderRequest& request) {
   for (const std::string& path :
        {request.output, request.statistics, request.practice.checkpoint}) {
-    files::check_folder(path);
+    files::check_writable(path);
   }
+}
+
+void refuse_overwriting(const RenderRequest& request) {
+  std::vector<OutputFile> outputs = {{"--stats", request.statistics},
+                                     {"--checkpoint", request.practice.checkpoint}};
+  const std::vector<std::string> inputs = inputs_of(request);
+  if (request.turntable == 0 && request.camera_path.empty()) {
+    outputs.push_back({"-o", request.output});
+  } else {
+    std::vector<std::string> others = inputs;
+    others.push_back(request.statistics);
+    for (const std::string& other : others) {
+      if (const auto frame = frame_number(other)) {
+        outputs.push_back({"-o", frame_path(request.output, *frame)});
+      }
+    }
+  }
+  refuse_overwriting(outputs, inputs);
 }
 
 int run(Session& session, const CLI::App& command, RenderRequest request) {
   if (request.list) return print_lists();
   check(command, request);
+  refuse_overwriting(request);
   const ProgressBar bar(session, "render");
   std::optional<StopOnTermination> stop;
   if (!request.practice.checkpoint.empty()) stop.emplace();

@@ -9,6 +9,7 @@
 #include "apps/commands.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
+#include "apps/outputs.h"
 #include "apps/point_input.h"
 #include "apps/progress_bar.h"
 #include "apps/statistics.h"
@@ -120,9 +121,6 @@ int run(Session& session, TriangulateOptions options) {
   if (options.output.empty() && options.statistics.empty()) {
     throw UsageError("triangulate: -o MESH is missing");
   }
-  if (options.output == "-" && options.statistics == "-") {
-    throw UsageError("triangulate: mesh and statistics cannot both go to standard output");
-  }
   if (!options.output.empty() && options.output != "-") {
     delaunay::mesh_writer_for(options.output);
   }
@@ -140,6 +138,7 @@ int run(Session& session, TriangulateOptions options) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
+  check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {options.input.path});
 
   Stopwatch watch;
   Seconds seconds;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.h"
+#include "apps/outputs.h"
 #include "apps/point_input.h"
 #include "apps/statistics.h"
 #include "delaunay/read_mesh.h"
@@ -57,6 +58,7 @@ Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh
 int run(const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
   if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
+  check_outputs({{"--stats", options.statistics}}, {options.mesh, options.points.path});
   const delaunay::PointMesh mesh = delaunay::read_mesh(options.mesh);
   if (mesh.triangulation.dim != options.dim && mesh.triangulation.size() > 0) {
     throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,

@@ -204,7 +204,7 @@ void write_image_parts(comm::Communicator& communicator, const Part& part,
     if (communicator.rank() != 0) return;
     whole = std::make_unique<files::AtomicFile>(path);
     name = whole->temporary().string();
-    File file(name, O_WRONLY | O_CREAT | O_TRUNC);
+    File file(name, O_WRONLY | O_NOFOLLOW);
     write_header(layout, start, file);
     file.close();
   });
@@ -212,7 +212,7 @@ void write_image_parts(comm::Communicator& communicator, const Part& part,
       comm::broadcast(communicator, 0, comm::Buffer::of(std::span<const char>(name)));
   name.assign(told.as<char>().begin(), told.as<char>().end());
   comm::all_or_none(communicator, comm::Phase::other, [&] {
-    File file(name, O_WRONLY);
+    File file(name, O_WRONLY | O_NOFOLLOW);
     for (const PixelRange& range : part.ranges) write_range(file, layout, image, range);
     file.close();
   });

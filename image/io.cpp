@@ -65,6 +65,10 @@ std::vector<Rgba8> straight(const Image8& image) {
   return codes;
 }
 
+void write_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  files::write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 }  // namespace
 
 PictureInfo read_info(const std::filesystem::path& path) { return codec().read_info(path); }
@@ -101,17 +105,15 @@ void write_image(const std::filesystem::path& path, const Image8& image,
   const std::string suffix = lower_suffix(path);
   if (suffix == ".exr") return write_image(path, to_float(image), options);
   if (suffix == ".png") {
-    const std::vector<std::byte> bytes =
-        encode_png(image.width, image.height, straight(image), options.attributes);
-    return files::write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return write_bytes(path,
+                       encode_png(image.width, image.height, straight(image), options.attributes));
+  }
+  if (suffix == ".jpg" || suffix == ".jpeg") {
+    return write_bytes(path, codec().encode_jpeg(path.string(), image, options));
   }
   files::AtomicFile target(path);
-  if (suffix == ".jpg" || suffix == ".jpeg") {
-    codec().write_jpeg({target.temporary(), path.string()}, image, options);
-  } else {
-    codec().write_tiff({target.temporary(), path.string()}, image.width, image.height,
-                       straight(image), options);
-  }
+  codec().write_tiff({target.temporary(), path.string()}, image.width, image.height,
+                     straight(image), options);
   target.commit();
 }
 

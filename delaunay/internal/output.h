@@ -4,9 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
-#include <cstdio>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,23 +17,16 @@ namespace delray::delaunay {
 // "-" is standard output. Throws FileError (device) where writing fails.
 class Output {
  public:
-  explicit Output(const std::filesystem::path& path);
-  ~Output();
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
+  explicit Output(const std::filesystem::path& path) : target_(path) {}
 
-  void write(std::string_view bytes);
+  void write(std::string_view bytes) { target_.write(bytes); }
   // Ends the content: what was written is complete, but not yet in its place.
-  void close();
+  void close() { target_.complete(); }
   // Puts the file in its place. REQUIRES: closed.
-  void commit();
+  void commit() { target_.commit(); }
 
  private:
-  [[noreturn]] void fail() const;
-
-  std::string name_;
-  std::optional<files::AtomicFile> target_;  // none for standard output
-  std::FILE* file_;
+  files::AtomicFile target_;
 };
 
 void append_number(std::string& text, double value);  // the shortest that reads back equal

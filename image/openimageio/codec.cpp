@@ -11,7 +11,7 @@ extern "C" const delray::image::openimageio::Codec* delray_openimageio_codec() {
       .read_float_channels = openimageio::read_float_channels,
       .write_exr = openimageio::write_exr,
       .write_tiff = openimageio::write_tiff,
-      .write_jpeg = openimageio::write_jpeg,
+      .encode_jpeg = openimageio::encode_jpeg,
   };
   return &kCodec;
 }

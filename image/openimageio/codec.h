@@ -27,7 +27,8 @@ struct Codec {
   // Straight alpha.
   void (*write_tiff)(const Target& target, int width, int height, std::span<const Rgba8> texels,
                      const WriteOptions& options);
-  void (*write_jpeg)(const Target& target, const Image8& image, const WriteOptions& options);
+  std::vector<std::byte> (*encode_jpeg)(const std::string& name, const Image8& image,
+                                        const WriteOptions& options);
 };
 
 // The entries of a Codec, in read.cpp and write.cpp.
@@ -39,6 +40,7 @@ RawChannels read_float_channels(const std::filesystem::path& path);
 void write_exr(const Target& target, const ImageF& image, const WriteOptions& options);
 void write_tiff(const Target& target, int width, int height, std::span<const Rgba8> texels,
                 const WriteOptions& options);
-void write_jpeg(const Target& target, const Image8& image, const WriteOptions& options);
+std::vector<std::byte> encode_jpeg(const std::string& name, const Image8& image,
+                                   const WriteOptions& options);
 
 }  // namespace delray::image::openimageio

@@ -1,3 +1,4 @@
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -31,13 +32,14 @@ void add_attributes(OIIO::ImageSpec& spec, std::span<const Attribute> attributes
   }
 }
 
-// Writes rows of interleaved values, all in one call.
+// Writes rows of interleaved values, all in one call; to memory where one is given.
 void write_values(const Target& target, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                  const void* values) {
+                  const void* values, OIIO::Filesystem::IOProxy* memory = nullptr) {
   const std::string file = target.file.string();
   const auto output = OIIO::ImageOutput::create(file);
   if (!output) fail(target, OIIO::geterror());
   try {
+    if (memory != nullptr && !output->set_ioproxy(memory)) fail(target, output->geterror());
     const bool written = output->open(file, spec) && output->write_image(type, values);
     // Also after a failure, so that the file is closed before it is removed.
     const bool closed = output->close();
@@ -91,7 +93,9 @@ void write_tiff(const Target& target, int width, int height, std::span<const Rgb
   write_values(target, spec, OIIO::TypeDesc::UINT8, texels.data());
 }
 
-void write_jpeg(const Target& target, const Image8& image, const WriteOptions& options) {
+// libjpeg ends the program when it cannot write to a file, so it never writes to one.
+std::vector<std::byte> encode_jpeg(const std::string& name, const Image8& image,
+                                   const WriteOptions& options) {
   OIIO::ImageSpec spec = spec_of_codes(image.width, image.height, 3);
   spec.attribute("CompressionQuality", options.jpeg_quality);
   spec.attribute("jpeg:subsampling", "4:4:4");
@@ -99,7 +103,11 @@ void write_jpeg(const Target& target, const Image8& image, const WriteOptions& o
   std::vector<std::uint8_t> codes;
   codes.reserve(3 * image.pixels());
   for (const Rgba8& c : image.colour.span()) codes.insert(codes.end(), {c.r, c.g, c.b});
-  write_values(target, spec, OIIO::TypeDesc::UINT8, codes.data());
+  std::vector<unsigned char> encoded;
+  OIIO::Filesystem::IOVecOutput memory(encoded);
+  write_values({"picture.jpg", name}, spec, OIIO::TypeDesc::UINT8, codes.data(), &memory);
+  const auto bytes = std::as_bytes(std::span(encoded));
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace delray::image::openimageio

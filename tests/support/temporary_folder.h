@@ -6,10 +6,9 @@
 
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
-
-#include "files/atomic_file.h"
 
 namespace delray::tests {
 
@@ -33,7 +32,7 @@ class TemporaryFolder {
   std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
   // A file in the folder with this content.
   std::filesystem::path write(std::string_view name, std::string_view content) const {
-    files::write_file(path_ / name, content);
+    std::ofstream(path_ / name, std::ios::binary) << content;
     return path_ / name;
   }
   std::size_t entries() const {

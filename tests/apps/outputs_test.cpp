@@ -1,0 +1,155 @@
+// Where outputs may go: not over inputs or each other, into pipes and devices, never half.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string kPicture = "delray render gen:spheres:300 --size 64x48 ";
+
+void expect_refused(const std::string& command, const Folder& folder) {
+  const std::vector<std::string> before = folder.files();
+  const Ran ran = run(command, folder.path());
+  EXPECT_EQ(ran.exit_code, 2) << command << "\n" << ran.err;
+  EXPECT_EQ(folder.files(), before) << command;
+}
+
+TEST(Outputs, DoNotOverwriteTheirInput) {
+  const Folder folder;
+  folder.write("a.obj", kTriangle);
+  ASSERT_EQ(run("delray generate points uniform -n 100 -o p.ply", folder.path()).exit_code, 0);
+  ASSERT_EQ(run("delray generate points uniform -n 100 -o q.node", folder.path()).exit_code, 0);
+  ASSERT_EQ(run(kPicture + "-o a.exr", folder.path()).exit_code, 0);
+  ASSERT_EQ(run(kPicture + "-o a-0001.png", folder.path()).exit_code, 0);
+  fs::create_symlink("p.ply", folder / "link.ply");
+  fs::create_hard_link(folder / "p.ply", folder / "hard.ply");
+  const std::string content = folder.read("p.ply");
+  for (const std::string command :
+       {"delray triangulate p.ply -o p.ply", "delray triangulate p.ply -o ./p.ply",
+        "delray triangulate p.ply -o link.ply", "delray triangulate link.ply -o p.ply",
+        "delray triangulate p.ply -o hard.ply", "delray triangulate p.ply --stats p.ply",
+        "delray triangulate - -o p.ply < p.ply", "delray triangulate q.node -o q.ele",
+        "delray verify p.ply --points p.ply --stats p.ply", "delray info a.obj --stats a.obj",
+        "delray render a.obj -o b.png --stats a.obj",
+        "delray render p.ply -o b.png --engine raytrace --checkpoint p.ply",
+        "delray render a-0001.png -o a-0001.png", "delray render a-0001.png -o a.png --turntable 2",
+        "delray compose a.exr -o a.exr", "delray compose a.exr -o b.exr --stats a.exr",
+        "delray compare compose a.obj --quick --stats a.obj",
+        "delray compare triangulate p.ply --quick --stats p.ply"}) {
+    expect_refused(command, folder);
+  }
+  EXPECT_EQ(folder.read("p.ply"), content);
+  EXPECT_EQ(folder.read("a.obj"), kTriangle);
+}
+
+TEST(Outputs, DoNotOverwriteEachOther) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  fs::create_symlink("b.png", folder / "link.png");
+  for (const std::string& command :
+       {kPicture + "-o a.png --stats a.png", kPicture + "-o b.png --stats link.png",
+        kPicture + "-o a.png --stats a-0001.png --turntable 2",
+        kPicture + "-o a.png --engine raytrace --checkpoint ./a.png",
+        std::string("delray triangulate p.xyz -o m.ply --stats m.ply"),
+        std::string("delray triangulate p.xyz -o m.node --stats m.ele"),
+        std::string("delray triangulate p.xyz -o - --stats -"),
+        std::string("delray triangulate p.xyz -o m.ply --stats - > m.ply")}) {
+    const Ran ran = run(command, folder.path());
+    EXPECT_EQ(ran.exit_code, 2) << command << "\n" << ran.err;
+  }
+  EXPECT_EQ(run(kPicture + "-o a.png --stats /dev/null", folder.path()).exit_code, 0);
+}
+
+TEST(Outputs, AreWrittenIntoPipesDevicesAndWhatLinksLeadTo) {
+  const Folder folder;
+  for (const std::string suffix : {"png", "jpg", "exr", "tif"}) {
+    const std::string pipe = "p." + suffix, got = "got." + suffix;
+    const Ran ran = run("mkfifo " + pipe + "; cat " + pipe + " > " + got + " & " + kPicture +
+                            "-o " + pipe + " --stats /dev/stdout; code=$?; " +
+                            // Should nobody have written into it, cat would wait for ever.
+                            "test -p " + pipe + " && : <> " + pipe + "; wait; exit $code",
+                        folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("delray.render/1"), std::string::npos);
+    EXPECT_TRUE(fs::is_fifo(folder / pipe)) << suffix;
+    EXPECT_EQ(run("delray info " + got, folder.path()).exit_code, 0) << suffix;
+  }
+  fs::create_directory(folder / "results");
+  fs::create_symlink("results/a.png", folder / "a.png");
+  EXPECT_EQ(run(kPicture + "-o a.png", folder.path()).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder / "a.png"));
+  EXPECT_EQ(run("delray info results/a.png", folder.path()).exit_code, 0);
+}
+
+TEST(Outputs, KeepPermissions) {
+  const Folder folder;
+  folder.write("a.png", "old");
+  fs::permissions(folder / "a.png", fs::perms(0640));
+  EXPECT_EQ(run("umask 0; delray generate points uniform -o p.ply; " + kPicture + "-o a.png",
+                folder.path())
+                .exit_code,
+            0);
+  EXPECT_EQ(fs::status(folder / "a.png").permissions(), fs::perms(0640));
+  EXPECT_EQ(fs::status(folder / "p.ply").permissions(), fs::perms(0666));
+}
+
+TEST(Outputs, OnAFullDiskAreNotThereAndSaidToBe) {
+  const Folder folder;
+  const std::string limit = "trap '' XFSZ; ulimit -f 2; ";  // half kibibytes
+  for (const std::string name : {"a.jpg", "a.png", "a.exr", "a.tif"}) {
+    for (const std::string& before : {limit, std::string("ulimit -f 2; ")}) {
+      const Ran ran = run(before + kPicture + "-o " + name, folder.path());
+      EXPECT_EQ(ran.exit_code, 1) << name << "\n" << ran.err;
+      EXPECT_NE(ran.err.find(name), std::string::npos) << ran.err;
+    }
+  }
+  const Ran ran =
+      run("ulimit -f 2; delray generate points uniform -n 10000 -o a.ply", folder.path());
+  EXPECT_EQ(ran.exit_code, 1) << ran.err;
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Outputs, OnAFullStandardOutputFail) {
+  const Folder folder;
+  folder.write("a.obj", kTriangle);
+  folder.write("p.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  for (const std::string command :
+       {"delray --version", "delray --help", "delray render --list", "delray info a.obj",
+        "delray info a.obj --stats -", "delray triangulate p.xyz -o -", "delray manual",
+        "delray triangulate p.xyz --stats -", "delray generate points uniform -o -"}) {
+    for (const std::string where : {" > /dev/full", " >&-"}) {
+      const Ran ran = run(command + where, folder.path());
+      EXPECT_EQ(ran.exit_code, 1) << command << where;
+      EXPECT_NE(ran.err.find("error: "), std::string::npos) << command << where;
+    }
+  }
+}
+
+TEST(Outputs, DoNotGoWhereAClosedStreamWas) {
+  const Folder folder;
+  EXPECT_EQ(run(kPicture + "-q -o a.png && " + kPicture + "-v -o b.png >&- 2>&-", folder.path())
+                .exit_code,
+            0);
+  EXPECT_EQ(folder.read("a.png").size(), folder.read("b.png").size());
+}
+
+TEST(Outputs, AreNotWrittenThroughALinkThatSomebodyElsePlanted) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can make links of somebody else";
+  const Folder folder;
+  folder.write("victim.png", "old");
+  fs::create_directory(folder / "open");
+  fs::permissions(folder / "open", fs::perms(01777));
+  fs::create_symlink("../victim.png", folder / "open/a.png");
+  ASSERT_EQ(::lchown((folder / "open/a.png").c_str(), 65534, 65534), 0);
+  const Ran ran = run(kPicture + "-o open/a.png", folder.path());
+  EXPECT_EQ(ran.exit_code, 1) << ran.err;
+  EXPECT_EQ(folder.read("victim.png"), "old");
+}
+
+}  // namespace
+}  // namespace delray::tests
