@@ -6,6 +6,7 @@
 
 #include "apps/session.h"
 #include "scenes/camera_path.h"
+#include "scenes/framing.h"
 
 namespace delray::apps {
 
@@ -31,7 +32,7 @@ scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& 
   if (options.view.empty() && !scene.cameras.empty()) return scene.cameras.front();
   const std::string view = options.view.empty() ? "default" : options.view;
   try {
-    return scenes::camera_around(scenes::bounds(scene), view.c_str(), scene.z_up, aspect);
+    return scenes::camera_around(scene, view.c_str(), aspect);
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format("--view: {}", error.what()));
   }

@@ -13,7 +13,7 @@ namespace delray::apps {
 
 struct CameraOptions {
   std::string camera;  // "eye,at,up,fov": ten numbers
-  std::string view;    // a name of camera_around
+  std::string view;    // a name that camera_around knows
 };
 
 void add_camera_options(CLI::App& command, CameraOptions& options);

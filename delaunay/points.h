@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace delray::delaunay {
@@ -18,6 +19,8 @@ struct PointCloud {
   std::vector<glm::u8vec4> colours;          // sRGB
   std::vector<float> intensity;              // 0 .. 1
   std::vector<std::uint8_t> classification;  // LAS classes
+  bool geographic = false;                   // x and y are longitude and latitude in degrees
+  std::vector<std::string> warnings;         // what the file has and the points have not
 
   std::size_t size() const { return positions.size(); }
 };

@@ -62,10 +62,4 @@ View make_view(const Camera& camera, int width, int height);
 // thousandth of a pixel ask for.
 geometry::Rect pixels_of(const View& view, const geometry::Box3& box);
 
-// Cameras around the box of a scene, such that all of it is in the frame.
-// name: default, front, back, left, right, top, bottom, iso. `z_up` for terrains and point data.
-// An empty box gives a camera that looks at the origin. Throws std::invalid_argument for other
-// names.
-Camera camera_around(const geometry::Box3& bounds, const char* name, bool z_up, float aspect);
-
 }  // namespace delray::scenes

@@ -88,6 +88,7 @@ struct Scene {
   std::vector<Camera> cameras;  // those of the file; may be empty
   glm::dvec3 origin{0.0};       // added to a position gives the coordinates of the file (UTM ...)
   bool z_up = false;
+  geometry::Box3 framed;  // what cameras around the scene show; empty: all of it
 };
 
 // Triangles and vertices of all instances. O(instances).

@@ -26,6 +26,7 @@
 #include "comm/threads.h"
 #include "parallel/arena.h"
 #include "raster/render.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
 
@@ -70,9 +71,8 @@ scenes::Scene make_scene(const std::string& name, scenes::Camera& camera, float 
   std::vector<std::string> warnings;
   scenes::Scene scene =
       scenes::is_generated(name) ? scenes::generate(name) : scenes::load(name, warnings);
-  camera = !scene.cameras.empty()
-               ? scene.cameras.front()
-               : scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, aspect);
+  camera = !scene.cameras.empty() ? scene.cameras.front()
+                                  : scenes::camera_around(scene, "default", aspect);
   return scene;
 }
 

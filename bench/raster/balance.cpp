@@ -16,6 +16,7 @@
 #include "loadbalance/cost_model.h"
 #include "loadbalance/partition.h"
 #include "raster/render.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
 
@@ -74,10 +75,9 @@ int main(int argc, char** argv) {
     std::vector<std::string> warnings;
     scenes::Scene scene =
         name.starts_with("gen:") ? scenes::generate(name) : scenes::load(name, warnings);
-    const scenes::Camera camera =
-        scene.cameras.empty()
-            ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 16.0F / 9)
-            : scene.cameras[0];
+    const scenes::Camera camera = scene.cameras.empty()
+                                      ? scenes::camera_around(scene, "default", 16.0F / 9)
+                                      : scene.cameras[0];
     scenes::complete(scene, camera);
     const raster::Statistics alone = rendered(scene, camera, "mahd", 1, 1, lighting);
     for (const int ranks : {16, 64}) {

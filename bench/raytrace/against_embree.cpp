@@ -32,6 +32,7 @@
 #include "raytrace/flush_to_zero.h"
 #include "raytrace/integrator.h"
 #include "raytrace/render.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
 
@@ -165,10 +166,9 @@ void compare(const std::string& name, const Arguments& arguments) {
   scenes::Scene scene =
       scenes::is_generated(file) ? scenes::generate(file) : scenes::load(file, warnings);
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  const scenes::Camera camera =
-      !scene.cameras.empty()
-          ? scene.cameras.front()
-          : scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, aspect);
+  const scenes::Camera camera = !scene.cameras.empty()
+                                    ? scene.cameras.front()
+                                    : scenes::camera_around(scene, "default", aspect);
   scenes::complete(scene, camera);
   const raytrace::Tracer tracer = raytrace::make_tracer(scene, options.build);
   std::printf("%s\n", name.c_str());

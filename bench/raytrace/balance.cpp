@@ -13,6 +13,7 @@
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
 #include "raytrace/render.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
 
@@ -77,9 +78,7 @@ int main(int argc, char** argv) {
   scenes::Scene scene =
       name.starts_with("gen:") ? scenes::generate(name) : scenes::load(name, warnings);
   const scenes::Camera camera =
-      scene.cameras.empty()
-          ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 16.0F / 9)
-          : scene.cameras[0];
+      scene.cameras.empty() ? scenes::camera_around(scene, "default", 16.0F / 9) : scene.cameras[0];
   scenes::complete(scene, camera);
   const raytrace::Tracer tracer = raytrace::make_tracer(scene);
   std::vector<Case> cases;

@@ -8,6 +8,7 @@
 #include "image/srgb.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
 
@@ -18,8 +19,8 @@ constexpr int kWidth = 1920, kHeight = 1080;
 
 // Pixels that only one of the engines covers.
 std::uint64_t coverage_difference(scenes::Scene scene) {
-  const scenes::Camera camera = scenes::camera_around(scenes::bounds(scene), "default", scene.z_up,
-                                                      static_cast<float>(kWidth) / kHeight);
+  const scenes::Camera camera =
+      scenes::camera_around(scene, "default", static_cast<float>(kWidth) / kHeight);
   complete(scene, camera);
   std::uint64_t differs = 0;
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {

@@ -9,6 +9,7 @@
 
 #include "parallel/arena.h"
 #include "parallel/parallel_for.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "tests/raytrace/small_scenes.h"
 
@@ -22,9 +23,7 @@ scenes::Scene showcase() {
 }
 
 scenes::Camera view_of(const scenes::Scene& scene) {
-  return scene.cameras.empty()
-             ? scenes::camera_around(scenes::bounds(scene), "default", scene.z_up, 1.5F)
-             : scene.cameras[0];
+  return scene.cameras.empty() ? scenes::camera_around(scene, "default", 1.5F) : scene.cameras[0];
 }
 
 Result render_on(const Tracer& tracer, const scenes::Camera& camera, const RenderOptions& options,

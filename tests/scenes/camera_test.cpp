@@ -3,14 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
-#include <stdexcept>
 
 namespace delray::scenes {
 namespace {
-
-const char* const kNames[] = {"default", "front", "back", "left", "right", "top", "bottom", "iso"};
 
 struct Projected {
   glm::dvec2 pixel;
@@ -154,87 +150,6 @@ TEST(Camera, DegenerateCamerasGiveSomeView) {
     EXPECT_NEAR(glm::dot(view.right, view.forward), 0, 1e-6);
     EXPECT_GT(view.near, 0);
   }
-}
-
-TEST(CameraAround, ShowsAllCornersOfTheBoxAndFillsTheFrame) {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<float> unit(0, 1);
-  for (int trial = 0; trial < 200; ++trial) {
-    const float scale = std::pow(10.0F, 8 * unit(random) - 4);
-    geometry::Box3 box;
-    box.low = (glm::vec3(unit(random), unit(random), unit(random)) - 0.5F) * (20 * scale);
-    box.high = box.low + glm::vec3(unit(random), unit(random), unit(random)) * scale;
-    const int width = trial % 2 == 0 ? 1920 : 300, height = trial % 2 == 0 ? 1080 : 500;
-    for (const char* name : kNames) {
-      const Camera camera = camera_around(box, name, trial % 3 == 0,
-                                          static_cast<float>(width) / static_cast<float>(height));
-      const View view = make_view(camera, width, height);
-      glm::dvec2 low(1e9), high(-1e9);
-      for (int i = 0; i < 8; ++i) {
-        const Projected p = project(view, corner(box, i));
-        ASSERT_GT(p.depth, view.near) << name << ", trial " << trial;
-        low = glm::min(low, p.pixel);
-        high = glm::max(high, p.pixel);
-      }
-      ASSERT_GT(low.x, 0) << name << ", trial " << trial;
-      ASSERT_GT(low.y, 0) << name << ", trial " << trial;
-      ASSERT_LT(high.x, width) << name << ", trial " << trial;
-      ASSERT_LT(high.y, height) << name << ", trial " << trial;
-      const double filled = std::max((high.x - low.x) / width, (high.y - low.y) / height);
-      ASSERT_GT(filled, 0.8) << name << ", trial " << trial;
-    }
-  }
-}
-
-TEST(CameraAround, NamesSayWhereTheEyeStands) {
-  const geometry::Box3 box{{-1, -1, -1}, {1, 1, 1}};
-  const auto eye = [&](const char* name, bool z_up) {
-    return glm::normalize(camera_around(box, name, z_up, 1.5F).eye);
-  };
-  EXPECT_GT(eye("front", false).z, 0.99F);
-  EXPECT_LT(eye("back", false).z, -0.99F);
-  EXPECT_GT(eye("right", false).x, 0.99F);
-  EXPECT_LT(eye("left", false).x, -0.99F);
-  EXPECT_GT(eye("top", false).y, 0.99F);
-  EXPECT_LT(eye("bottom", false).y, -0.99F);
-  EXPECT_LT(eye("front", true).y, -0.99F);
-  EXPECT_GT(eye("top", true).z, 0.99F);
-  EXPECT_GT(eye("default", true).z, 0.1F);
-  // Seen from the top, the far side of the front view is at the upper edge.
-  EXPECT_GT(make_view(camera_around(box, "top", false, 1), 9, 9).up.z, -1.01F);
-  EXPECT_LT(make_view(camera_around(box, "top", false, 1), 9, 9).up.z, -0.99F);
-  EXPECT_GT(make_view(camera_around(box, "top", true, 1), 9, 9).up.y, 0.99F);
-}
-
-TEST(CameraAround, DegenerateBoxesGiveFiniteCameras) {
-  constexpr float kHuge = 1e18F;
-  const geometry::Box3 boxes[] = {{},
-                                  {{2, 3, 4}, {2, 3, 4}},
-                                  {{0, 0, 0}, {5, 0, 0}},
-                                  {{0, 0, 0}, {0, 0, 5}},
-                                  {{1e6F, 1e6F, 0}, {1e6F, 1e6F, 0}},
-                                  {{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}}};
-  for (const geometry::Box3& box : boxes) {
-    for (const char* name : kNames) {
-      for (const bool z_up : {false, true}) {
-        const Camera camera = camera_around(box, name, z_up, 16.0F / 9);
-        const View view = make_view(camera, 160, 90);
-        ASSERT_TRUE(std::isfinite(glm::length(glm::dvec3(camera.eye)))) << name;
-        ASSERT_NE(camera.eye, camera.at) << name;
-        ASSERT_GT(view.near, 0) << name;
-        if (box.empty()) continue;
-        for (int i = 0; i < 8; ++i) {
-          const Projected p = project(view, corner(box, i));
-          ASSERT_GT(p.depth, 0) << name;
-          ASSERT_TRUE(p.pixel.x > 0 && p.pixel.x < 160 && p.pixel.y > 0 && p.pixel.y < 90) << name;
-        }
-      }
-    }
-  }
-}
-
-TEST(CameraAround, RefusesOtherNames) {
-  EXPECT_THROW(camera_around({}, "inside", false, 1), std::invalid_argument);
 }
 
 }  // namespace

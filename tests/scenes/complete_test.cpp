@@ -4,6 +4,7 @@
 #include <numbers>
 #include <set>
 
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/scene.h"
 

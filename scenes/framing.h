@@ -1,0 +1,25 @@
+// Cameras that show a whole scene.
+#pragma once
+
+#include "scenes/camera.h"
+#include "scenes/extent.h"
+
+namespace delray::scenes {
+
+// The camera from a side, as near as it can be with all points in the frame, 5 % of its width away
+// from the left and right edge and 5 % of its height from the upper and lower. The points lie in
+// the middle of the frame: as far from the left edge as from the right, as far from the upper as
+// from the lower.
+//
+// name: default, front, back, left, right, top, bottom, iso. `z_up` for terrains and point data.
+// Points that hardly differ give a camera that looks at them, no points one that looks at the
+// origin. Asks `farthest` at most some ten times. Throws std::invalid_argument for other names.
+Camera camera_around(const FarthestPoints& farthest, const char* name, bool z_up, float aspect);
+
+// Around the corners of a box.
+Camera camera_around(const geometry::Box3& box, const char* name, bool z_up, float aspect);
+
+// Around what is drawn of a scene, or the part of it in Scene::framed.
+Camera camera_around(const Scene& scene, const char* name, float aspect);
+
+}  // namespace delray::scenes
