@@ -58,7 +58,11 @@ std::string mark_of(const RenderRequest& request, const scenes::Camera& camera,
   return raytrace::fingerprint({}, settings + " scene " + request.scene.file.path);
 }
 
+// Empty where samples are too few to tell.
 std::vector<float> variance_of(const raytrace::Film& film, const geometry::Rect& window) {
+  for (const std::uint32_t samples : film.samples()) {
+    if (raytrace::chunks(static_cast<int>(samples)) < 2) return {};
+  }
   const std::vector<float> all = raytrace::variance(film);
   std::vector<float> result;
   for (int y = window.y0; y < window.y1; ++y) {

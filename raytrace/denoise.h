@@ -10,16 +10,18 @@
 namespace delray::raytrace {
 
 struct DenoiseOptions {
-  int levels = 5;         // each looks twice as far as the one before: 2 pixels, 4, 8 ...
-  float strength = 2.0F;  // differences up to so many standard deviations are taken for noise
+  int levels = 4;         // each looks twice as far as the one before: 2 pixels, 4, 8 ...
+  float strength = 2.1F;  // differences up to so many standard deviations are taken for noise
 };
 
 // Replaces colours by means over neighbours that show the same: that have similar normals, depths,
 // albedos, and light that differs by no more than its noise would have it. Textures stay sharp, as
 // the light alone is smoothed; alpha and depth stay as they are, and so do pixels that nothing
-// covers. A picture without noise (variance 0) does not change but for roundings.
+// covers. Channels stay within the range that they had within two pixels, and the picture keeps its
+// energy. A picture without noise (variance 0) does not change but for roundings.
 //
-// `variance` is that of the mean of each pixel's luminance. Parallel; O(levels * 25 * pixels).
+// `variance` is that of the mean of each pixel's luminance; empty: it is not known. Parallel;
+// O(levels * 48 * pixels).
 // REQUIRES: features and variance are of the picture's size; nothing is NaN.
 void denoise(image::ImageF& picture, const Features& features, std::span<const float> variance,
              const DenoiseOptions& options = {});

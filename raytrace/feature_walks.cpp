@@ -27,6 +27,14 @@ class SurfaceWalk final : public LitWalk {
   LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
     const LaneMask seen = look_at(group, lanes, surfaces_);
     copy_lanes(surfaces_.*shown_, seen, shown.colour);
+    if (shown_ == &shading::Surfaces::base_colour) {
+      for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        const glm::vec3 emission = surfaces_.emission.get(i);
+        if (emission == glm::vec3(0.0F)) continue;
+        shown.colour.set(i, glm::min(shown.colour.get(i) + emission, glm::vec3(1.0F)));
+      }
+    }
     return seen;
   }
 

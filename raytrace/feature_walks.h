@@ -8,8 +8,9 @@
 
 namespace delray::raytrace {
 
-// Of what primary rays see, without any light: base colours, and unit normals of the shading, to
-// the viewer's side (x, y, z as red, green, blue); both by alpha where there are layers.
+// Of what primary rays see, without any light: base colours, brighter up to 1 by what glows (as
+// denoisers like to have it), and unit normals of the shading, to the viewer's side (x, y, z as
+// red, green, blue); both by alpha where there are layers.
 std::unique_ptr<Walk> make_albedo(const Setting& setting);
 std::unique_ptr<Walk> make_normal(const Setting& setting);
 

@@ -17,7 +17,7 @@ using geometry::Rect;
 using Clock = std::chrono::steady_clock;
 
 // Samples of features: as many as smooth their edges; more where a lens blurs them.
-constexpr int kFeatureSamples = 4, kLensSamples = 16;
+constexpr int kFeatureSamples = 16, kLensSamples = 16;
 
 // What rank 0 tells the others to do next. No samples: stop.
 struct Pass {
@@ -138,8 +138,7 @@ Features trace_features(comm::Communicator& communicator, Renderer& renderer,
                         const scenes::Camera& camera, const RenderOptions& frame,
                         const Rect& window, Statistics& statistics) {
   RenderOptions options = frame;
-  const int most = camera.aperture > 0.0F ? kLensSamples : kFeatureSamples;
-  options.part.samples = std::min(frame.samples, most);
+  options.part.samples = std::min(frame.samples, kFeatureSamples);
   const auto picture = [&](const char* integrator) {
     options.integrator = integrator;
     Result result = renderer.render(communicator, camera, options);
