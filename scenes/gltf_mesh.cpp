@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "scenes/internal/gltf_draco.h"
 #include "scenes/internal/vertex_values.h"
 
 namespace delray::scenes::internal {
@@ -20,8 +22,10 @@ std::vector<glm::uvec3> triangles_of(std::span<const std::uint32_t> v, std::uint
   } else {
     for (std::size_t i = 0; i + 2 < v.size(); ++i) {
       const std::size_t odd = i % 2;
-      triangles.push_back(mode == kStrip ? glm::uvec3(v[i], v[i + 1 + odd], v[i + 2 - odd])
-                                         : glm::uvec3(v[i + 1], v[i + 2], v[0]));
+      const glm::uvec3 t = mode == kStrip ? glm::uvec3(v[i], v[i + 1 + odd], v[i + 2 - odd])
+                                          : glm::uvec3(v[i + 1], v[i + 2], v[0]);
+      // Repeated vertices join strips to one; they are no triangles that went wrong.
+      if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
     }
   }
   return triangles;
@@ -51,31 +55,55 @@ void drop_unused_vertices(Mesh& mesh) {
   for (glm::uvec3& t : mesh.triangles) t = {number[t.x], number[t.y], number[t.z]};
 }
 
-// Attributes of a primitive: optional, and as many as there are positions.
-struct Attributes {
-  const GltfDocument& document;
-  JsonView json;
-  std::size_t vertices;
+// The data of a primitive, from accessors or compressed. Attributes are optional, and as many as
+// there are positions.
+class Attributes {
+ public:
+  Attributes(const GltfDocument& document, const JsonView& primitive)
+      : document_(document),
+        json_(primitive["attributes"]),
+        draco_(DracoPrimitive::read(document, primitive)) {}
 
-  std::uint32_t find(const char* name) const {
-    return json[name].reference(document.root()["accessors"].size());
+  bool has(const char* name) const { return find(name) != kNone; }
+  int components(const char* name) const {
+    if (is_compressed(name)) return draco_->components(name);
+    return component_count(document_, find(name));
   }
   template <int N>
-  std::vector<glm::vec<N, float>> read(const char* name) const {
+  std::vector<glm::vec<N, float>> read(const char* name) {
     const std::uint32_t accessor = find(name);
     if (accessor == kNone) return {};
-    std::vector<glm::vec<N, float>> values = read_vectors<N>(document, accessor);
-    if (values.size() != vertices) {
-      json[name].fail("has " + std::to_string(values.size()) + " elements for " +
-                      std::to_string(vertices) + " vertices");
+    const JsonView normalized = document_.root()["accessors"][accessor]["normalized"];
+    std::vector<glm::vec<N, float>> values = is_compressed(name)
+                                                 ? draco_->vectors<N>(name, normalized.flag(false))
+                                                 : read_vectors<N>(document_, accessor);
+    if (!vertices_) vertices_ = values.size();  // positions come first
+    if (values.size() != *vertices_) {
+      json_[name].fail("has " + std::to_string(values.size()) + " elements for " +
+                       std::to_string(*vertices_) + " vertices");
     }
     return values;
   }
+  // Those of compressed triangles; nothing if there are none.
+  std::optional<std::vector<std::uint32_t>> compressed_indices() const {
+    if (!draco_) return std::nullopt;
+    return draco_->indices();
+  }
+
+ private:
+  std::uint32_t find(const char* name) const {
+    return json_[name].reference(document_.root()["accessors"].size());
+  }
+  bool is_compressed(const char* name) const { return draco_ && draco_->has(name); }
+
+  const GltfDocument& document_;
+  JsonView json_;
+  std::optional<DracoPrimitive> draco_;
+  std::optional<std::size_t> vertices_;
 };
 
-std::vector<glm::vec3> read_positions(const JsonView& primitive, const GltfDocument& document,
-                                      std::uint32_t accessor) {
-  std::vector<glm::vec3> positions = read_vectors<3>(document, accessor);
+std::vector<glm::vec3> read_positions(const JsonView& primitive, Attributes& attributes) {
+  std::vector<glm::vec3> positions = attributes.read<3>("POSITION");
   const auto limit = glm::vec3(static_cast<float>(kLargestCoordinate));
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (glm::any(glm::greaterThan(glm::abs(positions[i]), limit))) {
@@ -85,10 +113,9 @@ std::vector<glm::vec3> read_positions(const JsonView& primitive, const GltfDocum
   return positions;
 }
 
-void read_colours(const Attributes& attributes, Mesh& mesh) {
-  const std::uint32_t accessor = attributes.find("COLOR_0");
-  if (accessor == kNone) return;
-  if (component_count(attributes.document, accessor) == 3) {
+void read_colours(Attributes& attributes, Mesh& mesh) {
+  if (!attributes.has("COLOR_0")) return;
+  if (attributes.components("COLOR_0") == 3) {
     for (const glm::vec3& c : attributes.read<3>("COLOR_0")) mesh.colours.emplace_back(c, 1.0F);
   } else {
     mesh.colours = attributes.read<4>("COLOR_0");
@@ -96,7 +123,7 @@ void read_colours(const Attributes& attributes, Mesh& mesh) {
   for (glm::vec4& c : mesh.colours) c = glm::max(c, glm::vec4(0));
 }
 
-void read_uvs(const Attributes& attributes, const UvUse& use, Mesh& mesh) {
+void read_uvs(Attributes& attributes, const UvUse& use, Mesh& mesh) {
   mesh.uvs = attributes.read<2>(("TEXCOORD_" + std::to_string(use.set)).c_str());
   if (use.transform == glm::dmat3x2(1.0)) return;
   for (glm::vec2& uv : mesh.uvs) uv = use.transform * glm::dvec3(uv, 1.0);
@@ -105,14 +132,17 @@ void read_uvs(const Attributes& attributes, const UvUse& use, Mesh& mesh) {
 Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std::uint64_t mode,
                     std::span<const GltfMaterial> materials) {
   Mesh mesh;
-  const std::size_t accessors = document.root()["accessors"].size();
-  const std::uint32_t position = primitive["attributes"]["POSITION"].reference(accessors);
-  if (position == kNone) return mesh;
-  mesh.positions = read_positions(primitive, document, position);
+  Attributes attributes(document, primitive);
+  if (!attributes.has("POSITION")) return mesh;
+  mesh.positions = read_positions(primitive, attributes);
 
   std::vector<std::uint32_t> indices(mesh.positions.size());
-  const std::uint32_t index_accessor = primitive["indices"].reference(accessors);
-  if (index_accessor == kNone) {
+  const std::uint32_t index_accessor =
+      primitive["indices"].reference(document.root()["accessors"].size());
+  if (auto compressed = attributes.compressed_indices()) {
+    indices = std::move(*compressed);
+    mode = kTriangles;
+  } else if (index_accessor == kNone) {
     std::iota(indices.begin(), indices.end(), 0U);
   } else {
     indices = read_indices(document, index_accessor);
@@ -128,7 +158,6 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
 
   const std::uint32_t material = primitive["material"].reference(materials.size());
   mesh.material = material;
-  const Attributes attributes{document, primitive["attributes"], mesh.positions.size()};
   mesh.normals = attributes.read<3>("NORMAL");
   normalize_or_clear(mesh.normals);
   if (!mesh.normals.empty()) mesh.tangents = attributes.read<4>("TANGENT");
@@ -148,7 +177,8 @@ std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
   std::vector<Mesh> meshes;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const std::uint64_t mode = primitives[i]["mode"].whole(kTriangles);
-    if (mode != kTriangles && mode != kStrip && mode != kFan) {
+    if (mode > kFan) primitives[i]["mode"].fail("should be 0 to 6");
+    if (mode < kTriangles) {
       document.source.warn(primitives[i].place() + ": points or lines left out");
       continue;
     }

@@ -8,8 +8,9 @@ namespace delray::scenes::internal {
 
 // Meshes, nodes, materials, textures, punctual lights and perspective cameras of the default scene,
 // with the extensions KHR_materials_transmission, _ior, _emissive_strength and _unlit,
-// KHR_lights_punctual, KHR_texture_transform and KHR_mesh_quantization. Animations and skins are
-// left out with a warning. Every number of the file is checked before it is used.
+// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization and KHR_draco_mesh_compression.
+// Animations and skins are left out with a warning. Every number of the file is checked before it
+// is used.
 Scene load_gltf(const Source& source);
 
 }  // namespace delray::scenes::internal

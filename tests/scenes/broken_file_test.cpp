@@ -229,8 +229,8 @@ TEST(BrokenFile, GltfThatIsNotSound) {
   const std::string sound = sample_gltf();
   const std::size_t uri = sound.find("data:");
   refused(sound.substr(uri, sound.find('"', uri) - uri), "none.bin", "none.bin");
-  refused("\"scene\":0", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]",
-          "KHR_draco_mesh_compression");
+  refused("\"scene\":0", "\"extensionsRequired\":[\"EXT_meshopt_compression\"]",
+          "EXT_meshopt_compression");
   refused("\"scene\":0", "\"scene\":5", "scene");
 }
 

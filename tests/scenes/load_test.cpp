@@ -206,6 +206,13 @@ TEST(Load, GltfStripsFansAndUnindexedTriangles) {
   const Scene strip = load_mode("5"), fan = load_mode("6");
   EXPECT_EQ(strip.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
   EXPECT_EQ(fan.meshes[0].triangles, (std::vector<glm::uvec3>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+  EXPECT_THROW(load_mode("7"), files::FileError);
+  std::vector<std::string> warnings;
+  const std::string lines = with(sample_gltf(), "\"primitives\":[", R"("primitives":[
+{"attributes":{"POSITION":0},"mode":0},{"attributes":{"POSITION":0},"mode":2},)");
+  EXPECT_EQ(triangle_count(load(folder.write("b.gltf", lines), warnings)), 6U);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[1].find("primitives[1]: points or lines left out"), std::string::npos);
   const Scene plain = load_mode("4");
   EXPECT_EQ(plain.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}}));
   EXPECT_EQ(plain.meshes[0].positions.size(), 3U);  // no triangle uses the others
