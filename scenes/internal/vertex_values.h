@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "scenes/internal/source.h"
 #include "scenes/internal/text_lines.h"
 #include "scenes/scene.h"
 
