@@ -1,4 +1,5 @@
-// The one exception for bad input and failing devices; only apps/ catches it.
+// The one exception for bad input, failing devices and inputs that are too large; only apps/
+// catches it.
 #pragma once
 
 #include <stdexcept>
@@ -9,6 +10,7 @@ namespace delray::files {
 enum class Cause {
   input,   // the content of a file or stream is not what it should be: exit code 3
   device,  // reading or writing failed: disk full, no such file to write to: exit code 1
+  memory,  // takes more memory than the program may have (MemoryBudget): exit code 1
 };
 
 class FileError : public std::runtime_error {

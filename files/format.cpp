@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -143,7 +144,10 @@ bool obj_has_faces(std::string_view text) {
   return false;
 }
 
-bool obj_has_faces(const std::filesystem::path& path) {
+bool obj_file_has_faces(const std::filesystem::path& path, const MemoryBudget& memory) {
+  if (is_stream(path)) {
+    return obj_has_faces(read_start(path, std::numeric_limits<std::size_t>::max(), memory));
+  }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              &std::fclose);
   if (!file) return false;
@@ -262,14 +266,14 @@ FileKind identify(std::string_view start, std::uint64_t size, const std::filesys
   return kind;
 }
 
-FileKind identify(const std::filesystem::path& path) {
+FileKind identify(const std::filesystem::path& path, const MemoryBudget& memory) {
   constexpr std::size_t kStart = std::size_t{1} << 20;
-  const std::string start = read_start(path, kStart);
+  const std::string start = read_start(path, kStart, memory);
   std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  FileKind kind = identify(start, error ? start.size() : size, path);
+  const std::uintmax_t size = is_stream(path) ? 0 : std::filesystem::file_size(path, error);
+  FileKind kind = identify(start, std::max<std::uintmax_t>(size, start.size()), path);
   if (kind.format == Format::obj && !kind.has_faces && start.size() == kStart) {
-    kind.has_faces = obj_has_faces(path);
+    kind.has_faces = obj_file_has_faces(path, memory);
   }
   return kind;
 }

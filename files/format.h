@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "files/memory_budget.h"
+
 namespace delray::files {
 
 enum class Format {
@@ -39,9 +41,9 @@ struct FileKind {
 // has no other mark). `has_faces` of an OBJ is what `start` shows. O(start).
 FileKind identify(std::string_view start, std::uint64_t size, const std::filesystem::path& path);
 
-// The same for a file on disk: reads its first megabyte, and as much of an OBJ as is needed to find
-// a face. Not for "-". Throws FileError (input) if the file cannot be read.
-FileKind identify(const std::filesystem::path& path);
+// The same for a file or stream: reads its first megabyte, and as much of an OBJ as is needed to
+// find a face. Throws FileError (input) if it cannot be read.
+FileKind identify(const std::filesystem::path& path, const MemoryBudget& memory = {});
 
 // The format that a suffix stands for, by itself; `unknown` for none that is known.
 Format format_of_suffix(const std::filesystem::path& path);

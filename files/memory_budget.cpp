@@ -1,0 +1,112 @@
+// What is resident is read from /proc/self/statm, what there is from /proc/meminfo and the files of
+// control groups, version 1 and 2 (cgroups(7)): the least limit of the group and those above it.
+#include "files/memory_budget.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "files/error.h"
+
+namespace delray::files {
+namespace {
+
+constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+
+// Below this many bytes of a thread nobody looks at what is resident, which takes microseconds.
+constexpr std::uint64_t kWorthLooking = std::uint64_t{1} << 20;
+
+std::uint64_t physical_memory() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || size <= 0) return kNoLimit;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size);
+}
+
+// The number in a file, or none for "max" and files that are not there.
+std::uint64_t limit_in(const std::filesystem::path& file) {
+  std::uint64_t limit = 0;
+  return std::ifstream(file) >> limit ? limit : kNoLimit;
+}
+
+// The least limit of a group and of those that it is in. In a container the group's path may be
+// that of the machine outside, of which only the end, or nothing, is there.
+std::uint64_t least_limit(const std::filesystem::path& root, std::filesystem::path group,
+                          const char* file) {
+  std::uint64_t least = limit_in(root / file);
+  for (group = group.relative_path(); !group.empty(); group = group.parent_path()) {
+    least = std::min(least, limit_in(root / group / file));
+  }
+  return least;
+}
+
+std::uint64_t control_group_memory() {
+  std::uint64_t least = kNoLimit;
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {  // number:controllers:path
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const std::string path = line.substr(second + 1);
+    if (controllers == ",,")
+      least = std::min(least, least_limit("/sys/fs/cgroup", path, "memory.max"));
+    if (controllers.find(",memory,") != std::string::npos) {
+      least = std::min(least, least_limit("/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+MemoryBudget::MemoryBudget() : limit_(machine_memory() / 2) {}
+
+std::uint64_t MemoryBudget::left() const {
+  const std::uint64_t resident = resident_set();
+  return limit_ > resident ? limit_ - resident : 0;
+}
+
+void MemoryBudget::require(std::uint64_t bytes, const std::string& file,
+                           const std::string& place) const {
+  thread_local std::uint64_t small = 0;
+  small += std::min(bytes, kWorthLooking);
+  if (small < kWorthLooking) return;
+  small = 0;
+  const std::uint64_t resident = resident_set();
+  if (resident <= limit_ && bytes <= limit_ - resident) return;
+  throw FileError(Cause::memory, file, place,
+                  "takes " + bytes_text(bytes) + " of memory; the program has " +
+                      bytes_text(resident) + " and may have " + bytes_text(limit_) + " (--memory)");
+}
+
+std::uint64_t machine_memory() {
+  static const std::uint64_t bytes = std::min(physical_memory(), control_group_memory());
+  return bytes;
+}
+
+std::uint64_t resident_set() {
+  std::ifstream file("/proc/self/statm");
+  std::uint64_t all = 0, resident = 0;
+  if (!(file >> all >> resident)) return 0;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  constexpr std::array kUnits = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  if (bytes < 1024) return std::to_string(bytes) + " bytes";
+  auto amount = static_cast<double>(bytes) / 1024;
+  std::size_t unit = 0;
+  for (; amount >= 999.5 && unit + 1 < kUnits.size(); ++unit) amount /= 1024;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f %s",
+                amount < 9.995   ? 2
+                : amount < 99.95 ? 1
+                                 : 0,
+                amount, kUnits[unit]);
+  return text.data();
+}
+
+}  // namespace delray::files
