@@ -6,9 +6,11 @@
 #include <array>
 #include <cassert>
 #include <cctype>
+#include <limits>
 
 #include "files/atomic_file.h"
 #include "files/error.h"
+#include "files/read_file.h"
 #include "image/openimageio/codec.h"
 #include "image/srgb.h"
 
@@ -16,6 +18,7 @@ namespace delray::image {
 namespace {
 
 using openimageio::Codec;
+using openimageio::Encoded;
 
 constexpr std::array kSuffixes = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"};
 
@@ -35,6 +38,33 @@ const Codec& codec() {
   static const Codec* const loaded = load_codec();
   return *loaded;
 }
+
+// A file, which the codec opens by its name, or the bytes of a stream.
+class Content {
+ public:
+  enum class Stream : std::uint8_t { ends, stays };
+
+  Content(const std::filesystem::path& path, const files::MemoryBudget& memory,
+          Stream stream = Stream::ends)
+      : encoded_{path.string(), std::nullopt, memory} {
+    if (!files::is_stream(path)) return;
+    constexpr std::size_t kEverything = std::numeric_limits<std::size_t>::max();
+    bytes_ = stream == Stream::ends ? files::read_file(path, memory)
+                                    : files::read_start(path, kEverything, memory);
+    encoded_.bytes = std::as_bytes(std::span(bytes_));
+  }
+  Content(const Content&) = delete;
+  Content& operator=(const Content&) = delete;
+
+  template <class Read>
+  auto visit(Read&& read) const {
+    return read(encoded_);
+  }
+
+ private:
+  std::string bytes_;
+  Encoded encoded_;
+};
 
 std::string lower_suffix(const std::filesystem::path& path) {
   std::string suffix = path.extension().string();
@@ -71,24 +101,37 @@ void write_bytes(const std::filesystem::path& path, std::span<const std::byte> b
 
 }  // namespace
 
-PictureInfo read_info(const std::filesystem::path& path) { return codec().read_info(path); }
+PictureInfo read_info(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  // Only looks at a stream, which somebody may want to read afterwards.
+  return Content(path, memory, Content::Stream::stays).visit(codec().read_info);
+}
 
-Picture read_picture(const std::filesystem::path& path) { return codec().read_picture(path, true); }
+Picture read_picture(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  return Content(path, memory).visit([](const Encoded& from) {
+    return codec().read_picture(from, true);
+  });
+}
 
-ImageF read_image_float(const std::filesystem::path& path) {
-  return codec().read_picture(path, false).image;
+ImageF read_image_float(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  return Content(path, memory).visit([](const Encoded& from) {
+    return codec().read_picture(from, false).image;
+  });
 }
 
 Image8 read_image8(const std::filesystem::path& path) { return to_8bit(read_image_float(path)); }
 
-Texels read_texels(const std::filesystem::path& path) { return codec().read_texels(path); }
-
-Texels decode_image8(std::span<const std::byte> bytes, const std::string& name) {
-  return codec().decode_image8(bytes, name);
+Texels read_texels(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  return Content(path, memory).visit(codec().read_texels);
 }
 
-RawChannels read_float_channels(const std::filesystem::path& path) {
-  return codec().read_float_channels(path);
+Texels decode_image8(std::span<const std::byte> bytes, const std::string& name,
+                     const files::MemoryBudget& memory) {
+  return codec().read_texels({name, bytes, memory});
+}
+
+RawChannels read_float_channels(const std::filesystem::path& path,
+                                const files::MemoryBudget& memory) {
+  return Content(path, memory).visit(codec().read_float_channels);
 }
 
 std::span<const char* const> picture_suffixes() { return kSuffixes; }

@@ -1,10 +1,11 @@
 // Pictures in files and in memory, through OpenImageIO.
 //
-// The format of a file follows from its content, then its suffix. Everything that reads throws
-// files::FileError (input) for a file that is missing, damaged, cut short or larger than
-// kMaximumPixels or kMaximumBytes, which its header is checked against before anything is
-// allocated; everything that writes throws FileError (device) and leaves the file whole or as it
-// was. Files are the same bytes for the same call.
+// The format of a file follows from its content, then its suffix; streams are read as well as
+// files. Everything that reads throws files::FileError (input) for a file that is missing, damaged,
+// cut short or larger than kMaximumPixels or kMaximumBytes, and FileError (memory) for one that
+// unpacks to more than `memory`: its header is checked before anything is allocated. Everything
+// that writes throws FileError (device) and leaves the file whole or as it was. Files are the same
+// bytes for the same call.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "files/memory_budget.h"
 #include "image/image.h"
 
 namespace delray::image {
@@ -49,14 +51,14 @@ struct PictureInfo {
   std::vector<std::string> channels;  // names in file order
   std::vector<Attribute> attributes;
 };
-PictureInfo read_info(const std::filesystem::path& path);
+PictureInfo read_info(const std::filesystem::path& path, const files::MemoryBudget& memory = {});
 
 // Colour from channels R, G, B, or one channel as grey; premultiplied and decoded as image.h says:
 // integer files are sRGB, float files linear. Without alpha a picture is opaque. Depth from Z;
 // without it 0 where alpha is positive, kEmptyDepth elsewhere. An EXR data window is placed in its
 // display window.
-Picture read_picture(const std::filesystem::path& path);
-ImageF read_image_float(const std::filesystem::path& path);
+Picture read_picture(const std::filesystem::path& path, const files::MemoryBudget& memory = {});
+ImageF read_image_float(const std::filesystem::path& path, const files::MemoryBudget& memory = {});
 // As to_8bit(read_image_float(path)); a PNG that write_image wrote comes back with the same bytes
 // where alpha is 0 or 255.
 Image8 read_image8(const std::filesystem::path& path);
@@ -67,9 +69,10 @@ struct Texels {
   int width = 0, height = 0;
   std::vector<Rgba8> texels;
 };
-Texels read_texels(const std::filesystem::path& path);
+Texels read_texels(const std::filesystem::path& path, const files::MemoryBudget& memory = {});
 // From the bytes of a file (PNG, JPEG, EXR ...).
-Texels decode_image8(std::span<const std::byte> bytes, const std::string& name);
+Texels decode_image8(std::span<const std::byte> bytes, const std::string& name,
+                     const files::MemoryBudget& memory = {});
 
 // The numbers of a file as they are: 0 to 255 for 8 bits, 0 to 65535 for 16 bits, floats unchanged;
 // for elevations and other measurements. Value of channel c at (x, y) is
@@ -79,7 +82,8 @@ struct RawChannels {
   std::vector<std::string> channels;
   std::vector<double> values;
 };
-RawChannels read_float_channels(const std::filesystem::path& path);
+RawChannels read_float_channels(const std::filesystem::path& path,
+                                const files::MemoryBudget& memory = {});
 
 struct WriteOptions {
   bool half = false;                  // EXR: 16-bit colour; depth and channels stay 32-bit

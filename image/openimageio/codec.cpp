@@ -7,7 +7,6 @@ extern "C" const delray::image::openimageio::Codec* delray_openimageio_codec() {
       .read_info = openimageio::read_info,
       .read_picture = openimageio::read_picture,
       .read_texels = openimageio::read_texels,
-      .decode_image8 = openimageio::decode_image8,
       .read_float_channels = openimageio::read_float_channels,
       .write_exr = openimageio::write_exr,
       .write_tiff = openimageio::write_tiff,

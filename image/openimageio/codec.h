@@ -3,12 +3,21 @@
 // second to start.
 #pragma once
 
+#include <optional>
+
 #include "image/io.h"
 
 namespace delray::image::openimageio {
 
 inline constexpr const char* kLibrary = "libdelray_openimageio.so";
 inline constexpr const char* kEntry = "delray_openimageio_codec";
+
+// A picture in the file `name`, or in these bytes.
+struct Encoded {
+  std::string name;  // for errors too
+  std::optional<std::span<const std::byte>> bytes;
+  files::MemoryBudget memory;  // for what is made of it
+};
 
 // Where to write, and whom to name in errors.
 struct Target {
@@ -18,11 +27,10 @@ struct Target {
 
 // As the functions of io.h by these names, but that files are written in place.
 struct Codec {
-  PictureInfo (*read_info)(const std::filesystem::path& path);
-  Picture (*read_picture)(const std::filesystem::path& path, bool with_channels);
-  Texels (*read_texels)(const std::filesystem::path& path);
-  Texels (*decode_image8)(std::span<const std::byte> bytes, const std::string& name);
-  RawChannels (*read_float_channels)(const std::filesystem::path& path);
+  PictureInfo (*read_info)(const Encoded& from);
+  Picture (*read_picture)(const Encoded& from, bool with_channels);
+  Texels (*read_texels)(const Encoded& from);
+  RawChannels (*read_float_channels)(const Encoded& from);
   void (*write_exr)(const Target& target, const ImageF& image, const WriteOptions& options);
   // Straight alpha.
   void (*write_tiff)(const Target& target, int width, int height, std::span<const Rgba8> texels,
@@ -32,11 +40,10 @@ struct Codec {
 };
 
 // The entries of a Codec, in read.cpp and write.cpp.
-PictureInfo read_info(const std::filesystem::path& path);
-Picture read_picture(const std::filesystem::path& path, bool with_channels);
-Texels read_texels(const std::filesystem::path& path);
-Texels decode_image8(std::span<const std::byte> bytes, const std::string& name);
-RawChannels read_float_channels(const std::filesystem::path& path);
+PictureInfo read_info(const Encoded& from);
+Picture read_picture(const Encoded& from, bool with_channels);
+Texels read_texels(const Encoded& from);
+RawChannels read_float_channels(const Encoded& from);
 void write_exr(const Target& target, const ImageF& image, const WriteOptions& options);
 void write_tiff(const Target& target, int width, int height, std::span<const Rgba8> texels,
                 const WriteOptions& options);

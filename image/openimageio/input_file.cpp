@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <filesystem>
 #include <string_view>
 
 #include "files/error.h"
@@ -22,7 +23,7 @@
 namespace delray::image::openimageio {
 namespace {
 
-constexpr std::size_t kMagicBytes = 16;
+constexpr std::size_t kStartBytes = 256;  // the marks of formats, and sizes that are looked for
 constexpr int kRows = 64;  // of a block; a multiple of the rows that EXR compresses together
 
 // OpenImageIO's name of the format that starts with `start`; empty when none is recognised. Its own
@@ -90,18 +91,20 @@ OIIO::ImageSpec reading_hints() {
 
 }  // namespace
 
-InputFile::InputFile(const std::filesystem::path& path) : name_(path.string()) {
-  format_ = format_of_content(files::read_start(path, kMagicBytes));
-  if (format_.empty()) format_ = format_of_suffix(path);
-  open(path.string(), reading_hints());
-}
-
-InputFile::InputFile(std::span<const std::byte> bytes, std::string name) : name_(std::move(name)) {
-  format_ = format_of_content(
-      {reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kMagicBytes)});
-  memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<std::byte*>(bytes.data()),
-                                                            bytes.size());
-  open(format_, reading_hints());
+InputFile::InputFile(const Encoded& from) : name_(from.name), budget_(from.memory) {
+  std::string start;
+  if (from.bytes) {
+    start.assign(reinterpret_cast<const char*>(from.bytes->data()),
+                 std::min(from.bytes->size(), kStartBytes));
+    bytes_ = std::make_unique<OIIO::Filesystem::IOMemReader>(
+        const_cast<std::byte*>(from.bytes->data()), from.bytes->size());
+  } else {
+    start = files::read_start(name_, kStartBytes);
+  }
+  format_ = format_of_content(start);
+  if (format_.empty() && !bytes_) format_ = format_of_suffix(name_);
+  check_canvas(start);
+  open(bytes_ ? format_ : name_, reading_hints());
 }
 
 void InputFile::fail(const std::string& what) const {
@@ -114,8 +117,8 @@ void InputFile::open(const std::string& name, const OIIO::ImageSpec& hints) {
     OIIO::geterror();  // which names the suffix only
     fail("is not a picture in a format that is known");
   }
-  if (memory_ && !(input_->supports("ioproxy") && input_->set_ioproxy(memory_.get()))) {
-    fail("pictures of the format " + format_ + " cannot be embedded in other files");
+  if (bytes_ && !(input_->supports("ioproxy") && input_->set_ioproxy(bytes_.get()))) {
+    fail("pictures of the format " + format_ + " are read from files only");
   }
   bool opened = false;
   try {
@@ -135,16 +138,52 @@ void InputFile::check_header() const {
   if (spec_.deep) fail("deep pictures cannot be read");
   if (spec_.depth > 1) fail("volumes cannot be read");
   if (spec_.width <= 0 || spec_.height <= 0 || spec_.nchannels <= 0) fail("has no pixels");
-  const auto too_large = [](const OIIO::ImageSpec& spec, int width, int height) {
-    const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    return width < 0 || height < 0 || pixels > kMaximumPixels ||
-           pixels > kMaximumBytes / std::max<std::uint64_t>(1, spec.pixel_bytes(true));
-  };
-  if (too_large(spec_, spec_.width, spec_.height) ||
-      too_large(spec_, spec_.full_width, spec_.full_height)) {
-    fail("claims " + std::to_string(spec_.width) + " x " + std::to_string(spec_.height) +
+  if (spec_.full_width < 0 || spec_.full_height < 0) fail("has a negative size");
+  const auto size = [](int side) { return static_cast<std::uint64_t>(side); };
+  const auto bytes = std::max<std::uint64_t>(1, spec_.pixel_bytes(true));
+  check_size(size(spec_.width), size(spec_.height), bytes);
+  check_size(size(spec_.full_width), size(spec_.full_height), bytes);
+}
+
+void InputFile::check_size(std::uint64_t width, std::uint64_t height,
+                           std::uint64_t pixel_bytes) const {
+  const std::uint64_t pixels = width * height;  // both are below 2^32
+  if (pixels > kMaximumPixels || pixels > kMaximumBytes / pixel_bytes) {
+    fail("claims " + std::to_string(width) + " x " + std::to_string(height) +
          " pixels, more than can be read");
   }
+}
+
+// Formats that OpenImageIO unpacks while it opens the file, before anybody can ask for the size.
+void InputFile::check_canvas(std::string_view start) const {
+  const auto byte = [&](std::size_t at) {
+    return at < start.size() ? static_cast<std::uint8_t>(start[at]) : std::uint64_t{0};
+  };
+  const auto require = [&](std::uint64_t width, std::uint64_t height, std::uint64_t pixel_bytes) {
+    check_size(width, height, pixel_bytes);
+    budget_.require(width * height * pixel_bytes, name_);
+  };
+  if (format_ == "gif") {
+    require(byte(7) << 8 | byte(6), byte(9) << 8 | byte(8), 4);
+  } else if (format_ == "jpeg2000") {
+    const std::size_t header = start.find("ihdr");  // height, width, channels
+    if (header == std::string_view::npos) fail("is a damaged picture: it has no size");
+    const auto number = [&](std::size_t at) {
+      return byte(at) << 24 | byte(at + 1) << 16 | byte(at + 2) << 8 | byte(at + 3);
+    };
+    const std::uint64_t channels = byte(header + 12) << 8 | byte(header + 13);
+    require(number(header + 8), number(header + 4),
+            std::max<std::uint64_t>(1, channels) * sizeof(std::int32_t));
+  }
+}
+
+void InputFile::require_memory(std::uint64_t pixels, std::size_t bytes) const {
+  // Readers of many formats, and of interlaced PNG, unpack the whole file.
+  const std::uint64_t unpacked = spec_.image_bytes(true);
+  const std::uint64_t block = static_cast<std::uint64_t>(std::min(rows_per_block(), spec_.height)) *
+                              static_cast<std::uint64_t>(spec_.width) *
+                              static_cast<std::uint64_t>(spec_.nchannels) * sizeof(double);
+  budget_.require(pixels * bytes + unpacked + block, name_);
 }
 
 int InputFile::rows_per_block() const {

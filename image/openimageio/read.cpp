@@ -92,12 +92,15 @@ Picture read_all(InputFile& file, bool with_channels) {
   picture.attributes = attributes_of(spec);
   const int width = spec.full_width > 0 ? spec.full_width : spec.width;
   const int height = spec.full_height > 0 ? spec.full_height : spec.height;
-  picture.image = ImageF(width, height);
-  clear(picture.image);
   std::vector<int> extra;
   for (int c = 0; with_channels && c < spec.nchannels; ++c) {
-    if (layout.is_colour(c)) continue;
-    extra.push_back(c);
+    if (!layout.is_colour(c)) extra.push_back(c);
+  }
+  file.require_memory(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height),
+                      sizeof(RgbaF) + sizeof(float) * (1 + extra.size()));
+  picture.image = ImageF(width, height);
+  clear(picture.image);
+  for (const int c : extra) {
     picture.channels.push_back({spec.channelnames[static_cast<std::size_t>(c)],
                                 std::vector<float>(picture.image.pixels())});
   }
@@ -134,6 +137,7 @@ Texels read_codes(InputFile& file) {
   const bool integer = is_integer(spec);
   const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
   Texels result{spec.width, spec.height, {}};
+  file.require_memory(spec.image_pixels(), sizeof(Rgba8));
   result.texels.reserve(static_cast<std::size_t>(spec.width) *
                         static_cast<std::size_t>(spec.height));
   file.read<float>(OIIO::TypeDesc::FLOAT, [&](int, int rows, const float* values) {
@@ -158,6 +162,8 @@ template <class T>
 std::vector<double> read_numbers(InputFile& file, OIIO::TypeDesc type) {
   const OIIO::ImageSpec& spec = file.spec();
   std::vector<double> numbers;
+  file.require_memory(spec.image_pixels(),
+                      sizeof(double) * static_cast<std::size_t>(spec.nchannels));
   numbers.reserve(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
   file.read<T>(type, [&](int, int rows, const T* values) {
     const std::size_t count = static_cast<std::size_t>(rows) *
@@ -195,30 +201,25 @@ std::vector<double> read_numbers(InputFile& file) {
 
 }  // namespace
 
-PictureInfo read_info(const std::filesystem::path& path) {
-  const InputFile file(path);
+PictureInfo read_info(const Encoded& from) {
+  const InputFile file(from);
   const OIIO::ImageSpec& spec = file.spec();
   return {spec.width,        spec.height,        file.format(), std::string(spec.format.c_str()),
           spec.channelnames, attributes_of(spec)};
 }
 
-Picture read_picture(const std::filesystem::path& path, bool with_channels) {
-  InputFile file(path);
+Picture read_picture(const Encoded& from, bool with_channels) {
+  InputFile file(from);
   return read_all(file, with_channels);
 }
 
-Texels read_texels(const std::filesystem::path& path) {
-  InputFile file(path);
+Texels read_texels(const Encoded& from) {
+  InputFile file(from);
   return read_codes(file);
 }
 
-Texels decode_image8(std::span<const std::byte> bytes, const std::string& name) {
-  InputFile file(bytes, name);
-  return read_codes(file);
-}
-
-RawChannels read_float_channels(const std::filesystem::path& path) {
-  InputFile file(path);
+RawChannels read_float_channels(const Encoded& from) {
+  InputFile file(from);
   const OIIO::ImageSpec& spec = file.spec();
   return {spec.width, spec.height, spec.channelnames, read_numbers(file)};
 }

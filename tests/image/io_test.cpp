@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <cmath>
@@ -386,6 +387,46 @@ TEST_F(Io, HugeSizesInTheHeaderAreRefusedBeforeAllocation) {
   const std::string what = expect_file_error(files::Cause::input, path("a.pgm"),
                                              [&] { read_everything(path("a.pgm")); });
   EXPECT_NE(what.find("1000000 x 1000000"), std::string::npos) << what;
+}
+
+TEST_F(Io, CanvasesAreRefusedBeforeTheFileIsOpened) {
+  const std::uint64_t before = files::resident_set();
+  put("a.gif", std::string("GIF89a\xff\xff\xff\xff\0\0\0,\0\0\0\0\x01\0\x01\0\0", 23));
+  const std::string what = expect_file_error(files::Cause::input, path("a.gif"),
+                                             [&] { read_everything(path("a.gif")); });
+  EXPECT_NE(what.find("65535 x 65535"), std::string::npos) << what;
+  EXPECT_LT(files::resident_set(), before + (std::uint64_t{1} << 26));
+}
+
+TEST_F(Io, PicturesThatUnpackToTooMuchAreRefusedBeforeAllocation) {
+  Image8 image(3000, 3000);
+  clear(image, Rgba8{9, 9, 9, 255});
+  for (const char* suffix : {".png", ".exr", ".tif", ".jpg"}) {
+    const auto file = path(std::string("a") + suffix);
+    write_image(file, image);
+    const std::uint64_t before = files::resident_set();
+    const files::MemoryBudget little(before + (std::uint64_t{1} << 25));
+    const std::string bytes = files::read_file(file);
+    expect_file_error(files::Cause::memory, file, [&] { read_picture(file, little); });
+    expect_file_error(files::Cause::memory, file, [&] { read_texels(file, little); });
+    expect_file_error(files::Cause::memory, file, [&] { read_float_channels(file, little); });
+    expect_file_error(files::Cause::memory, "t",
+                      [&] { decode_image8(std::as_bytes(std::span(bytes)), "t", little); });
+    EXPECT_LT(files::resident_set(), before + (std::uint64_t{1} << 25)) << suffix;
+    EXPECT_EQ(read_texels(file).width, 3000);
+  }
+}
+
+TEST_F(Io, ReadsPicturesFromPipes) {
+  const Image8 image = opaque_or_clear(20, 10);
+  for (const char* suffix : {".png", ".exr", ".tif", ".jpg"}) {
+    const auto file = path(std::string("a") + suffix), pipe = path(std::string("pipe") + suffix);
+    write_image(file, image);
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::jthread writer([&] { std::ofstream(pipe) << files::read_file(file); });
+    EXPECT_EQ(read_info(pipe).width, 20);
+    EXPECT_EQ(read_texels(pipe).texels, read_texels(file).texels);
+  }
 }
 
 TEST_F(Io, ReadsElevationsOfARealFile) {
