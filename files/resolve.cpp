@@ -28,10 +28,10 @@ std::filesystem::path resolve(const std::filesystem::path& folder, const std::st
   if (error) fail(error.message());
   const std::filesystem::path path = std::filesystem::canonical(root / portable, error);
   if (error) fail(error.message());
+  if (!std::filesystem::is_regular_file(path, error)) fail("is not a regular file");
   if (outside == Outside::refused && !lies_in(root, path)) {
     fail("lies outside of the folder of the file that names it; --allow-outside lets it be read");
   }
-  if (!std::filesystem::is_regular_file(path, error)) fail("is not a regular file");
   return path;
 }
 

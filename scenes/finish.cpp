@@ -11,8 +11,12 @@ namespace {
 constexpr float kFar = 1e4F;
 
 std::uint64_t drop_degenerate(Mesh& mesh) {
-  return std::erase_if(mesh.triangles,
-                       [](const glm::uvec3& t) { return t.x == t.y || t.y == t.z || t.z == t.x; });
+  const auto same = [&mesh](std::uint32_t a, std::uint32_t b) {
+    return a == b || mesh.positions[a] == mesh.positions[b];
+  };
+  return std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+    return same(t.x, t.y) || same(t.y, t.z) || same(t.z, t.x);
+  });
 }
 
 void drop_empty_meshes(Scene& scene) {
@@ -35,7 +39,7 @@ void finish(const Source& source, Scene& scene) {
   std::uint64_t degenerate = 0;
   for (Mesh& mesh : scene.meshes) degenerate += drop_degenerate(mesh);
   if (degenerate > 0) {
-    source.warn(std::to_string(degenerate) + " triangles with two equal corners left out");
+    source.warn(std::to_string(degenerate) + " triangles with two corners in one place left out");
   }
   drop_empty_meshes(scene);
   if (scene.instances.empty()) {

@@ -8,8 +8,9 @@
 namespace delray::scenes::internal {
 namespace {
 
-// Accessors without data are zeros; more than this many need no file to fill the memory.
-constexpr std::uint64_t kMostZeros = 1U << 24;
+// Elements of an accessor without data are zeros but for those that a sparse part replaces. There
+// may be this many, or one for each byte of the file: more would fill the memory with nothing.
+constexpr std::uint64_t kFewZeros = 1U << 16;
 
 struct Component {
   std::uint64_t code;
@@ -105,8 +106,8 @@ Accessor accessor_at(const GltfDocument& document, std::size_t number) {
   if (json["bufferView"]) {
     // Before anything is allocated for as many elements.
     elements_at(document, json, accessor.count, accessor.component, accessor.element_size());
-  } else if (accessor.count > kMostZeros) {
-    json.fail("has no data");
+  } else if (accessor.count > std::max<std::uint64_t>(kFewZeros, document.source.content.size())) {
+    json.fail("has no data for its " + std::to_string(accessor.count) + " elements");
   }
   return accessor;
 }
@@ -140,6 +141,11 @@ void for_each_element(const GltfDocument& document, const Accessor& accessor, St
 
 }  // namespace
 
+bool is_all_zero(const GltfDocument& document, std::size_t number) {
+  const JsonView accessor = document.root()["accessors"][number];
+  return !accessor["bufferView"] && !accessor["sparse"];
+}
+
 int component_count(const GltfDocument& document, std::size_t number) {
   return components_of(document.root()["accessors"][number]);
 }
@@ -151,6 +157,8 @@ std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::
     accessor.json["type"].fail("has " + std::to_string(accessor.components) + " components, not " +
                                std::to_string(N));
   }
+  document.source.require_memory(accessor.count * sizeof(glm::vec<N, float>),
+                                 accessor.json.place());
   std::vector<glm::vec<N, float>> values(accessor.count, glm::vec<N, float>(0));
   for_each_element(document, accessor,
                    [&](std::size_t target, std::size_t i, const Elements& elements) {
@@ -175,6 +183,7 @@ std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_
   if (accessor.components != 1 || accessor.component.is_signed) {
     accessor.json.fail("indices must be unsigned scalars");
   }
+  document.source.require_memory(accessor.count * sizeof(std::uint32_t), accessor.json.place());
   std::vector<std::uint32_t> values(accessor.count, 0);
   for_each_element(document, accessor,
                    [&](std::size_t target, std::size_t i, const Elements& elements) {

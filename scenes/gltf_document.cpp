@@ -62,7 +62,18 @@ Chunks split_chunks(const Source& source) {
   return chunks;
 }
 
+// Values of arrays and members of objects take far more memory than the few bytes that they may
+// have in the text.
+std::uint64_t parsed_size(std::string_view text) {
+  constexpr std::uint64_t kValue = 64;
+  const auto values = std::count_if(text.begin(), text.end(), [](char c) {
+    return c == ',' || c == ':' || c == '[' || c == '{';
+  });
+  return text.size() + kValue * static_cast<std::uint64_t>(values);
+}
+
 Json parse_json(const Source& source, std::string_view text) {
+  source.require_memory(parsed_size(text));
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& e) {
@@ -98,8 +109,10 @@ void read_buffers(GltfDocument& document, const Chunks& chunks) {
       if (!decode_data_uri(uri, own)) {
         if (uri.starts_with("data:")) buffer["uri"].fail("is a malformed data URI");
         try {
-          own = files::read_file(document.source.path.parent_path() / decode_percent(uri));
+          own = files::read_file(document.source.resolve(decode_percent(uri)),
+                                 document.source.memory);
         } catch (const files::FileError& e) {
+          if (e.cause() == files::Cause::memory) throw;
           buffer["uri"].fail(e.what());
         }
       }

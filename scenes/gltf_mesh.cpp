@@ -15,8 +15,8 @@ constexpr std::uint64_t kTriangles = 4, kStrip = 5, kFan = 6;
 
 std::vector<glm::uvec3> triangles_of(std::span<const std::uint32_t> v, std::uint64_t mode) {
   std::vector<glm::uvec3> triangles;
+  triangles.reserve(mode == kTriangles ? v.size() / 3 : v.size());
   if (mode == kTriangles) {
-    triangles.reserve(v.size() / 3);
     for (std::size_t i = 0; i + 2 < v.size(); i += 3)
       triangles.emplace_back(v[i], v[i + 1], v[i + 2]);
   } else {
@@ -134,15 +134,26 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
   Mesh mesh;
   Attributes attributes(document, primitive);
   if (!attributes.has("POSITION")) return mesh;
+  auto compressed = attributes.compressed_indices();
+  const std::size_t accessors = document.root()["accessors"].size();
+  const std::uint32_t position = primitive["attributes"]["POSITION"].reference(accessors);
+  const std::uint32_t index_accessor = primitive["indices"].reference(accessors);
+  // Without data all corners are in one place, so nothing of it can be seen.
+  if (!compressed && (is_all_zero(document, position) ||
+                      (index_accessor != kNone && is_all_zero(document, index_accessor)))) {
+    document.source.warn(primitive.place() + ": its corners are all in one place: left out");
+    return mesh;
+  }
   mesh.positions = read_positions(primitive, attributes);
 
-  std::vector<std::uint32_t> indices(mesh.positions.size());
-  const std::uint32_t index_accessor =
-      primitive["indices"].reference(document.root()["accessors"].size());
-  if (auto compressed = attributes.compressed_indices()) {
-    indices = std::move(*compressed);
+  std::vector<std::uint32_t> indices;
+  if (compressed) {
+    indices = *std::move(compressed);
     mode = kTriangles;
   } else if (index_accessor == kNone) {
+    document.source.require_memory(mesh.positions.size() * sizeof(std::uint32_t),
+                                   primitive.place());
+    indices.resize(mesh.positions.size());
     std::iota(indices.begin(), indices.end(), 0U);
   } else {
     indices = read_indices(document, index_accessor);
@@ -154,6 +165,8 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
                                 " vertices");
     }
   }
+  const std::size_t triangles = mode == kTriangles ? indices.size() / 3 : indices.size();
+  document.source.require_memory(triangles * sizeof(glm::uvec3), primitive.place());
   mesh.triangles = triangles_of(indices, mode);
 
   const std::uint32_t material = primitive["material"].reference(materials.size());
@@ -164,6 +177,8 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
   normalize_or_clear(mesh.tangents);
   read_uvs(attributes, material == kNone ? UvUse{} : materials[material].uvs, mesh);
   read_colours(attributes, mesh);
+  document.source.require_memory(mesh.positions.size() * 2 * sizeof(std::uint32_t),
+                                 primitive.place());
   drop_unused_vertices(mesh);
   return mesh;
 }

@@ -18,6 +18,8 @@ using files::Format;
 using internal::Source;
 
 constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
+constexpr const char* kNoScene =
+    "this is not a scene that can be read; formats: OBJ, PLY, STL, glTF, GLB, OFF";
 
 // A backslash at the end of a line continues it; blanks instead leave one long line.
 std::string join_continued_lines(std::string text) {
@@ -43,38 +45,44 @@ Scene read(Format format, const Source& source) {
     case Format::glb:
       return internal::load_gltf(source);
     default:
-      source.fail("",
-                  "this is not a scene that can be read; formats: OBJ, PLY, STL, glTF, GLB, OFF");
+      source.fail("", kNoScene);
   }
 }
 
 }  // namespace
 
 Scene internal::load_content(const std::filesystem::path& path, std::string content,
-                             std::vector<std::string>& warnings, parallel::Progress* progress) {
+                             std::vector<std::string>& warnings, const LoadOptions& options) {
   if (content.empty()) Source{path, content, warnings}.fail("", "the file is empty");
   const std::string_view start = std::string_view(content).substr(0, kStart);
   const Format format = files::identify(start, content.size(), path).format;
   if (format == Format::obj) content = join_continued_lines(std::move(content));
-  const Source source{path, content, warnings};
+  const Source source{path, content, warnings, options.memory, options.outside};
   Scene scene = read(format, source);
-  if (progress) progress->advance();
+  if (options.progress) options.progress->advance();
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y
   // Exporters of glTF order triangles for renderers.
   if (!says_up)
     for (Mesh& mesh : scene.meshes) order_for_locality(mesh);
   scene.z_up = !says_up && guess_z_up(scene, format == Format::stl);
-  if (progress) progress->advance();
+  if (options.progress) options.progress->advance();
   return scene;
 }
 
 Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings,
-           parallel::Progress* progress) {
-  if (progress) progress->start(3);
-  std::string content = files::read_file(path);
-  if (progress) progress->advance();
-  return internal::load_content(path, std::move(content), warnings, progress);
+           const LoadOptions& options) {
+  if (options.progress) options.progress->start(3);
+  // A stream that is nothing that is known need not be read to its end, if it has one.
+  if (files::is_stream(path)) {
+    const bool empty = files::read_start(path, 1, options.memory).empty();
+    if (!empty && files::identify_format(path, options.memory) == Format::unknown) {
+      Source{path, "", warnings}.fail("", kNoScene);
+    }
+  }
+  std::string content = files::read_file(path, options.memory);
+  if (options.progress) options.progress->advance();
+  return internal::load_content(path, std::move(content), warnings, options);
 }
 
 }  // namespace delray::scenes

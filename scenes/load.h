@@ -5,16 +5,26 @@
 #include <string>
 #include <vector>
 
+#include "files/memory_budget.h"
+#include "files/resolve.h"
 #include "parallel/progress.h"
 #include "scenes/scene.h"
 
 namespace delray::scenes {
 
-// Loads OBJ+MTL, PLY, STL, glTF/GLB or OFF. Bad geometry (indices out of range, NaN or infinite
-// vertices, degenerate triangles) never reaches the scene: an index or coordinate that is wrong is
-// bad input (files::FileError); triangles with two equal vertex indices are dropped and told in
-// `warnings`.
+struct LoadOptions {
+  files::MemoryBudget memory;  // for all that the file unpacks to, and those that it names
+  // Whether buffers, textures and materials may lie outside of the scene's folder.
+  files::Outside outside = files::Outside::refused;
+  parallel::Progress* progress = nullptr;
+};
+
+// Loads OBJ+MTL, PLY, STL, glTF/GLB or OFF, from a file or stream. Bad geometry (indices out of
+// range, NaN or infinite vertices, degenerate triangles) never reaches the scene: an index or
+// coordinate that is wrong is bad input (files::FileError); triangles with two corners in one place
+// are dropped and told in `warnings`. A file whose content takes more than `memory` is FileError
+// (memory).
 Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings,
-           parallel::Progress* progress = nullptr);
+           const LoadOptions& options = {});
 
 }  // namespace delray::scenes

@@ -36,6 +36,9 @@ std::string decode_percent(std::string_view uri);
 template <int N>
 std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::size_t number);
 
+// Whether accessors[number] has no data: all of its elements are zero.
+bool is_all_zero(const GltfDocument& document, std::size_t number);
+
 // Elements of an accessor of unsigned integers, and the number of components of any.
 std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_t number);
 int component_count(const GltfDocument& document, std::size_t number);

@@ -1,12 +1,15 @@
 // A scene file in memory while it is read.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "files/error.h"
+#include "files/memory_budget.h"
+#include "files/resolve.h"
 
 namespace delray::scenes::internal {
 
@@ -20,6 +23,19 @@ struct Source {
   std::filesystem::path path;
   std::string_view content;
   std::vector<std::string>& warnings;
+  files::MemoryBudget memory{};
+  files::Outside outside = files::Outside::refused;
+
+  // The same file, with what its check has made of it.
+  Source with(std::string_view cleaned) const { return {path, cleaned, warnings, memory, outside}; }
+  // The file that the content calls `name`, relative to the folder of this one.
+  std::filesystem::path resolve(const std::string& name) const {
+    return files::resolve(path.parent_path(), name, outside);
+  }
+  // To be called before so much is allocated for `place`.
+  void require_memory(std::uint64_t bytes, const std::string& place = "") const {
+    memory.require(bytes, path.string(), place);
+  }
 
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     throw files::FileError(files::Cause::input, path.string(), place, what);
