@@ -1,4 +1,5 @@
 // JSON: an array of arrays of two or three numbers.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -72,6 +73,10 @@ class Handler : public nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 PointCloud read_json_points(const Input& input) {
+  // Nobody knows their number before the end: the list may be twice as long as it need be, beside
+  // half of it from where it was before.
+  const auto ends = std::count(input.content.begin(), input.content.end(), ']');
+  input.require_memory(3 * sizeof(glm::dvec3) * static_cast<std::uint64_t>(ends));
   Handler handler(input);
   nlohmann::json::sax_parse(input.content.begin(), input.content.end(), &handler);
   return std::move(handler.cloud);

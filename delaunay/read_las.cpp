@@ -104,6 +104,7 @@ PointCloud read_las_points(const Input& input) {
   const Header header = parse_header(input);
   PointCloud cloud;
   cloud.has_z = true;
+  input.require_points(header.count);
   cloud.positions.resize(header.count);
   cloud.intensity.resize(header.count);
   cloud.classification.resize(header.count);

@@ -11,11 +11,13 @@ namespace {
 
 using files::Format;
 
+constexpr const char* kNoMesh = "not a mesh; known formats: PLY, OBJ, OFF, VTU, NODE+ELE";
+
 // A file in memory that an Input refers to.
 struct Content {
-  explicit Content(const std::filesystem::path& path)
-      : bytes(files::read_file(path)),
-        input{path == "-" ? "standard input" : path.string(), bytes} {
+  Content(const std::filesystem::path& path, const files::MemoryBudget& memory)
+      : bytes(files::read_file(path, memory)),
+        input{path == "-" ? "standard input" : path.string(), bytes, memory} {
     if (bytes.empty()) fail(input, "", "the file is empty");
   }
   Content(const Content&) = delete;
@@ -25,18 +27,19 @@ struct Content {
   Input input;
 };
 
-PointMesh read_node_and_ele(const std::filesystem::path& path) {
-  const Content nodes(std::filesystem::path(path).replace_extension(".node"));
-  const Content elements(std::filesystem::path(path).replace_extension(".ele"));
+PointMesh read_node_and_ele(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  const Content nodes(std::filesystem::path(path).replace_extension(".node"), memory);
+  const Content elements(std::filesystem::path(path).replace_extension(".ele"), memory);
   return read_node_mesh(nodes.input, elements.input);
 }
 
-PointMesh read_any(const std::filesystem::path& path) {
-  if (files::format_of_suffix(path) == Format::node) return read_node_and_ele(path);
-  const Content file(path);
-  constexpr std::size_t kStart = std::size_t{1} << 16;
-  const std::string_view start = std::string_view(file.bytes).substr(0, kStart);
-  switch (files::identify(start, file.bytes.size(), path).format) {
+PointMesh read_any(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  if (files::format_of_suffix(path) == Format::node) return read_node_and_ele(path, memory);
+  const Format format = files::identify_format(path, memory);
+  // A stream of something else need not be read to its end, if it has one.
+  if (format == Format::unknown && files::is_stream(path)) fail({path.string(), ""}, "", kNoMesh);
+  const Content file(path, memory);
+  switch (format) {
     case Format::ply:
       return read_ply_mesh(file.input);
     case Format::obj:
@@ -48,14 +51,14 @@ PointMesh read_any(const std::filesystem::path& path) {
     case Format::stl:
       fail(file.input, "", "STL has no vertex numbers, so it does not say which point is which");
     default:
-      fail(file.input, "", "not a mesh; known formats: PLY, OBJ, OFF, VTU, NODE+ELE");
+      fail(file.input, "", kNoMesh);
   }
 }
 
 }  // namespace
 
-PointMesh read_mesh(const std::filesystem::path& path) {
-  PointMesh mesh = read_any(path);
+PointMesh read_mesh(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  PointMesh mesh = read_any(path, memory);
   if (mesh.points.size() == 0) {
     throw files::FileError(files::Cause::input, path.string(), "", "no points");
   }

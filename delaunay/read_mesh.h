@@ -5,6 +5,7 @@
 
 #include "delaunay/points.h"
 #include "delaunay/triangulation.h"
+#include "files/memory_budget.h"
 
 namespace delray::delaunay {
 
@@ -19,7 +20,8 @@ struct PointMesh {
 // .node with the .ele beside it (either may be named). A mesh without simplices is legal.
 //
 // Throws FileError (input) if the file cannot be read or is broken, if a face is no triangle or
-// refers to a missing vertex, and for STL, which has no vertex numbers. O(bytes).
-PointMesh read_mesh(const std::filesystem::path& path);
+// refers to a missing vertex, and for STL, which has no vertex numbers; FileError (memory) if it
+// takes more than `memory`. O(bytes).
+PointMesh read_mesh(const std::filesystem::path& path, const files::MemoryBudget& memory = {});
 
 }  // namespace delray::delaunay

@@ -53,6 +53,7 @@ PointCloud read_points_of(const Input& input, const Table& table, std::int64_t b
   }
   PointCloud cloud;
   cloud.has_z = table.columns == 3 || table.attributes > 0;
+  input.require_points(table.rows.count);
   cloud.positions.resize(table.rows.count);
   for_each_row(input, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
     if (fields.integer() != static_cast<std::int64_t>(i) + base) {
@@ -82,6 +83,7 @@ PointMesh read_node_mesh(const Input& input, const Input& elements) {
   const auto corners = static_cast<std::size_t>(table.columns);
   mesh.triangulation.dim = static_cast<int>(corners) - 1;
   std::vector<std::uint32_t>& vertices = mesh.triangulation.vertices;
+  input.require_memory(table.rows.count * corners * sizeof vertices[0]);
   vertices.resize(table.rows.count * corners);
   for_each_row(elements, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
     fields.integer();

@@ -50,6 +50,7 @@ PointCloud read_obj_points(const Input& input) {
   const RowIndex rows = index_rows(input, {}, kAllRows, is_vertex);
   PointCloud cloud;
   cloud.has_z = true;
+  input.require_points(rows.count);
   cloud.positions.resize(rows.count);
   if (has_colours(input, rows)) cloud.colours.resize(rows.count);
   for_each_row(input, rows, is_vertex, [&](std::size_t i, Fields& fields) {
@@ -68,6 +69,7 @@ PointMesh read_obj_mesh(const Input& input) {
   mesh.points = read_obj_points(input);
   const RowIndex rows = index_rows(input, {}, kAllRows, is_face);
   std::vector<std::uint32_t>& vertices = mesh.triangulation.vertices;
+  input.require_memory(rows.count * 3 * sizeof vertices[0]);
   vertices.resize(rows.count * 3);
   for_each_row(input, rows, is_face, [&](std::size_t i, Fields& fields) {
     std::string_view rest;

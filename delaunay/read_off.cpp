@@ -94,6 +94,7 @@ void read_colours(const Input& input, const RowIndex& rows, PointCloud& cloud) {
 PointCloud read_vertices(const Input& input, const RowIndex& rows, bool colours) {
   PointCloud cloud;
   cloud.has_z = true;
+  input.require_points(rows.count);
   cloud.positions.resize(rows.count);
   for_each_row(input, rows, is_data_row, [&](std::size_t i, Fields& fields) {
     for (int k = 0; k < 3; ++k) cloud.positions[i][k] = fields.number();
@@ -117,6 +118,7 @@ PointMesh read_off_mesh(const Input& input) {
   mesh.points = read_vertices(input, rows, header.colours);
   const RowIndex faces = index_exactly(input, rows.end, header.faces, "faces");
   std::vector<std::uint32_t>& vertices = mesh.triangulation.vertices;
+  input.require_memory(faces.count * 3 * sizeof vertices[0]);
   vertices.resize(faces.count * 3);
   for_each_row(input, faces, is_data_row, [&](std::size_t i, Fields& fields) {
     if (fields.integer() != 3) fields.fail("a triangle is expected");

@@ -217,6 +217,7 @@ PointCloud read_vertices(const Input& input, const PlyHeader& header) {
   const Columns columns = find_columns(element);
   if (columns[kX] < 0 || columns[kY] < 0) fail(input, "", "the vertices have no x or no y");
   const TextPlace begin = ply_element_start(input, header, number);
+  input.require_points(element.count);
   Vertices vertices(element, columns);
   if (header.encoding == PlyEncoding::ascii) {
     read_ascii(input, element, columns, begin, vertices);
@@ -247,6 +248,7 @@ void check_triangle(const Input& input, std::size_t face, std::size_t corners) {
 std::vector<std::uint32_t> read_ascii_faces(const Input& input, const PlyElement& element,
                                             std::size_t list, TextPlace begin,
                                             std::size_t vertices) {
+  input.require_memory(element.count * 3 * sizeof(std::uint32_t));
   std::vector<std::uint32_t> result(element.count * 3);
   const RowIndex rows = index_rows(input, begin, element.count, is_data_row);
   for_each_row(input, rows, is_data_row, [&](std::size_t i, Fields& fields) {
@@ -267,6 +269,7 @@ std::vector<std::uint32_t> read_binary_faces(const Input& input, const PlyHeader
                                              const PlyElement& element, std::size_t list,
                                              std::size_t byte, std::size_t vertices) {
   std::vector<std::uint32_t> result;
+  input.require_memory(element.count * 3 * sizeof result[0]);
   result.reserve(element.count * 3);
   std::vector<PlyValues> row(element.properties.size());
   const PlyType type = element.properties[list].type;

@@ -1,5 +1,6 @@
 #include "delaunay/read_points.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -39,24 +40,24 @@ std::string known_formats() {
 
 std::span<const PointReader> point_readers() { return kReaders; }
 
-PointCloud read_points(const std::filesystem::path& name, const ReadOptions& options) {
+PointCloud read_points(const std::filesystem::path& given, const ReadOptions& options) {
   // The points of a mesh in two files are in the other one.
   const std::filesystem::path path =
-      name.extension() == ".ele" ? std::filesystem::path(name).replace_extension(".node") : name;
-  const std::string content = files::read_file(path);
-  const Input input{path == "-" ? "standard input" : path.string(), content};
-  if (content.empty()) fail(input, "", "the file is empty");
-  constexpr std::size_t kStart = std::size_t{1} << 16;
-  const std::string_view start = std::string_view(content).substr(0, kStart);
+      given.extension() == ".ele" ? std::filesystem::path(given).replace_extension(".node") : given;
+  const std::string name = path == "-" ? "standard input" : path.string();
+  if (files::read_start(path, 1, options.memory).empty()) fail({name, ""}, "", "the file is empty");
   Format format = options.format;
-  if (format == Format::unknown) format = files::identify(start, content.size(), path).format;
-  for (const PointReader& reader : kReaders) {
-    if (reader.format != format) continue;
-    PointCloud cloud = reader.read(input);
-    if (cloud.size() == 0) fail(input, "", "no points");
-    return cloud;
+  if (format == Format::unknown) format = files::identify_format(path, options.memory);
+  const auto reader = std::ranges::find(kReaders, format, &PointReader::format);
+  // A stream of something else need not be read to its end, if it has one.
+  if (reader == kReaders.end()) {
+    fail({name, ""}, "", "not a file of points; known formats: " + known_formats());
   }
-  fail(input, "", "not a file of points; known formats: " + known_formats());
+  const std::string content = files::read_file(path, options.memory);
+  const Input input{name, content, options.memory};
+  PointCloud cloud = reader->read(input);
+  if (cloud.size() == 0) fail(input, "", "no points");
+  return cloud;
 }
 
 }  // namespace delray::delaunay

@@ -28,14 +28,16 @@ std::span<const PointReader> point_readers();
 struct ReadOptions {
   // Overrules content and suffix; `unknown` goes by them.
   files::Format format = files::Format::unknown;
+  files::MemoryBudget memory{};  // for the file and its points
 };
 
-// Reads the points of a file, row by row as they stand there; of a mesh its vertices. "-" is
-// standard input, whose format follows from its content. Numbers in text become the nearest double,
-// 32-bit floats are widened, LAS integers become integer * scale + offset, computed in double.
+// Reads the points of a file or stream, row by row as they stand there; of a mesh its vertices. "-"
+// is standard input, whose format follows from its content. Numbers in text become the nearest
+// double, 32-bit floats are widened, LAS integers become integer * scale + offset, computed in
+// double.
 //
 // Throws FileError (input) if the file cannot be read, is of no known point format, is broken, or
-// has no points. O(bytes), text is parsed in parallel.
+// has no points, FileError (memory) if it is too large. O(bytes), text is parsed in parallel.
 PointCloud read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace delray::delaunay

@@ -260,6 +260,7 @@ PointCloud read_text_points(const Input& input) {
   const bool has_intensity = has(kIntensity), has_class = has(kClass);
   PointCloud cloud;
   cloud.has_z = has(kZ);
+  input.require_points(rows.count);
   cloud.positions.resize(rows.count);
   if (has_colour) cloud.colours.resize(rows.count);
   if (has_intensity) cloud.intensity.resize(rows.count);

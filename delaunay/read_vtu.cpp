@@ -81,6 +81,7 @@ std::vector<T> copy_rows(const Input& input, std::string_view bytes, const char*
   if (bytes.size() % sizeof(T) != 0) {
     fail(input, "", std::string("array \"") + name + "\" has an odd length");
   }
+  input.require_memory(bytes.size());
   std::vector<T> rows(bytes.size() / sizeof(T));
   if (!rows.empty()) std::memcpy(rows.data(), bytes.data(), bytes.size());
   return rows;
@@ -145,6 +146,7 @@ PointMesh read_vtu_mesh(const Input& input) {
   if (connectivity.size() != types.size() * corners) {
     fail(input, "", "array \"connectivity\" does not match the cells");
   }
+  input.require_memory(connectivity.size() * sizeof mesh.triangulation.vertices[0]);
   mesh.triangulation.vertices.resize(connectivity.size());
   for (std::size_t i = 0; i < connectivity.size(); ++i) {
     const std::int64_t vertex = connectivity[i];

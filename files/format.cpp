@@ -51,6 +51,8 @@ constexpr std::array kMagic = {
     Named{"#?RGBE", Format::image},
 };
 
+constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
+
 constexpr std::string_view kBlanks = " \t\r\n";
 
 constexpr std::string_view kObjKeywords[] = {"v", "vn", "vt", "vp", "f",      "l",
@@ -206,6 +208,13 @@ Format format_of_content(std::string_view start, std::uint64_t size) {
   return Format::unknown;
 }
 
+// Nobody knows how much of a stream is to come.
+std::uint64_t size_of(const std::filesystem::path& path, std::string_view start) {
+  std::error_code error;
+  const std::uintmax_t size = is_stream(path) ? 0 : std::filesystem::file_size(path, error);
+  return error ? start.size() : std::max<std::uintmax_t>(size, start.size());
+}
+
 bool looks_like_number(std::string_view word) {
   word = word.substr(0, word.find_first_of(",;"));
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -252,6 +261,11 @@ Format format_of_suffix(const std::filesystem::path& path) {
   return Format::unknown;
 }
 
+Format identify_format(const std::filesystem::path& path, const MemoryBudget& memory) {
+  const std::string start = read_start(path, kStart, memory);
+  return identify(start, size_of(path, start), path).format;
+}
+
 FileKind identify(std::string_view start, std::uint64_t size, const std::filesystem::path& path) {
   FileKind kind;
   kind.format = format_of_content(start, size);
@@ -267,11 +281,8 @@ FileKind identify(std::string_view start, std::uint64_t size, const std::filesys
 }
 
 FileKind identify(const std::filesystem::path& path, const MemoryBudget& memory) {
-  constexpr std::size_t kStart = std::size_t{1} << 20;
   const std::string start = read_start(path, kStart, memory);
-  std::error_code error;
-  const std::uintmax_t size = is_stream(path) ? 0 : std::filesystem::file_size(path, error);
-  FileKind kind = identify(start, std::max<std::uintmax_t>(size, start.size()), path);
+  FileKind kind = identify(start, size_of(path, start), path);
   if (kind.format == Format::obj && !kind.has_faces && start.size() == kStart) {
     kind.has_faces = obj_file_has_faces(path, memory);
   }

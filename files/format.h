@@ -45,6 +45,9 @@ FileKind identify(std::string_view start, std::uint64_t size, const std::filesys
 // find a face. Throws FileError (input) if it cannot be read.
 FileKind identify(const std::filesystem::path& path, const MemoryBudget& memory = {});
 
+// The format alone: what identify(path) finds, without looking for faces.
+Format identify_format(const std::filesystem::path& path, const MemoryBudget& memory = {});
+
 // The format that a suffix stands for, by itself; `unknown` for none that is known.
 Format format_of_suffix(const std::filesystem::path& path);
 
