@@ -18,15 +18,15 @@ namespace {
 // Pictures and scans from the air are terrain; other points with a z are points in space.
 bool is_terrain(const PointInput& input) {
   if (input.given()) return true;
-  if (input.path == "-") return false;
-  const files::Format format = files::identify(input.path).format;
+  const files::Format format = files::identify_format(input.path, input.limits.budget());
   return format == files::Format::image || format == files::Format::las;
 }
 
 delaunay::PointCloud load(const PointInput& input, int& dim) {
   if (dim == 0 && is_terrain(input)) dim = 2;
   if (dim > 0) return load_points(input, dim);
-  delaunay::PointCloud points = delaunay::read_points(input.path);
+  delaunay::PointCloud points =
+      delaunay::read_points(input.path, {.memory = input.limits.budget()});
   dim = points.has_z ? 3 : 2;
   return points;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/launch.h"
 #include "apps/list.h"
 #include "apps/outputs.h"
@@ -32,6 +33,7 @@ struct ComposeRequest {
   std::string output, scheme = "radix-k", codec = "active", statistics;
   bool ordered = false, interlace = false, in_pieces = false, list = false;
   Launch launch;
+  InputLimits limits;
 };
 
 [[noreturn]] void bad(const std::string& file, const std::string& what) {
@@ -40,15 +42,16 @@ struct ComposeRequest {
 
 // As layers want it: what nothing covers is empty in colour and depth.
 image::ImageF read_part(const ComposeRequest& request, const std::string& file) {
+  const files::MemoryBudget memory = request.limits.budget();
   if (!request.ordered) {
-    const std::vector<std::string> channels = image::read_info(file).channels;
+    const std::vector<std::string> channels = image::read_info(file, memory).channels;
     if (std::find(channels.begin(), channels.end(), "Z") == channels.end()) {
       bad(file,
           "has no depth (a channel Z); --ordered puts pictures over each other in the order "
           "given");
     }
   }
-  image::ImageF image = image::read_image_float(file);
+  image::ImageF image = image::read_image_float(file, memory);
   for (std::size_t i = 0; i < image.pixels(); ++i) {
     image::RgbaF& colour = image.colour[i];
     float& depth = image.depth[i];
@@ -248,6 +251,7 @@ void add_compose(CLI::App& program, Session& session) {
       "--in-pieces", request->in_pieces,
       "every rank writes its own pixels into the EXR; nothing is gathered, and no hash "
       "told");
+  add_memory_option(*command, request->limits);
   add_launch_options(*command, request->launch);
   command->add_option("--stats", request->statistics, "write statistics as JSON; - for stdout");
   command->add_flag("--list", request->list, "list schemes and codecs");

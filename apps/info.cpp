@@ -1,6 +1,5 @@
 // delray info: what is in a scene, point, mesh or picture file.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <variant>
@@ -15,8 +14,6 @@
 #include "geometry/box.h"
 #include "image/io.h"
 #include "scenes/describe.h"
-#include "scenes/generate.h"
-#include "scenes/load.h"
 
 namespace delray::apps {
 namespace {
@@ -74,8 +71,8 @@ Json describe_scene(const scenes::Scene& scene) {
       {"bytes", d.bytes}};
 }
 
-Json describe_picture(const std::string& path) {
-  const image::PictureInfo info = image::read_info(path);
+Json describe_picture(const std::string& path, const files::MemoryBudget& memory) {
+  const image::PictureInfo info = image::read_info(path, memory);
   Json attributes = Json::object();
   for (const image::Attribute& attribute : info.attributes) {
     std::visit([&](const auto& value) { attributes[attribute.name] = value; }, attribute.value);
@@ -84,26 +81,24 @@ Json describe_picture(const std::string& path) {
           {"type", info.type},   {"channels", info.channels}, {"attributes", attributes}};
 }
 
-Json describe(const std::string& path) {
-  if (scenes::is_generated(path)) {
-    SceneInput input;
-    input.file.path = path;
-    return describe_scene(load_scene(input, nullptr));
-  }
-  switch (input_kind(path)) {
+Json describe(const std::string& path, const InputLimits& limits) {
+  const files::MemoryBudget memory = limits.budget();
+  const InputKind kind = input_kind(path, memory);
+  if (kind != InputKind::scene) refuse_outside(path, limits);
+  switch (kind) {
     case InputKind::picture:
-      return describe_picture(path);
+      return describe_picture(path, memory);
     case InputKind::points:
-      return describe_points(delaunay::read_points(path));
+      return describe_points(delaunay::read_points(path, {.memory = memory}));
     case InputKind::mesh:
-      return describe_mesh(delaunay::read_mesh(path));
+      return describe_mesh(delaunay::read_mesh(path, memory));
     case InputKind::scene:
       break;
   }
-  std::vector<std::string> warnings;
-  const scenes::Scene scene = scenes::load(path, warnings);
-  for (const std::string& warning : warnings) spdlog::warn("{}: {}", path, warning);
-  return describe_scene(scene);
+  SceneInput input;
+  input.file.path = path;
+  input.file.limits = limits;
+  return describe_scene(load_scene(input, nullptr));
 }
 
 // A line for each key; lists of objects as one line for each.
@@ -123,17 +118,20 @@ void print(const Json& description) {
 void add_info(CLI::App& program, Session& session) {
   struct Options {
     std::string path, statistics;
+    InputLimits limits;
   };
   CLI::App* command = program.add_subcommand("info", "say what is in a file");
   const auto options = std::make_shared<Options>();
   command->add_option("FILE", options->path, "a scene, mesh, point or picture file");
   command->add_option("--stats", options->statistics, "write it as JSON; - for stdout");
+  add_memory_option(*command, options->limits);
+  add_outside_option(*command, options->limits);
   add_common_options(*command, session, "info model.glb\ninfo points.las --stats -");
   command->callback([&session, options] {
     session.run = [options] {
       if (options->path.empty()) throw UsageError("info: FILE is missing");
       check_outputs({{"--stats", options->statistics}}, {options->path});
-      const Json description = describe(options->path);
+      const Json description = describe(options->path, options->limits);
       if (options->statistics != "-") print(description);
       Json statistics = {{"schema", "delray.info/1"}, {"file", options->path}};
       statistics.update(description);

@@ -9,9 +9,7 @@
 #include "parallel/arena.h"
 
 namespace delray::apps {
-namespace {
 
-// How many processes of the launcher share this machine.
 int processes_here() {
   for (const char* name :
        {"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "SLURM_NTASKS_PER_NODE"}) {
@@ -19,8 +17,6 @@ int processes_here() {
   }
   return 1;
 }
-
-}  // namespace
 
 void find_launcher(Session& session) {
   session.under_mpi = comm::launched_by_mpi();

@@ -17,6 +17,9 @@ struct Launch {
 // Finds out whether this process is one of several that an MPI launcher started.
 void find_launcher(Session& session);
 
+// How many processes of the launcher share this machine.
+int processes_here();
+
 // Adds --ranks and --threads.
 void add_launch_options(CLI::App& command, Launch& launch);
 

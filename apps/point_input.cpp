@@ -44,10 +44,11 @@ void add_point_options(CLI::App& command, PointInput& input) {
       ->check(positive_number());
   command.add_option("--duplicates", input.duplicates,
                      "height of places that have several: first (default), min, max, mean");
+  add_memory_option(command, input.limits);
 }
 
 delaunay::PointCloud read_elevations(const PointInput& input) {
-  const image::RawChannels picture = image::read_float_channels(input.path);
+  const image::RawChannels picture = image::read_float_channels(input.path, input.limits.budget());
   if (input.terrain_rgb && picture.channels.size() < 3) {
     throw files::FileError(files::Cause::input, input.path, "",
                            "terrain-RGB needs three channels, this picture has " +
@@ -55,6 +56,8 @@ delaunay::PointCloud read_elevations(const PointInput& input) {
   }
   delaunay::PointCloud cloud;
   cloud.has_z = true;
+  input.limits.budget().require(
+      picture.values.size() / picture.channels.size() * sizeof(glm::dvec3), input.path);
   cloud.positions.reserve(picture.values.size() / picture.channels.size());
   const double* values = picture.values.data();
   for (int y = 0; y < picture.height; ++y) {
@@ -77,12 +80,13 @@ delaunay::PointCloud load_points(const PointInput& input, int dim) {
   const std::string_view duplicates = input.duplicates.empty() ? "first" : input.duplicates.c_str();
   const auto& policy =
       find_entry(delaunay::duplicates_policies(), duplicates, "--duplicates").policy;
-  const bool picture =
-      input.path != "-" && files::identify(input.path).format == files::Format::image;
+  const files::MemoryBudget memory = input.limits.budget();
+  const bool picture = files::identify_format(input.path, memory) == files::Format::image;
   if (!picture && (input.terrain_rgb || input.cell_size > 0)) {
     throw UsageError("--terrain-rgb and --cell-size are for elevation pictures");
   }
-  delaunay::PointCloud cloud = picture ? read_elevations(input) : delaunay::read_points(input.path);
+  delaunay::PointCloud cloud =
+      picture ? read_elevations(input) : delaunay::read_points(input.path, {.memory = memory});
   if (dim == 2) {
     const delaunay::DuplicatesCount merged = merge_duplicates(cloud, policy);
     if (merged.places > 0) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "apps/input_limits.h"
 #include "apps/session.h"
 #include "delaunay/points.h"
 
@@ -17,12 +18,13 @@ struct PointInput {
   bool terrain_rgb = false;  // heights are coded in the colours of a picture
   double cell_size = 0;      // of an elevation picture; 0: such that the relief looks like one
   std::string duplicates;    // empty: first
+  InputLimits limits;
 
   // Whether an option was given that only points have a use for.
   bool given() const { return terrain_rgb || cell_size > 0 || !duplicates.empty(); }
 };
 
-// Adds --terrain-rgb, --cell-size and --duplicates.
+// Adds --terrain-rgb, --cell-size, --duplicates and --memory.
 void add_point_options(CLI::App& command, PointInput& input);
 
 // Reads the points and merges places with several heights (`dim` 2), with a warning. Throws

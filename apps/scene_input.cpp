@@ -60,7 +60,10 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
     }
   } else {
     std::vector<std::string> warnings;
-    scene = scenes::load(input.file.path, warnings, progress);
+    const InputLimits& limits = input.file.limits;
+    scene = scenes::load(
+        input.file.path, warnings,
+        {.memory = limits.budget(), .outside = limits.outside(), .progress = progress});
     for (const std::string& warning : warnings) spdlog::warn(warning);
   }
   if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
@@ -69,10 +72,9 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
 
 }  // namespace
 
-InputKind input_kind(const std::string& path) {
-  if (path == "-") return InputKind::points;
+InputKind input_kind(const std::string& path, const files::MemoryBudget& memory) {
   if (scenes::is_generated(path)) return InputKind::scene;
-  const files::FileKind kind = files::identify(path);
+  const files::FileKind kind = files::identify(path, memory);
   switch (kind.format) {
     case Format::vtu:
       return InputKind::mesh;
@@ -107,11 +109,15 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
                   "stretches the heights of points (default 1)")
       ->check(positive_number());
   add_point_options(command, input.file);
+  add_outside_option(command, input.file.limits);
 }
 
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
   if (!input.colour_by.empty()) find_entry(colour_bys(), input.colour_by, "--color-by");
-  const InputKind kind = input_kind(input.file.path);
+  const InputKind kind = input_kind(input.file.path, input.file.limits.budget());
+  if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
+    refuse_outside(input.file.path, input.file.limits);
+  }
   if (kind == InputKind::points || kind == InputKind::picture) {
     return triangulated(input, progress);
   }
@@ -121,7 +127,8 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
                     input.file.path));
   }
   if (kind == InputKind::mesh) {
-    const delaunay::PointMesh mesh = delaunay::read_mesh(input.file.path);
+    const delaunay::PointMesh mesh =
+        delaunay::read_mesh(input.file.path, input.file.limits.budget());
     return from_points(input, mesh.points, mesh.triangulation);
   }
   if (input.exaggeration != 1) {

@@ -20,11 +20,11 @@ struct SceneInput {
 };
 
 // What a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit coordinates,
-// a VTU or an .ele is a mesh of points. "-" is points.
+// a VTU or an .ele is a mesh of points.
 enum class InputKind { scene, mesh, points, picture };
-InputKind input_kind(const std::string& path);
+InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 
-// Adds SCENE, --color-by, --exaggeration and the options of points.
+// Adds SCENE, --color-by, --exaggeration, --allow-outside and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
 // Loads or generates the scene; points are triangulated in the plane, with their z as height.

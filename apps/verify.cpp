@@ -59,7 +59,8 @@ int run(const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
   if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
   check_outputs({{"--stats", options.statistics}}, {options.mesh, options.points.path});
-  const delaunay::PointMesh mesh = delaunay::read_mesh(options.mesh);
+  const delaunay::PointMesh mesh =
+      delaunay::read_mesh(options.mesh, options.points.limits.budget());
   if (mesh.triangulation.dim != options.dim && mesh.triangulation.size() > 0) {
     throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,
                                  options.mesh, mesh.triangulation.dim));

@@ -1,0 +1,119 @@
+// --memory, --allow-outside and streams, through the program.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/input_limits.h"
+#include "image/io.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+
+void write_png(const Folder& folder, const std::string& name, int side) {
+  const std::vector<image::Rgba8> texels(static_cast<std::size_t>(side) * side, {9, 9, 9, 255});
+  const std::vector<std::byte> png = image::encode_png(side, side, texels);
+  folder.write(name, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+TEST(Limits, SizesInUnits) {
+  EXPECT_EQ(apps::parse_bytes("1"), 1U);
+  EXPECT_EQ(apps::parse_bytes("1e6"), 1'000'000U);
+  EXPECT_EQ(apps::parse_bytes("500MB"), 500'000'000U);
+  EXPECT_EQ(apps::parse_bytes("500M"), 500U << 20);
+  EXPECT_EQ(apps::parse_bytes("1.5GiB"), 3U << 29);
+  EXPECT_EQ(apps::parse_bytes("2gib"), std::uint64_t{2} << 30);
+  EXPECT_EQ(apps::parse_bytes("1TB"), 1'000'000'000'000U);
+  for (const char* text : {"", "0", "-1", "12x", "GB", "nan", "inf", "1e40", "1 GB", "2GiBs"}) {
+    EXPECT_EQ(apps::parse_bytes(text), 0U) << text;
+  }
+}
+
+TEST(Limits, MemoryIsPromisedBeforeItIsTaken) {
+  const Folder folder;
+  write_png(folder, "big.png", 5000);
+  folder.write("a.mtl", "newmtl m\nmap_Kd big.png\n");
+  folder.write("a.obj", "mtllib a.mtl\n" + kObj);
+  for (const std::string command :
+       {"delray info a.obj", "delray render a.obj -o b.png --size 16x16",
+        "delray triangulate big.png -o b.ply", "delray render big.png -o b.png --size 16x16"}) {
+    const Ran ran = run(command + " --memory 90MB", folder.path());
+    EXPECT_EQ(ran.exit_code, 1) << command << ran.err;
+    EXPECT_NE(ran.err.find("big.png: takes "), std::string::npos) << command << ran.err;
+    EXPECT_NE(ran.err.find("85.8 MiB (--memory)"), std::string::npos) << command << ran.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.png"));
+  EXPECT_EQ(run("delray info a.obj --memory 1GiB", folder.path()).exit_code, 0);
+  EXPECT_EQ(run("delray info a.obj --memory much", folder.path()).exit_code, 2);
+}
+
+TEST(Limits, OnlyWithAllowOutsideAreFilesElsewhereRead) {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "scene");
+  write_png(folder, "wall.png", 4);
+  folder.write("scene/a.mtl", "newmtl m\nmap_Kd ../wall.png\n");
+  folder.write("scene/a.obj", "mtllib a.mtl\n" + kObj);
+  const auto textures = [&](const std::string& options) {
+    const Ran ran = run("delray info scene/a.obj -q --stats - " + options, folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return nlohmann::json::parse(ran.out)["textures"].size();
+  };
+  EXPECT_EQ(textures(""), 0U);
+  EXPECT_EQ(textures("--allow-outside"), 1U);
+  EXPECT_NE(run("delray info scene/a.obj", folder.path()).err.find("--allow-outside"),
+            std::string::npos);
+  folder.write("p.xyz", "0 0\n1 0\n0 1\n");
+  for (const std::string command : {"delray info p.xyz", "delray render p.xyz -o a.png",
+                                    "delray render gen:spheres -o a.png"}) {
+    EXPECT_EQ(run(command + " --allow-outside", folder.path()).exit_code, 2) << command;
+  }
+}
+
+TEST(Limits, StreamsAreReadWhereFilesAre) {
+  const Folder folder;
+  folder.write("a.obj", kObj);
+  folder.write("p.xyz", "0 0\n1 0\n0 1\n");
+  write_png(folder, "a.png", 8);
+  const auto out = [&](const std::string& command) {
+    const Ran ran = run(command, folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << command << "\n" << ran.err;
+    return ran.out;
+  };
+  for (const std::string file : {"a.obj", "p.xyz", "a.png"}) {
+    const std::string whole = out("delray info " + file);
+    EXPECT_EQ(out("cat " + file + " | delray info -"), whole) << file;
+    EXPECT_EQ(out("cat " + file + " | delray info /dev/stdin"), whole) << file;
+    EXPECT_EQ(out("mkfifo pipe; cat " + file + " >pipe & delray info pipe; rm pipe"), whole)
+        << file;
+  }
+  out("cat a.obj | delray render - -o b.png --size 16x16");
+  EXPECT_TRUE(std::filesystem::exists(folder / "b.png"));
+}
+
+TEST(Limits, StreamsWithoutEndAreBadInput) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0\n1 0\n0 1\n");
+  folder.write("m.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  for (const std::string device : {"/dev/zero", "/dev/urandom"}) {
+    for (const std::string command :
+         {"info " + device, "triangulate " + device + " -o a.ply", "render " + device + " -o a.png",
+          "verify " + device + " --points p.xyz", "verify m.off --points " + device,
+          "compose " + device + " -o a.png",
+          "render gen:spheres -o a.png --memory 200MB --camera-path " + device,
+          "render gen:spheres -o a.png --engine raytrace --resume --checkpoint " + device}) {
+      const Ran ran = run("delray " + command, folder.path());
+      EXPECT_EQ(ran.exit_code, 3) << command << "\n" << ran.err;
+      EXPECT_NE(ran.err.find(device), std::string::npos) << command << "\n" << ran.err;
+    }
+  }
+  const Ran endless =
+      run("yes '0 1' | delray triangulate - --memory 100MB -o a.ply", folder.path());
+  EXPECT_EQ(endless.exit_code, 3) << endless.err;
+  EXPECT_NE(endless.err.find("does not end within the 95.4 MiB"), std::string::npos) << endless.err;
+}
+
+}  // namespace
+}  // namespace delray::tests
