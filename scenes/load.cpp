@@ -18,6 +18,7 @@ using files::Format;
 using internal::Source;
 
 constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
+constexpr std::uint64_t kOrderingBytes = 48;          // that ordering takes for a triangle
 constexpr const char* kNoScene =
     "this is not a scene that can be read; formats: OBJ, PLY, STL, glTF, GLB, OFF";
 
@@ -63,8 +64,12 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y
   // Exporters of glTF order triangles for renderers.
-  if (!says_up)
-    for (Mesh& mesh : scene.meshes) order_for_locality(mesh);
+  if (!says_up) {
+    for (Mesh& mesh : scene.meshes) {
+      source.require_memory(mesh.triangles.size() * kOrderingBytes);
+      order_for_locality(mesh);
+    }
+  }
   scene.z_up = !says_up && guess_z_up(scene, format == Format::stl);
   if (options.progress) options.progress->advance();
   return scene;

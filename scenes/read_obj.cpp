@@ -8,8 +8,10 @@
 #include <charconv>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "files/read_file.h"
+#include "scenes/internal/growth_watch.h"
 #include "scenes/internal/noise.h"
 #include "scenes/internal/polygon.h"
 #include "scenes/internal/read_mtl.h"
@@ -98,6 +100,7 @@ class ObjReader {
   void read_vertices() {
     std::string_view line;
     for (Lines lines(source_.content); lines.next(line);) {
+      watch_.step();
       Words words(line);
       const std::string_view key = words.next();
       if (key == "v") {
@@ -131,18 +134,20 @@ class ObjReader {
     colours_.push_back(linear_colour(colour));
   }
 
+  // Each file once, however often it is named.
   void read_materials(std::string_view name) {
-    if (name.empty()) return;
-    std::string portable(name);
-    std::replace(portable.begin(), portable.end(), '\\', '/');
+    if (name.empty() || !named_.emplace(name).second) return;
     try {
-      const std::string content = files::read_file(source_.path.parent_path() / portable);
+      const std::filesystem::path path = source_.resolve(std::string(name));
+      if (!libraries_.insert(path).second) return;
+      const std::string content = files::read_file(path, source_.memory);
       for (Material& material : read_mtl(content, textures_)) {
         const auto number = static_cast<std::uint32_t>(scene_.materials.size());
         materials_.try_emplace(material.name, number);
         scene_.materials.push_back(std::move(material));
       }
     } catch (const files::FileError& e) {
+      if (e.cause() == files::Cause::memory) throw;
       source_.warn(e.what());
     }
   }
@@ -152,6 +157,7 @@ class ObjReader {
     Counts before{};
     std::string_view line;
     for (Lines lines(source_.content); lines.next(line);) {
+      watch_.step();
       Words words(line);
       const std::string_view key = words.next();
       if (const std::size_t kind = kind_of(key); kind < kKeys.size()) {
@@ -189,6 +195,7 @@ class ObjReader {
     corners_.clear();
     for (std::string_view word = words.next(); !word.empty() && word.front() != '#';
          word = words.next()) {
+      watch_.step();
       corners_.push_back(read_corner(lines, word, before));
     }
   }
@@ -255,9 +262,12 @@ class ObjReader {
   }
 
   const Source& source_;
+  GrowthWatch watch_{source_};
   Scene scene_;
   TextureFiles textures_;
   std::map<std::string, std::uint32_t, std::less<>> materials_;  // numbers by name
+  std::set<std::string, std::less<>> named_;                     // by mtllib
+  std::set<std::filesystem::path> libraries_;                    // that were
   std::vector<glm::vec3> positions_, normals_;
   std::vector<glm::vec4> colours_;  // of positions, if any has one
   std::vector<glm::vec2> uvs_;

@@ -1,4 +1,5 @@
 // OFF (Geomview's object file format), as text: counts, vertices, faces.
+#include "scenes/internal/growth_watch.h"
 #include "scenes/internal/polygon.h"
 #include "scenes/internal/readers.h"
 #include "scenes/internal/vertex_values.h"
@@ -52,7 +53,7 @@ Words read_off_header(OffLines& lines) {
   return next.empty() ? lines.next_line("the counts") : words;
 }
 
-void read_off_face(const OffLines& lines, Words& words, std::int64_t vertices,
+void read_off_face(const OffLines& lines, Words& words, std::int64_t vertices, GrowthWatch& watch,
                    std::vector<std::uint32_t>& corners) {
   corners.clear();
   const std::int64_t count = lines.count(words, "corners");
@@ -63,6 +64,7 @@ void read_off_face(const OffLines& lines, Words& words, std::int64_t vertices,
       lines.fail("there is no vertex " + std::to_string(index) + " (" + std::to_string(vertices) +
                  " vertices, from 0)");
     }
+    watch.step();
     corners.push_back(static_cast<std::uint32_t>(index));
   }
 }
@@ -76,7 +78,9 @@ Scene read_off(const Source& source) {
   const std::int64_t faces = lines.count(counts, "faces");
   if (vertices >= kNone) lines.fail("a mesh is too large");
   Mesh mesh;
+  GrowthWatch watch(source);
   for (std::int64_t i = 0; i < vertices; ++i) {
+    watch.step();
     Words words =
         lines.next_line("vertex " + std::to_string(i) + " of " + std::to_string(vertices));
     mesh.positions.emplace_back(read_coordinates<3>(source, lines.lines(), words));
@@ -85,7 +89,7 @@ Scene read_off(const Source& source) {
   std::int64_t left_out = 0;
   for (std::int64_t i = 0; i < faces; ++i) {
     Words words = lines.next_line("face " + std::to_string(i) + " of " + std::to_string(faces));
-    read_off_face(lines, words, vertices, corners);
+    read_off_face(lines, words, vertices, watch, corners);
     if (corners.size() < 3) ++left_out;
     triangulate_polygon(corners, mesh.positions, mesh.triangles);
   }

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <span>
 
+#include "scenes/internal/growth_watch.h"
 #include "scenes/internal/ply_header.h"
 #include "scenes/internal/polygon.h"
 #include "scenes/internal/readers.h"
@@ -80,6 +81,7 @@ class PlyBody {
         lines_(rest_) {}
 
   void start_item() {
+    watch_.step();
     if (!is_text_) return;
     std::string_view line;
     if (!lines_.next_with_words(line, '\0')) fail("the file ends before its last element");
@@ -107,7 +109,10 @@ class PlyBody {
       fail("a list is longer than the file");
     }
     values.clear();
-    for (double i = 0; i < length; ++i) values.push_back(next(property.value));
+    for (double i = 0; i < length; ++i) {
+      watch_.step();
+      values.push_back(next(property.value));
+    }
   }
   [[noreturn]] void fail(const std::string& what) const {
     if (is_text_) source_.fail("line " + std::to_string(header_.lines + lines_.number()), what);
@@ -116,6 +121,7 @@ class PlyBody {
 
  private:
   const Source& source_;
+  GrowthWatch watch_{source_};
   const PlyHeader& header_;
   bool is_text_, swap_;
   std::string_view rest_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "scenes/internal/growth_watch.h"
 #include "scenes/internal/readers.h"
 #include "scenes/internal/vertex_values.h"
 #include "scenes/internal/weld.h"
@@ -23,10 +24,12 @@ void add_triangle(Mesh& mesh) {
 Mesh read_text_stl(const Source& source) {
   Mesh mesh;
   Lines lines(source.content);
+  GrowthWatch watch(source);
   std::string_view line;
   int vertices = 0;
   bool ended = false;
   while (lines.next(line)) {
+    watch.step();
     Words words(line);
     const std::string_view key = words.next();
     if (key == "vertex") {
@@ -81,6 +84,7 @@ class FacetColours {
 Mesh read_binary_stl(const Source& source, std::uint32_t count) {
   Mesh mesh;
   if (count > kNone / 3) source.fail("byte 80", "a mesh is too large");
+  source.require_memory(count * (3 * (sizeof(glm::vec3) + sizeof(glm::vec4)) + sizeof(glm::uvec3)));
   mesh.positions.reserve(std::size_t{count} * 3);
   mesh.triangles.reserve(count);
   FacetColours colour_of(source.content.substr(0, kStlHeader - 4));

@@ -26,8 +26,6 @@ struct Source {
   files::MemoryBudget memory{};
   files::Outside outside = files::Outside::refused;
 
-  // The same file, with what its check has made of it.
-  Source with(std::string_view cleaned) const { return {path, cleaned, warnings, memory, outside}; }
   // The file that the content calls `name`, relative to the folder of this one.
   std::filesystem::path resolve(const std::string& name) const {
     return files::resolve(path.parent_path(), name, outside);

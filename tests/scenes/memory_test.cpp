@@ -145,8 +145,8 @@ TEST(Memory, EqualTexturesAreReadOnce) {
 TEST(Memory, TextFilesAreCheckedBeforeTheyAreParsed) {
   const tests::TemporaryFolder folder;
   std::string obj;
-  for (int i = 0; i < 200'000; ++i) obj += "v " + std::to_string(i) + " 0 1\n";
-  for (int i = 3; i < 200'000; ++i) obj += "f " + std::to_string(i) + " 1 2\n";
+  for (int i = 0; i < 600'000; ++i) obj += "v " + std::to_string(i) + " 0 1\n";
+  for (int i = 3; i < 600'000; ++i) obj += "f " + std::to_string(i) + " 1 2\n";
   const auto path = folder.write("a.obj", obj);
   std::string json = "[0";
   for (int i = 0; i < 2'000'000; ++i) json += ",0";

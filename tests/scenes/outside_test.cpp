@@ -132,5 +132,14 @@ TEST_F(OutsideFiles, MaterialsAndTexturesOfObjAreLeftOut) {
   }
 }
 
+TEST_F(OutsideFiles, MaterialsAreReadOnceHoweverOftenTheyAreNamed) {
+  folder_.write("scene/a.mtl", "newmtl m\nKd 1 0 0\n");
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += "mtllib a.mtl\nmtllib ./a.mtl\nmtllib none.mtl\n";
+  const Scene scene = load_text("a.obj", text + "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+  EXPECT_EQ(scene.materials.size(), 1U);
+  EXPECT_EQ(warnings_.size(), 1U);
+}
+
 }  // namespace
 }  // namespace delray::scenes
