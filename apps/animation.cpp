@@ -48,7 +48,8 @@ std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
                                               const scenes::Camera& camera) {
   if (request.turntable > 0) return scenes::turntable(camera, request.turntable);
   if (!request.camera_path.empty()) {
-    return scenes::interpolate(scenes::read_camera_path(request.camera_path, scene.origin));
+    return scenes::interpolate(scenes::read_camera_path(request.camera_path, scene.origin,
+                                                        request.scene.file.limits.budget()));
   }
   return {};
 }

@@ -30,8 +30,4 @@ void add_outside_option(CLI::App& command, InputLimits& limits);
 // Throws UsageError if --allow-outside was given with a file that cannot name others.
 void refuse_outside(const std::string& path, const InputLimits& limits);
 
-// The bytes that "1e6", "500MB" or "2GiB" stand for: K, M, G and T are powers of 1000 before B, of
-// 1024 before iB or nothing. 0 for anything else and for what is no whole byte or too much.
-std::uint64_t parse_bytes(const std::string& text);
-
 }  // namespace delray::apps

@@ -94,7 +94,9 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
     comm::all_or_none(communicator, comm::Phase::load, [&] {
       if (!root) return;
       mark = mark_of(request, camera, prepared);
-      if (practice.resume) saved = raytrace::load_checkpoint(practice.checkpoint, mark);
+      if (practice.resume)
+        saved = raytrace::load_checkpoint(practice.checkpoint, mark,
+                                          request.scene.file.limits.budget());
     });
   }
   if (saved) options.resume = &*saved;

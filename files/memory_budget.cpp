@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,28 @@ constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
 // Below this many bytes of a thread nobody looks at what is resident, which takes microseconds.
 constexpr std::uint64_t kWorthLooking = std::uint64_t{1} << 20;
+
+struct Unit {
+  std::string_view name;
+  double bytes;
+};
+constexpr double kKibi = 1024, kKilo = 1000;
+constexpr std::array kUnits = {
+    Unit{"", 1},
+    Unit{"B", 1},
+    Unit{"K", kKibi},
+    Unit{"KB", kKilo},
+    Unit{"KIB", kKibi},
+    Unit{"M", kKibi* kKibi},
+    Unit{"MB", kKilo* kKilo},
+    Unit{"MIB", kKibi* kKibi},
+    Unit{"G", kKibi* kKibi* kKibi},
+    Unit{"GB", kKilo* kKilo* kKilo},
+    Unit{"GIB", kKibi* kKibi* kKibi},
+    Unit{"T", kKibi* kKibi* kKibi* kKibi},
+    Unit{"TB", kKilo* kKilo* kKilo* kKilo},
+    Unit{"TIB", kKibi* kKibi* kKibi* kKibi},
+};
 
 std::uint64_t physical_memory() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
@@ -95,18 +118,32 @@ std::uint64_t resident_set() {
 }
 
 std::string bytes_text(std::uint64_t bytes) {
-  constexpr std::array kUnits = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  constexpr std::array kNames = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
   if (bytes < 1024) return std::to_string(bytes) + " bytes";
   auto amount = static_cast<double>(bytes) / 1024;
   std::size_t unit = 0;
-  for (; amount >= 999.5 && unit + 1 < kUnits.size(); ++unit) amount /= 1024;
+  for (; amount >= 999.5 && unit + 1 < kNames.size(); ++unit) amount /= 1024;
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.*f %s",
                 amount < 9.995   ? 2
                 : amount < 99.95 ? 1
                                  : 0,
-                amount, kUnits[unit]);
+                amount, kNames[unit]);
   return text.data();
+}
+
+std::uint64_t parse_bytes(std::string_view text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || !(number > 0)) return 0;
+  std::string name(rest, end);
+  for (char& c : name) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  for (const Unit& unit : kUnits) {
+    const double bytes = number * unit.bytes;
+    if (unit.name == name) return bytes < 0x1p63 ? static_cast<std::uint64_t>(bytes) : 0;
+  }
+  return 0;
 }
 
 }  // namespace delray::files

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace delray::files {
 
@@ -39,5 +40,9 @@ std::uint64_t resident_set();
 
 // "512 bytes", "1.5 MiB": three digits.
 std::string bytes_text(std::uint64_t bytes);
+
+// The bytes that "1e6", "500MB" or "2GiB" stand for: K, M, G and T are powers of 1000 before B, of
+// 1024 before iB or nothing. 0 for anything else, for less than a byte and for more than 2^63.
+std::uint64_t parse_bytes(std::string_view text);
 
 }  // namespace delray::files

@@ -10,6 +10,7 @@
 
 #include "files/atomic_file.h"
 #include "files/error.h"
+#include "files/format.h"
 #include "files/read_file.h"
 #include "image/openimageio/codec.h"
 #include "image/srgb.h"
@@ -48,6 +49,11 @@ class Content {
           Stream stream = Stream::ends)
       : encoded_{path.string(), std::nullopt, memory} {
     if (!files::is_stream(path)) return;
+    // A stream of something else need not be read to its end, if it has one.
+    if (files::identify_format(path, memory) != files::Format::image) {
+      throw files::FileError(files::Cause::input, path.string(), "",
+                             "is not a picture in a format that is known");
+    }
     constexpr std::size_t kEverything = std::numeric_limits<std::size_t>::max();
     bytes_ = stream == Stream::ends ? files::read_file(path, memory)
                                     : files::read_start(path, kEverything, memory);

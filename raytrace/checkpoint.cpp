@@ -110,11 +110,14 @@ void save_checkpoint(const std::filesystem::path& path, std::string_view fingerp
   files::write_file(path, content);
 }
 
-Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint) {
+Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
+                     const files::MemoryBudget& memory) {
   const auto fail = [&](const char* why) {
     return files::FileError(files::Cause::input, path.string(), "", why);
   };
-  const std::string content = files::read_file(path);
+  // What is no checkpoint may have no end.
+  if (files::read_start(path, kMagic.size(), memory) != kMagic) throw fail("this is no checkpoint");
+  const std::string content = files::read_file(path, memory);
   std::string_view rest = content;
   constexpr std::size_t kLeast = kMagic.size() + kFingerprint + sizeof(geometry::Rect) + kChecksum;
   if (!rest.starts_with(kMagic) || rest.size() < kLeast) throw fail("this is no checkpoint");

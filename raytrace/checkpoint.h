@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "files/memory_budget.h"
 #include "raytrace/film.h"
 #include "scenes/scene.h"
 
@@ -20,6 +21,7 @@ void save_checkpoint(const std::filesystem::path& path, std::string_view fingerp
 
 // Reads a film that was written with the same fingerprint, bit by bit what it was. Throws
 // files::FileError (input) for a file that is missing, damaged, or of another rendering.
-Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint);
+Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
+                     const files::MemoryBudget& memory = {});
 
 }  // namespace delray::raytrace

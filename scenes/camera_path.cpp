@@ -87,9 +87,14 @@ std::vector<Camera> turntable(const Camera& camera, int frames) {
   return result;
 }
 
-std::vector<CameraKey> read_camera_path(const std::filesystem::path& path,
-                                        const glm::dvec3& origin) {
-  return parse_camera_path(files::read_file(path), path.string(), origin);
+std::vector<CameraKey> read_camera_path(const std::filesystem::path& path, const glm::dvec3& origin,
+                                        const files::MemoryBudget& memory) {
+  constexpr std::size_t kStart = 4096;
+  // What is no text may have no end.
+  if (files::read_start(path, kStart, memory).find('\0') != std::string::npos) {
+    throw files::FileError(files::Cause::input, path.string(), "line 1", "is not text");
+  }
+  return parse_camera_path(files::read_file(path, memory), path.string(), origin);
 }
 
 std::vector<CameraKey> parse_camera_path(std::string_view text, const std::string& name,

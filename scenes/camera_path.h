@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "files/memory_budget.h"
 #include "scenes/camera.h"
 
 namespace delray::scenes {
@@ -29,9 +30,9 @@ struct CameraKey {
 // "eye,at,up,fov"; coordinates are those of the file that `origin` was taken from (Scene::origin).
 // Empty lines and what follows a # are passed over. At least one key; frames ascend from 0 on.
 //
-// Throws files::FileError with the line of what is wrong.
-std::vector<CameraKey> read_camera_path(const std::filesystem::path& path,
-                                        const glm::dvec3& origin);
+// Throws files::FileError with the line of what is wrong, or if the file takes more than `memory`.
+std::vector<CameraKey> read_camera_path(const std::filesystem::path& path, const glm::dvec3& origin,
+                                        const files::MemoryBudget& memory = {});
 // The same of a text; `name` is what errors call it.
 std::vector<CameraKey> parse_camera_path(std::string_view text, const std::string& name,
                                          const glm::dvec3& origin);

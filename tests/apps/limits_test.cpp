@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/input_limits.h"
 #include "image/io.h"
 #include "tests/support/run_program.h"
 
@@ -17,19 +16,6 @@ void write_png(const Folder& folder, const std::string& name, int side) {
   const std::vector<image::Rgba8> texels(static_cast<std::size_t>(side) * side, {9, 9, 9, 255});
   const std::vector<std::byte> png = image::encode_png(side, side, texels);
   folder.write(name, {reinterpret_cast<const char*>(png.data()), png.size()});
-}
-
-TEST(Limits, SizesInUnits) {
-  EXPECT_EQ(apps::parse_bytes("1"), 1U);
-  EXPECT_EQ(apps::parse_bytes("1e6"), 1'000'000U);
-  EXPECT_EQ(apps::parse_bytes("500MB"), 500'000'000U);
-  EXPECT_EQ(apps::parse_bytes("500M"), 500U << 20);
-  EXPECT_EQ(apps::parse_bytes("1.5GiB"), 3U << 29);
-  EXPECT_EQ(apps::parse_bytes("2gib"), std::uint64_t{2} << 30);
-  EXPECT_EQ(apps::parse_bytes("1TB"), 1'000'000'000'000U);
-  for (const char* text : {"", "0", "-1", "12x", "GB", "nan", "inf", "1e40", "1 GB", "2GiBs"}) {
-    EXPECT_EQ(apps::parse_bytes(text), 0U) << text;
-  }
 }
 
 TEST(Limits, MemoryIsPromisedBeforeItIsTaken) {
@@ -98,7 +84,7 @@ TEST(Limits, StreamsWithoutEndAreBadInput) {
   folder.write("p.xyz", "0 0\n1 0\n0 1\n");
   folder.write("m.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   for (const std::string device : {"/dev/zero", "/dev/urandom"}) {
-    for (const std::string command :
+    for (const std::string& command :
          {"info " + device, "triangulate " + device + " -o a.ply", "render " + device + " -o a.png",
           "verify " + device + " --points p.xyz", "verify m.off --points " + device,
           "compose " + device + " -o a.png",

@@ -54,5 +54,18 @@ TEST(MemoryBudget, TellsBytes) {
   EXPECT_EQ(bytes_text(~std::uint64_t{0}), "16.0 EiB");
 }
 
+TEST(MemoryBudget, ParsesBytes) {
+  EXPECT_EQ(parse_bytes("1"), 1U);
+  EXPECT_EQ(parse_bytes("1e6"), 1'000'000U);
+  EXPECT_EQ(parse_bytes("500MB"), 500'000'000U);
+  EXPECT_EQ(parse_bytes("500M"), 500U << 20);
+  EXPECT_EQ(parse_bytes("1.5GiB"), 3U << 29);
+  EXPECT_EQ(parse_bytes("2gib"), std::uint64_t{2} << 30);
+  EXPECT_EQ(parse_bytes("1TB"), 1'000'000'000'000U);
+  for (const char* text : {"", "0", "-1", "12x", "GB", "nan", "inf", "1e40", "1 GB", "2GiBs"}) {
+    EXPECT_EQ(parse_bytes(text), 0U) << text;
+  }
+}
+
 }  // namespace
 }  // namespace delray::files

@@ -117,6 +117,7 @@ TEST(Memory, AccessorsThatManyPrimitivesShareAddUp) {
 TEST(Memory, TexturesAreCheckedBeforeTheyAreDecoded) {
   const tests::TemporaryFolder folder;
   folder.write("0.png", blank_png(4000, 7));
+  image::read_info(folder / "0.png");  // loads libraries
   const auto path = folder.write(
       "a.gltf", gltf(R"("bufferView":0,"count":3)", primitives(1) + "," + materials(1)));
   const std::uint64_t before = files::resident_set();
