@@ -10,7 +10,7 @@
 #include "apps/statistics.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/read_points.h"
-#include "files/format.h"
+#include "files/printable.h"
 #include "geometry/box.h"
 #include "image/io.h"
 #include "scenes/describe.h"
@@ -101,14 +101,21 @@ Json describe(const std::string& path, const InputLimits& limits) {
   return describe_scene(load_scene(input, nullptr));
 }
 
+std::string shown(const Json& value) {
+  constexpr bool kAscii = false;
+  return files::printable(value.is_string()
+                              ? value.get<std::string>()
+                              : value.dump(-1, ' ', kAscii, Json::error_handler_t::replace));
+}
+
 // A line for each key; lists of objects as one line for each.
 void print(const Json& description) {
   for (const auto& [key, value] : description.items()) {
     if (value.is_array() && !value.empty() && value[0].is_object()) {
       fmt::print("{}: {}\n", key, value.size());
-      for (const Json& row : value) fmt::print("  {}\n", row.dump());
+      for (const Json& row : value) fmt::print("  {}\n", shown(row));
     } else {
-      fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+      fmt::print("{}: {}\n", key, shown(value));
     }
   }
 }

@@ -1,5 +1,6 @@
 // The program `delray`.
 #include <fcntl.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -11,20 +12,40 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <iostream>
+#include <memory>
+#include <sstream>
 
 #include "apps/commands.h"
 #include "apps/launch.h"
+#include "files/printable.h"
 
 namespace {
 
 using namespace delray::apps;
+
+// What is logged, with names and texts of files in it, but nothing that a terminal would obey.
+class PrintableText final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& to) override {
+    const std::string text =
+        delray::files::printable({message.payload.data(), message.payload.size()});
+    to.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<PrintableText>();
+  }
+};
 
 // Progress, warnings and errors go to stderr: stdout is for results.
 void set_up_log() {
   const bool colour = std::getenv("NO_COLOR") == nullptr;
   auto log = spdlog::stderr_color_mt(
       "delray", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never);
-  log->set_pattern("%^%l%$: %v");
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<PrintableText>('*').set_pattern("%^%l%$: %*");
+  log->set_formatter(std::move(formatter));
   spdlog::set_default_logger(std::move(log));
 }
 
@@ -77,7 +98,13 @@ int run(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (!session.first_process) return kDone;
-    return program.exit(error) == 0 ? kDone : kUsage;
+    std::ostringstream told;
+    const int code = program.exit(error, std::cout, told);
+    std::istringstream lines(told.str());
+    for (std::string line; std::getline(lines, line);) {
+      std::fprintf(stderr, "%s\n", delray::files::printable(line).c_str());
+    }
+    return code == 0 ? kDone : kUsage;
   }
   return run_guarded(session);
 }
@@ -90,7 +117,7 @@ int main(int argc, char** argv) {
   try {
     return flushed(run(argc, argv));
   } catch (const std::exception& error) {  // before a subcommand began
-    std::fprintf(stderr, "error: %s\n", error.what());
+    std::fprintf(stderr, "error: %s\n", delray::files::printable(error.what()).c_str());
     return kFailed;
   }
 }

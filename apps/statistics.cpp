@@ -6,8 +6,13 @@
 
 namespace delray::apps {
 
+std::string json_text(const Json& value, int indent) {
+  constexpr bool kAscii = true;
+  return value.dump(indent, ' ', kAscii, Json::error_handler_t::replace);
+}
+
 void write_statistics(const std::string& path, const Json& statistics) {
-  if (!path.empty()) files::write_file(path, statistics.dump(2) + "\n");
+  if (!path.empty()) files::write_file(path, json_text(statistics, 2) + "\n");
 }
 
 std::uint64_t peak_memory() {

@@ -10,6 +10,9 @@ namespace delray::apps {
 
 using Json = nlohmann::ordered_json;
 
+// As JSON in ASCII: terminals find nothing in it to obey. Bytes that are not UTF-8 become U+FFFD.
+std::string json_text(const Json& value, int indent);
+
 // Writes to a file, whole or not at all, or to stdout for "-"; nothing for an empty path.
 void write_statistics(const std::string& path, const Json& statistics);
 

@@ -18,6 +18,7 @@
 #include "comm/internal/mpi_end.h"
 #include "comm/internal/mpi_header.h"
 #include "files/error.h"
+#include "files/printable.h"
 #include "parallel/progress.h"
 
 namespace delray::comm {
@@ -31,7 +32,8 @@ Phase noted_phase() { return current_phase.load(std::memory_order_relaxed); }
 
 void end_all_ranks(MPI_Comm communicator, int rank, Phase phase, const std::string& why,
                    int exit_code) {
-  const std::string line = std::string("delray: ") + RankFailure(rank, phase, why).what() + "\n";
+  const std::string what = RankFailure(rank, phase, why).what();
+  const std::string line = "delray: " + files::printable(what) + "\n";
   // One call, so that lines of several ranks do not mix.
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
