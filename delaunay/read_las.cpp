@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "delaunay/internal/point_readers.h"
+#include "files/geo_keys.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -85,6 +86,43 @@ Header parse_header(const Input& input) {
   return header;
 }
 
+// From the records between header and points that tell about coordinates.
+files::GeoKeys read_geo_keys(const Input& input, const Header& header) {
+  constexpr std::size_t kUser = 2, kNumber = 18, kLength = 20, kSize = 54;  // of a record's head
+  constexpr std::uint16_t kDirectory = 34735, kWellKnownText = 2112;
+  files::GeoKeys keys;
+  std::size_t byte = load<std::uint16_t>(input.content, 94);
+  for (auto left = load<std::uint32_t>(input.content, 100); left > 0; --left) {
+    if (byte + kSize > header.points_begin) break;
+    const std::string_view record = input.content.substr(byte, header.points_begin - byte);
+    const auto number = load<std::uint16_t>(record, kNumber);
+    const std::string_view content = record.substr(kSize, load<std::uint16_t>(record, kLength));
+    if (record.substr(kUser).starts_with("LASF_Projection")) {
+      if (number == kDirectory) {
+        std::vector<std::uint16_t> numbers(content.size() / sizeof(std::uint16_t));
+        if (!numbers.empty())
+          std::memcpy(numbers.data(), content.data(), numbers.size() * sizeof(std::uint16_t));
+        keys = files::parse_geo_keys(numbers);
+      } else if (number == kWellKnownText) {
+        keys = files::parse_well_known_text(content);
+      }
+      if (keys.known) return keys;
+    }
+    byte += kSize + load<std::uint16_t>(record, kLength);
+  }
+  return keys;
+}
+
+// Degrees need finer steps than metres: where a file tells nothing, steps a hundred times finer in
+// x and y than in z give them away.
+bool steps_like_degrees(const Header& header, const std::vector<glm::dvec3>& positions) {
+  constexpr double kFinest = 1e-5, kFiner = 100;
+  const double across = std::max(std::abs(header.scale.x), std::abs(header.scale.y));
+  if (across > kFinest || across * kFiner > std::abs(header.scale.z)) return false;
+  return std::ranges::all_of(
+      positions, [](const glm::dvec3& p) { return std::abs(p.x) <= 180 && std::abs(p.y) <= 90; });
+}
+
 // Colours are 16 bits a channel, but many files hold 8-bit values there.
 void narrow_colours(const std::vector<glm::u16vec3>& wide, std::vector<glm::u8vec4>& colours) {
   std::uint16_t top = 0;
@@ -136,6 +174,8 @@ PointCloud read_las_points(const Input& input) {
       [](std::size_t a, std::size_t b) { return std::min(a, b); });
   if (bad < header.count) fail(input, "point " + std::to_string(bad), "not a finite number");
   narrow_colours(colours, cloud.colours);
+  const files::GeoKeys keys = read_geo_keys(input, header);
+  cloud.geographic = keys.known ? keys.geographic : steps_like_degrees(header, cloud.positions);
   return cloud;
 }
 

@@ -14,6 +14,7 @@ bool has_keyword(std::string_view line, char keyword) {
 }
 
 bool is_vertex(std::string_view line) { return has_keyword(line, 'v'); }
+bool is_line(std::string_view line) { return has_keyword(line, 'l'); }
 bool is_face(std::string_view line) { return has_keyword(line, 'f'); }
 
 // Colours are an extension that scanners write: three more numbers from 0 to 1.
@@ -61,6 +62,8 @@ PointCloud read_obj_points(const Input& input) {
     cloud.colours[i].a = 255;
     for (int k = 0; k < 3; ++k) cloud.colours[i][k] = to_byte(fields.number());
   });
+  const std::size_t lines = index_rows(input, {}, kAllRows, is_line).count;
+  if (lines > 0) cloud.warnings.push_back(edges_left_out(lines));
   return cloud;
 }
 

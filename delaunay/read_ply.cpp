@@ -227,6 +227,10 @@ PointCloud read_vertices(const Input& input, const PlyHeader& header) {
     read_binary(input, header, element, columns, begin.byte, vertices);
   }
   normalise(vertices.cloud.intensity);
+  const auto edges = std::ranges::find(header.elements, "edge", &PlyElement::name);
+  if (edges != header.elements.end() && edges->count > 0) {
+    vertices.cloud.warnings.push_back(edges_left_out(edges->count));
+  }
   return std::move(vertices.cloud);
 }
 

@@ -36,6 +36,8 @@ enum Quantity {
 // columns[i] is the quantity in column i of the file.
 struct Layout {
   std::vector<Quantity> columns;
+  bool geographic = false;  // columns are named longitude and latitude
+  std::size_t edges = 0;    // of an outline, which are not read
   Separator separator = Separator::comma;
   TextPlace begin;               // of the first row of coordinates
   std::size_t limit = kAllRows;  // rows of coordinates
@@ -44,16 +46,17 @@ struct Layout {
 struct ColumnName {
   std::string_view name;
   Quantity quantity;
+  bool degrees = false;
 };
 constexpr std::array kColumnNames = {
     ColumnName{"x", kX},
     ColumnName{"easting", kX},
-    ColumnName{"lon", kX},
-    ColumnName{"longitude", kX},
+    ColumnName{"lon", kX, true},
+    ColumnName{"longitude", kX, true},
     ColumnName{"y", kY},
     ColumnName{"northing", kY},
-    ColumnName{"lat", kY},
-    ColumnName{"latitude", kY},
+    ColumnName{"lat", kY, true},
+    ColumnName{"latitude", kY, true},
     ColumnName{"z", kZ},
     ColumnName{"height", kZ},
     ColumnName{"elevation", kZ},
@@ -69,14 +72,14 @@ constexpr std::array kColumnNames = {
     ColumnName{"class", kClass},
 };
 
-Quantity quantity_of(std::string_view field) {
+ColumnName column_of(std::string_view field) {
   std::string name;
   for (const char c : field) {
     if (c != '"' && c != '\'')
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   const auto found = std::ranges::find(kColumnNames, name, &ColumnName::name);
-  return found == kColumnNames.end() ? kSkipped : found->quantity;
+  return found == kColumnNames.end() ? ColumnName{"", kSkipped} : *found;
 }
 
 std::vector<std::string_view> split(const Input& input, std::string_view line,
@@ -124,22 +127,25 @@ std::vector<Quantity> unnamed_columns(const std::vector<std::string_view>& first
   return {kX, kY, kZ};
 }
 
-// Empty if no name is known: a title, or another language.
-std::vector<Quantity> named_columns(const Input& input, std::size_t line_number,
-                                    const std::vector<std::string_view>& names) {
-  std::vector<Quantity> columns;
+// No columns if no name is known: a title, or another language.
+Layout named_columns(const Input& input, std::size_t line_number,
+                     const std::vector<std::string_view>& names) {
+  Layout layout;
   std::array<bool, kQuantities + 1> seen{};  // the last is kSkipped
+  int degrees = 0;
   for (const std::string_view name : names) {
-    Quantity quantity = quantity_of(name);
-    if (quantity != kSkipped && seen[quantity]) quantity = kSkipped;
-    seen[quantity] = true;
-    columns.push_back(quantity);
+    ColumnName column = column_of(name);
+    if (column.quantity != kSkipped && seen[column.quantity]) column = {"", kSkipped};
+    seen[column.quantity] = true;
+    degrees += column.degrees ? 1 : 0;
+    layout.columns.push_back(column.quantity);
   }
   if (!seen[kX] && !seen[kY] && !seen[kZ]) return {};
   if (!seen[kX] || !seen[kY]) {
     fail(input, at_line(line_number), "the column names have no x or no y");
   }
-  return columns;
+  layout.geographic = degrees == 2;
+  return layout;
 }
 
 // Whether a first field is no number, not even a broken one.
@@ -215,7 +221,7 @@ Layout find_layout(const Input& input) {
   layout.begin = first.blocks[0];
   const auto counts = counts_of(fields);
   if (!fields.empty() && is_name(fields[0])) {
-    layout.columns = named_columns(input, line_number, split_names(input, line));
+    layout = named_columns(input, line_number, split_names(input, line));
     layout.begin = rest;
   } else if (counts && (counts->single || is_outline(input, *counts, rest))) {
     const RowIndex points = index_rows(input, rest, counts->points, is_data_row);
@@ -226,6 +232,7 @@ Layout find_layout(const Input& input) {
     }
     layout.begin = rest;
     layout.limit = counts->points;
+    layout.edges = counts->edges;
   }
   first = index_rows(input, layout.begin, std::min<std::size_t>(layout.limit, 1), is_data_row);
   if (first.count == 0) fail(input, "", "no points");
@@ -260,6 +267,8 @@ PointCloud read_text_points(const Input& input) {
   const bool has_intensity = has(kIntensity), has_class = has(kClass);
   PointCloud cloud;
   cloud.has_z = has(kZ);
+  cloud.geographic = layout.geographic;
+  if (layout.edges > 0) cloud.warnings.push_back(edges_left_out(layout.edges));
   input.require_points(rows.count);
   cloud.positions.resize(rows.count);
   if (has_colour) cloud.colours.resize(rows.count);

@@ -28,6 +28,12 @@ struct Input {
   throw files::FileError(files::Cause::input, input.name, std::move(place), what);
 }
 
+// A warning of PointCloud.
+inline std::string edges_left_out(std::size_t edges) {
+  return std::to_string(edges) + (edges == 1 ? " edge" : " edges") +
+         " between points left out: triangulations keep none";
+}
+
 inline std::string at_line(std::size_t line) { return "line " + std::to_string(line); }
 inline std::string at_byte(std::size_t byte) { return "byte " + std::to_string(byte); }
 

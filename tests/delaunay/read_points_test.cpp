@@ -376,6 +376,64 @@ TEST(ReadPoints, ReadsLasOfEveryVersionAndPointFormat) {
   }
 }
 
+// The same with a record of the group LASF_Projection between header and points.
+std::string las_with_projection(std::uint16_t number, const std::string& content) {
+  std::string bytes = las(2, 3, 34, 28);
+  std::string record(54, '\0');
+  record.replace(2, 15, "LASF_Projection");
+  const auto length = static_cast<std::uint16_t>(content.size());
+  std::memcpy(&record[18], &number, sizeof number);
+  std::memcpy(&record[20], &length, sizeof length);
+  record += content;
+  const std::uint16_t header = 227;
+  const std::uint32_t records = 1, begin = 227 + static_cast<std::uint32_t>(record.size());
+  std::memcpy(&bytes[94], &header, sizeof header);
+  std::memcpy(&bytes[96], &begin, sizeof begin);
+  std::memcpy(&bytes[100], &records, sizeof records);
+  return bytes.substr(0, header) + record + bytes.substr(header);
+}
+
+TEST(ReadPoints, KnowsDegrees) {
+  const auto keys = [](std::uint16_t model) {
+    std::string directory;
+    for (const int value : {1, 1, 0, 1, 1024, 0, 1, int{model}})
+      append(directory, static_cast<std::uint16_t>(value));
+    return directory;
+  };
+  EXPECT_TRUE(read("a.las", las_with_projection(34735, keys(2))).geographic);
+  EXPECT_FALSE(read("a.las", las_with_projection(34735, keys(1))).geographic);
+  EXPECT_TRUE(read("a.las", las_with_projection(2112, "GEOGCS[\"WGS 84\"]")).geographic);
+  EXPECT_FALSE(
+      read("a.las", las_with_projection(2112, "PROJCS[\"x\",GEOGCS[\"WGS 84\"]]")).geographic);
+  EXPECT_FALSE(read("a.las", las_with_projection(34735, "")).geographic);
+  // Without a word steps tell, but not where a projection is told.
+  const auto in_fine_steps = [](std::string bytes) {
+    for (int k = 0; k < 3; ++k) {
+      const double step = k == 2 ? 0.01 : 1e-7, offset = 10.0 + k;
+      std::memcpy(&bytes[131 + 8 * k], &step, sizeof step);
+      std::memcpy(&bytes[155 + 8 * k], &offset, sizeof offset);
+    }
+    return bytes;
+  };
+  EXPECT_TRUE(read("a.las", in_fine_steps(las(2, 3, 34, 28))).geographic);
+  EXPECT_FALSE(read("a.las", in_fine_steps(las_with_projection(34735, keys(1)))).geographic);
+  EXPECT_FALSE(read("a.las", las(2, 3, 34, 28)).geographic);
+  EXPECT_TRUE(read("a.csv", "Longitude,Latitude,height\n1,2,3\n").geographic);
+  EXPECT_FALSE(read("a.csv", "lon,y,height\n1,2,3\n").geographic);
+  EXPECT_FALSE(read("a.csv", "1,2,3\n").geographic);
+}
+
+TEST(ReadPoints, TellsWhatItLeavesOut) {
+  const auto warnings = [](const std::string& name, const std::string& content) {
+    return read(name, content).warnings;
+  };
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+  EXPECT_EQ(warnings("a.txt", "3 2\n0 0\n1.5 0\n1 1\n0 1\n1 2\n").size(), 1U);
+  EXPECT_EQ(warnings("a.obj", vertices + "l 1 2\n").size(), 1U);
+  EXPECT_TRUE(warnings("a.txt", "3 0\n0 0\n1.5 0\n1 1\n").empty());
+  EXPECT_TRUE(warnings("a.obj", vertices).empty());
+}
+
 TEST(ReadPoints, RefusesBrokenLas) {
   const std::string good = las(2, 3, 34, 28);
   const auto with = [&](std::size_t at, auto value) {
