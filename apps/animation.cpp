@@ -45,8 +45,9 @@ std::optional<std::size_t> frame_number(const std::string& path) {
 
 std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
                                               const scenes::Scene& scene,
-                                              const scenes::Camera& camera) {
-  if (request.turntable > 0) return scenes::turntable(camera, request.turntable);
+                                              const scenes::Camera& camera,
+                                              const glm::dvec3& pivot) {
+  if (request.turntable > 0) return scenes::turntable(camera, request.turntable, pivot);
   if (!request.camera_path.empty()) {
     return scenes::interpolate(scenes::read_camera_path(request.camera_path, scene.origin,
                                                         request.scene.file.limits.budget()));

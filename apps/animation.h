@@ -16,11 +16,12 @@ std::string frame_path(const std::string& output, std::size_t frame);
 // The only frame that may go to `path`, by the number at the end of its stem.
 std::optional<std::size_t> frame_number(const std::string& path);
 
-// The cameras that --turntable and --camera-path ask for; none for a single picture. Throws
-// UsageError, files::FileError.
+// The cameras that --turntable (about the vertical through `pivot`) and --camera-path ask for; none
+// for a single picture. Throws UsageError, files::FileError.
 std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
                                               const scenes::Scene& scene,
-                                              const scenes::Camera& camera);
+                                              const scenes::Camera& camera,
+                                              const glm::dvec3& pivot);
 
 // What the frames took on rank 0, in a pipeline over the stages below. The first two pass alone,
 // since stages that share processors take longer than what formulas about them ask for.

@@ -19,8 +19,12 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
       ->excludes(camera);
 }
 
+bool shows_all(const CameraOptions& options, const scenes::Scene& scene) {
+  return options.camera.empty() && (!options.view.empty() || scene.cameras.empty());
+}
+
 scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
-                             float aspect) {
+                             const scenes::FarthestPoints& farthest, float aspect) {
   if (!options.camera.empty()) {
     const auto camera = scenes::parse_camera(options.camera, scene.origin);
     if (camera) return *camera;
@@ -29,10 +33,10 @@ scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& 
         "above 0 and below 180 degrees",
         options.camera));
   }
-  if (options.view.empty() && !scene.cameras.empty()) return scene.cameras.front();
+  if (!shows_all(options, scene)) return scene.cameras.front();
   const std::string view = options.view.empty() ? "default" : options.view;
   try {
-    return scenes::camera_around(scene, view.c_str(), aspect);
+    return scenes::camera_around(farthest, view.c_str(), scene.z_up, aspect);
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format("--view: {}", error.what()));
   }

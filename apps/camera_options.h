@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "scenes/extent.h"
 #include "scenes/scene.h"
 
 namespace CLI {
@@ -18,9 +19,13 @@ struct CameraOptions {
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
+// Whether the camera is one that shows all of the scene, not one that somebody placed.
+bool shows_all(const CameraOptions& options, const scenes::Scene& scene);
+
 // What --camera or --view say, else the scene's own first camera, else one that shows all of it.
-// Throws UsageError.
+// `farthest` knows all points of the scene, and is asked for the cameras that show it only. Throws
+// UsageError.
 scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
-                             float aspect);
+                             const scenes::FarthestPoints& farthest, float aspect);
 
 }  // namespace delray::apps

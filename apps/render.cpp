@@ -125,17 +125,16 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     std::shared_ptr<const Prepared> prepared = shared;
     if (!prepared) {
       communicator.mark(comm::Phase::load, 0);
-      prepared = comm::all_or_none(communicator, comm::Phase::load, [&] {
+      comm::all_or_none(communicator, comm::Phase::load, [&] {
         if (communicator.rank() == 0) check_folders(request);
-        try {
-          return prepare(request, progress);
-        } catch (const UsageError&) {
-          wrong_usage = std::current_exception();
-          return std::shared_ptr<const Prepared>();
-        }
       });
+      try {
+        prepared = prepare(communicator, request, progress);
+      } catch (const UsageError&) {
+        wrong_usage = std::current_exception();
+        return;
+      }
     }
-    if (!prepared) return;
     if (!prepared->cameras.empty()) {
       const Animation animation =
           render_animation(communicator, *prepared, request, session, progress);

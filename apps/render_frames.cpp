@@ -1,10 +1,14 @@
 #include "apps/render_frames.h"
 
+#include <algorithm>
+
 #include "apps/animation.h"
 #include "apps/ray_frame.h"
 #include "apps/statistics.h"
+#include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "parallel/arena.h"
+#include "scenes/framing.h"
 #include "scenes/generate.h"
 
 namespace delray::apps {
@@ -101,10 +105,9 @@ bool has_parts(const RenderRequest& request) {
   }
 }
 
-// Whether no rank need ever have the whole scene, as nothing asks for the bounds of all.
+// Whether no rank need ever have the whole scene.
 bool comes_in_parts(const RenderRequest& request) {
-  return request.kind == Engine::raytrace && request.data != "replicated" &&
-         request.camera.view.empty() && has_parts(request);
+  return request.kind == Engine::raytrace && request.data != "replicated" && has_parts(request);
 }
 
 raytrace::ShareOptions share_options(const RenderRequest& request) {
@@ -117,15 +120,13 @@ raytrace::ShareOptions share_options(const RenderRequest& request) {
   return options;
 }
 
-}  // namespace
-
-std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
-                                        parallel::Progress* progress) {
+// Loads the scene, or of one that comes in parts what is no geometry.
+std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
+                               parallel::Progress* progress) {
   auto prepared = std::make_shared<Prepared>();
-  Stopwatch watch;
-  prepared->in_parts = comes_in_parts(request);
+  prepared->in_parts = in_parts;
   prepared->told_by_name = has_parts(request);
-  if (prepared->in_parts) {
+  if (in_parts) {
     constexpr int kParts = 1 << 30;  // of which the first is nothing but camera and lights
     scenes::ScenePart part = scenes::generate_part(request.scene.file.path, 0, kParts);
     prepared->triangles = part.triangles;
@@ -136,28 +137,105 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
     prepared->triangles = scenes::triangle_count(prepared->scene);
     prepared->vertices = scenes::vertex_count(prepared->scene);
   }
-  prepared->camera =
-      choose_camera(request.camera, prepared->scene,
-                    static_cast<float>(request.width) / static_cast<float>(request.height));
-  prepared->cameras = animation_cameras(request, prepared->scene, prepared->camera);
-  for (scenes::Camera& camera : prepared->cameras) set_lens(request.practice, camera);
-  set_lens(request.practice, prepared->camera);
-  if (!prepared->cameras.empty()) prepared->camera = prepared->cameras.front();
-  prepared->background = request.behind;
-  if (prepared->background.kind == Background::Kind::automatic) {
-    prepared->background.kind = has_sky(prepared->scene.environment) ? Background::Kind::environment
-                                                                     : Background::Kind::studio;
+  return prepared;
+}
+
+void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& farthest,
+                    Prepared& prepared) {
+  constexpr int kTurns = 24;  // between two of them a point comes 0.9 % of its arm closer
+  const scenes::Scene& scene = prepared.scene;
+  const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
+  prepared.camera = choose_camera(request.camera, scene, farthest, aspect);
+  glm::dvec3 pivot = prepared.camera.at;
+  if (request.turntable > 0 && shows_all(request.camera, scene)) {
+    const auto around =
+        scenes::turned(farthest, prepared.camera.up, std::min(request.turntable, kTurns));
+    prepared.camera = choose_camera(request.camera, scene, around, aspect);
+    const geometry::Box3 box = scenes::bounds(farthest);
+    pivot = (glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5;
   }
-  complete(prepared->scene, prepared->camera);
-  prepared->load_seconds = watch.lap();
+  prepared.cameras = animation_cameras(request, scene, prepared.camera, pivot);
+  for (scenes::Camera& camera : prepared.cameras) set_lens(request.practice, camera);
+  set_lens(request.practice, prepared.camera);
+  if (!prepared.cameras.empty()) prepared.camera = prepared.cameras.front();
+}
+
+// Completes the scene and builds what the engine needs. `watch` has run since loading began.
+void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
+  prepared.background = request.behind;
+  if (prepared.background.kind == Background::Kind::automatic) {
+    prepared.background.kind = has_sky(prepared.scene.environment) ? Background::Kind::environment
+                                                                   : Background::Kind::studio;
+  }
+  complete(prepared.scene, prepared.camera);
+  prepared.load_seconds = watch.lap();
   if (request.kind == Engine::raster || request.data != "replicated") {
-    prepared->shader =
-        std::make_shared<const shading::Shader>(shading::make_shader(prepared->scene));
+    prepared.shader = std::make_shared<const shading::Shader>(shading::make_shader(prepared.scene));
   } else {
-    prepared->tracer = std::make_unique<const raytrace::Tracer>(
-        raytrace::make_tracer(prepared->scene, build_options(request)));
+    prepared.tracer = std::make_unique<const raytrace::Tracer>(
+        raytrace::make_tracer(prepared.scene, build_options(request)));
   }
-  prepared->build_seconds = watch.lap();
+  prepared.build_seconds = watch.lap();
+}
+
+// The farthest points of all ranks' scenes; collective.
+scenes::FarthestPoints of_all_ranks(comm::Communicator& communicator,
+                                    const scenes::FarthestPoints& mine) {
+  return [&communicator, &mine](std::span<const glm::dvec3> directions) {
+    std::vector<glm::dvec3> farthest;
+    const std::vector<glm::dvec3> own = mine(directions);
+    for (const comm::Buffer& points :
+         comm::all_gather(communicator, comm::Buffer::of(std::span<const glm::dvec3>(own)))) {
+      const std::span<const glm::dvec3> candidates = points.as<glm::dvec3>();
+      scenes::keep_farthest(directions, {candidates.begin(), candidates.end()}, farthest);
+    }
+    return farthest;
+  };
+}
+
+}  // namespace
+
+std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
+                                        parallel::Progress* progress) {
+  Stopwatch watch;
+  const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
+  const std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
+  choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared);
+  build(request, watch, *prepared);
+  return prepared;
+}
+
+std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
+                                        const RenderRequest& request,
+                                        parallel::Progress* progress) {
+  std::exception_ptr wrong_usage;  // found by every process alike
+  const auto unless_wrong = [&](auto&& step) {
+    comm::all_or_none(communicator, comm::Phase::load, [&] {
+      try {
+        step();
+      } catch (const UsageError&) {
+        wrong_usage = std::current_exception();
+      }
+    });
+    if (wrong_usage) std::rethrow_exception(wrong_usage);
+  };
+  Stopwatch watch;
+  std::shared_ptr<Prepared> prepared;
+  scenes::ScenePart part;
+  unless_wrong([&] {
+    prepared = load(request, comes_in_parts(request), progress);
+    if (!prepared->in_parts || request.camera.view.empty()) return;
+    part = scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
+  });
+  if (prepared->in_parts && !request.camera.view.empty()) {
+    const scenes::FarthestPoints mine = scenes::farthest_points(part.scene);
+    choose_cameras(request, of_all_ranks(communicator, mine), *prepared);
+    part = {};
+  } else {
+    unless_wrong(
+        [&] { choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared); });
+  }
+  unless_wrong([&] { build(request, watch, *prepared); });
   return prepared;
 }
 

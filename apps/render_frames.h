@@ -36,6 +36,11 @@ struct Prepared {
 // arena.
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request, parallel::Progress* progress);
 
+// Collective: the same on every rank, for ranks that share no memory. Where they make parts of the
+// scene, each makes its own to agree on cameras that show all of it. Throws what all ranks throw.
+std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
+                                        const RenderRequest& request, parallel::Progress* progress);
+
 // What a ray traced picture has besides, and how it came about; on rank 0.
 struct Extras {
   std::vector<image::Channel> channels;

@@ -72,17 +72,25 @@ std::optional<Camera> parse_camera(std::string_view text, const glm::dvec3& orig
 }
 
 std::vector<Camera> turntable(const Camera& camera, int frames) {
+  return turntable(camera, frames, camera.at);
+}
+
+std::vector<Camera> turntable(const Camera& camera, int frames, const glm::dvec3& pivot) {
   std::vector<Camera> result(static_cast<std::size_t>(frames), camera);
   const glm::dvec3 up(camera.up);
   const double length = glm::length(up);
   if (!(length > 0)) return result;
-  const glm::dvec3 axis = up / length, arm = glm::dvec3(camera.eye) - glm::dvec3(camera.at);
+  const glm::dvec3 axis = up / length;
   for (int i = 1; i < frames; ++i) {
     const double angle = 2 * std::numbers::pi * i / frames;
-    // Rodrigues' rotation.
-    const glm::dvec3 turned = arm * std::cos(angle) + glm::cross(axis, arm) * std::sin(angle) +
-                              axis * (glm::dot(axis, arm) * (1 - std::cos(angle)));
-    result[static_cast<std::size_t>(i)].eye = glm::vec3(glm::dvec3(camera.at) + turned);
+    const auto turned = [&](const glm::vec3& p) {  // Rodrigues' rotation
+      const glm::dvec3 arm = glm::dvec3(p) - pivot;
+      return glm::vec3(pivot + arm * std::cos(angle) + glm::cross(axis, arm) * std::sin(angle) +
+                       axis * (glm::dot(axis, arm) * (1 - std::cos(angle))));
+    };
+    Camera& at_frame = result[static_cast<std::size_t>(i)];
+    at_frame.eye = turned(camera.eye);
+    if (pivot != glm::dvec3(camera.at)) at_frame.at = turned(camera.at);
   }
   return result;
 }

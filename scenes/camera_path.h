@@ -19,6 +19,8 @@ std::optional<Camera> parse_camera(std::string_view text, const glm::dvec3& orig
 // Once around the point that the camera looks at, about its `up`, counter-clockwise seen from
 // above: frame i is turned by i / frames of a circle, frame 0 is the camera itself.
 std::vector<Camera> turntable(const Camera& camera, int frames);
+// The same about an axis through `pivot`, which `at` goes round as well.
+std::vector<Camera> turntable(const Camera& camera, int frames, const glm::dvec3& pivot);
 
 // A camera at a frame of an animation.
 struct CameraKey {

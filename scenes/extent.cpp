@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <tuple>
 
 #include "parallel/parallel_for.h"
@@ -66,6 +67,14 @@ geometry::Box3 bounds(const FarthestPoints& farthest) {
   geometry::Box3 box;
   for (const glm::dvec3& p : farthest(axes)) box.include(glm::vec3(p));
   return box;
+}
+
+FarthestPoints farthest_points(const Scene& scene) {
+  return [&scene, extent = std::shared_ptr<const Extent>()](
+             std::span<const glm::dvec3> directions) mutable {
+    if (!extent) extent = std::make_shared<const Extent>(scene);
+    return (*extent)(directions);
+  };
 }
 
 Extent::Extent(const Scene& scene) : scene_(scene), meshes_(scene.meshes.size()) {

@@ -55,4 +55,7 @@ class Extent {
   std::vector<Corners> meshes_;
 };
 
+// An Extent that is made when it is first asked. Refers to the scene.
+FarthestPoints farthest_points(const Scene& scene);
+
 }  // namespace delray::scenes

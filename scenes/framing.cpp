@@ -189,6 +189,37 @@ Camera camera_around(const geometry::Box3& box, const char* name, bool z_up, flo
                        name, z_up, aspect);
 }
 
+FarthestPoints turned(const FarthestPoints& farthest, const glm::dvec3& axis, int turns) {
+  const geometry::Box3 box = bounds(farthest);
+  const glm::dvec3 middle = (glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5;
+  const auto rotated = [unit = glm::normalize(axis)](const glm::dvec3& v, double angle) {
+    // Rodrigues' rotation.
+    return v * std::cos(angle) + glm::cross(unit, v) * std::sin(angle) +
+           unit * (glm::dot(unit, v) * (1 - std::cos(angle)));
+  };
+  return [=, &farthest](std::span<const glm::dvec3> directions) {
+    const std::size_t n = directions.size();
+    std::vector<glm::dvec3> all;  // as the points see them: turn after turn
+    const auto angle = [turns](std::size_t turn) {
+      return 2 * std::numbers::pi * static_cast<double>(turn) / turns;
+    };
+    const auto count = static_cast<std::size_t>(turns);
+    for (std::size_t turn = 0; turn < count; ++turn) {
+      for (const glm::dvec3& d : directions) all.push_back(rotated(d, -angle(turn)));
+    }
+    const std::vector<glm::dvec3> points = farthest(all);
+    std::vector<glm::dvec3> result;
+    for (std::size_t turn = 0; turn < count && !points.empty(); ++turn) {
+      std::vector<glm::dvec3> candidates;
+      for (std::size_t k = 0; k < n; ++k) {
+        candidates.push_back(middle + rotated(points[turn * n + k] - middle, angle(turn)));
+      }
+      keep_farthest(directions, candidates, result);
+    }
+    return result;
+  };
+}
+
 Camera camera_around(const Scene& scene, const char* name, float aspect) {
   return camera_around(FarthestPoints(Extent(scene)), name, scene.z_up, aspect);
 }

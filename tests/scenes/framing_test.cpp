@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "scenes/camera_path.h"
 #include "scenes/generate.h"
 
 namespace delray::scenes {
@@ -193,6 +194,27 @@ TEST(CameraAround, ShowsThePartThatIsFramed) {
   const Camera framed = camera_around(scene, "iso", 1.5F);
   EXPECT_EQ(framed.eye, all.eye);
   EXPECT_EQ(framed.at, all.at);
+}
+
+TEST(CameraAround, ATurntableLeavesNothingOutOfTheFrame) {
+  Scene scene = with_instances();
+  for (const bool z_up : {false, true}) {
+    scene.z_up = z_up;
+    const FarthestPoints farthest = farthest_points(scene);
+    const glm::dvec3 axis = z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+    const Camera camera = camera_around(turned(farthest, axis, 24), "default", z_up, 1.5F);
+    const geometry::Box3 box = bounds(farthest);
+    const glm::dvec3 middle = (glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5;
+    double least = 1;
+    for (const Camera& turn : turntable(camera, 60, middle)) {
+      const Margins margins = margins_of(scene, turn, 300, 200);
+      for (const double margin : {margins.left, margins.right, margins.upper, margins.lower}) {
+        ASSERT_GT(margin, 0.04);
+        least = std::min(least, margin);
+      }
+    }
+    EXPECT_LT(least, 0.06);
+  }
 }
 
 // Whichever rank has which triangles, all see the same.
