@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "apps/inliers.h"
 #include "apps/list.h"
 #include "image/srgb.h"
 #include "parallel/parallel_for.h"
@@ -12,19 +13,11 @@
 namespace delray::apps {
 namespace {
 
-constexpr std::size_t kGrain = 4096;       // some microseconds of colour look-ups
-constexpr double kOutliers = 0.005;        // of the values at either end do not stretch the scale
-constexpr std::size_t kSamples = 1 << 16;  // enough for a quantile that the eye cannot tell
+constexpr std::size_t kGrain = 4096;  // some microseconds of colour look-ups
 
 // The values between which the colours run: all but a few outliers.
 std::pair<float, float> range_of(const std::vector<float>& values) {
-  const std::size_t step = std::max<std::size_t>(1, values.size() / kSamples);
-  std::vector<float> sample;
-  for (std::size_t i = 0; i < values.size(); i += step) sample.push_back(values[i]);
-  if (sample.empty()) return {0.0F, 1.0F};
-  std::sort(sample.begin(), sample.end());
-  const auto skip = static_cast<std::size_t>(kOutliers * static_cast<double>(sample.size()));
-  return {sample[skip], sample[sample.size() - 1 - skip]};
+  return usual_range(values.size(), [&](std::size_t i) { return values[i]; });
 }
 
 std::vector<glm::vec4> mapped(const std::vector<float>& values, std::pair<float, float> range) {

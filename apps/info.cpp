@@ -12,6 +12,7 @@
 #include "delaunay/read_points.h"
 #include "files/printable.h"
 #include "geometry/box.h"
+#include "image/geotiff.h"
 #include "image/io.h"
 #include "scenes/describe.h"
 
@@ -23,22 +24,21 @@ Json numbers(const Vector& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
-Json describe_points(const delaunay::PointCloud& points) {
+Json describe_points(const std::string& path, const delaunay::PointCloud& points) {
+  for (const std::string& warning : points.warnings) spdlog::warn("{}: {}", path, warning);
   geometry::Box3d box;
   for (const glm::dvec3& p : points.positions) box.include(p);
   Json attributes = Json::array();
   if (!points.colours.empty()) attributes.push_back("rgb");
   if (!points.intensity.empty()) attributes.push_back("intensity");
   if (!points.classification.empty()) attributes.push_back("classification");
-  return {{"points", points.size()},
-          {"dim", points.has_z ? 3 : 2},
-          {"low", numbers(box.low)},
-          {"high", numbers(box.high)},
-          {"attributes", attributes}};
+  return {{"points", points.size()},         {"dim", points.has_z ? 3 : 2},
+          {"low", numbers(box.low)},         {"high", numbers(box.high)},
+          {"geographic", points.geographic}, {"attributes", attributes}};
 }
 
-Json describe_mesh(const delaunay::PointMesh& mesh) {
-  Json description = describe_points(mesh.points);
+Json describe_mesh(const std::string& path, const delaunay::PointMesh& mesh) {
+  Json description = describe_points(path, mesh.points);
   description["simplices"] = mesh.triangulation.size();
   description["simplex"] = mesh.triangulation.dim == 2 ? "triangle" : "tetrahedron";
   return description;
@@ -72,13 +72,24 @@ Json describe_scene(const scenes::Scene& scene) {
 }
 
 Json describe_picture(const std::string& path, const files::MemoryBudget& memory) {
+  const image::GeoTiff ground = image::read_geotiff(path, memory);
   const image::PictureInfo info = image::read_info(path, memory);
   Json attributes = Json::object();
   for (const image::Attribute& attribute : info.attributes) {
     std::visit([&](const auto& value) { attributes[attribute.name] = value; }, attribute.value);
   }
-  return {{"width", info.width}, {"height", info.height},     {"format", info.format},
-          {"type", info.type},   {"channels", info.channels}, {"attributes", attributes}};
+  Json description = {{"width", info.width},       {"height", info.height},
+                      {"format", info.format},     {"type", info.type},
+                      {"channels", info.channels}, {"attributes", attributes}};
+  if (ground.to_ground) {
+    const glm::dmat3x2& m = *ground.to_ground;
+    description["first_pixel"] = {m[2].x, m[2].y};
+    description["next_column"] = {m[0].x, m[0].y};
+    description["next_row"] = {m[1].x, m[1].y};
+    description["geographic"] = ground.geographic;
+  }
+  if (ground.no_data) description["no_data"] = *ground.no_data;
+  return description;
 }
 
 Json describe(const std::string& path, const InputLimits& limits) {
@@ -89,9 +100,9 @@ Json describe(const std::string& path, const InputLimits& limits) {
     case InputKind::picture:
       return describe_picture(path, memory);
     case InputKind::points:
-      return describe_points(delaunay::read_points(path, {.memory = memory}));
+      return describe_points(path, delaunay::read_points(path, {.memory = memory}));
     case InputKind::mesh:
-      return describe_mesh(delaunay::read_mesh(path, memory));
+      return describe_mesh(path, delaunay::read_mesh(path, memory));
     case InputKind::scene:
       break;
   }

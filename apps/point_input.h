@@ -16,7 +16,7 @@ namespace delray::apps {
 struct PointInput {
   std::string path;
   bool terrain_rgb = false;  // heights are coded in the colours of a picture
-  double cell_size = 0;      // of an elevation picture; 0: such that the relief looks like one
+  double cell_size = 0;      // of an elevation picture; 0: as it says, else such that relief shows
   std::string duplicates;    // empty: first
   InputLimits limits;
 
@@ -27,12 +27,23 @@ struct PointInput {
 // Adds --terrain-rgb, --cell-size, --duplicates and --memory.
 void add_point_options(CLI::App& command, PointInput& input);
 
-// Reads the points and merges places with several heights (`dim` 2), with a warning. Throws
-// FileError and UsageError.
+// Whether the points are the pixels of a picture.
+bool is_picture(const PointInput& input);
+
+// Reads the points, whatever they come from. Warnings go to the log. Throws FileError and
+// UsageError.
+delaunay::PointCloud read_cloud(const PointInput& input);
+
+// Merges places with several heights, with a warning. Throws UsageError.
+void merge_places(const PointInput& input, delaunay::PointCloud& cloud);
+
+// Reads the points and merges places with several heights (`dim` 2). Throws FileError and
+// UsageError.
 delaunay::PointCloud load_points(const PointInput& input, int dim);
 
-// The elevations of a picture as points, row by row: x = column, y = -row, both times the cell
-// size, z = height; pixels that are not finite are left out.
+// The elevations of a picture as points, row by row, z = height: x and y as a GeoTIFF says, unless
+// there is a cell size; else column and -row times the cell size. Pixels that are not finite,
+// transparent or marked as missing are left out. Throws FileError for a picture of colours.
 delaunay::PointCloud read_elevations(const PointInput& input);
 
 }  // namespace delray::apps

@@ -1,7 +1,6 @@
 #include "apps/relief.h"
 
 #include "delaunay/write_mesh.h"
-#include "geometry/box.h"
 
 namespace delray::apps {
 namespace {
@@ -21,12 +20,11 @@ std::vector<glm::uvec3> surface_of(const delaunay::Triangulation& triangulation)
 }  // namespace
 
 scenes::Scene relief(const delaunay::PointCloud& points,
-                     const delaunay::Triangulation& triangulation, double exaggeration) {
-  geometry::Box3d box;
-  for (const glm::dvec3& p : points.positions) box.include(p);
+                     const delaunay::Triangulation& triangulation, const Inliers& inliers,
+                     double exaggeration) {
   scenes::Scene scene;
   scene.z_up = true;
-  scene.origin = box.centre();
+  scene.origin = inliers.box.centre();
 
   scenes::Mesh mesh;
   mesh.name = "points";
@@ -34,6 +32,10 @@ scenes::Scene relief(const delaunay::PointCloud& points,
   const glm::dvec3 scale(1, 1, exaggeration);
   for (const glm::dvec3& p : points.positions) {
     mesh.positions.emplace_back((p - scene.origin) * scale);
+  }
+  if (inliers.outside > 0) {
+    scene.framed.include(glm::vec3((inliers.box.low - scene.origin) * scale));
+    scene.framed.include(glm::vec3((inliers.box.high - scene.origin) * scale));
   }
   mesh.triangles = surface_of(triangulation);
   scene.meshes.push_back(std::move(mesh));

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <initializer_list>
 
@@ -30,6 +32,11 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
       throw UsageError(fmt::format("{} has no effect with {}", option, with));
     }
   }
+}
+
+bool is_jpeg(std::string path) {
+  std::ranges::transform(path, path.begin(), [](unsigned char c) { return std::tolower(c); });
+  return path.ends_with(".jpg") || path.ends_with(".jpeg");
 }
 
 // Throws UsageError if --master was given and no rank is one.
@@ -303,6 +310,10 @@ void check(const CLI::App& command, RenderRequest& request) {
   }
   parse_size(request);
   request.behind = parse_background(request.background);
+  if (request.behind.kind == Background::Kind::transparent && is_jpeg(request.output)) {
+    throw UsageError(
+        "--background transparent: JPEG has no transparency; .png, .tif and .exr have");
+  }
   request.kind = request.engine == "raster" ? Engine::raster : Engine::raytrace;
   if (request.turntable == 0 && request.camera_path.empty())
     refuse(command, {"--frames-at-once"}, "a single picture");

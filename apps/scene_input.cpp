@@ -4,10 +4,14 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/colour_by.h"
+#include "apps/dots.h"
+#include "apps/geographic.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
+#include "apps/point_shape.h"
 #include "apps/relief.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/triangulate.h"
@@ -31,23 +35,99 @@ bool has_double_coordinates(const std::string& path) {
          start.find("property float64 x") != std::string::npos;
 }
 
-scenes::Scene from_points(const SceneInput& input, const delaunay::PointCloud& points,
-                          const delaunay::Triangulation& triangulation) {
+// Throws FileError for points that 32-bit floats cannot hold around their middle.
+void check_reach(const SceneInput& input, const delaunay::PointCloud& points,
+                 const glm::dvec3& middle) {
+  constexpr double kFarthest = 1e18;  // as of scenes
+  for (const glm::dvec3& p : points.positions) {
+    const glm::dvec3 offset = glm::abs(p - middle) * glm::dvec3(1, 1, input.exaggeration);
+    if (std::max({offset.x, offset.y, offset.z}) <= kFarthest) continue;
+    throw files::FileError(
+        files::Cause::input, input.file.path, "",
+        "a point is more than 1e18 from the others: there is no picture of that");
+  }
+}
+
+std::string colouring(const SceneInput& input, const delaunay::PointCloud& points) {
+  return input.colour_by.empty() ? std::string(default_colour_by(points)) : input.colour_by;
+}
+
+// The points as vertices of the triangulation's triangles, coloured.
+scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& points,
+                       const delaunay::Triangulation& triangulation) {
+  const Inliers inliers = find_inliers(points);
+  check_reach(input, points, inliers.box.centre());
+  if (inliers.outside > 0) {
+    spdlog::warn("{}: {} of {} points lie far off all others: the view is of the others",
+                 input.file.path, inliers.outside, points.size());
+  }
+  scenes::Scene scene = relief(points, triangulation, inliers, input.exaggeration);
+  colour_by(scene, colouring(input, points), &points);
+  return scene;
+}
+
+scenes::Scene surface(const SceneInput& input, const delaunay::PointCloud& points,
+                      const delaunay::Triangulation& triangulation) {
   if (triangulation.size() == 0) {
     throw files::FileError(files::Cause::input, input.file.path, "",
                            "all points are equal or on one line: there is no surface to show");
   }
-  scenes::Scene scene = relief(points, triangulation, input.exaggeration);
-  colour_by(scene, input.colour_by.empty() ? default_colour_by(points) : input.colour_by, &points);
+  return coloured(input, points, triangulation);
+}
+
+scenes::Scene dots(const SceneInput& input, const delaunay::PointCloud& points) {
+  scenes::Scene scene = coloured(input, points, {});
+  geometry::Box3 box = scene.framed;
+  scenes::Mesh& mesh = scene.meshes[0];
+  if (box.empty()) {
+    for (const glm::vec3& p : mesh.positions) box.include(p);
+  }
+  input.file.limits.budget().require(std::min(points.size(), kMostDots) * kBytesPerDot,
+                                     input.file.path);
+  const std::size_t step = draw_as_dots(mesh, dot_diameter(points.size(), box.size()));
+  if (step > 1) {
+    spdlog::warn("{}: {} points are more than {} dots: drew one of {}", input.file.path,
+                 points.size(), kMostDots, step);
+  }
   return scene;
 }
 
-scenes::Scene triangulated(const SceneInput& input, parallel::Progress* progress) {
-  const delaunay::PointCloud points = load_points(input.file, 2);
+// What --draw says, or what suits the points.
+bool drawn_as_dots(const SceneInput& input, const delaunay::PointCloud& points, bool picture) {
+  if (input.draw == "surface") return false;
+  const bool for_surfaces = !input.file.duplicates.empty() || input.colour_by == "simplex";
+  if (input.draw == "points") {
+    if (for_surfaces)
+      throw UsageError("--duplicates and --color-by simplex are for surfaces, not --draw points");
+    return true;
+  }
+  if (for_surfaces || picture || !are_in_space(points)) return false;
+  spdlog::info(
+      "{}: the points lie in space, not over a plane: drawn as points (--draw surface "
+      "makes a surface of them)",
+      input.file.path);
+  return true;
+}
+
+scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress) {
+  const bool picture = is_picture(input.file);
+  delaunay::PointCloud points = read_cloud(input.file);
+  to_metres(points, input.file.path);
+  if (drawn_as_dots(input, points, picture)) return dots(input, points);
+  merge_places(input.file, points);
   delaunay::Options how;
   how.threads = parallel::arena_threads();
   how.progress = progress;
-  return from_points(input, points, triangulate(delaunay::view(points.positions), how));
+  return surface(input, points, triangulate(delaunay::view(points.positions), how));
+}
+
+scenes::Scene from_mesh(const SceneInput& input) {
+  delaunay::PointMesh mesh = delaunay::read_mesh(input.file.path, input.file.limits.budget());
+  for (const std::string& warning : mesh.points.warnings) {
+    spdlog::warn("{}: {}", input.file.path, warning);
+  }
+  to_metres(mesh.points, input.file.path);
+  return surface(input, mesh.points, mesh.triangulation);
 }
 
 scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
@@ -108,6 +188,11 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       .add_option("--exaggeration", input.exaggeration,
                   "stretches the heights of points (default 1)")
       ->check(positive_number());
+  command
+      .add_option("--draw", input.draw,
+                  "surface (over the plane of x and y) or points, by themselves; by default points "
+                  "where they lie all around in space, as those of a scan")
+      ->check(CLI::IsMember({"surface", "points"}));
   add_point_options(command, input.file);
   add_outside_option(command, input.file.limits);
 }
@@ -119,18 +204,17 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
     refuse_outside(input.file.path, input.file.limits);
   }
   if (kind == InputKind::points || kind == InputKind::picture) {
-    return triangulated(input, progress);
+    return from_points(input, progress);
   }
   if (input.file.given()) {
     throw UsageError(
         fmt::format("--terrain-rgb, --cell-size and --duplicates are for points; {} is a scene",
                     input.file.path));
   }
-  if (kind == InputKind::mesh) {
-    const delaunay::PointMesh mesh =
-        delaunay::read_mesh(input.file.path, input.file.limits.budget());
-    return from_points(input, mesh.points, mesh.triangulation);
+  if (!input.draw.empty()) {
+    throw UsageError(fmt::format("--draw is for points; {} has triangles", input.file.path));
   }
+  if (kind == InputKind::mesh) return from_mesh(input);
   if (input.exaggeration != 1) {
     throw UsageError(fmt::format("--exaggeration is for points; {} is a scene", input.file.path));
   }

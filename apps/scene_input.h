@@ -16,6 +16,7 @@ namespace delray::apps {
 struct SceneInput {
   PointInput file;          // a scene or mesh as well as points
   std::string colour_by;    // empty: what suits the input
+  std::string draw;         // points as "surface" or "points"; empty: what suits them
   double exaggeration = 1;  // of the heights of points
 };
 
@@ -24,10 +25,11 @@ struct SceneInput {
 enum class InputKind { scene, mesh, points, picture };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 
-// Adds SCENE, --color-by, --exaggeration, --allow-outside and the options of points.
+// Adds SCENE, --color-by, --exaggeration, --draw, --allow-outside and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
-// Loads or generates the scene; points are triangulated in the plane, with their z as height.
+// Loads or generates the scene; points are triangulated in the plane, with their z as height, or
+// drawn as dots where they lie in space.
 // Warnings go to the log. Parallel in the caller's arena. Throws FileError and UsageError.
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress);
 
