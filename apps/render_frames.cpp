@@ -10,6 +10,7 @@
 #include "parallel/arena.h"
 #include "scenes/framing.h"
 #include "scenes/generate.h"
+#include "shading/take_shader.h"
 
 namespace delray::apps {
 namespace {
@@ -120,6 +121,15 @@ raytrace::ShareOptions share_options(const RenderRequest& request) {
   return options;
 }
 
+// Smaller levels are a third of a texture; the ray tracers have copies of the textures as well.
+void require_memory_for_textures(const RenderRequest& request, const scenes::Scene& scene) {
+  std::uint64_t texels = 0;
+  for (const scenes::Texture& texture : scene.textures) texels += texture.texels.size();
+  const std::uint64_t levels = texels / 3, copies = request.kind == Engine::raster ? 0 : texels;
+  request.scene.file.limits.budget().require((levels + copies) * sizeof(image::Rgba8),
+                                             request.scene.file.path, "textures");
+}
+
 // Loads the scene, or of one that comes in parts what is no geometry.
 std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
@@ -169,7 +179,10 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
   }
   complete(prepared.scene, prepared.camera);
   prepared.load_seconds = watch.lap();
-  if (request.kind == Engine::raster || request.data != "replicated") {
+  require_memory_for_textures(request, prepared.scene);
+  if (request.kind == Engine::raster) {
+    prepared.shader = std::make_shared<const shading::Shader>(shading::take_shader(prepared.scene));
+  } else if (request.data != "replicated") {
     prepared.shader = std::make_shared<const shading::Shader>(shading::make_shader(prepared.scene));
   } else {
     prepared.tracer = std::make_unique<const raytrace::Tracer>(

@@ -1,14 +1,20 @@
 #include "shading/shader.h"
 
+#include "shading/take_shader.h"
+
 namespace delray::shading {
 
-Shader make_shader(const scenes::Scene& scene) {
+namespace {
+
+// `texture_of` makes the scene's texture of a number.
+template <class TextureOf>
+Shader shader_of(const scenes::Scene& scene, TextureOf&& texture_of) {
   Shader shader;
   shader.materials = scene.materials;
   if (shader.materials.empty()) shader.materials.emplace_back();
   shader.textures.reserve(scene.textures.size());
-  for (const scenes::Texture& texture : scene.textures) {
-    shader.textures.push_back(make_texture(texture));
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    shader.textures.push_back(texture_of(i));
   }
   const auto check = [&](std::uint32_t& texture) {
     if (texture >= shader.textures.size()) texture = scenes::kNone;
@@ -22,6 +28,16 @@ Shader make_shader(const scenes::Scene& scene) {
   shader.lights = scene.lights;
   shader.environment = make_environment(scene.environment, shader.textures);
   return shader;
+}
+
+}  // namespace
+
+Shader make_shader(const scenes::Scene& scene) {
+  return shader_of(scene, [&](std::size_t i) { return make_texture(scene.textures[i]); });
+}
+
+Shader take_shader(scenes::Scene& scene) {
+  return shader_of(scene, [&](std::size_t i) { return take_texture(scene.textures[i]); });
 }
 
 }  // namespace delray::shading

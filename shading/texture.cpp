@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "image/srgb.h"
 #include "shading/arithmetic.h"
 #include "shading/internal/texel_values.h"
+#include "shading/take_shader.h"
 
 namespace delray::shading {
 namespace {
@@ -143,16 +145,13 @@ auto filtered(const Texture& texture, const glm::vec2& uv, float level, const Va
   return sharp + (bilinear(texture, u, v, base + 1, value) - sharp) * weight;
 }
 
-}  // namespace
-
-const float* texel_values(bool srgb) { return srgb ? kSrgb.decode.data() : kCodes.data(); }
-
-Texture make_texture(const scenes::Texture& texture) {
+// Texels become those of level 0.
+Texture with_levels(const scenes::Texture& texture, std::vector<image::Rgba8>&& texels) {
   Texture result;
   result.srgb = texture.srgb;
   result.wrap_u = texture.wrap_u;
   result.wrap_v = texture.wrap_v;
-  const bool empty = texture.width < 1 || texture.height < 1 || texture.texels.empty();
+  const bool empty = texture.width < 1 || texture.height < 1 || texels.empty();
   int width = empty ? 1 : texture.width, height = empty ? 1 : texture.height;
   std::size_t total = 0;
   for (;;) {
@@ -162,19 +161,37 @@ Texture make_texture(const scenes::Texture& texture) {
     width = std::max(1, width / 2);
     height = std::max(1, height / 2);
   }
-  result.texels.resize(total);
+  result.texels = std::move(texels);
   if (empty) {
-    result.texels[0] = {255, 255, 255, 255};
+    result.texels.assign(1, {255, 255, 255, 255});
   } else {
-    const std::size_t texels = result.levels.size() == 1 ? total : result.levels[1].first;
-    std::copy_n(texture.texels.begin(), texels, result.texels.begin());
-    result.opaque = std::all_of(result.texels.begin(), result.texels.begin() + texels,
+    const std::size_t first = result.levels.size() == 1 ? total : result.levels[1].first;
+    result.opaque = std::all_of(result.texels.begin(),
+                                result.texels.begin() + static_cast<std::ptrdiff_t>(first),
                                 [](const image::Rgba8& texel) { return texel.a == 255; });
+    result.texels.resize(total);
   }
   for (std::size_t i = 1; i < result.levels.size(); ++i) {
     reduce(result.texels.data() + result.levels[i - 1].first, result.levels[i - 1],
            result.texels.data() + result.levels[i].first, result.levels[i], coding(result.srgb));
   }
+  return result;
+}
+
+}  // namespace
+
+const float* texel_values(bool srgb) { return srgb ? kSrgb.decode.data() : kCodes.data(); }
+
+Texture make_texture(const scenes::Texture& texture) {
+  std::vector<image::Rgba8> texels;
+  texels.reserve(texture.texels.size() + texture.texels.size() / 3 + 1);
+  texels = texture.texels;
+  return with_levels(texture, std::move(texels));
+}
+
+Texture take_texture(scenes::Texture& texture) {
+  Texture result = with_levels(texture, std::move(texture.texels));
+  texture.texels = {};
   return result;
 }
 

@@ -138,8 +138,8 @@ Texels read_codes(InputFile& file) {
   const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
   Texels result{spec.width, spec.height, {}};
   file.require_memory(spec.image_pixels(), sizeof(Rgba8));
-  result.texels.reserve(static_cast<std::size_t>(spec.width) *
-                        static_cast<std::size_t>(spec.height));
+  const auto all = static_cast<std::size_t>(spec.image_pixels());
+  result.texels.reserve(all + all / 3 + 1);  // untouched room for smaller levels
   file.read<float>(OIIO::TypeDesc::FLOAT, [&](int, int rows, const float* values) {
     const std::size_t pixels =
         static_cast<std::size_t>(rows) * static_cast<std::size_t>(spec.width);

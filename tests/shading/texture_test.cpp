@@ -6,6 +6,7 @@
 #include <random>
 
 #include "image/srgb.h"
+#include "shading/take_shader.h"
 
 namespace delray::shading {
 namespace {
@@ -144,6 +145,23 @@ TEST(Texture, SurvivesOddCoordinates) {
     const glm::vec4 c = sample(texture, {u, u}, Footprint{});
     EXPECT_TRUE(c.x >= 0.0F && c.x <= 1.0F) << u;
     EXPECT_EQ(sample(empty, {u, u}, Footprint{}), glm::vec4(1.0F));
+  }
+}
+
+TEST(Texture, TakenTexelsAreThoseOfACopy) {
+  for (const auto& [width, height] : {std::pair{1, 1}, std::pair{7, 5}, std::pair{64, 64}}) {
+    scenes::Texture source = noise(width, height, 4);
+    source.texels.reserve(2 * source.texels.size());
+    const image::Rgba8* const place = source.texels.data();
+    const Texture copy = make_texture(source);
+    EXPECT_EQ(source.texels.size(), static_cast<std::size_t>(width) * height);
+    const Texture taken = take_texture(source);
+    EXPECT_TRUE(source.texels.empty());
+    EXPECT_EQ(source.width, width);
+    EXPECT_EQ(taken.texels.data(), place);
+    EXPECT_EQ(taken.texels, copy.texels);
+    EXPECT_EQ(taken.opaque, copy.opaque);
+    EXPECT_EQ(taken.levels.size(), copy.levels.size());
   }
 }
 
