@@ -190,8 +190,8 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       ->check(positive_number());
   command
       .add_option("--draw", input.draw,
-                  "surface (over the plane of x and y) or points, by themselves; by default points "
-                  "where they lie all around in space, as those of a scan")
+                  "Draw points as a surface of heights over x and y, or as single points (default: "
+                  "single points for scans, where many lie above each other; else a surface)")
       ->check(CLI::IsMember({"surface", "points"}));
   add_point_options(command, input.file);
   add_outside_option(command, input.file.limits);
