@@ -41,6 +41,9 @@ void merge_places(const PointInput& input, delaunay::PointCloud& cloud);
 // UsageError.
 delaunay::PointCloud load_points(const PointInput& input, int dim);
 
+// Throws FileError (memory) unless there is room to triangulate so many points in `dim` dimensions.
+void require_memory_to_triangulate(const PointInput& input, std::size_t points, int dim);
+
 // The elevations of a picture as points, row by row, z = height: x and y as a GeoTIFF says, unless
 // there is a cell size; else column and -row times the cell size. Pixels that are not finite,
 // transparent or marked as missing are left out. Throws FileError for a picture of colours.

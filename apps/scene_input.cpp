@@ -118,6 +118,7 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   delaunay::Options how;
   how.threads = parallel::arena_threads();
   how.progress = progress;
+  require_memory_to_triangulate(input.file, points.size(), how.dim);
   return surface(input, points, triangulate(delaunay::view(points.positions), how));
 }
 

@@ -147,6 +147,7 @@ int run(Session& session, TriangulateOptions options) {
     throw UsageError("--max-error: " + options.input.path + " has no z");
   }
   const std::size_t rows = points.size();
+  require_memory_to_triangulate(options.input, rows, how.dim);
   seconds.read = watch.lap();
   delaunay::Statistics phases;
   how.statistics = options.statistics.empty() ? nullptr : &phases;

@@ -36,6 +36,20 @@ TEST(Limits, MemoryIsPromisedBeforeItIsTaken) {
   EXPECT_EQ(run("delray info a.obj --memory much", folder.path()).exit_code, 2);
 }
 
+TEST(Limits, TriangulatingIsPartOfThePromise) {
+  const Folder folder;
+  ASSERT_EQ(
+      run("delray generate points uniform -n 300000 --dim 2 -o p.ply", folder.path()).exit_code, 0);
+  for (const std::string command : {"delray triangulate p.ply -o m.ply",
+                                    "delray render p.ply -o a.png --size 16x16 --draw surface"}) {
+    const Ran ran = run(command + " --memory 40MB", folder.path());
+    EXPECT_EQ(ran.exit_code, 1) << command << ran.err;
+    EXPECT_NE(ran.err.find("triangulation of 300000 points: takes 20.0 MiB"), std::string::npos)
+        << command << ran.err;
+  }
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"p.ply"});
+}
+
 TEST(Limits, OnlyWithAllowOutsideAreFilesElsewhereRead) {
   const Folder folder;
   std::filesystem::create_directory(folder / "scene");
