@@ -1,6 +1,7 @@
 #include "comm/agree_on_failure.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -13,7 +14,7 @@
 namespace delray::comm {
 namespace {
 
-enum class Kind : std::uint8_t { file, interrupted, other };
+enum class Kind : std::uint8_t { file, interrupted, argument, memory, other };
 
 // An exception in a form that can travel.
 struct Report {
@@ -40,9 +41,12 @@ Report report_of(const std::exception_ptr& exception) {
     return {Kind::file, error.cause(), error.file(), error.place(), what};
   } catch (const parallel::Interrupted&) {
     return {Kind::interrupted, {}, {}, {}, {}};
+  } catch (const std::invalid_argument& error) {
+    return {Kind::argument, {}, {}, {}, error.what()};
   } catch (const RankFailure& failure) {
     return {Kind::other, {}, {}, {}, failure.why()};
   } catch (...) {
+    if (tells_of_no_memory(exception)) return {Kind::memory, {}, {}, {}, {}};
     return {Kind::other, {}, {}, {}, internal::describe(exception)};
   }
 }
@@ -91,6 +95,10 @@ void agree_on_failure(Communicator& communicator, const std::exception_ptr& mine
       throw Agreed<files::FileError>(report.cause, report.file, report.place, report.what);
     case Kind::interrupted:
       throw Agreed<parallel::Interrupted>();
+    case Kind::argument:
+      throw Agreed<std::invalid_argument>(report.what);
+    case Kind::memory:
+      throw Agreed<OutOfMemory>(communicator.world_rank(failed), phase);
     case Kind::other:
       throw Agreed<RankFailure>(communicator.world_rank(failed), phase, report.what);
   }

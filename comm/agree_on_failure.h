@@ -22,8 +22,9 @@ struct Agreed final : Exception, AgreedFailure {
 };
 
 // Collective: does nothing when every rank passes null. Otherwise every rank throws what the lowest
-// rank with an exception passed: a FileError or Interrupted as such, any other as RankFailure with
-// that rank's number and `phase`. One all_reduce of a number where nothing failed.
+// rank with an exception passed: a FileError, Interrupted or std::invalid_argument as such,
+// std::bad_alloc as OutOfMemory, any other as RankFailure, the last two with that rank's number and
+// `phase`. One all_reduce of a number where nothing failed.
 void agree_on_failure(Communicator& communicator, const std::exception_ptr& mine,
                       Phase phase = Phase::other);
 

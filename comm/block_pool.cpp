@@ -102,6 +102,11 @@ void BlockPool::take_back_what_was_lent() {
   });
 }
 
+bool block_holds(std::size_t index, std::size_t bytes) {
+  constexpr std::size_t kMost = 4 * 62;  // of what the shift above can tell
+  return 8 <= index && index < kMost && bytes <= bytes_of(index);
+}
+
 BlockPool& block_pool() {
   static BlockPool& pool = *new BlockPool;
   return pool;

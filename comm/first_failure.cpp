@@ -29,6 +29,10 @@ bool passes_through(const std::exception_ptr& exception) {
     return true;
   } catch (const parallel::Interrupted&) {
     return true;
+  } catch (const std::invalid_argument&) {
+    return true;
+  } catch (const OutOfMemory&) {
+    return true;
   } catch (const RankFailure&) {
     return true;
   } catch (...) {
@@ -49,6 +53,10 @@ bool FirstFailure::record(int rank, Phase phase, std::string why) {
 }
 
 bool FirstFailure::record(int rank, Phase phase, const std::exception_ptr& exception) {
+  if (tells_of_no_memory(exception) && !passes_through(exception)) {
+    const OutOfMemory told(rank, phase);
+    return record(RankFailure(rank, phase, told.what(), std::make_exception_ptr(told)));
+  }
   return record(RankFailure(rank, phase, describe(exception), exception));
 }
 

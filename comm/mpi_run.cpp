@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 #include <thread>
 
 #include "comm/agree_on_failure.h"
@@ -135,9 +136,16 @@ int exit_code_of(const std::exception_ptr& exception) {
     return error.cause() == files::Cause::input ? 3 : 1;
   } catch (const parallel::Interrupted&) {
     return 130;
+  } catch (const std::invalid_argument&) {
+    return 2;
   } catch (...) {
-    return internal::kExitRankLost;
+    return tells_of_no_memory(exception) ? 1 : internal::kExitRankLost;
   }
+}
+
+// What the line about a failure says.
+std::string reason_of(const std::exception_ptr& failure) {
+  return tells_of_no_memory(failure) ? "out of memory" : internal::describe(failure);
 }
 
 bool is_agreed(const std::exception_ptr& exception) {
@@ -190,7 +198,7 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
     if (failure && !is_agreed(failure)) {
       if (communicator->rank() != 0 && is_interruption(failure)) wait_for_the_end();
       internal::end_all_ranks(world, communicator->rank(), internal::noted_phase(),
-                              internal::describe(failure), exit_code_of(failure));
+                              reason_of(failure), exit_code_of(failure));
     }
   }
   if (!initialized) MPI_Finalize();

@@ -1,11 +1,14 @@
 #include "comm/threads.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <condition_variable>
+#include <cstdio>
 #include <mutex>
 #include <numeric>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -52,6 +55,40 @@ class World {
   std::chrono::nanoseconds awake;
   Clock::time_point start = Clock::now();
   internal::FirstFailure failure;
+
+  // Ranks whose threads have not ended, and whether one of them is taken for stalled.
+  std::mutex end_mutex;
+  std::condition_variable end_changed;
+  int not_ended = 0;
+  bool stalled = false;
+
+  void change_not_ended(int by) {
+    const std::scoped_lock lock(end_mutex);
+    not_ended += by;
+    end_changed.notify_all();
+  }
+
+  // Until all ranks have ended, or one is taken for stalled and they do not end.
+  bool all_end() {
+    constexpr std::chrono::seconds kGrace{2};
+    std::unique_lock lock(end_mutex);
+    end_changed.wait(lock, [&] { return not_ended == 0 || stalled; });
+    return end_changed.wait_for(lock, kGrace, [&] { return not_ended == 0; });
+  }
+
+  // The rank that `rank` waits for in the end; itself where ranks wait for each other, or it for
+  // any. REQUIRES: the caller holds no lock.
+  int stalled_rank(int rank) {
+    const int first = rank;
+    for (std::size_t steps = 0; steps < inboxes.size(); ++steps) {
+      Inbox& inbox = inboxes[static_cast<std::size_t>(rank)];
+      const std::scoped_lock lock(inbox.mutex);
+      if (!inbox.waiting || !inbox.counted_as_blocked) return rank;
+      if (inbox.from == kAnyRank) return first;
+      rank = inbox.group->world_ranks[static_cast<std::size_t>(inbox.from)];
+    }
+    return first;
+  }
 
   template <class Why>
   void fail(int rank, Why&& why) {
@@ -149,6 +186,24 @@ class ThreadCommunicator final : public Communicator {
   void mark(Phase phase, int) override { inbox_.phase.store(phase, std::memory_order_relaxed); }
   void work(Work, std::uint64_t) override {}
 
+  // `from` and `tag` are what this rank waits for.
+  [[noreturn]] void end_stalled(int from, Tag tag, std::chrono::nanoseconds longest) {
+    const int first = from == kAnyRank ? kAnyRank : world_rank(from);
+    const int stalled = first == kAnyRank ? world_rank(rank_) : world_.stalled_rank(first);
+    {
+      const std::scoped_lock lock(world_.end_mutex);
+      world_.stalled = true;
+    }
+    std::array<char, 32> seconds{};
+    std::snprintf(seconds.data(), seconds.size(), "%.3g s",
+                  std::chrono::duration<double>(longest).count());
+    world_.fail(stalled, "stalled: rank " + std::to_string(world_rank(rank_)) + " waited " +
+                             seconds.data() + " for a message from " +
+                             internal::describe_pattern(first, tag));
+    world_.end_changed.notify_all();
+    throw RunEnded{};
+  }
+
   void abort(std::string why) override {
     world_.fail(group_->world_ranks[rank_], std::move(why));
     throw RunEnded{};
@@ -183,9 +238,7 @@ class ThreadCommunicator final : public Communicator {
         if (now >= end) {
           if (longest == deadline.wait) return nullptr;
           lock.unlock();
-          abort("stalled: waited " +
-                std::to_string(std::chrono::duration<double>(longest).count()) +
-                " s for a message from " + internal::describe_pattern(from, tag));
+          end_stalled(from, tag, longest);
         }
       }
       if (stays_awake) {
@@ -247,13 +300,18 @@ void run_rank(World& world, const std::shared_ptr<Group>& group, int rank, int t
     world.fail(rank, std::current_exception());
   }
   if (world.stop_running()) world.report_deadlock();
+  world.change_not_ended(-1);
 }
 
 }  // namespace
 
 void run_threads(int ranks, int threads_per_rank, const std::function<void(Communicator&)>& body,
                  const ThreadsOptions& options) {
-  assert(ranks >= 1 && threads_per_rank >= 1);
+  if (ranks < 1) throw std::invalid_argument("ranks: there is at least one");
+  if (threads_per_rank < 1 || threads_per_rank > kMostThreadsPerRank) {
+    throw std::invalid_argument("threads of a rank: from 1 to " +
+                                std::to_string(kMostThreadsPerRank));
+  }
   const parallel::AllowThreads allowed(ranks * threads_per_rank);
   World world(ranks, options);
   std::vector<int> members(ranks);
@@ -264,12 +322,21 @@ void run_threads(int ranks, int threads_per_rank, const std::function<void(Commu
     threads.reserve(ranks);
     try {
       for (int rank = 0; rank < ranks; ++rank) {
+        world.change_not_ended(1);
         threads.emplace_back([&world, &group, rank, threads_per_rank, &body] {
           run_rank(world, group, rank, threads_per_rank, body);
         });
       }
     } catch (...) {
+      world.change_not_ended(-1);
       world.fail(static_cast<int>(threads.size()), std::current_exception());
+    }
+    if (!world.all_end() && options.on_stuck) {
+      try {
+        world.failure.rethrow_if_any();
+      } catch (const RankFailure& failure) {
+        options.on_stuck(failure);
+      }
     }
   }
   world.failure.rethrow_if_any();

@@ -55,6 +55,10 @@ class BlockPool {
   std::size_t cut_ = 0;  // bytes of it
 };
 
+// Whether a block of this index may have a message of so many bytes. Any index: it may come from
+// another process.
+bool block_holds(std::size_t index, std::size_t bytes);
+
 // Of this process. Never destroyed: buffers may outlive whatever is.
 BlockPool& block_pool();
 

@@ -17,8 +17,8 @@ std::string describe_pattern(int from_or_any, Tag tag_or_any);
 // exception.what(), or a stand-in for what is no std::exception.
 std::string describe(const std::exception_ptr& exception);
 
-// True for bad input, failing devices and interruption: they are no rank's fault, and callers get
-// them as they were thrown.
+// True for bad input, failing devices, interruption, arguments that cannot be and memory that is
+// not there: they are no rank's fault, and callers get them as they were thrown.
 bool passes_through(const std::exception_ptr& exception);
 
 class FirstFailure {

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "comm/buffer.h"
+#include "comm/communicator.h"
 
 namespace delray::comm::internal {
 
@@ -25,26 +25,42 @@ struct SharedMemory {
 // This process's, made by the first call. Any thread.
 SharedMemory share_memory();
 
-// Whether this process can reach that of another. Any thread; costs a look-up once it was.
+// Whether this process can reach that of another. Any thread; costs a look-up once it was. Takes a
+// page of this process's address space; all of the other's memory is mapped when a message in it
+// comes, and copied from where there is too little address space for that.
 bool can_reach(const SharedMemory& other);
 
 // Hands over a message whose bytes are in this process's memory and tells where they are; nothing,
 // and the message is left as it is, where they are not.
 std::optional<std::uint64_t> lend(Buffer& message);
 
-// What the other process has lent. Its memory goes back when the buffer is destroyed.
+// What the other process has lent. Its memory goes back when the buffer is destroyed, or at once
+// where a copy was made. Nothing when there is no such message in its memory, or it is out of
+// reach.
 //
-// REQUIRES: can_reach(other); called once for what one call of lend there has told.
-Buffer borrow(const SharedMemory& other, std::uint64_t offset, std::size_t bytes);
+// REQUIRES: called once for what one call of lend there has told. Throws std::bad_alloc.
+std::optional<Buffer> borrow(const SharedMemory& other, std::uint64_t offset, std::size_t bytes);
 
 // Whoever waits sleeps until somebody rings, with a message that he has just sent.
 //
 // A process counts how often it was rung for. It reads the count, looks for messages, and if there
 // are none sleeps until the count is another or so much time has passed.
-// REQUIRES: this process shares its memory.
+// REQUIRES for these two: this process shares its memory.
 std::uint32_t rings();
 void sleep_until_rung(std::uint32_t rings_seen, std::chrono::microseconds longest);
 // Nothing where this process cannot reach the other, which then has ended.
 void ring(const SharedMemory& other);
+
+// What a process tells its neighbours of itself, for messages about stalls.
+inline constexpr std::int32_t kWaitsForNobody = -2;  // it works, or is lost
+struct Doing {
+  Phase phase = Phase::other;
+  std::int32_t waits_for = kWaitsForNobody;  // a rank, or kAnyRank
+};
+// REQUIRES for these two: this process shares its memory.
+void tell_phase(Phase phase);
+void tell_waiting(std::int32_t for_rank);
+// Nothing where the other is out of reach.
+std::optional<Doing> doing(const SharedMemory& other);
 
 }  // namespace delray::comm::internal

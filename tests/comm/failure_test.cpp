@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <ostream>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
@@ -186,6 +192,47 @@ TEST_P(FailureTest, PassesBadInputAndInterruptionThrough) {
                parallel::Interrupted);
 }
 
+TEST_P(FailureTest, ArgumentsThatCannotBeAreNoRanksFault) {
+  EXPECT_THROW(GetParam().run(3,
+                              [](Communicator& c) {
+                                if (c.rank() == 2) throw std::invalid_argument("x");
+                                barrier(c);
+                              }),
+               std::invalid_argument);
+  EXPECT_THROW(GetParam().run(3,
+                              [](Communicator& c) {
+                                all_or_none(c, Phase::load, [&] {
+                                  if (c.rank() == 2) throw std::invalid_argument("x");
+                                });
+                              }),
+               std::invalid_argument);
+}
+
+TEST_P(FailureTest, MemoryThatIsNotThereIsNoLostRank) {
+  const std::vector<std::function<void()>> ways = {
+      [] { throw std::bad_alloc(); }, [] { std::vector<double>().reserve(std::size_t{1} << 62); },
+      [] {
+        throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+      }};
+  for (const auto& way : ways) {
+    for (const bool agreed : {false, true}) {
+      try {
+        GetParam().run(3, [&](Communicator& c) {
+          c.mark(Phase::bin, 0);
+          const auto fail = [&] {
+            if (c.rank() == 1) way();
+          };
+          if (!agreed) fail();
+          all_or_none(c, Phase::bin, fail);
+        });
+        ADD_FAILURE() << "did not fail";
+      } catch (const OutOfMemory& error) {
+        EXPECT_STREQ(error.what(), "out of memory: rank 1, in phase bin");
+      }
+    }
+  }
+}
+
 TEST_P(FailureTest, TellsThatSomethingElseWasThrown) {
   const auto failure = failure_of(2, [](Communicator& c) {
     if (c.rank() == 0) throw 42;
@@ -285,10 +332,59 @@ TEST(ThreadsFailure, TakesALongWaitForAStall) {
         options);
     FAIL() << "did not end";
   } catch (const RankFailure& failure) {
-    EXPECT_EQ(failure.rank(), 0);
+    EXPECT_EQ(failure.rank(), 1);
     EXPECT_EQ(failure.phase(), Phase::trace);
-    EXPECT_NE(failure.why().find("rank 1 with tag 4"), std::string::npos) << failure.why();
+    EXPECT_EQ(failure.why(), "stalled: rank 0 waited 0.03 s for a message from rank 1 with tag 4");
   }
+}
+
+// Rank 2 is at fault, whoever of the others has waited the longest.
+TEST(ThreadsFailure, NamesTheRankThatAllWaitForInTheEnd) {
+  for (int i = 0; i < 5; ++i) {
+    try {
+      run_threads(4, 1,
+                  [](Communicator& c) {
+                    c.mark(Phase::load, 0);
+                    if (c.rank() != 2) c.receive((c.rank() + 1) % 4, 4);
+                    c.mark(Phase::shade, 0);
+                    while (true) c.probe(0, 1, Deadline::in(std::chrono::milliseconds(1)));
+                  },
+                  {.timeout = std::chrono::milliseconds(20)});
+      FAIL() << "did not end";
+    } catch (const RankFailure& failure) {
+      EXPECT_EQ(failure.rank(), 2);
+      EXPECT_EQ(failure.phase(), Phase::shade);
+    }
+  }
+}
+
+TEST(ThreadsFailure, TellsOfARankThatNeitherSendsNorWaits) {
+  std::atomic<bool> released{false};
+  int told_of = -1;
+  ThreadsOptions options;
+  options.timeout = std::chrono::milliseconds(20);
+  options.on_stuck = [&](const RankFailure& failure) {
+    told_of = failure.rank();
+    released = true;
+  };
+  EXPECT_THROW(run_threads(
+                   3, 1,
+                   [&](Communicator& c) {
+                     if (c.rank() != 1) c.receive(1, 0);
+                     while (!released) std::this_thread::yield();
+                   },
+                   options),
+               RankFailure);
+  EXPECT_EQ(told_of, 1);
+}
+
+TEST(ThreadsFailure, RefusesNumbersOfRanksAndThreadsThatCannotBe) {
+  const auto nothing = [](Communicator&) {};
+  for (const int wrong : {0, -3}) {
+    EXPECT_THROW(run_threads(wrong, 1, nothing), std::invalid_argument);
+    EXPECT_THROW(run_threads(1, wrong, nothing), std::invalid_argument);
+  }
+  EXPECT_THROW(run_threads(1, 100000, nothing), std::invalid_argument);
 }
 
 }  // namespace

@@ -82,6 +82,40 @@ TEST(MpiFailure, StallEndsAllWithFive) {
       << outcome.output;
 }
 
+// It neither ends nor goes on. The line names it, whoever has waited for whom.
+TEST(MpiFailure, AStoppedProcessIsNamedWithItsPhase) {
+  const Outcome outcome = launch("stop 2");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
+  EXPECT_NE(outcome.output.find("rank 2 failed in phase compose: stalled: rank"), std::string::npos)
+      << outcome.output;
+}
+
+TEST(MpiFailure, OutOfMemoryIsNoLostRank) {
+  const Outcome outcome = launch("memory 1");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("rank 1 failed in phase compose: out of memory"), std::string::npos)
+      << outcome.output;
+}
+
+TEST(MpiFailure, ArgumentsThatCannotBeAreWrongUsage) {
+  const Outcome outcome = launch("argument 1");
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+}
+
+// One rank has too little address space to share memory from the beginning, or for that of another
+// later on.
+TEST(MpiFailure, WhereAddressSpaceIsShortMessagesGoAnotherWay) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer takes address space without end";
+#endif
+  for (const std::string how : {"little", "less"}) {
+    for (const std::string rank : {" 0", " 2"}) {
+      const Outcome outcome = launch(how + rank);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    }
+  }
+}
+
 // Processes that have this argument. A shell that has it among others in one argument is none.
 std::vector<std::string> processes_with(const std::string& argument) {
   std::string wanted(1, '\0');

@@ -13,6 +13,7 @@ namespace delray::comm::testing {
 namespace {
 
 Communicator* world = nullptr;
+Communicator* in_pieces = nullptr;  // messages in pieces of 1000 bytes
 
 // The first `ranks` processes run the body; the others wait for them, so that tests do not overlap.
 void run_on(Communicator& communicator, int ranks, const Body& body) {
@@ -26,12 +27,7 @@ void run_on(Communicator& communicator, int ranks, const Body& body) {
 
 void run_whole(int ranks, const Body& body) { run_on(*world, ranks, body); }
 
-// Messages in pieces of 1000 bytes.
-void run_in_pieces(int ranks, const Body& body) {
-  const MPI_Comm all = MPI_COMM_WORLD;
-  const auto communicator = make_mpi_communicator(&all, {.piece_bytes = 1000});
-  run_on(*communicator, ranks, body);
-}
+void run_in_pieces(int ranks, const Body& body) { run_on(*in_pieces, ranks, body); }
 
 // Says which process a failure is of.
 class RankPrinter : public ::testing::EmptyTestEventListener {
@@ -57,7 +53,10 @@ int main(int argc, char** argv) {
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   ::testing::InitGoogleTest(&argc, argv);
   delray::comm::run_mpi(&argc, &argv, [&](delray::comm::Communicator& communicator) {
+    const MPI_Comm all = MPI_COMM_WORLD;
+    const auto in_pieces = delray::comm::make_mpi_communicator(&all, {.piece_bytes = 1000});
     delray::comm::testing::world = &communicator;
+    delray::comm::testing::in_pieces = in_pieces.get();
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
     if (communicator.rank() != 0) delete listeners.Release(listeners.default_result_printer());
     listeners.Append(new delray::comm::testing::RankPrinter);
