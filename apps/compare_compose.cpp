@@ -9,10 +9,12 @@
 #include <thread>
 
 #include "apps/composed_shares.h"
+#include "apps/scene_facts.h"
 #include "apps/share_layers.h"
 #include "apps/shown_scheme.h"
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
+#include "comm/handshake.h"
 #include "comm/network.h"
 #include "composite/fit_machine.h"
 #include "composite/scheme.h"
@@ -183,13 +185,15 @@ class Comparison {
     });
     Launch launch = request_.render.launch;
     launch.ranks = ranks;
-    run_ranks(session_, launch, [&](comm::Communicator& communicator) {
+    run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
       measure_all(communicator, shares[static_cast<std::size_t>(communicator.rank())]);
     });
   }
 
   void measure_processes() {
-    run_ranks(session_, request_.render.launch, [&](comm::Communicator& communicator) {
+    const std::vector<std::string> inputs = {request_.render.scene.file.path};
+    run_ranks(session_, request_.render.launch, inputs, [&](comm::Communicator& communicator) {
+      comm::handshake(communicator, scene_facts(prepared_));
       session_ranks_ = communicator.size();
       communicator.mark(comm::Phase::rasterize, 0);
       const raster::Share share = comm::all_or_none(communicator, comm::Phase::rasterize, [&] {

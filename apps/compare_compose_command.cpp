@@ -72,6 +72,7 @@ void add_compare_compose(CLI::App& compare, Session& session) {
       "are simulated");
   command->add_option("--threads", request->render.launch.threads, "workers per rank (default 1)")
       ->check(CLI::Range(1, 4096));
+  add_timeout_option(*command, request->render.launch);
   command
       ->add_option("--codec", request->codecs,
                    "how pixels travel, separated by commas (default active)")

@@ -123,7 +123,7 @@ class Comparison {
     Launch launch;
     launch.ranks = launch.threads = 1;
     for (int repeat = 0; repeat < repeats(); ++repeat) {
-      run_ranks(session_, launch, [&](comm::Communicator& communicator) {
+      run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
         raytrace::Result frame =
             raytrace::render(communicator, *prepared_.tracer, prepared_.camera, options_);
         for (const raytrace::TileCost& tile : frame.tile_costs) {
@@ -167,7 +167,7 @@ class Comparison {
     std::vector<double> seconds;
     for (int repeat = 0; repeat < repeats(); ++repeat) {
       steps_.stop_if_asked();
-      run_ranks(session_, launch, [&](comm::Communicator& communicator) {
+      run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
         comm::barrier(communicator);
         const double begin = communicator.seconds();
         raytrace::Result frame =

@@ -192,7 +192,9 @@ int run(const Session& session, const ComposeRequest& request) {
     return kDone;
   }
   check(request);
-  run_ranks(session, request.launch, [&](comm::Communicator& communicator) {
+  check(session, request.launch);
+  // A rank reads its own parts only, which may lie on its machine alone.
+  run_ranks(session, request.launch, {}, [&](comm::Communicator& communicator) {
     Outcome outcome = compose_parts(communicator, request);
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() != 0) return;

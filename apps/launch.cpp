@@ -1,11 +1,19 @@
 #include "apps/launch.h"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 
+#include "apps/build_id.h"
+#include "apps/numbers.h"
+#include "comm/failure.h"
+#include "comm/handshake.h"
 #include "comm/mpi.h"
 #include "comm/threads.h"
+#include "files/fingerprint.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -18,9 +26,81 @@ int processes_here() {
   return 1;
 }
 
+namespace {
+
+std::chrono::nanoseconds timeout_of(const Launch& launch) {
+  constexpr auto kNever = std::chrono::nanoseconds::max();
+  if (launch.timeout <= 0) return kNever;
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(launch.timeout));
+}
+
+// A rank that computes for ever cannot be ended but with the process.
+[[noreturn]] void end_process(const comm::RankFailure& failure) {
+  spdlog::error("{}", failure.what());
+  std::_Exit(kRankLost);
+}
+
+// The subcommand that arguments lead to, however much of them was understood.
+const CLI::App& command_of(const CLI::App& program, const std::vector<std::string>& arguments) {
+  const CLI::App* command = &program;
+  for (const std::string& argument : arguments) {
+    for (const CLI::App* sub : command->get_subcommands([](const CLI::App*) { return true; })) {
+      if (sub->get_name() == argument) {
+        command = sub;
+        break;
+      }
+    }
+  }
+  return *command;
+}
+
+// What each rank may choose for itself.
+bool is_own_affair(const std::string& option) {
+  return option == "--quiet" || option == "--verbose" || option == "--threads" ||
+         option == "--memory";
+}
+
+bool met_ranks = false;
+
+void meet(comm::Communicator& communicator, const Session& session, const std::string& error,
+          std::vector<comm::Fact> facts) {
+  facts.insert(facts.begin(),
+               {{"build", fmt::format("{} {}", DELRAY_VERSION, build_id())}, {"errors", error}});
+  facts.insert(facts.end(), session.options.begin(), session.options.end());
+  comm::handshake(communicator, facts);
+}
+
+}  // namespace
+
 void find_launcher(Session& session) {
   session.under_mpi = comm::launched_by_mpi();
   session.first_process = comm::launched_rank() == 0;
+}
+
+void note_options(const CLI::App& program, const std::vector<std::string>& arguments,
+                  Session& session) {
+  const CLI::App& command = command_of(program, arguments);
+  session.has_ranks = command.get_option_no_throw("--timeout") != nullptr;
+  session.options = {{"command", command.get_name()}};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || is_own_affair(name)) continue;
+    session.options.push_back({name, fmt::format("{}", fmt::join(option->results(), " "))});
+  }
+}
+
+void add_timeout_option(CLI::App& command, Launch& launch) {
+  command
+      .add_option("--timeout", launch.timeout,
+                  "Seconds after which a rank that others wait for counts as lost: exit code 5 "
+                  "(default: none)")
+      ->check(positive_number());
+}
+
+void check(const Session& session, const Launch& launch) {
+  if (launch.timeout > 0 && !session.under_mpi && launch.ranks <= 1)
+    throw UsageError("--timeout has no effect with a single rank, which waits for no other");
 }
 
 void add_launch_options(CLI::App& command, Launch& launch) {
@@ -30,26 +110,57 @@ void add_launch_options(CLI::App& command, Launch& launch) {
       .add_option("--threads", launch.threads,
                   "workers per rank (default: cores / ranks, at least 1)")
       ->check(CLI::Range(1, 4096));
+  add_timeout_option(command, launch);
 }
 
 int threads_per_rank(const Launch& launch, int ranks) {
   return launch.threads > 0 ? launch.threads : std::max(1, parallel::arena_threads() / ranks);
 }
 
-void run_ranks(const Session& session, const Launch& launch,
+void compare_ranks(comm::Communicator& communicator, const Session& session,
+                   const std::vector<std::string>& inputs) {
+  if (communicator.size() == 1) return;
+  std::vector<comm::Fact> facts;
+  for (const std::string& input : inputs) {
+    const files::Fingerprint print = files::fingerprint(input);
+    if (print.parts.empty()) continue;
+    facts.push_back({input, fmt::format("{} bytes", print.bytes)});
+    for (const files::Fingerprint::Part& part : print.parts) {
+      facts.push_back({fmt::format("{}, from byte {}", input, part.begin), "hash " + part.hash});
+    }
+  }
+  meet(communicator, session, "none", std::move(facts));
+}
+
+void meet_ranks_with_failure(const Session& session, const std::string& why) {
+  if (!session.under_mpi || !session.has_ranks) return;
+  try {
+    comm::run_mpi(nullptr, nullptr,
+                  [&](comm::Communicator& communicator) { meet(communicator, session, why, {}); });
+  } catch (const std::invalid_argument&) {  // told by rank 0
+  }
+}
+
+bool has_met_ranks() { return met_ranks; }
+
+void run_ranks(const Session& session, const Launch& launch, const std::vector<std::string>& inputs,
                const std::function<void(comm::Communicator&)>& body, Waiting waiting) {
   if (!session.under_mpi) {
     const int ranks = std::max(1, launch.ranks);
-    comm::run_threads(ranks, threads_per_rank(launch, ranks), body);
+    comm::run_threads(ranks, threads_per_rank(launch, ranks), body,
+                      {.timeout = timeout_of(launch), .on_stuck = end_process});
     return;
   }
   if (launch.ranks > 0) throw UsageError("--ranks: under mpirun the ranks are its processes");
   const int threads = threads_per_rank(launch, processes_here());
   comm::MpiOptions options;
+  options.timeout = timeout_of(launch);
+  met_ranks = true;
   if (waiting == Waiting::stops) options.progress = &session.progress;
   comm::run_mpi(
       nullptr, nullptr,
       [&](comm::Communicator& communicator) {
+        compare_ranks(communicator, session, inputs);
         const parallel::AllowThreads allowed(threads);
         parallel::Arena arena(threads);
         arena.execute([&] { body(communicator); });

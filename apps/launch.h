@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "apps/session.h"
 #include "comm/communicator.h"
@@ -10,8 +12,9 @@
 namespace delray::apps {
 
 struct Launch {
-  int ranks = 0;    // 0: not given
-  int threads = 0;  // workers per rank; 0: cores / ranks
+  int ranks = 0;       // 0: not given
+  int threads = 0;     // workers per rank; 0: cores / ranks
+  double timeout = 0;  // seconds that a rank waits for another; 0: without end
 };
 
 // Finds out whether this process is one of several that an MPI launcher started.
@@ -20,18 +23,41 @@ void find_launcher(Session& session);
 // How many processes of the launcher share this machine.
 int processes_here();
 
-// Adds --ranks and --threads.
+// Tells the session what was asked for, of a command line as far as it was understood. `arguments`
+// are those of the program.
+void note_options(const CLI::App& program, const std::vector<std::string>& arguments,
+                  Session& session);
+
+// Adds --ranks, --threads and --timeout.
 void add_launch_options(CLI::App& command, Launch& launch);
+// --timeout alone.
+void add_timeout_option(CLI::App& command, Launch& launch);
+
+// Throws UsageError for --timeout where no rank waits for another.
+void check(const Session& session, const Launch& launch);
 
 // The number of threads that each of `ranks` ranks on this machine gets.
 int threads_per_rank(const Launch& launch, int ranks);
 
+// Processes of mpirun that are not at the same work would wait for each other for ever, or make a
+// picture that is none. Throws std::invalid_argument on all where the build, the options or the
+// content of `inputs` (files::fingerprint) differ. Collective.
+void compare_ranks(comm::Communicator& communicator, const Session& session,
+                   const std::vector<std::string>& inputs);
+
+// For a process of mpirun that cannot begin, while others may: tells them why in place of
+// compare_ranks, which ends them. Does not return before they have.
+void meet_ranks_with_failure(const Session& session, const std::string& why);
+// Whether run_ranks has met other processes of mpirun.
+bool has_met_ranks();
+
 // Runs `body` on every rank, each inside an arena of its own, and returns when all have. Throws
 // what a rank threw (bad input, interruption) or comm::RankFailure. UsageError: --ranks under
-// mpirun. `waiting` says what processes do that wait for others when the session is asked to stop:
-// go on, as the others agree on when to stop; or throw parallel::Interrupted at once.
+// mpirun. `inputs` are files that every rank reads, see compare_ranks. `waiting` says what
+// processes do that wait for others when the session is asked to stop: go on, as the others agree
+// on when to stop; or throw parallel::Interrupted at once.
 enum class Waiting : std::uint8_t { goes_on, stops };
-void run_ranks(const Session& session, const Launch& launch,
+void run_ranks(const Session& session, const Launch& launch, const std::vector<std::string>& inputs,
                const std::function<void(comm::Communicator&)>& body,
                Waiting waiting = Waiting::goes_on);
 

@@ -94,10 +94,16 @@ int run(int argc, char** argv) {
   add_compare(program, session);
   add_completion(program, session);
   add_manual(program, session);
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
     program.parse(argc, argv);
+    note_options(program, arguments, session);
   } catch (const CLI::ParseError& error) {
-    if (!session.first_process) return kDone;
+    note_options(program, arguments, session);
+    if (!session.first_process) {
+      if (error.get_exit_code() != 0) meet_ranks_with_failure(session, error.what());
+      return kDone;
+    }
     std::ostringstream told;
     const int code = program.exit(error, std::cout, told);
     std::istringstream lines(told.str());

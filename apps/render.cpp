@@ -16,8 +16,10 @@
 #include "apps/render_frames.h"
 #include "apps/render_options.h"
 #include "apps/render_statistics.h"
+#include "apps/scene_facts.h"
 #include "apps/write_picture.h"
 #include "comm/agree_on_failure.h"
+#include "comm/handshake.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "files/output_path.h"
@@ -107,6 +109,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   if (request.list) return print_lists();
   check(command, request);
   refuse_overwriting(request);
+  check(session, request.launch);
   const ProgressBar bar(session, "render");
   std::optional<StopOnTermination> stop;
   if (!request.practice.checkpoint.empty()) stop.emplace();
@@ -120,7 +123,6 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     parallel::Arena arena(threads);
     shared = arena.execute([&] { return prepare(request, progress); });
   }
-  std::exception_ptr wrong_usage;  // found while loading, by every process alike
   const auto render = [&](comm::Communicator& communicator) {
     std::shared_ptr<const Prepared> prepared = shared;
     if (!prepared) {
@@ -128,12 +130,8 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       comm::all_or_none(communicator, comm::Phase::load, [&] {
         if (communicator.rank() == 0) check_folders(request);
       });
-      try {
-        prepared = prepare(communicator, request, progress);
-      } catch (const UsageError&) {
-        wrong_usage = std::current_exception();
-        return;
-      }
+      prepared = prepare(communicator, request, progress);
+      comm::handshake(communicator, scene_facts(*prepared));
     }
     if (!prepared->cameras.empty()) {
       const Animation animation =
@@ -152,8 +150,8 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       if (communicator.rank() == 0) finish(request, session, *prepared, frames);
     });
   };
-  run_ranks(session, request.launch, render, Waiting::stops);
-  if (wrong_usage) std::rethrow_exception(wrong_usage);
+  run_ranks(session, request.launch, {request.scene.file.path, request.camera_path}, render,
+            Waiting::stops);
   return kDone;
 }
 

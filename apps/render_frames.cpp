@@ -221,21 +221,13 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
 std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
                                         const RenderRequest& request,
                                         parallel::Progress* progress) {
-  std::exception_ptr wrong_usage;  // found by every process alike
-  const auto unless_wrong = [&](auto&& step) {
-    comm::all_or_none(communicator, comm::Phase::load, [&] {
-      try {
-        step();
-      } catch (const UsageError&) {
-        wrong_usage = std::current_exception();
-      }
-    });
-    if (wrong_usage) std::rethrow_exception(wrong_usage);
+  const auto on_all = [&](auto&& step) {
+    comm::all_or_none(communicator, comm::Phase::load, step);
   };
   Stopwatch watch;
   std::shared_ptr<Prepared> prepared;
   scenes::ScenePart part;
-  unless_wrong([&] {
+  on_all([&] {
     prepared = load(request, comes_in_parts(request), progress);
     if (!prepared->in_parts || request.camera.view.empty()) return;
     part = scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
@@ -245,10 +237,9 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
     choose_cameras(request, of_all_ranks(communicator, mine), *prepared);
     part = {};
   } else {
-    unless_wrong(
-        [&] { choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared); });
+    on_all([&] { choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared); });
   }
-  unless_wrong([&] { build(request, watch, *prepared); });
+  on_all([&] { build(request, watch, *prepared); });
   return prepared;
 }
 

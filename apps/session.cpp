@@ -6,6 +6,7 @@
 #include <new>
 
 #include "apps/interrupt.h"
+#include "apps/launch.h"
 #include "comm/failure.h"
 #include "files/error.h"
 
@@ -25,6 +26,9 @@ int report_failure() {
   } catch (const parallel::Interrupted&) {
     spdlog::error("interrupted");
     return kInterrupted;
+  } catch (const comm::OutOfMemory& error) {
+    spdlog::error("{}", error.what());
+    return kFailed;
   } catch (const comm::RankFailure& failure) {
     spdlog::error("{}", failure.what());
     return kRankLost;
@@ -34,6 +38,15 @@ int report_failure() {
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return kFailed;
+  }
+}
+
+// What the exception in flight says.
+std::string text_of_failure() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
   }
 }
 
@@ -61,7 +74,9 @@ int run_guarded(Session& session) {
   } catch (...) {
     // All processes of mpirun are here with the same failure; one speaks, and exits with the code,
     // for mpirun ends the others when it does.
-    return session.first_process ? report_failure() : int{kDone};
+    if (session.first_process) return report_failure();
+    if (!has_met_ranks()) meet_ranks_with_failure(session, text_of_failure());
+    return kDone;
   }
 }
 

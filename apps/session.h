@@ -4,7 +4,9 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "comm/handshake.h"
 #include "parallel/progress.h"
 
 namespace CLI {
@@ -34,6 +36,8 @@ struct Session {
   bool under_mpi = false;
   bool first_process = true;  // the one that speaks; the only one without MPI
   std::string command_line;
+  std::vector<comm::Fact> options;  // those that were given, but for what each rank may choose
+  bool has_ranks = false;           // the subcommand runs on all processes of mpirun together
   parallel::Progress progress;
   std::function<int()> run;  // set by the subcommand that was chosen
 };

@@ -1,0 +1,16 @@
+// What ranks that have each loaded the same scene must agree in.
+#pragma once
+
+#include <vector>
+
+#include "apps/render_frames.h"
+#include "comm/handshake.h"
+
+namespace delray::apps {
+
+// Counts, the camera, and hashes of samples of meshes, textures and whatever else is in the scene:
+// files that a scene names may differ where the scene's own file does not. Reads 128 KiB of an
+// array at most.
+std::vector<comm::Fact> scene_facts(const Prepared& prepared);
+
+}  // namespace delray::apps
