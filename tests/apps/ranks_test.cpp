@@ -17,13 +17,12 @@ const std::string kCornell = "delray render gen:cornell -o a.png --size 32x24 ";
 const std::string kAnother = ": -n 2 ";  // two further processes
 
 void expect_refused(const std::string& command, const Folder& folder, const std::string& why) {
-  const Ran ran = run("timeout 60 " + command, folder.path());
+  const Ran ran = run(std::string(DELRAY_LIMIT " 60 ") + command, folder.path());
   EXPECT_EQ(ran.exit_code, 2) << command << ran.err;
   EXPECT_NE(ran.err.find(why), std::string::npos) << command << ran.err;
   EXPECT_EQ(folder.files().end(), std::ranges::find(folder.files(), "a.png")) << command;
 }
 
-// mpirun's options are in the environment, which `timeout` hands on.
 std::string processes(int count) { return "env " + mpirun(count); }
 
 TEST(Ranks, WithOtherOptionsAreToldFromEachOther) {
@@ -104,7 +103,7 @@ TEST(Ranks, OutOfMemoryWhileRenderingIsNoLostRank) {
 #endif
   const Folder folder;
   for (const std::string options : {"--ranks 2 --threads 1", "--threads 2"}) {
-    const Ran ran = run("ulimit -v 500000; timeout 100 " + std::string(DELRAY_PROGRAM) +
+    const Ran ran = run("ulimit -v 500000; " + std::string(DELRAY_PROGRAM) +
                             " render gen:spheres -o a.png --size 8000x8000 " + options,
                         folder.path());
     EXPECT_EQ(ran.exit_code, 1) << options << ran.err;
