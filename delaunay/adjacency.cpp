@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/facets.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
 
 Adjacency adjacency(const Triangulation& triangulation, std::size_t rows) {
+  internal::check_triangulation(triangulation, rows);
   const auto corners = static_cast<std::uint32_t>(triangulation.dim + 1);
   Adjacency result;
   result.neighbours = match_facets(triangulation.dim, triangulation.vertices, rows).mates;
@@ -26,6 +28,10 @@ Adjacency adjacency(const Triangulation& triangulation, std::size_t rows) {
 
 std::vector<std::uint32_t> simplices_around(const Triangulation& triangulation,
                                             const Adjacency& adjacency, std::uint32_t row) {
+  if (row >= adjacency.simplex_at.size())
+    throw std::invalid_argument("row " + std::to_string(row) + " does not exist");
+  if (adjacency.neighbours.size() != triangulation.vertices.size())
+    throw std::invalid_argument("the adjacency is of another triangulation");
   std::vector<std::uint32_t> star;
   if (adjacency.simplex_at[row] == Adjacency::kNone) return star;
   const auto corners = static_cast<std::size_t>(triangulation.dim) + 1;

@@ -19,9 +19,13 @@ struct Adjacency {
   std::vector<std::uint32_t> simplex_at;
 };
 
-// O(n) expected, parallel. REQUIRES: vertices are below `rows`; fewer than 2^32 - 1 corners.
+// O(n) expected, parallel. Throws std::invalid_argument unless vertices are below `rows` and make
+// whole simplices. REQUIRES: fewer than 2^32 - 1 corners.
 Adjacency adjacency(const Triangulation& triangulation, std::size_t rows);
 
+// Both of the following throw std::invalid_argument for a row that does not exist, or an adjacency
+// that is of another triangulation.
+//
 // The simplices around a vertex, in no particular order; none for a row that is no vertex. O(size
 // of the result) in 2D, times its logarithm in 3D.
 std::vector<std::uint32_t> simplices_around(const Triangulation& triangulation,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "delaunay/insertion_order.h"
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/first_tetrahedron.h"
 #include "delaunay/internal/moving_mesh.h"
 #include "delaunay/internal/sites.h"
@@ -204,6 +205,7 @@ std::uint32_t DynamicTriangulation<D>::insert(const Point& point) {
 
 template <int D>
 std::uint32_t DynamicTriangulation<D>::insert(PointView<double> points) {
+  internal::check_view(points, D);
   const std::size_t first = state_->sites.rows();
   std::vector<Point> batch(points.size());
   for (std::size_t i = 0; i < batch.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/random.h"
 #include "parallel/parallel_for.h"
 
@@ -304,6 +305,7 @@ constexpr std::array kGenerators = {
 std::span<const PointGenerator> point_generators() { return kGenerators; }
 
 PointCloud generate_points(std::string_view kind, std::size_t n, int dim, std::uint64_t seed) {
+  internal::check_dim(dim);
   std::string names;
   for (const PointGenerator& generator : kGenerators) {
     if (generator.name == kind) return generator.generate(n, dim, seed);

@@ -27,7 +27,7 @@ std::span<const PointGenerator> point_generators();
 // no function of libm that differs between machines: the same bytes everywhere and for every number
 // of threads. O(n), parallel.
 //
-// Throws std::invalid_argument, naming the kinds, for any other name. REQUIRES: dim is 2 or 3.
+// Throws std::invalid_argument, naming the kinds, for any other name, and unless dim is 2 or 3.
 PointCloud generate_points(std::string_view kind, std::size_t n, int dim, std::uint64_t seed);
 
 }  // namespace delray::delaunay

@@ -6,6 +6,8 @@
 #include <cassert>
 #include <numeric>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "delaunay/array.h"
@@ -138,7 +140,10 @@ void in_parts(std::size_t n, std::size_t threads, F&& f) {
 template <class Curve, class Point>
 std::vector<std::uint32_t> order_of(std::span<const Point> points, std::string_view name,
                                     std::uint64_t seed, double start, std::size_t threads) {
-  assert(name == "random" || name == "hilbert" || name == "brio");
+  if (name != "random" && name != "hilbert" && name != "brio")
+    throw std::invalid_argument("there is no order \"" + std::string(name) + "\"");
+  if (!(start >= 0 && start < 1))
+    throw std::invalid_argument("an order starts at least 0 and less than 1 of the way");
   std::vector<std::uint32_t> numbers(points.size());
   std::iota(numbers.begin(), numbers.end(), 0U);
   if (points.empty()) return numbers;

@@ -16,8 +16,8 @@ namespace delray::delaunay {
 // - brio: random rounds, each twice as large as the one before, along the curve within each: short
 //   walks as on a curve, and yet the expected cost of a random order (Amenta, Choi, Rote 2003).
 // Every round goes along the curve from the point that is `start` of the way and round to there
-// again. O(n log n); up to so many threads. REQUIRES: one of these names; finite coordinates; 0 <=
-// start < 1.
+// again. O(n log n); up to so many threads. Throws std::invalid_argument for other names and unless
+// 0 <= start < 1. REQUIRES: finite coordinates.
 std::vector<std::uint32_t> insertion_order(std::span<const glm::dvec2> points,
                                            std::string_view name, std::uint64_t seed,
                                            double start = 0, std::size_t threads = 1);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/natural_neighbours.h"
 
 namespace delray::delaunay {
@@ -28,6 +29,7 @@ std::array<double, 4> weights_at_origin(int dim, const std::array<glm::dvec3, 4>
 
 std::optional<double> interpolate_linear(const Query& query, std::span<const double> values,
                                          const glm::dvec3& q) {
+  internal::check_values(values.size(), query.points().size());
   const std::uint32_t simplex = query.locate(q);
   if (simplex == Query::kNone) return std::nullopt;
   const int dim = query.triangulation().dim;
@@ -47,6 +49,7 @@ std::optional<double> interpolate_linear(const Query& query, std::span<const dou
 std::optional<double> interpolate_natural_neighbour(const Query& query,
                                                     std::span<const double> values,
                                                     const glm::dvec3& q) {
+  internal::check_values(values.size(), query.points().size());
   const std::vector<NaturalNeighbour> neighbours = natural_neighbours(query, q);
   if (neighbours.empty()) return std::nullopt;
   double value = 0;

@@ -12,7 +12,8 @@ namespace delray::delaunay {
 // The value at q of the function that is linear on every simplex and has values[row] at each
 // vertex; none outside the hull. In floating point. The cost of Query::locate.
 //
-// REQUIRES: a value per row; of equal points that of the lowest row counts.
+// Throws std::invalid_argument for fewer values than rows; of equal points that of the lowest row
+// counts.
 std::optional<double> interpolate_linear(const Query& query, std::span<const double> values,
                                          const glm::dvec3& q);
 
@@ -20,7 +21,7 @@ std::optional<double> interpolate_linear(const Query& query, std::span<const dou
 // at a vertex, linear along edges of the hull, smooth everywhere but at vertices, and exact for
 // linear functions; none outside the hull. The cost and the precision of natural_neighbours().
 //
-// REQUIRES: a value per row, as above.
+// Values as above.
 std::optional<double> interpolate_natural_neighbour(const Query& query,
                                                     std::span<const double> values,
                                                     const glm::dvec3& q);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/batch.h"
 #include "delaunay/internal/burglary.h"
 #include "delaunay/internal/cavity_insertion.h"
@@ -178,6 +179,11 @@ std::span<const Choice> orders() {
 }
 
 Options resolve(const Options& options) {
+  internal::check_dim(options.dim);
+  if (options.threads < 1 || options.threads > kMostThreads) {
+    throw std::invalid_argument("threads: from 1 to " + std::to_string(kMostThreads) + ", not " +
+                                std::to_string(options.threads));
+  }
   const Method& method = choose_method(options);
   Options result = options;
   result.method = method.name;

@@ -4,9 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 #include "delaunay/insertion_order.h"
 #include "delaunay/internal/team.h"
+#include "delaunay/methods.h"
 
 namespace delray::delaunay {
 namespace {
@@ -47,10 +50,18 @@ void sort_within_parts(Plan& plan) {
   }
 }
 
+void check_name(const char* what, std::string_view name, std::span<const Choice> legal) {
+  if (std::ranges::find(legal, name, &Choice::name) != legal.end()) return;
+  throw std::invalid_argument(std::string("there is no ") + what + " \"" + std::string(name) +
+                              "\"");
+}
+
 template <class Point>
 Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view split,
              std::string_view order, std::uint64_t seed, std::size_t threads) {
-  assert(parts >= 1);
+  if (parts < 1) throw std::invalid_argument("a plan has at least one part");
+  check_name("split", split, splits());
+  check_name("order", order, orders());
   Plan plan;
   const std::size_t n = points.size();
   for (std::size_t i = 0; i <= parts; ++i) plan.begins.push_back(n * i / parts);

@@ -26,7 +26,7 @@ struct Plan {
 // Within a part points are in the order called `order`, see insertion_order(), each part from
 // another place along the curve. O(n log n).
 //
-// REQUIRES: legal names; parts >= 1; finite coordinates.
+// Throws std::invalid_argument for other names, and for no parts. REQUIRES: finite coordinates.
 Plan make_plan(std::span<const glm::dvec2> points, std::size_t parts, std::string_view split,
                std::string_view order, std::uint64_t seed, std::size_t threads = 1);
 Plan make_plan(std::span<const glm::dvec3> points, std::size_t parts, std::string_view split,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <span>
 
+#include "delaunay/internal/arguments.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -124,6 +125,8 @@ Quality combine(const Quality& a, const Quality& b) {
 }  // namespace
 
 Quality quality(PointView<double> points, const Triangulation& triangulation) {
+  internal::check_view(points, triangulation.dim);
+  internal::check_triangulation(triangulation, points.size());
   constexpr std::size_t kGrain = 4096;  // simplices: about a millisecond
   Quality result = parallel::parallel_reduce(
       0, triangulation.size(), kGrain, Quality{},

@@ -3,7 +3,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/predicates.h"
 
 namespace delray::delaunay {
@@ -26,7 +29,8 @@ int side_of(int dim, std::array<glm::dvec3, 4> p, std::size_t k, const glm::dvec
 Query::Query(PointView<double> points, const Triangulation& triangulation)
     : points_(points),
       triangulation_(triangulation),
-      adjacency_(delaunay::adjacency(triangulation, points.size())) {}
+      adjacency_((internal::check_view(points, triangulation.dim),
+                  delaunay::adjacency(triangulation, points.size()))) {}
 
 glm::dvec3 Query::position(std::uint32_t row) const {
   return {points_(row, 0), points_(row, 1), triangulation_.dim == 3 ? points_(row, 2) : 0.0};
@@ -78,6 +82,9 @@ std::uint32_t Query::start_near(const glm::dvec3& q) const {
 std::uint32_t Query::locate(const glm::dvec3& q, std::uint32_t near) const {
   if (triangulation_.size() == 0) return kNone;
   const glm::dvec3 asked(q.x, q.y, triangulation_.dim == 3 ? q.z : 0.0);
+  internal::check_place(asked);
+  if (near != kNone && near >= triangulation_.size())
+    throw std::invalid_argument("simplex " + std::to_string(near) + " does not exist");
   const Stop stop = walk(asked, near == kNone ? start_near(asked) : near);
   return stop.inside ? stop.simplex : kNone;
 }
@@ -86,6 +93,7 @@ std::uint32_t Query::locate(const glm::dvec3& q) const { return locate(q, kNone)
 
 std::uint32_t Query::nearest(const glm::dvec3& q) const {
   const glm::dvec3 asked(q.x, q.y, triangulation_.dim == 3 ? q.z : 0.0);
+  internal::check_place(asked);
   std::uint32_t best = kNone;
   double distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](std::uint32_t row) {

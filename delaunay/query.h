@@ -12,18 +12,21 @@ namespace delray::delaunay {
 
 // Keeps the adjacency of the triangulation, and refers to it and to its points, which must outlive
 // it. Any number of threads may ask at a time. Points of a query have z 0, or any, in 2D.
+// Questions throw std::invalid_argument where a coordinate is not finite.
 class Query {
  public:
   static constexpr std::uint32_t kNone = Adjacency::kNone;
 
-  // O(n) expected, parallel. REQUIRES: a Delaunay triangulation of the points, all finite.
+  // O(n) expected, parallel. Throws std::invalid_argument for vertices that are no rows of points.
+  // REQUIRES: a Delaunay triangulation of the points, all finite.
   Query(PointView<double> points, const Triangulation& triangulation);
 
   // A simplex that contains q, its boundary included, or kNone outside the hull; exact. Walks from
   // the nearest of n^(1/3) vertices (Muecke, Saias, Zhu 1999): O(n^(1/3)) expected for evenly
   // spread points.
   std::uint32_t locate(const glm::dvec3& q) const;
-  // The same from a simplex that is thought to be near: the answer to the question before.
+  // The same from a simplex that is thought to be near: the answer to the question before. Throws
+  // std::invalid_argument for a simplex that does not exist; kNone: none is.
   std::uint32_t locate(const glm::dvec3& q, std::uint32_t near) const;
 
   // The vertex nearest to q by squared distances as doubles give them, or kNone if there are no

@@ -11,6 +11,7 @@
 
 #include "delaunay/insertion_order.h"
 #include "delaunay/internal/access.h"
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/first_triangle.h"
 #include "delaunay/internal/flip.h"
 #include "delaunay/internal/start_mesh.h"
@@ -296,6 +297,7 @@ void check(const PointView<double>& points, double max_error) {
 
 SimplifiedTerrain simplify_terrain(PointView<double> points, double max_error,
                                    parallel::Progress* progress) {
+  internal::check_view(points, 3);
   check(points, max_error);
   if (progress != nullptr) progress->start(points.size());
   Places sorted = distinct_places(points);
@@ -336,6 +338,11 @@ SimplifiedTerrain simplify_terrain(PointView<double> points, double max_error,
 }
 
 PointCloud select_rows(const PointCloud& cloud, const std::vector<std::uint32_t>& rows) {
+  internal::check_attributes(cloud);
+  for (const std::uint32_t row : rows) {
+    if (row >= cloud.size())
+      throw std::invalid_argument("row " + std::to_string(row) + " does not exist");
+  }
   const auto select = [&](auto& to, const auto& from) {
     if (from.empty()) return;
     to.reserve(rows.size());

@@ -29,9 +29,8 @@ struct SimplifiedTerrain {
 // `progress`, if not null, counts the points that are settled.
 //
 // Errors: std::invalid_argument for a coordinate that is not finite (names the row), for a bound
-// that is negative or not finite, for more than 2^29 points; parallel::Interrupted.
-//
-// REQUIRES: three coordinates per point.
+// that is negative or not finite, for points without three coordinates, for more than 2^29 points;
+// parallel::Interrupted.
 SimplifiedTerrain simplify_terrain(PointView<double> points, double max_error,
                                    parallel::Progress* progress = nullptr);
 

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/mesh.h"
 #include "delaunay/methods.h"
 
@@ -9,6 +10,7 @@ namespace delray::delaunay {
 
 Triangulation triangulate(PointView<double> points, const Options& options) {
   const Options resolved = resolve(options);
+  internal::check_view(points, resolved.dim);
   if (points.size() > kMaximumSimplices / 2) {
     throw std::invalid_argument("more than 2^29 points");
   }

@@ -39,6 +39,8 @@ struct Statistics {
   Synchronization synchronization;
 };
 
+inline constexpr int kMostThreads = 4096;
+
 // Names are those of the tables in methods.h; "auto" stands for the best that goes with the others.
 struct Options {
   int dim = 2;
@@ -49,7 +51,7 @@ struct Options {
   std::string deadlocks = "auto";    // what a thread does that must not wait
   std::size_t queue = 0;             // places in the queue of the batch method; 0: as in the report
   std::uint64_t seed = 1;            // of everything that is random
-  int threads = 1;                   // at most
+  int threads = 1;                   // at most; from 1 to kMostThreads
   Statistics* statistics = nullptr;  // filled in if not null
   parallel::Progress* progress =
       nullptr;  // started with the number of points and advanced, if not null
@@ -63,7 +65,8 @@ struct Options {
 // if all points are equal or collinear, or there are none.
 //
 // Errors: std::invalid_argument for a coordinate that is not finite (names the row), for options
-// that do not go together (names those that do), for more than 2^29 points; parallel::Interrupted;
+// that do not go together (names those that do) or cannot be, for a view without memory or whose
+// points have too few coordinates, for more than 2^29 points; parallel::Interrupted;
 // std::bad_alloc.
 Triangulation triangulate(PointView<double> points, const Options& options = {});
 

@@ -1,6 +1,7 @@
 #include <array>
 #include <vector>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/triangulate.h"
 #include "parallel/parallel_for.h"
 
@@ -20,6 +21,7 @@ Triangulation triangulate_in(PointView<float> points, const Options& options) {
 }  // namespace
 
 Triangulation triangulate(PointView<float> points, const Options& options) {
+  internal::check_view(points, options.dim);
   return options.dim == 3 ? triangulate_in<3>(points, options) : triangulate_in<2>(points, options);
 }
 

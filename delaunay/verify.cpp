@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <limits>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/equal_points.h"
 #include "delaunay/internal/verified_mesh.h"
 
@@ -266,15 +268,20 @@ Verdict verify(PointView<double> points, std::span<const std::uint32_t> simplice
 
 Verdict verify_simplices(int dim, PointView<double> points,
                          std::span<const std::uint32_t> simplices) {
+  internal::check_view(points, dim);
+  // Which rows there are is for the verdict.
+  internal::check_simplices(dim, simplices, std::numeric_limits<std::size_t>::max());
   return dim == 2 ? verify<2>(points, simplices) : verify<3>(points, simplices);
 }
 
 Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t> triangles) {
-  return verify<2>(points, triangles);
+  return verify_simplices(2, points, triangles);
 }
 
 std::optional<std::size_t> first_different_row(PointView<double> vertices, PointView<double> points,
                                                int dim) {
+  internal::check_view(vertices, dim);
+  internal::check_view(points, dim);
   const std::size_t shared = std::min(vertices.size(), points.size());
   const std::size_t row_number = find_first(shared, [&](std::size_t i) {
     for (int k = 0; k < dim; ++k) {

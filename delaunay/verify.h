@@ -40,8 +40,8 @@ struct Verdict {
 // A vertex may be any of several equal rows. Points may be any finite doubles. O(n) expected,
 // parallel.
 //
-// REQUIRES: dim is 2 or 3; fewer than 2^32 - 1 points and corners of simplices; simplices.size()
-// is a multiple of dim + 1.
+// Throws std::invalid_argument where `dim` is neither 2 nor 3, points have too few coordinates or
+// vertices do not make whole simplices. REQUIRES: fewer than 2^32 - 1 points and corners.
 Verdict verify_simplices(int dim, PointView<double> points,
                          std::span<const std::uint32_t> simplices);
 

@@ -1,5 +1,6 @@
 #include "delaunay/voronoi.h"
 
+#include "delaunay/internal/arguments.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -71,6 +72,11 @@ void append_in_turn(const Dual& dual, std::uint32_t vertex, std::vector<std::uin
 
 Voronoi voronoi(PointView<double> points, const Triangulation& triangulation,
                 const Adjacency& adjacency) {
+  internal::check_view(points, triangulation.dim);
+  internal::check_triangulation(triangulation, points.size());
+  if (adjacency.neighbours.size() != triangulation.vertices.size() ||
+      adjacency.simplex_at.size() != points.size())
+    throw std::invalid_argument("the adjacency is of another triangulation");
   const Dual dual{points, triangulation, adjacency};
   const std::size_t corners = dual.corners();
   Voronoi result;

@@ -30,6 +30,7 @@ struct Voronoi {
 
 // In floating point: centres of almost flat simplices are inexact and may overflow. O(n) expected.
 //
+// Throws std::invalid_argument where the numbers of points, vertices and neighbours do not fit.
 // REQUIRES: the triangulation is Delaunay, of these points; adjacency is its own.
 Voronoi voronoi(PointView<double> points, const Triangulation& triangulation,
                 const Adjacency& adjacency);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/facets.h"
 #include "delaunay/internal/mesh_writers.h"
 
@@ -55,6 +56,10 @@ const MeshWriter& mesh_writer_for(const std::filesystem::path& path) {
 void write_mesh(const std::filesystem::path& path, const PointCloud& points,
                 const Triangulation& triangulation, std::span<const std::uint16_t> makers) {
   const MeshWriter& writer = mesh_writer_for(path);
+  internal::check_triangulation(triangulation, points.size());
+  internal::check_attributes(points);
+  if (!makers.empty() && makers.size() != triangulation.size())
+    throw std::invalid_argument("makers: one for each simplex");
   if (triangulation.dim == 3 && !writer.tetrahedra) {
     const std::vector<std::uint32_t> facets = hull_facets(triangulation);
     writer.write(path, {points, 3, facets});
@@ -64,6 +69,7 @@ void write_mesh(const std::filesystem::path& path, const PointCloud& points,
 }
 
 std::vector<std::uint32_t> hull_facets(const Triangulation& triangulation) {
+  internal::check_triangulation(triangulation, std::numeric_limits<std::size_t>::max());
   const std::span<const std::uint32_t> simplices = triangulation.vertices;
   const auto corners = static_cast<std::size_t>(triangulation.dim) + 1;
   std::uint32_t points = 0;

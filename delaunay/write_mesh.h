@@ -45,8 +45,9 @@ const MeshWriter& mesh_writer_for(const std::filesystem::path& path);
 // threads that made the simplices (Options::makers), go to VTU as the cells' "thread"; other
 // formats leave them out.
 //
-// Throws std::invalid_argument for an unknown suffix, FileError (device) if writing fails. O(n),
-// formatted in parallel.
+// Throws std::invalid_argument for an unknown suffix, for vertices that are no rows of points, for
+// attributes or makers of which there are not as many as points or simplices, FileError (device) if
+// writing fails. O(n), formatted in parallel.
 void write_mesh(const std::filesystem::path& path, const PointCloud& points,
                 const Triangulation& triangulation, std::span<const std::uint16_t> makers = {});
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "delaunay/internal/arguments.h"
 #include "delaunay/internal/mesh_writers.h"
 #include "delaunay/internal/output.h"
 
@@ -114,6 +115,7 @@ const PointWriter& point_writer_for(const std::filesystem::path& path) {
 }
 
 void write_points(const std::filesystem::path& path, const PointCloud& points) {
+  internal::check_attributes(points);
   point_writer_for(path).write(path, points);
 }
 
