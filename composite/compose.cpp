@@ -1,10 +1,17 @@
+#include <xxhash.h>
+
 #include <algorithm>
-#include <cassert>
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <stdexcept>
+#include <string>
+#include <typeinfo>
 #include <utility>
 
+#include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "composite/interlaced.h"
 #include "composite/internal/members.h"
@@ -13,19 +20,66 @@
 namespace delray::composite {
 namespace {
 
+// Why a rank cannot take part; nothing where it can.
+std::string objection(const comm::Communicator& communicator, const Layer* layer,
+                      std::string_view scheme, const SchemeChoice& choice,
+                      const ComposeOptions& options) {
+  if (layer == nullptr) return "there is no layer to composite";
+  if (choice.scheme == nullptr)
+    return "there is no compositing scheme '" + std::string(scheme) + "'";
+  if (options.samples_per_pixel < 1) return "a pixel has at least one sample";
+  if (std::ranges::any_of(options.radices, [](int radix) { return radix < 1; }))
+    return "a radix of a compositing scheme is at least 1";
+  if (options.order.empty()) return {};
+  std::vector<int> ranks = options.order;
+  std::ranges::sort(ranks);
+  std::vector<int> all(static_cast<std::size_t>(communicator.size()));
+  std::iota(all.begin(), all.end(), 0);
+  return ranks == all ? "" : "the order of compositing does not have each rank once";
+}
+
+// The same where ranks can composite with each other. Every bit of it is set in one of the two
+// halves, and in all of both on a rank that objects.
+std::array<std::uint64_t, 2> agreement(const Layer* layer, std::string_view scheme,
+                                       const ComposeOptions& options, bool objects) {
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  if (objects) return {kAll, kAll};
+  std::string text = typeid(*layer).name();
+  const auto add = [&](auto value) { text += ' ' + std::to_string(value); };
+  add(layer->format());
+  add(layer->pixels());
+  add(options.samples_per_pixel);
+  add(static_cast<int>(options.interlace));
+  for (const std::vector<int>& list : {options.radices, options.order}) {
+    add(list.size());
+    for (const int value : list) add(value);
+  }
+  text += scheme;
+  const std::uint64_t hash = XXH3_64bits(text.data(), text.size());
+  return {hash, ~hash};
+}
+
 // Ranks whose layer is not empty, all where all are; in the order that is asked for, or ascending.
-std::vector<int> taking_part(comm::Communicator& communicator, const Layer& layer,
-                             std::vector<int> order) {
+// Throws on all ranks where they differ in `own`, `objection` where there is one.
+std::vector<int> taking_part(comm::Communicator& communicator, bool empty, std::vector<int> order,
+                             const std::array<std::uint64_t, 2>& own,
+                             const std::string& objection) {
   const auto size = static_cast<std::size_t>(communicator.size());
   const auto rank = static_cast<std::size_t>(communicator.rank());
   std::vector<std::uint64_t> bits((size + 63) / 64);
-  if (!layer.empty()) bits[rank / 64] |= std::uint64_t{1} << rank % 64;
+  if (!empty) bits[rank / 64] |= std::uint64_t{1} << rank % 64;
+  bits.insert(bits.end(), own.begin(), own.end());
   comm::all_reduce(communicator, std::span(bits), std::bit_or<>());
+  if ((bits[bits.size() - 2] & bits.back()) != 0) {
+    throw comm::Agreed<std::invalid_argument>(
+        !objection.empty() ? objection
+                           : "ranks differ in the size or kind of their layers, in the "
+                             "compositing scheme or its options, or one of them has none");
+  }
   if (order.empty()) {
     order.resize(size);
     std::iota(order.begin(), order.end(), 0);
   }
-  assert(order.size() == size);
   std::vector<int> result;
   std::copy_if(order.begin(), order.end(), std::back_inserter(result),
                [&](int k) { return (bits[static_cast<std::size_t>(k) / 64] >> k % 64 & 1) != 0; });
@@ -37,10 +91,13 @@ std::vector<int> taking_part(comm::Communicator& communicator, const Layer& laye
 Part compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
              std::string_view scheme, ComposeOptions options) {
   SchemeChoice choice = choose_scheme(scheme);
-  assert(choice.scheme != nullptr);
+  const std::string why = objection(communicator, layer.get(), scheme, choice, options);
+  const auto own = agreement(layer.get(), scheme, options, !why.empty());
   if (!choice.radices.empty()) options.radices = std::move(choice.radices);
   communicator.mark(comm::Phase::compose, 0);
-  internal::Members members(communicator, taking_part(communicator, *layer, options.order));
+  internal::Members members(
+      communicator,
+      taking_part(communicator, layer == nullptr || layer->empty(), options.order, own, why));
   if (members.rank() < 0) return {{}, std::move(layer)};
   if (!options.interlace) return choice.scheme->compose(members, std::move(layer), options);
   layer = interlace(std::move(layer), members.size(), options.samples_per_pixel);

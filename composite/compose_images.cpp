@@ -1,7 +1,6 @@
 #include "composite/compose_images.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "composite/codec.h"
@@ -14,9 +13,10 @@ image::BasicImage<Colour> compose_images(comm::Communicator& communicator,
                                          image::BasicImage<Colour>&& image,
                                          const ImageOptions& options) {
   const Codec* const codec = find_codec(options.codec);
-  assert(codec != nullptr);
-  Part part = compose(communicator, codec->make(std::move(image), options.how), options.scheme,
-                      {.interlace = options.interlace});
+  // Without a layer all ranks hear of it there.
+  Part part =
+      compose(communicator, codec != nullptr ? codec->make(std::move(image), options.how) : nullptr,
+              options.scheme, {.interlace = options.interlace});
   part = gather(communicator, std::move(part), options.root);
   if (communicator.rank() != options.root) return {};
   return take_image<Colour>(std::move(part));
@@ -26,7 +26,12 @@ template <class Colour>
 image::BasicImage<Colour> compose_images(comm::Communicator& communicator,
                                          const ImageBuffers<Colour>& buffers, float empty_depth,
                                          const ImageOptions& options) {
-  assert(options.how == Operator::over || buffers.depth != nullptr);
+  const bool has_pixels = buffers.width > 0 && buffers.height > 0;
+  if (buffers.width < 0 || buffers.height < 0 || (has_pixels && buffers.colour == nullptr) ||
+      (has_pixels && buffers.depth == nullptr && options.how != Operator::over)) {
+    // All ranks hear of it.
+    compose(communicator, nullptr, options.scheme, {.interlace = options.interlace});
+  }
   constexpr std::size_t kGrain = std::size_t{1} << 15;  // pixels; about 30 microseconds
   image::BasicImage<Colour> image(buffers.width, buffers.height);
   parallel::parallel_blocks(0, image.pixels(), kGrain, [&](std::size_t begin, std::size_t end) {

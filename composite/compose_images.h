@@ -23,7 +23,8 @@ struct ImageOptions {
 // operator is `over`, depths of the result are those of root's own image.
 //
 // Collective over `communicator`: of delray's own, or one made over the caller's MPI communicator
-// (comm::make_mpi_communicator). REQUIRES: all images have one size; scheme and codec exist; no
+// (comm::make_mpi_communicator). All ranks throw std::invalid_argument for schemes, codecs and
+// roots that do not exist, sizes that differ and buffers that are not there. REQUIRES: no
 // depth is NaN, a pixel that nothing covers has kEmptyDepth and, like one that is not there for
 // `over`, the colour {}.
 template <class Colour>

@@ -1,3 +1,6 @@
+#include <stdexcept>
+#include <string>
+
 #include "composite/internal/exchange.h"
 #include "composite/scheme.h"
 
@@ -5,6 +8,9 @@ namespace delray::composite {
 
 Part gather(comm::Communicator& communicator, Part&& part, int root) {
   using namespace internal;
+  if (root < 0 || root >= communicator.size())
+    throw std::invalid_argument("rank " + std::to_string(root) + " does not exist");
+  if (part.layer == nullptr) throw std::invalid_argument("there is no layer to gather");
   communicator.mark(comm::Phase::gather, 0);
   if (communicator.rank() != root) {
     communicator.send(root, kTagGatherRanges,

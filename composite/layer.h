@@ -34,6 +34,8 @@ class Layer {
   // Forgets pixels of `range` that are certainly hidden by what cut(range) gave on a lower rank.
   // Returns the number of pixels compared.
   virtual std::uint64_t prune(PixelRange /*range*/, const comm::Buffer& /*pixels*/) { return 0; }
+  // Layers of one type and another format do not understand what the other's cut gives.
+  virtual int format() const { return 0; }
   // Nothing in it: the rank may stay out of the exchange.
   virtual bool empty() const = 0;
 };

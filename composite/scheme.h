@@ -50,11 +50,13 @@ const Scheme* find_scheme(std::string_view name);
 
 // The scheme of that name, among those ranks alone that have something: an empty layer's rank owns
 // nothing in the end, unless all are empty. Beyond what the scheme costs, an all-reduce of a bit
-// per rank. Collective. REQUIRES: there is such a scheme.
+// per rank and 16 bytes. Collective. All ranks throw std::invalid_argument where there is no such
+// scheme, the options cannot be, or ranks differ in them or in the size or kind of their layers.
 Part compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
              std::string_view scheme, ComposeOptions options = {});
 
 // Brings all parts to rank `root`; there the result owns all pixels, elsewhere none. Collective.
+// Throws std::invalid_argument for a root that does not exist, and a part without a layer.
 Part gather(comm::Communicator& communicator, Part&& part, int root);
 
 }  // namespace delray::composite

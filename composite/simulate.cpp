@@ -1,6 +1,7 @@
 #include "composite/simulate.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "comm/collectives.h"
 #include "comm/recording.h"
@@ -85,6 +86,7 @@ Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Pha
 Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
                    const ComposeOptions& options) {
   const int ranks = images.count();
+  if (ranks < 1) throw std::invalid_argument("there are no images to composite");
   comm::Network network = machine.network;
   network.seconds_per_work[static_cast<std::size_t>(comm::Work::pixels_composited)] =
       machine.costs.merge_covered;

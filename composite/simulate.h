@@ -54,7 +54,8 @@ struct Simulated {
 // Runs the scheme and the gather to rank 0, ranks waiting for each other in between. Time and
 // memory grow with the messages and the pixels covered, not with ranks times pixels.
 //
-// REQUIRES: there is such a scheme; masks were made in the order of the options.
+// Throws std::invalid_argument for a scheme that does not exist and for no images.
+// REQUIRES: masks were made in the order of the options.
 Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
                    const ComposeOptions& options = {});
 

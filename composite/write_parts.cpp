@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -194,7 +194,8 @@ void write_header(const Layout& layout, const std::vector<char>& start, const Fi
 template <class Colour>
 void write_image_parts(comm::Communicator& communicator, const Part& part,
                        const image::BasicImage<Colour>& image, const std::filesystem::path& path) {
-  assert(image.width >= 1 && image.height >= 1);
+  if (image.width < 1 || image.height < 1)
+    throw std::invalid_argument("a picture has at least one pixel");
   Layout layout{static_cast<std::uint64_t>(image.width), static_cast<std::uint64_t>(image.height)};
   const std::vector<char> start = header(layout);
   layout.header_bytes = start.size();
