@@ -1,15 +1,20 @@
 #include "loadbalance/balance.h"
 
 #include <algorithm>
-#include <cassert>
 #include <chrono>
+#include <stdexcept>
+#include <string>
 
 #include "loadbalance/region_index.h"
 
 namespace delray::loadbalance {
 
 Balance balance(const Partition& partition, std::span<const WeightedBox> boxes, int owners) {
-  assert(owners >= 1);
+  if (owners < 1) throw std::invalid_argument("there is at least one owner");
+  for (const Region& region : partition.regions) {
+    if (region.owner < 0 || region.owner >= owners)
+      throw std::invalid_argument("a region's owner is none of " + std::to_string(owners));
+  }
   Balance result;
   result.loads.assign(static_cast<std::size_t>(owners), 0);
   const RegionIndex index(partition);

@@ -23,7 +23,7 @@ struct Balance {
 
 // Every owner that has some of a box pays its setup, and of the rest of its cost what goes with its
 // pixels of the box. O(boxes x regions near each).
-// REQUIRES: owners in [0, owners); costs as for make_costs.
+// Throws std::invalid_argument for a region of another owner. REQUIRES: costs as for make_costs.
 Balance balance(const Partition& partition, std::span<const WeightedBox> boxes, int owners);
 
 // What there is to say of a partition before anything is rendered. Afterwards imbalance() of the
@@ -36,7 +36,7 @@ struct PartitionReport {
 };
 
 // Cuts for `ranks` ranks, regions_per_rank regions for each, and looks at the outcome.
-// REQUIRES: ranks, regions_per_rank >= 1.
+// Throws std::invalid_argument unless both are at least 1.
 PartitionReport report(const Partitioner& partitioner, const Costs& costs, int ranks,
                        int regions_per_rank = 1);
 

@@ -1,7 +1,7 @@
 #include "loadbalance/cost_model.h"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 #include "loadbalance/region_index.h"
 
@@ -40,7 +40,8 @@ RasterCostModel fit(std::span<const RasterSample> samples) {
 }
 
 void scale_to_measured(Costs& costs, const Partition& last, std::span<const double> seconds) {
-  assert(last.frame == costs.frame);
+  if (!(last.frame == costs.frame))
+    throw std::invalid_argument("the last partition is of another frame than the costs");
   const std::vector<double> predicted = loads(costs, last, static_cast<int>(seconds.size()));
   double all_seconds = 0, all_predicted = 0;
   for (std::size_t k = 0; k < seconds.size(); ++k) {

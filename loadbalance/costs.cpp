@@ -1,10 +1,10 @@
 #include "loadbalance/costs.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 
 #include "comm/collectives.h"
 
@@ -61,7 +61,7 @@ Rect Costs::cells_of(const Rect& pixels) const {
 }
 
 Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox> boxes) {
-  assert(columns >= 1 && rows >= 1);
+  if (columns < 1 || rows < 1) throw std::invalid_argument("a grid of costs has at least one cell");
   Costs costs;
   costs.frame = frame;
   costs.columns = std::clamp(columns, 1, std::max(1, frame.width()));
@@ -73,21 +73,22 @@ Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox>
   costs.cross_down.resize(size);
   costs.boxes.assign(boxes.begin(), boxes.end());
   for (const WeightedBox& box : boxes) {
-    assert(std::isfinite(box.cost) && 0 <= box.setup && box.setup <= box.cost);
+    if (!(std::isfinite(box.cost) && 0 <= box.setup && box.setup <= box.cost))
+      throw std::invalid_argument("a cost is negative, not finite or less than its setup");
     add(costs, box);
   }
   return costs;
 }
 
 int cost_cell_side(Rect frame, int parts) {
-  assert(parts >= 1);
+  if (parts < 1) throw std::invalid_argument("a partition has at least one part");
   int side = 16;
   while (side > 2 && std::int64_t{side} * side * kPiecesPerPart * parts > frame.area()) side /= 2;
   return side;
 }
 
 int primitives_per_box(std::uint64_t primitives, int parts) {
-  assert(parts >= 1);
+  if (parts < 1) throw std::invalid_argument("a partition has at least one part");
   const auto pieces =
       static_cast<std::uint64_t>(kPiecesPerPart) * static_cast<std::uint64_t>(parts);
   return static_cast<int>(std::clamp<std::uint64_t>(primitives / pieces, 1, 256));

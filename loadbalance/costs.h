@@ -41,7 +41,7 @@ struct Costs {
 // Each box adds its cost, split evenly, to the cells that it overlaps (Mueller 1995), so that it
 // counts once; boxes outside the frame add nothing. The boxes are kept. A frame with fewer pixels
 // than `columns` or `rows` gets a grid of so many cells, at least one. O(boxes + cells touched).
-// REQUIRES: columns, rows >= 1; costs finite, 0 <= setup <= cost.
+// Throws std::invalid_argument unless columns, rows >= 1, costs are finite, 0 <= setup <= cost.
 Costs make_costs(geometry::Rect frame, int columns, int rows, std::span<const WeightedBox> boxes);
 
 // A side of square cells, in pixels, that leaves partitions into so many parts fine cuts: about a

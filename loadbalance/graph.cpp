@@ -1,4 +1,3 @@
-#include <cassert>
 #include <map>
 #include <span>
 #include <utility>
@@ -52,7 +51,7 @@ std::vector<Region> rectangles(const Costs& costs, const std::vector<int>& owner
 }  // namespace
 
 Partition graph(const Costs& costs, Rect frame, int parts) {
-  assert(parts >= 1 && frame == costs.frame);
+  check_costs(costs, frame, parts);
   if (frame.empty()) return {frame, {}};
   GridBisection bisection(costs);
   std::vector<std::uint32_t> cells = bisection.cells();

@@ -1,10 +1,10 @@
 #include "loadbalance/hybrid_partition.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
 #include <cstdlib>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "loadbalance/internal/cut.h"
@@ -219,7 +219,8 @@ class Sweep {
 
 HybridPartition hybrid_partition(std::span<const WeightedBox> boxes, Rect frame, int ranks,
                                  const HybridOptions& options) {
-  assert(ranks >= 1 && options.pixel_cost >= 0 && options.largest_box >= 0);
+  if (ranks < 1 || !(options.pixel_cost >= 0) || !(options.largest_box >= 0))
+    throw std::invalid_argument("there is at least one rank, and no cost or size is negative");
   HybridPartition result{std::vector<int>(boxes.size(), kNobody), {frame, {}}};
   std::vector<Item> items, everybodys;
   double all = 0;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
 #include <numeric>
 
@@ -37,8 +36,8 @@ int shift_of(int parts) {
 
 }  // namespace
 
-Partition interlaced(const Costs& /*costs*/, Rect frame, int parts) {
-  assert(parts >= 1);
+Partition interlaced(const Costs& costs, Rect frame, int parts) {
+  check_costs(costs, frame, parts);
   Partition partition{frame, {}};
   if (frame.empty()) return partition;
   const int side = block_side(frame, parts), shift = shift_of(parts);

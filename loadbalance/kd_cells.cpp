@@ -1,8 +1,8 @@
 #include "loadbalance/kd_cells.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
+#include <stdexcept>
 
 namespace delray::loadbalance {
 namespace {
@@ -85,7 +85,8 @@ void visit(const KdCells& cells, const glm::vec3& eye, int first, int count, std
 
 KdCells cut_space(std::span<const geometry::Box3> boxes, std::span<const std::uint32_t> weights,
                   int count) {
-  assert(boxes.size() == weights.size() && count >= 1);
+  if (boxes.size() != weights.size() || count < 1)
+    throw std::invalid_argument("there is at least one cell, and a weight for each box");
   std::vector<Item> items;
   items.reserve(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {

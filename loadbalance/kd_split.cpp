@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "loadbalance/internal/cut.h"
@@ -123,7 +122,7 @@ class Sweep {
 }  // namespace
 
 Partition kd_split(const Costs& costs, Rect frame, int parts) {
-  assert(parts >= 1 && frame == costs.frame);
+  check_costs(costs, frame, parts);
   Partition partition{frame, {}};
   if (frame.empty()) return partition;
   Sweep(partition).split(frame, items_of(costs), 0, parts, 0);

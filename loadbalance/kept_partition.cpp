@@ -1,7 +1,7 @@
 #include "loadbalance/kept_partition.h"
 
-#include <cassert>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 #include "comm/collectives.h"
@@ -14,7 +14,9 @@ KeptPartition::KeptPartition(const Partitioner& partitioner, int ranks, double f
       ranks_(ranks),
       factor_(factor),
       regions_per_rank_(regions_per_rank) {
-  assert(ranks >= 1 && regions_per_rank >= 1 && factor >= 1);
+  if (ranks < 1 || regions_per_rank < 1 || !(factor >= 1))
+    throw std::invalid_argument(
+        "there is at least one rank with a region, and at least an equal share to keep");
 }
 
 bool KeptPartition::may_keep(const Costs& costs) const {

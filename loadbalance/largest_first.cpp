@@ -1,10 +1,11 @@
 #include "loadbalance/internal/largest_first.h"
 
 #include <algorithm>
-#include <cassert>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <queue>
+#include <stdexcept>
 #include <utility>
 
 #include "loadbalance/partition.h"
@@ -29,7 +30,7 @@ std::vector<int> internal::largest_first(std::span<const double> loads, int rank
 }
 
 Partition assign_largest_first(const Costs& costs, const Partition& regions, int ranks) {
-  assert(ranks >= 1);
+  if (ranks < 1) throw std::invalid_argument("there is at least one rank");
   int owners = 0;
   for (const Region& region : regions.regions) owners = std::max(owners, region.owner + 1);
   const std::vector<int> rank_of = internal::largest_first(loads(costs, regions, owners), ranks);
@@ -40,7 +41,9 @@ Partition assign_largest_first(const Costs& costs, const Partition& regions, int
 
 Partition partition_for_ranks(const Partitioner& partitioner, const Costs& costs, int ranks,
                               int regions_per_rank) {
-  assert(ranks >= 1 && regions_per_rank >= 1);
+  if (ranks < 1 || regions_per_rank < 1 ||
+      ranks > std::numeric_limits<int>::max() / regions_per_rank)
+    throw std::invalid_argument("there is at least one rank, with at least one region");
   Partition regions = partitioner.partition(costs, costs.frame, ranks * regions_per_rank);
   if (regions_per_rank == 1) return regions;
   return assign_largest_first(costs, regions, ranks);

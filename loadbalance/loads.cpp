@@ -1,11 +1,17 @@
-#include <cassert>
+#include <stdexcept>
+#include <string>
 
 #include "loadbalance/partition.h"
 
 namespace delray::loadbalance {
 
 std::vector<double> loads(const Costs& costs, const Partition& partition, int owners) {
-  assert(partition.frame == costs.frame);
+  if (!(partition.frame == costs.frame) || owners < 0)
+    throw std::invalid_argument("the costs are of another frame than the partition");
+  for (const Region& region : partition.regions) {
+    if (region.owner < 0 || region.owner >= owners)
+      throw std::invalid_argument("a region's owner is none of " + std::to_string(owners));
+  }
   std::vector<double> result(static_cast<std::size_t>(owners));
   for (const Region& region : partition.regions) {
     const geometry::Rect& rect = region.rect;

@@ -56,7 +56,7 @@ class Decomposition {
 }  // namespace
 
 Partition mahd(const Costs& costs, Rect frame, int parts) {
-  assert(parts >= 1);
+  check_costs(costs, frame, parts);
   assert(frame == costs.frame);
   assert(std::all_of(costs.cells.begin(), costs.cells.end(),
                      [](double cost) { return std::isfinite(cost) && cost >= 0; }));

@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "loadbalance/internal/partitioners.h"
 
@@ -27,6 +30,22 @@ constexpr std::array kPartitioners = {
 }  // namespace
 
 std::span<const Partitioner> partitioners() { return kPartitioners; }
+
+void internal::check_costs(const Costs& costs, geometry::Rect frame, int parts) {
+  if (parts < 1) throw std::invalid_argument("a partition has at least one part");
+  if (!(frame == costs.frame))
+    throw std::invalid_argument("the costs are of another frame than the partition");
+  const auto cells = static_cast<std::size_t>(std::max(0, costs.columns)) *
+                     static_cast<std::size_t>(std::max(0, costs.rows));
+  if (costs.cells.size() != cells || costs.cross_right.size() != cells ||
+      costs.cross_down.size() != cells)
+    throw std::invalid_argument("the costs are not of " + std::to_string(costs.columns) + " x " +
+                                std::to_string(costs.rows) + " cells");
+  const auto is_cost = [](double cost) { return std::isfinite(cost) && cost >= 0; };
+  if (!std::ranges::all_of(costs.cells, is_cost) ||
+      !std::ranges::all_of(costs.boxes, is_cost, &WeightedBox::cost))
+    throw std::invalid_argument("a cost is negative or not finite");
+}
 
 const Partitioner* find_partitioner(std::string_view name) {
   const auto at =

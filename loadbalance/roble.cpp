@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -136,7 +135,7 @@ class Roble {
 }  // namespace
 
 Partition roble(const Costs& costs, Rect frame, int parts) {
-  assert(parts >= 1 && frame == costs.frame);
+  check_costs(costs, frame, parts);
   if (frame.empty()) return {frame, {}};
   Roble roble(frame, items_of(costs), parts);
   for (int k = 0; k < kSplitsPerPart * parts && roble.improve(); ++k) {

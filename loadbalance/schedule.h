@@ -76,7 +76,8 @@ struct Schedule {
   // throws, run throws, once this rank's other threads are done with theirs; as any exception it
   // ends the run of all ranks. Leaves no message behind.
   //
-  // REQUIRES: the same grid and options on all ranks, but for threads and initial.
+  // Throws std::invalid_argument for options that cannot be, and tasks of `initial` that there are
+  // not. REQUIRES: the same grid and options on all ranks, but for threads and initial.
   RankReport (*run)(comm::Communicator& communicator, const TaskGrid& tasks,
                     const ScheduleOptions& options, TaskFunction work);
 };

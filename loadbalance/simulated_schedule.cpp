@@ -1,7 +1,7 @@
 #include "loadbalance/simulated_schedule.h"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 #include "comm/simulated.h"
 #include "parallel/arena.h"
@@ -11,7 +11,9 @@ namespace delray::loadbalance {
 SimulatedSchedule simulate(const Schedule& schedule, const TaskGrid& tasks,
                            std::span<const double> seconds, int ranks, const comm::Network& network,
                            const ScheduleOptions& options) {
-  assert(seconds.size() == tasks.count());
+  if (seconds.size() != tasks.count())
+    throw std::invalid_argument("there are not as many times as tasks");
+  if (ranks < 1) throw std::invalid_argument("there is at least one rank");
   SimulatedSchedule result;
   result.ranks.resize(static_cast<std::size_t>(ranks));
   result.owners.assign(tasks.count(), -1);

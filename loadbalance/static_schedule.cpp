@@ -1,3 +1,5 @@
+#include <stdexcept>
+
 #include "loadbalance/internal/crew.h"
 #include "loadbalance/internal/initial_tasks.h"
 #include "loadbalance/internal/schedules.h"
@@ -6,7 +8,13 @@ namespace delray::loadbalance::internal {
 
 std::vector<TaskRange> initial_tasks(const comm::Communicator& communicator, const TaskGrid& tasks,
                                      const ScheduleOptions& options) {
-  if (options.initial) return *options.initial;
+  if (options.initial) {
+    for (const TaskRange& range : *options.initial) {
+      if (range.first > range.last || range.last > tasks.count())
+        throw std::invalid_argument("a rank begins with tasks that there are not");
+    }
+    return *options.initial;
+  }
   const auto begin = [&](int rank) {
     return static_cast<std::uint32_t>(std::uint64_t{tasks.count()} *
                                       static_cast<std::uint64_t>(rank) /

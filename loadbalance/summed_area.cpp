@@ -2,13 +2,16 @@
 
 #include <cassert>
 #include <cmath>
+#include <stdexcept>
 
 namespace delray::loadbalance {
 
 SummedArea::SummedArea(int columns, int rows, std::span<const double> cells)
     : stride_(static_cast<std::size_t>(columns) + 1),
       table_(stride_ * (static_cast<std::size_t>(rows) + 1)) {
-  assert(cells.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  if (columns < 0 || rows < 0 ||
+      cells.size() != static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))
+    throw std::invalid_argument("the cells are not as many as columns times rows");
   std::size_t k = 0;
   for (std::size_t j = 1; j <= static_cast<std::size_t>(rows); ++j) {
     double row = 0;

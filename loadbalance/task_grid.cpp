@@ -1,11 +1,11 @@
 #include "loadbalance/task_grid.h"
 
-#include <cassert>
+#include <stdexcept>
 
 namespace delray::loadbalance {
 
 TaskGrid Blocks::grid() const {
-  assert(width >= 1 && height >= 1);
+  if (width < 1 || height < 1) throw std::invalid_argument("a block has at least one pixel");
   if (frame.empty()) return {0, 0};
   return {static_cast<std::uint32_t>((frame.width() - 1) / width + 1),
           static_cast<std::uint32_t>((frame.height() - 1) / height + 1)};

@@ -1,4 +1,3 @@
-#include <cassert>
 #include <utility>
 
 #include "loadbalance/internal/cut.h"
@@ -55,7 +54,7 @@ class MedianCut {
 }  // namespace
 
 Partition whelan(const Costs& costs, Rect frame, int parts) {
-  assert(parts >= 1 && frame == costs.frame);
+  check_costs(costs, frame, parts);
   Partition partition{frame, {}};
   if (frame.empty()) return partition;
   std::vector<Centroid> centroids;

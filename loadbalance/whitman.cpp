@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <queue>
 #include <tuple>
 
@@ -53,7 +52,7 @@ struct Node {
 }  // namespace
 
 Partition whitman(const Costs& costs, Rect frame, int parts) {
-  assert(parts >= 1 && frame == costs.frame);
+  check_costs(costs, frame, parts);
   Partition partition{frame, {}};
   if (frame.empty()) return partition;
   const SummedArea sums(costs.columns, costs.rows, counted_mesh(costs));

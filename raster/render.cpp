@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -67,6 +68,20 @@ void check(const RenderOptions& options, int ranks) {
     throw std::invalid_argument("of " + std::to_string(ranks) + " ranks " +
                                 std::to_string(ranks - 1) +
                                 " at most can be for geometry, since others have to draw");
+}
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Throws std::invalid_argument for a camera that sees nothing but NaN.
+void check(const scenes::Camera& camera) {
+  if (!is_finite(camera.eye) || !is_finite(camera.at) || !is_finite(camera.up) ||
+      !(camera.vertical_fov > 0 && camera.vertical_fov < 180) || !(camera.near >= 0) ||
+      !(camera.aperture >= 0) || !(camera.focus >= 0) ||
+      !std::isfinite(camera.near + camera.aperture + camera.focus))
+    throw std::invalid_argument(
+        "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
 }
 
 void to_distances(std::span<float> depths, float near) {
@@ -186,7 +201,7 @@ struct Renderer::Frame {
   // `scratch` may be another frame's later.
   Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
         const scenes::Camera& camera, const RenderOptions& wanted, parallel::Progress* progress)
-      : options((check(wanted, communicator.size()), wanted)),
+      : options((check(wanted, communicator.size()), check(camera), wanted)),
         screen(make_screen(scenes::make_view(camera, options.width * options.supersampling,
                                              options.height * options.supersampling))),
         recording(communicator, events),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -29,6 +30,30 @@ void check(const RenderOptions& options) {
   if (options.tile < 0 || options.tile % kTaskSide != 0)
     throw std::invalid_argument("the side of a tile is a multiple of " + std::to_string(kTaskSide) +
                                 " pixels");
+  if (options.width < 0 || options.height < 0 || options.samples < 1 || options.trace.depth < 0 ||
+      options.regions_per_rank < 1 || !(options.keep_factor >= 1) || options.part.samples < 0 ||
+      options.part.first_sample < 0)
+    throw std::invalid_argument(
+        "sizes, samples, depth and regions of a picture are not negative, nor is there less than "
+        "a sample, a region for each rank and an equal share to keep");
+  const geometry::Rect frame{0, 0, options.width, options.height};
+  if (!options.part.window.empty() &&
+      !(geometry::intersection(options.part.window, frame) == options.part.window))
+    throw std::invalid_argument("the window lies outside of the frame");
+}
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Throws std::invalid_argument for a camera that sees nothing but NaN.
+void check(const scenes::Camera& camera) {
+  if (!is_finite(camera.eye) || !is_finite(camera.at) || !is_finite(camera.up) ||
+      !(camera.vertical_fov > 0 && camera.vertical_fov < 180) || !(camera.near >= 0) ||
+      !(camera.aperture >= 0) || !(camera.focus >= 0) ||
+      !std::isfinite(camera.near + camera.aperture + camera.focus))
+    throw std::invalid_argument(
+        "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
 }
 
 std::uint64_t sum(const RayCounts& rays) { return rays.primary + rays.shadow + rays.secondary; }
@@ -172,6 +197,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
                         const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check(options);
+  check(camera);
   const std::uint64_t dropped = memory_->scene != nullptr ? memory_->scene->evicted() : 0;
   const Tracer* const tracer = memory_->tracer;
   const int width = std::max(0, options.width), height = std::max(0, options.height);

@@ -5,6 +5,9 @@
 
 namespace delray::loadbalance::internal {
 
+// Throws std::invalid_argument for what no partition can be cut from. O(cells + boxes).
+void check_costs(const Costs& costs, geometry::Rect frame, int parts);
+
 // Mesh-based adaptive hierarchical decomposition (Mueller 1995): the frame is cut in two again and
 // again, at the column or row of the cost grid where the summed-area table comes nearest to the
 // share of the cost that goes with the share of the parts.
