@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
 
 namespace delray::comm {
 namespace {
+
+void check_rank(const Communicator& communicator, int rank) {
+  if (rank < 0 || rank >= communicator.size())
+    throw std::invalid_argument("rank " + std::to_string(rank) + " is none of " +
+                                std::to_string(communicator.size()));
+}
 
 // Several buffers in one: their number, their sizes, their bytes.
 Buffer pack(std::span<const Buffer> buffers) {
@@ -119,6 +126,7 @@ void barrier(Communicator& communicator) {
 }
 
 Buffer broadcast(Communicator& communicator, int root, Buffer&& message) {
+  check_rank(communicator, root);
   const int n = communicator.size();
   const int relative = (communicator.rank() - root + n) % n;
   int step = 1;
@@ -136,6 +144,7 @@ Buffer broadcast(Communicator& communicator, int root, Buffer&& message) {
 }
 
 std::vector<Buffer> gather(Communicator& communicator, int root, Buffer&& message) {
+  check_rank(communicator, root);
   std::vector<Buffer> all;
   if (communicator.rank() != root) {
     communicator.send(root, kTagGather, std::move(message));
@@ -166,6 +175,7 @@ std::vector<Buffer> all_gather(Communicator& communicator, Buffer&& message) {
 }
 
 std::vector<Parcel> exchange(Communicator& communicator, std::vector<Parcel>&& parcels) {
+  for (const Parcel& parcel : parcels) check_rank(communicator, parcel.rank);
   const std::vector<int> sources = route_headers(communicator, parcels);
   for (Parcel& parcel : parcels) {
     communicator.send(parcel.rank, kTagExchange, std::move(parcel.message));
@@ -179,6 +189,7 @@ std::vector<Parcel> exchange(Communicator& communicator, std::vector<Parcel>&& p
 }
 
 Buffer reduce_buffers(Communicator& communicator, int root, Buffer&& mine, const Combine& combine) {
+  check_rank(communicator, root);
   const Fold f(communicator.size());
   const int rank = communicator.rank();
   fold(communicator, f, kTagReduce, mine, combine);

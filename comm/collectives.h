@@ -3,7 +3,8 @@
 // Every rank calls the same collectives in the same order. Every receive names its source, so the
 // order in which messages arrive changes nothing: values are combined in one fixed order that
 // depends on the number of ranks only, and floating-point sums are the same on every
-// implementation. n is the number of ranks throughout, any n >= 1.
+// implementation. n is the number of ranks throughout, any n >= 1. A root, or receiver, that does
+// not exist is a std::invalid_argument.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,6 @@
 #include "comm/internal/first_failure.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "files/error.h"
@@ -10,6 +11,12 @@ namespace delray::comm::internal {
 std::string describe_pattern(int from_or_any, Tag tag_or_any) {
   return (from_or_any == kAnyRank ? "any rank" : "rank " + std::to_string(from_or_any)) +
          (tag_or_any == kAnyTag ? " with any tag" : " with tag " + std::to_string(tag_or_any));
+}
+
+void check_message(int to, int size, Tag tag) {
+  if (to < 0 || to >= size || tag < 0)
+    throw std::invalid_argument("there is no rank " + std::to_string(to) + " of " +
+                                std::to_string(size) + ", or no tag " + std::to_string(tag));
 }
 
 std::string describe(const std::exception_ptr& exception) {

@@ -1,7 +1,6 @@
 #include "comm/mpi.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
 #include <exception>
 #include <numeric>
@@ -67,7 +66,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   void send(int to, Tag tag, Buffer&& message) override {
-    assert(0 <= to && to < size() && 0 <= tag);
+    internal::check_message(to, size(), tag);
     if (to == rank_) {
       queue_.push(port_.rank(), tag, 0, {std::move(message), {}});
     } else {

@@ -1,12 +1,12 @@
 #include "comm/simulated.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -183,7 +183,7 @@ class SimulatedCommunicator final : public Communicator {
   double seconds() const override { return own_.clock; }
 
   void send(int to, Tag tag, Buffer&& message) override {
-    assert(0 <= to && to < size() && tag >= 0);
+    internal::check_message(to, size(), tag);
     if (machine_.failure.happened()) throw RunEnded{};
     if (to != rank_) {
       occupy(machine_.handling_seconds(message.counted_bytes()));
@@ -333,7 +333,7 @@ Network any_order() {
 std::vector<double> run_simulated(int ranks, const Network& network, std::uint64_t seed,
                                   const std::function<void(Communicator&)>& body,
                                   const SimulationOptions& options) {
-  assert(ranks >= 1);
+  if (ranks < 1) throw std::invalid_argument("ranks: there is at least one");
   Machine machine(ranks, network, seed, options);
   std::vector<int> members(ranks);
   std::iota(members.begin(), members.end(), 0);

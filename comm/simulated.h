@@ -30,7 +30,8 @@ struct SimulationOptions {
 // happens at one moment.
 //
 // Failures end the run as in run_threads; a deadlock is always found. O(log ranks + log messages)
-// per message, a switch between ranks only where one has to wait. REQUIRES: ranks >= 1; the body
+// per message, a switch between ranks only where one has to wait. Throws
+// std::invalid_argument for no ranks. REQUIRES: the body
 // does not call its communicator while it holds a lock or from inside Arena::execute (all ranks
 // share the thread, and one such scope would be left in the middle of another).
 std::vector<double> run_simulated(int ranks, const Network& network, std::uint64_t seed,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cassert>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
@@ -146,7 +145,7 @@ class ThreadCommunicator final : public Communicator {
   }
 
   void send(int to, Tag tag, Buffer&& message) override {
-    assert(0 <= to && to < size() && tag >= 0);
+    internal::check_message(to, size(), tag);
     if (world_.failure.happened()) throw RunEnded{};
     Inbox& inbox = world_.inboxes[group_->world_ranks[to]];
     bool wake = false;

@@ -14,6 +14,9 @@ namespace delray::comm::internal {
 // "rank 3 with tag 7", "any rank with any tag".
 std::string describe_pattern(int from_or_any, Tag tag_or_any);
 
+// Throws std::invalid_argument unless a message may go to rank `to` of `size` with this tag.
+void check_message(int to, int size, Tag tag);
+
 // exception.what(), or a stand-in for what is no std::exception.
 std::string describe(const std::exception_ptr& exception);
 

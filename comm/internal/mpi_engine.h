@@ -85,7 +85,7 @@ class TellWaiting {
 // Waits between two looks at MPI: at first not at all, so that an answer is taken at once; then it
 // lets others run; at last it sleeps, so that ranks without a core of their own do not take turns
 // at finding nothing. While messages are on their way, which large ones are only as long as both
-// ends look, it takes long to sleep. A rank that does not get its core back soon sleeps at once for
+// ends look, it takes long to sleep. A rank that does not get its core back soon sleeps earlier for
 // some time: others have work for the core, and whoever was woken comes before those who never
 // slept.
 class Patience {
@@ -94,7 +94,9 @@ class Patience {
       : engine_(engine),
         last_look_(Clock::now()),
         is_crowded_(last_look_ < engine.crowded_until),
-        looks_(engine.cores_are_scarce || is_crowded_ ? kSpins : 0) {}
+        looks_(engine.cores_are_scarce ? kSpins
+               : is_crowded_           ? kSpins - kFewSpins
+                                       : 0) {}
 
   // How often others have rung for this process. To be read before one looks.
   std::uint32_t rings() const { return engine_.neighbours.empty() ? 0 : internal::rings(); }
@@ -108,6 +110,8 @@ class Patience {
 
   // A look and a yield take about a microsecond where nobody else wants the core.
   static constexpr int kSpins = 1000, kYields = 1000, kYieldsOnTheWay = 100000;
+  // Whoever is to answer may just have a core.
+  static constexpr int kFewSpins = 300;
   // Where those who send ring: for all messages, or but for those from other machines. Should MPI
   // deliver only after the bell, or the sender have no bell for it, looks go on at longer and
   // longer intervals.

@@ -208,6 +208,24 @@ TEST_P(FailureTest, ArgumentsThatCannotBeAreNoRanksFault) {
                std::invalid_argument);
 }
 
+TEST_P(FailureTest, MessagesGoToRanksThatThereAre) {
+  const std::vector<std::function<void(Communicator&)>> wrong = {
+      [](Communicator& c) { c.send(2, 1, Buffer()); },
+      [](Communicator& c) { c.send(-1, 1, Buffer()); },
+      [](Communicator& c) { c.send(0, -1, Buffer()); },
+      [](Communicator& c) { broadcast(c, 2, Buffer()); },
+      [](Communicator& c) { gather(c, -1, Buffer()); },
+      [](Communicator& c) { reduce_buffers(c, 7, Buffer(), [](Buffer&, Buffer&) {}); },
+      [](Communicator& c) {
+        std::vector<Parcel> parcels(1);
+        parcels[0].rank = 5;
+        exchange(c, std::move(parcels));
+      }};
+  for (const auto& send : wrong) {
+    EXPECT_THROW(GetParam().run(2, [&](Communicator& c) { send(c); }), std::invalid_argument);
+  }
+}
+
 TEST_P(FailureTest, MemoryThatIsNotThereIsNoLostRank) {
   const std::vector<std::function<void()>> ways = {
       [] { throw std::bad_alloc(); }, [] { std::vector<double>().reserve(std::size_t{1} << 62); },
