@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 #include "loadbalance/internal/masters.h"
 #include "loadbalance/internal/schedules.h"
@@ -8,7 +8,7 @@ namespace delray::loadbalance::internal {
 
 RankReport guided(comm::Communicator& communicator, const TaskGrid& tasks,
                   const ScheduleOptions& options, TaskFunction work) {
-  assert(options.share > 0);
+  if (!(options.share > 0)) throw std::invalid_argument("guided: the share is above 0");
   const MasterTree tree = MasterTree::flat(communicator, options);
   const double part = options.share / static_cast<double>(tree.workers(0));
   const std::uint64_t row = std::max(1U, tasks.rows > 1 ? tasks.columns : 1U);

@@ -1,4 +1,4 @@
-#include <cassert>
+#include <stdexcept>
 
 #include "loadbalance/internal/masters.h"
 #include "loadbalance/internal/schedules.h"
@@ -7,7 +7,7 @@ namespace delray::loadbalance::internal {
 
 RankReport hierarchical(comm::Communicator& communicator, const TaskGrid& tasks,
                         const ScheduleOptions& options, TaskFunction work) {
-  assert(options.fan_out >= 2);
+  if (options.fan_out < 2) throw std::invalid_argument("hierarchical: a fan-out is at least 2");
   const MasterTree tree{communicator.size(), options.fan_out, options.master_works};
   const std::uint64_t batch = batch_of(options);
   const auto amount = [batch](std::uint64_t, std::uint64_t workers) { return batch * workers; };
