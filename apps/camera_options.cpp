@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 
 #include "apps/session.h"
 #include "scenes/camera_path.h"
@@ -13,11 +14,38 @@ namespace delray::apps {
 void add_camera_options(CLI::App& command, CameraOptions& options) {
   CLI::Option* camera = command.add_option(
       "--camera", options.camera,
-      "eye,at,up,fov: ten numbers, in the coordinates of the file, fov vertical in degrees");
+      "Name or number (from 1) of a camera of the scene, or eye,at,up,fov: ten numbers, in the "
+      "coordinates of the file, fov vertical in degrees");
   command
       .add_option("--view", options.view, "default, front, back, left, right, top, bottom or iso")
       ->excludes(camera);
 }
+
+namespace {
+
+// The scene's camera of this name or else number, from 1; null if it has none.
+const scenes::Camera* find_camera(const scenes::Scene& scene, const std::string& name) {
+  for (const scenes::Camera& camera : scene.cameras) {
+    if (camera.name == name) return &camera;
+  }
+  std::size_t number = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stop, error] = std::from_chars(name.data(), end, number);
+  const bool known = error == std::errc() && stop == end && number >= 1;
+  return known && number <= scene.cameras.size() ? &scene.cameras[number - 1] : nullptr;
+}
+
+// For a message.
+std::string cameras_of(const scenes::Scene& scene) {
+  if (scene.cameras.empty()) return "the scene has no cameras of its own";
+  std::string list = "cameras of the scene:";
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    list += fmt::format("{} {} '{}'", i > 0 ? "," : "", i + 1, scene.cameras[i].name);
+  }
+  return list;
+}
+
+}  // namespace
 
 bool shows_all(const CameraOptions& options, const scenes::Scene& scene) {
   return options.camera.empty() && (!options.view.empty() || scene.cameras.empty());
@@ -28,10 +56,11 @@ scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& 
   if (!options.camera.empty()) {
     const auto camera = scenes::parse_camera(options.camera, scene.origin);
     if (camera) return *camera;
+    if (const scenes::Camera* own = find_camera(scene, options.camera)) return *own;
     throw UsageError(fmt::format(
-        "--camera: '{}' is not eye,at,up,fov: ten numbers separated by commas, the field of view "
-        "above 0 and below 180 degrees",
-        options.camera));
+        "--camera: '{}' is no camera of the scene, nor eye,at,up,fov: ten numbers separated by "
+        "commas, the field of view above 0 and below 180 degrees; {}",
+        options.camera, cameras_of(scene)));
   }
   if (!shows_all(options, scene)) return scene.cameras.front();
   const std::string view = options.view.empty() ? "default" : options.view;

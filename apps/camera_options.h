@@ -13,7 +13,7 @@ class App;
 namespace delray::apps {
 
 struct CameraOptions {
-  std::string camera;  // "eye,at,up,fov": ten numbers
+  std::string camera;  // "eye,at,up,fov": ten numbers; or one of the scene's
   std::string view;    // a name that camera_around knows
 };
 

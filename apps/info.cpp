@@ -65,7 +65,8 @@ Json describe_scene(const scenes::Scene& scene) {
       {"vertex_colours", d.has_colours},
       {"lights",
        {{"point", d.point_lights}, {"directional", d.directional_lights}, {"area", d.area_lights}}},
-      {"cameras", d.cameras},
+      {"cameras", d.cameras.size()},
+      {"camera_names", d.cameras},
       {"materials", d.materials},
       {"textures", textures},
       {"bytes", d.bytes}};

@@ -204,12 +204,15 @@ double imbalance_of(const Ranks& ranks) {
 
 Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
-// As --camera takes it.
+// As --camera takes it, unless it is orthographic: its height tells that.
 Json json_of(const scenes::Camera& camera) {
-  return {{"eye", json_of(camera.eye)},
-          {"at", json_of(camera.at)},
-          {"up", json_of(camera.up)},
-          {"fov", camera.vertical_fov}};
+  Json told = {{"eye", json_of(camera.eye)},
+               {"at", json_of(camera.at)},
+               {"up", json_of(camera.up)},
+               {"fov", camera.vertical_fov}};
+  if (camera.orthographic()) told["height"] = camera.height;
+  if (!camera.name.empty()) told["name"] = camera.name;
+  return told;
 }
 
 // Of the picture, or of the part of it that is rendered.

@@ -17,20 +17,20 @@ constexpr int kPlanes = 5;
 
 // Positive inside plane k: near, then left, right, top and bottom of the guard band.
 double distance(const Screen& screen, int plane, const glm::dvec3& v) {
-  const double scale = screen.view.scale;
+  const double scale = screen.view.scale, w = screen.view.orthographic ? 1 : v.z;
   const double offset_x = double{screen.offset_x} / kSubpixels;
   const double offset_y = double{screen.offset_y} / kSubpixels;
   switch (plane) {
     case 0:
       return v.z - screen.view.near;
     case 1:
-      return v.x * scale + v.z * (kGuardPixels + offset_x);
+      return v.x * scale + w * (kGuardPixels + offset_x);
     case 2:
-      return v.z * (kGuardPixels - offset_x) - v.x * scale;
+      return w * (kGuardPixels - offset_x) - v.x * scale;
     case 3:
-      return v.z * (kGuardPixels + offset_y) - v.y * scale;
+      return w * (kGuardPixels + offset_y) - v.y * scale;
     default:
-      return v.y * scale + v.z * (kGuardPixels - offset_y);
+      return v.y * scale + w * (kGuardPixels - offset_y);
   }
 }
 
@@ -40,12 +40,14 @@ int to_subpixels(double position) {
 }
 
 ScreenVertex project(const Screen& screen, const glm::dvec3& v) {
-  const double scale = screen.view.scale;
-  const double z = std::max(v.z, double{screen.view.near});
+  const scenes::View& view = screen.view;
+  const double scale = view.scale, near = view.near, far = view.far;
+  const double z = std::max(v.z, near), w = view.orthographic ? 1 : z;
   ScreenVertex result;
-  result.x = to_subpixels(v.x / z * scale + double{screen.offset_x} / kSubpixels);
-  result.y = to_subpixels(double{screen.offset_y} / kSubpixels - v.y / z * scale);
-  result.depth = std::min(static_cast<float>(-screen.view.near / z), kDeepest);
+  result.x = to_subpixels(v.x / w * scale + double{screen.offset_x} / kSubpixels);
+  result.y = to_subpixels(double{screen.offset_y} / kSubpixels - v.y / w * scale);
+  const double depth = view.orthographic ? (z - far) / (far - near) : -near / z;
+  result.depth = std::min(static_cast<float>(depth), kDeepest);
   return result;
 }
 

@@ -37,9 +37,10 @@ ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geomet
     return result;
   }
   const auto project = [&](float least, float most, float& first, float& last) {
-    // The range of value / z over the box.
-    first = std::min(least / low.z, least / high.z) * view.scale;
-    last = std::max(most / low.z, most / high.z) * view.scale;
+    // The range of value / w over the box.
+    const float least_w = view.orthographic ? 1 : low.z, most_w = view.orthographic ? 1 : high.z;
+    first = std::min(least / least_w, least / most_w) * view.scale;
+    last = std::max(most / least_w, most / most_w) * view.scale;
   };
   float left, right, bottom, top;
   project(low.x, high.x, left, right);
@@ -60,7 +61,8 @@ ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geomet
                               pixel(view.half_height - bottom + kMargin, screen.height) + 1},
                              screen.frame());
   result.outside |= result.pixels.empty();
-  const float nearest = -view.near / low.z * (1 + kRounding);
+  const float nearest = view.orthographic ? (low.z - view.far) / (view.far - view.near) - kRounding
+                                          : -view.near / low.z * (1 + kRounding);
   if (nearest > -1) result.nearest = nearest;
   return result;
 }

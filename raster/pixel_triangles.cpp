@@ -89,8 +89,13 @@ HWY_INLINE LaneFacing set_up_vector(const Screen& screen, const ScreenCorner (&c
   const F c2 = hn::Sub(hn::Mul(x0, y1), hn::Mul(x1, y0));
   const F area = hn::Add(hn::Add(c0, c1), c2);
   const auto turns = hn::Lt(area, hn::Zero(d));
+  // weighted_depth().
+  const auto weighted = [&](F depth) HWY_ATTR {
+    return screen.view.orthographic ? hn::Set(d, -1.0F) : depth;
+  };
+  const F depth0 = weighted(p.depth), depth1 = weighted(q.depth), depth2 = weighted(r.depth);
   const auto near = [&](F depth) HWY_ATTR { return hn::IfThenElse(turns, depth, hn::Neg(depth)); };
-  const F near0 = near(p.depth), near1 = near(q.depth), near2 = near(r.depth);
+  const F near0 = near(depth0), near1 = near(depth1), near2 = near(depth2);
   const F subpixels = hn::Set(d, static_cast<float>(kSubpixels));
   const F step0 = hn::Mul(near0, subpixels), step1 = hn::Mul(near1, subpixels),
           step2 = hn::Mul(near2, subpixels);
@@ -108,8 +113,8 @@ HWY_INLINE LaneFacing set_up_vector(const Screen& screen, const ScreenCorner (&c
   store(hn::ConvertTo(d, origin_y), planes.y);
 
   // are_proper().
-  const F nearest = hn::Neg(hn::Min(hn::Min(p.depth, q.depth), r.depth));
-  const F farthest = hn::Neg(hn::Max(hn::Max(p.depth, q.depth), r.depth));
+  const F nearest = hn::Neg(hn::Min(hn::Min(depth0, depth1), depth2));
+  const F farthest = hn::Neg(hn::Max(hn::Max(depth0, depth1), depth2));
   const F length = hn::ConvertTo(d, reach);
   const auto proper = hn::Lt(hn::Mul(nearest, hn::Mul(length, length)),
                              hn::Mul(hn::Mul(farthest, hn::Abs(area)), hn::Set(d, kMostStretched)));

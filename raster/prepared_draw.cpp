@@ -23,6 +23,7 @@ bool may_have_holes(const shading::Shader& shader, const scenes::Material& mater
 
 // Angles must be the same in the mesh and in the world, or nearly: then cones are used.
 void prepare_cones(const scenes::View& view, const glm::mat4x3& transform, PreparedDraw& prepared) {
+  if (view.orthographic) return;  // they are for an eye at some distance
   const glm::dmat3 axes{glm::mat3(transform)};
   const double lengths[3] = {glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])};
   const double least = std::min({lengths[0], lengths[1], lengths[2]});

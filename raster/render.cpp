@@ -84,12 +84,12 @@ void check(const scenes::Camera& camera) {
         "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
 }
 
-void to_distances(std::span<float> depths, float near) {
+void to_distances(std::span<float> depths, const scenes::View& view) {
   constexpr std::size_t kGrain = 1 << 16;  // pixels: some ten microseconds
   parallel::parallel_blocks(0, depths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     // Without a branch, for the compiler to vectorize.
     for (std::size_t i = begin; i < end; ++i) {
-      const float distance = distance_of(depths[i], near);
+      const float distance = distance_of(depths[i], view);
       depths[i] = depths[i] < 0 ? distance : depths[i];
     }
   });
@@ -222,7 +222,7 @@ struct Renderer::Frame {
     if (options.strategy != "sort-last")
       result.statistics.partition = rank.memory.screen.statistics();
     if (!rank.depths_are_distances())
-      std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view.near); },
+      std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); },
                  result.picture);
     return result;
   }

@@ -28,8 +28,8 @@ struct PlacedCluster {
 // Where a fragment is seen, in the world, as near as its depth tells.
 glm::vec3 position_of(const Screen& screen, int x, int y, float depth) {
   const scenes::View& view = screen.view;
-  const glm::vec3 ray = view.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-  return view.eye + ray * distance_of(depth, view.near);
+  const float centre_x = static_cast<float>(x) + 0.5F, centre_y = static_cast<float>(y) + 0.5F;
+  return view.origin(centre_x, centre_y) + view.ray(centre_x, centre_y) * distance_of(depth, view);
 }
 
 glm::vec3 moved_into(const geometry::Box3& box, glm::vec3 p) {

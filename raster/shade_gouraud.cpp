@@ -9,7 +9,7 @@ void GouraudTile::light(const FrameShading& frame, std::size_t number) {
   const scenes::View& view = frame.screen.view;
   shading::Vectors16 views;
   shading::Shaded shaded;
-  shading::directions_to(view.eye, -view.forward, block.points.position, views);
+  shading::directions_to(view.viewpoint, -view.forward, block.points.position, views);
   shading::shade(frame.untextured_batch, static_cast<std::uint32_t>(number / 2), block.points,
                  views, shading::first_lanes(block.count), {}, shaded);
   for (int i = 0; i < block.count; ++i) {

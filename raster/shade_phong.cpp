@@ -98,7 +98,7 @@ void PhongTile::shade_block(const FrameShading& frame, shading::LaneMask shown) 
   set_points(planes_, block_, points_);
   const scenes::View& view = frame.screen.view;
   shading::Vectors16 views;
-  shading::directions_to(view.eye, -view.forward, points_.position, views);
+  shading::directions_to(view.viewpoint, -view.forward, points_.position, views);
   const std::uint16_t* const triangle = block_.triangle;
   for (shading::LaneMask rest = shown; rest != 0;) {
     const std::uint32_t kind = kinds_[triangle[std::countr_zero(rest)]];

@@ -360,7 +360,7 @@ HWY_INLINE I codes_of(const std::int64_t* keys) {
 #endif
 }
 
-void store_depths(const std::int64_t* keys, int count, float near, float* depths) {
+void store_depths(const std::int64_t* keys, int count, const scenes::View* view, float* depths) {
   const Floats d;
   const Ints di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -370,7 +370,13 @@ void store_depths(const std::int64_t* keys, int count, float near, float* depths
     if (i + lanes > count) here = std::copy(here, keys + count, rest) - (count - i);
     const I code = codes_of(here);
     const F depth = hn::BitCast(d, hn::Not(code));
-    const F shown = near > 0 ? hn::Div(hn::Set(d, -near), depth) : depth;
+    F shown = depth;
+    if (view != nullptr && view->orthographic) {
+      const F range = hn::Set(d, view->far - view->near);
+      shown = hn::Add(hn::Set(d, view->far), hn::Mul(depth, range));
+    } else if (view != nullptr) {
+      shown = hn::Div(hn::Set(d, -view->near), depth);
+    }
     const auto empty = hn::RebindMask(d, hn::Eq(code, hn::Set(di, kEmptyCode)));
     hn::StoreU(hn::IfThenElse(empty, hn::Set(d, image::kEmptyDepth), shown), d, depths + i);
   }
@@ -409,8 +415,8 @@ void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
   HWY_DYNAMIC_DISPATCH(store_colours_float)(colours, shown, pixels);
 }
 
-void store_depths(const std::int64_t* keys, int count, float near, float* depths) {
-  HWY_DYNAMIC_DISPATCH(store_depths)(keys, count, near, depths);
+void store_depths(const std::int64_t* keys, int count, const scenes::View* view, float* depths) {
+  HWY_DYNAMIC_DISPATCH(store_depths)(keys, count, view, depths);
 }
 
 }  // namespace delray::raster

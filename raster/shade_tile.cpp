@@ -17,7 +17,7 @@ constexpr std::uint64_t kGoldenRatio64 = 0x9E3779B97F4A7C15U;
 constexpr int kSquare = 8;
 
 glm::vec3 to_viewer(const FrameShading& frame, const glm::vec3& position) {
-  const glm::vec3 way = frame.screen.view.eye - position;
+  const glm::vec3 way = frame.screen.view.viewpoint - position;
   const float squared = glm::dot(way, way);
   return squared > 0 ? way * (1.0F / std::sqrt(squared)) : -frame.screen.view.forward;
 }

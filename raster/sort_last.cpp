@@ -209,7 +209,7 @@ class Steps final : public FrameSteps {
       SceneCells& cells = rank_.memory.cells;
       cut_scene(rank_, cells);
       cell_ = cells.cell(rank_.number());
-      order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.eye);
+      order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.viewpoint);
       return cells.pieces;
     }
     const auto [begin, end] = rank_.own_primitives();

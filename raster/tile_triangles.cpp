@@ -184,7 +184,7 @@ void TileTriangles::write(const FrameShading& frame, SeenTriangles& seen,
     }
     float* const depths_to = whole ? window.depth + first : depths;
     const std::int64_t* const keys = tile.key + j * kTileSize + i0;
-    store_depths(keys, width, frame.distances ? frame.screen.view.near : 0.0F, depths_to);
+    store_depths(keys, width, frame.distances ? &frame.screen.view : nullptr, depths_to);
     if (whole) continue;
     std::copy(colours, colours + width, window.colour + first);
     std::copy(depths, depths + width, window.depth + first);

@@ -31,6 +31,8 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
   const V scale = hn::Set(d, screen.view.scale);
   const V subpixels = hn::Set(d, static_cast<float>(kSubpixels));
   const V guard = hn::Set(d, static_cast<float>(kGuardSubpixels));
+  const bool orthographic = screen.view.orthographic;
+  const float range = screen.view.far - screen.view.near;
   auto low_x = hn::Set(di, INT32_MAX), high_x = hn::Set(di, INT32_MIN);
   auto low_y = low_x, high_y = high_x;
   V farthest = hn::Set(d, -std::numeric_limits<float>::infinity());
@@ -49,11 +51,15 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
     const V view_y = transformed(d, to_view.row[1], x, y, z);
     const V view_z = transformed(d, to_view.row[2], x, y, z);
 
-    const V right = hn::Mul(hn::Mul(hn::Div(view_x, view_z), scale), subpixels);
-    const V up = hn::Mul(hn::Mul(hn::Div(view_y, view_z), scale), subpixels);
+    const V w = orthographic ? hn::Set(d, 1.0F) : view_z;
+    const V right = hn::Mul(hn::Mul(hn::Div(view_x, w), scale), subpixels);
+    const V up = hn::Mul(hn::Mul(hn::Div(view_y, w), scale), subpixels);
     const V screen_x = hn::Add(hn::Set(d, screen.offset_x), right);
     const V screen_y = hn::Sub(hn::Set(d, screen.offset_y), up);
-    const V depth = hn::Min(hn::Div(hn::Set(d, -screen.view.near), view_z), hn::Set(d, kDeepest));
+    const V of_near = orthographic
+                          ? hn::Div(hn::Sub(view_z, hn::Set(d, screen.view.far)), hn::Set(d, range))
+                          : hn::Div(hn::Set(d, -screen.view.near), view_z);
+    const V depth = hn::Min(of_near, hn::Set(d, kDeepest));
 
     // Comparisons with NaN are false: what is not a number is outside.
     const auto inside =

@@ -44,8 +44,9 @@ void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& 
     const F row = to_float(hn::Load(di, kRows + i) + set(y)) + load(places.y, i);
     const F right = (column - set(view.half_width)) / scale;
     const F up = (row - set(view.half_height)) / scale;
-    F3 direction = set(view.forward) + set(view.right) * right - set(view.up) * up;
-    F3 origin = set(view.eye);
+    F3 direction = set(view.forward), origin = set(view.eye);
+    F3& moved = view.orthographic ? origin : direction;
+    moved = moved + set(view.right) * right - set(view.up) * up;
     if (view.lens_radius > 0.0F) {
       const F radius = set(view.lens_radius);
       const F3 aside = set(view.right) * (load(places.lens_x, i) * radius) +
@@ -75,8 +76,8 @@ void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& 
     put(hn::Neg(unit.x), group.view.x.lane + i);
     put(hn::Neg(unit.y), group.view.y.lane + i);
     put(hn::Neg(unit.z), group.view.z.lane + i);
-    put(zero, group.width.lane + i);
-    put(set(1.0F / view.scale), group.spread.lane + i);
+    put(set(view.first_width()), group.width.lane + i);
+    put(set(view.spread()), group.spread.lane + i);
     hn::Store(hn::VecFromMask(di, hn::RebindMask(di, mask_of(mask, i))), di, group.active.ray + i);
   }
   group.coherent = true;

@@ -80,7 +80,7 @@ class Whitted final : public LitWalk {
       reflectance += (glm::vec3(refraction.reflected) - reflectance) * glass;
     }
     NextRay ray;
-    ray.spread = 1.0F / setting_.view.scale;
+    ray.spread = setting_.view.spread();
     ray.width = group.width[i] + group.packet.far[i] * group.spread[i];
     ray.pixel = lanes.pixel_of(i);
     ray.depth = depth_of(lanes, i) - 1;

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <string>
 
 #include "geometry/box.h"
 #include "geometry/rect.h"
 
 namespace delray::scenes {
 
-// A camera with a thin lens, or a pinhole if the lens has no size. `up` need not be at right angles
-// to the view, only not parallel to it.
+// A camera with a thin lens, or a pinhole if the lens has no size, or an orthographic one, whose
+// rays are parallel. `up` need not be at right angles to the view, only not parallel to it.
 struct Camera {
   glm::vec3 eye{0, 0, 1};
   glm::vec3 at{0, 0, 0};
@@ -18,6 +19,12 @@ struct Camera {
   float near = 0;              // distance of the near plane; 0: a small part of |at - eye|
   float aperture = 0;          // diameter of the lens, >= 0; the rasterizer sees through its centre
   float focus = 0;             // distance of what is sharp, along the view; 0: that of `at`
+  // Of an orthographic camera: how much of the world fits the frame's height, above 0, instead of
+  // fov, lens and focus; `near` may be 0, and nothing lies beyond `far` (0: twice |at - eye|).
+  float height = 0, far = 0;
+  std::string name;  // in its file
+
+  bool orthographic() const { return height > 0; }
 };
 
 // A camera bound to a frame of pixels: the one place where pixels and directions meet.
@@ -27,19 +34,33 @@ struct Camera {
 //   x = half_width  + v.x / v.z * scale,   y = half_height - v.y / v.z * scale.
 // The centre of pixel (i, j) is (i + 0.5, j + 0.5); the ray through position (x, y) has direction
 //   forward + right * ((x - half_width) / scale) - up * ((y - half_height) / scale).
+// Of an orthographic view v.z is 1 in these, and what is added to forward is added to eye instead.
 struct View {
   glm::vec3 eye, right, up, forward;  // unit vectors at right angles
   float scale = 1;                    // pixels per unit of v.x / v.z
   float half_width = 0, half_height = 0;
   float near = 0;
   int width = 0, height = 0;
+  bool orthographic = false;
+  float far = 0;             // of an orthographic view, above near
+  glm::vec3 viewpoint;       // the eye, or if orthographic a point so far behind it that all of the
+                             // scene is seen from there in one direction
   float lens_radius = 0;     // 0: a pinhole
   float focus_distance = 1;  // along `forward`
 
-  // Through the centre of the lens.
+  // Through the centre of the lens, or along `forward`.
   glm::vec3 ray(float x, float y) const {  // not normalised: its part along `forward` is 1
+    if (orthographic) return forward;
     return forward + right * ((x - half_width) / scale) - up * ((y - half_height) / scale);
   }
+
+  glm::vec3 origin(float x, float y) const {  // of that ray
+    if (!orthographic) return eye;
+    return eye + right * ((x - half_width) / scale) - up * ((y - half_height) / scale);
+  }
+  // What a pixel's width grows by per unit of distance, and what it is at first.
+  float spread() const { return orthographic ? 0.0F : 1.0F / scale; }
+  float first_width() const { return orthographic ? 1.0F / scale : 0.0F; }
 
   // Through a point of the lens, given in the unit disc: all of them meet at the focus distance.
   // The direction's part along `forward` is 1 as well.
@@ -48,7 +69,7 @@ struct View {
   };
   Ray ray(float x, float y, const glm::vec2& lens) const {
     const glm::vec3 across = right * (lens.x * lens_radius) + up * (lens.y * lens_radius);
-    return {eye + across, ray(x, y) - across * (1.0F / focus_distance)};
+    return {origin(x, y) + across, ray(x, y) - across * (1.0F / focus_distance)};
   }
 };
 

@@ -32,11 +32,11 @@ Description describe(const Scene& scene) {
   d.instances = scene.instances.size();
   d.triangles = triangle_count(scene);
   d.vertices = vertex_count(scene);
-  d.cameras = scene.cameras.size();
   d.z_up = scene.z_up;
   d.bounds = bounds(scene);
   for (const Mesh& mesh : scene.meshes) add_mesh(mesh, d);
   for (const Light& light : scene.lights) add_light(light, d);
+  for (const Camera& camera : scene.cameras) d.cameras.push_back(camera.name);
   for (const Material& material : scene.materials) d.materials.push_back(material.name);
   for (const Texture& texture : scene.textures) {
     d.textures.push_back({texture.name, texture.width, texture.height, texture.srgb});

@@ -23,7 +23,7 @@ struct Description {
   std::vector<std::string> materials;                       // names
   std::vector<TextureDescription> textures;
   std::uint64_t point_lights = 0, directional_lights = 0, area_lights = 0;
-  std::uint64_t cameras = 0;
+  std::vector<std::string> cameras;                                // names
   bool has_normals = false, has_uvs = false, has_colours = false;  // any mesh
   bool z_up = false;
   geometry::Box3 bounds;    // empty for an empty scene

@@ -115,7 +115,7 @@ class Placer {
     }
     const JsonView cameras = root_["cameras"];
     const std::uint32_t camera = node["camera"].reference(cameras.size());
-    if (camera != kNone) place_camera(cameras[camera], world);
+    if (camera != kNone) place_camera(cameras[camera], node["name"].text(), world);
     const JsonView lights = root_["extensions"]["KHR_lights_punctual"]["lights"];
     const std::uint32_t light =
         node["extensions"]["KHR_lights_punctual"]["light"].reference(lights.size());
@@ -142,20 +142,27 @@ class Placer {
     return default_material_;
   }
 
-  void place_camera(const JsonView& json, const glm::dmat4& world) {
-    const JsonView perspective = json["perspective"];
-    if (!perspective)
-      return document_.source.warn(json.place() + ": only perspective is supported");
+  void place_camera(const JsonView& json, const std::string& node_name, const glm::dmat4& world) {
     Camera camera;
+    camera.name = node_name.empty() ? json["name"].text() : node_name;
     camera.eye = glm::dvec3(world[3]);
     // Far enough from the eye for the direction to keep its precision.
     const double distance = std::max(1.0, glm::length(glm::dvec3(world[3])));
     camera.at = glm::dvec3(world[3]) - unit_or(glm::dvec3(world[2]), {0, 0, 1}) * distance;
     camera.up = unit_or(glm::dvec3(world[1]), {0, 1, 0});
-    const double degrees = perspective["yfov"].number(0.7) * (180 / std::numbers::pi);
-    if (!(degrees > 0 && degrees < 180)) perspective["yfov"].fail("is not between 0 and pi");
-    camera.vertical_fov = static_cast<float>(degrees);
-    camera.near = static_cast<float>(perspective["znear"].number(0, 0, 1e18));
+    const JsonView orthographic = json["orthographic"], perspective = json["perspective"];
+    if (orthographic) {
+      // The frame's height is that of the file, its width what the picture's shape asks for.
+      const double half = std::abs(orthographic["ymag"].number(1));
+      if (!(static_cast<float>(half) > 0)) orthographic["ymag"].fail("should not be 0");
+      camera.height = static_cast<float>(2 * half);
+    } else {
+      const double degrees = perspective["yfov"].number(0.7) * (180 / std::numbers::pi);
+      if (!(degrees > 0 && degrees < 180)) perspective["yfov"].fail("is not between 0 and pi");
+      camera.vertical_fov = static_cast<float>(degrees);
+    }
+    const JsonView near = (orthographic ? orthographic : perspective)["znear"];
+    camera.near = static_cast<float>(near.number(0, 0, 1e18));
     scene_.cameras.push_back(camera);
   }
 
@@ -183,12 +190,30 @@ class Placer {
   std::uint32_t default_material_ = kNone;
 };
 
+// Their depths are told apart best between the nearest and the farthest that there is.
+void set_depths_of_orthographic_cameras(Scene& scene) {
+  const auto is_orthographic = [](const Camera& camera) { return camera.orthographic(); };
+  if (std::none_of(scene.cameras.begin(), scene.cameras.end(), is_orthographic)) return;
+  const geometry::Box3 box = bounds(scene);
+  if (box.empty()) return;
+  for (Camera& camera : scene.cameras) {
+    if (!camera.orthographic()) continue;
+    const View view = make_view(camera, 1, 1);
+    const glm::dvec3 forward(view.forward);
+    const double middle = glm::dot(forward, glm::dvec3(box.centre()) - glm::dvec3(view.eye));
+    const double reach = glm::dot(glm::abs(forward), glm::dvec3(box.size())) * 0.501;
+    camera.near = std::max(camera.near, static_cast<float>(middle - reach));
+    camera.far = std::max(camera.near, static_cast<float>(middle + reach));
+  }
+}
+
 }  // namespace
 
 Scene load_gltf(const Source& source) {
   const GltfDocument document = read_document(source);
   Scene scene;
   Placer(document, scene).place_all();
+  set_depths_of_orthographic_cameras(scene);
   const JsonView root = document.root(), scenes = root["scenes"];
   const std::uint32_t chosen = root["scene"].reference(scenes.size());
   if (scenes.size() > 0) read_extras(scenes[chosen == kNone ? 0 : chosen]["extras"], scene);

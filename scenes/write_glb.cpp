@@ -230,12 +230,18 @@ class Writer {
 
   void add_camera(const Camera& camera) {
     const View view = make_view(camera, 1, 1);
-    document_["cameras"].push_back(
-        {{"type", "perspective"},
-         {"perspective",
-          {{"yfov", static_cast<double>(camera.vertical_fov) * (std::numbers::pi / 180)},
-           {"znear", view.near}}}});
-    add_node({{"camera", document_["cameras"].size() - 1}}, frame_of(camera));
+    const char* const type = camera.orthographic() ? "orthographic" : "perspective";
+    Json lens = {{"znear", view.near}};
+    if (camera.orthographic()) {
+      lens["xmag"] = lens["ymag"] = camera.height * 0.5F;
+      lens["zfar"] = view.far;
+    } else {
+      lens["yfov"] = static_cast<double>(camera.vertical_fov) * (std::numbers::pi / 180);
+    }
+    document_["cameras"].push_back({{"type", type}, {type, lens}});
+    Json node = {{"camera", document_["cameras"].size() - 1}};
+    if (!camera.name.empty()) node["name"] = camera.name;
+    add_node(std::move(node), frame_of(camera));
   }
 
   void add_scene() {

@@ -40,6 +40,11 @@ inline bool are_proper(float nearest, float farthest, float reach, float area) {
   return nearest * (reach * reach) < farthest * area * kMostStretched;
 }
 
+// What shares of a vertex are weighted with: all alike in an orthographic view.
+inline float weighted_depth(const Screen& screen, const ScreenVertex& vertex) {
+  return screen.view.orthographic ? -1.0F : vertex.depth;
+}
+
 // From the vertices on the screen: u_k is the edge function opposite of vertex k over the distance
 // of the vertex. Exact but for the rounding of the planes, so that no pixel that is covered lies
 // outside.
@@ -65,7 +70,9 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   const double area = (c0 + c1) + c2;
   result.counter_clockwise = area < 0;
   const double sign = result.counter_clockwise ? 1 : -1;  // depths are negative
-  const double near0 = sign * p.depth, near1 = sign * q.depth, near2 = sign * r.depth;
+  const float depth0 = weighted_depth(screen, p), depth1 = weighted_depth(screen, q),
+              depth2 = weighted_depth(screen, r);
+  const double near0 = sign * depth0, near1 = sign * depth1, near2 = sign * depth2;
   const double step0 = near0 * kSubpixels, step1 = near1 * kSubpixels, step2 = near2 * kSubpixels;
   result.a[0] = static_cast<float>((y1 - y2) * step0);
   result.a[1] = static_cast<float>((y2 - y0) * step1);
@@ -79,7 +86,7 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   const double reach = std::max(
       {std::abs(x0), std::abs(x1), std::abs(x2), std::abs(y0), std::abs(y1), std::abs(y2)});
   result.proper =
-      are_proper(-std::min({p.depth, q.depth, r.depth}), -std::max({p.depth, q.depth, r.depth}),
+      are_proper(-std::min({depth0, depth1, depth2}), -std::max({depth0, depth1, depth2}),
                  static_cast<float>(reach), static_cast<float>(std::abs(area)));
   return result;
 }
@@ -89,11 +96,13 @@ inline Barycentrics make_barycentrics(const Screen& screen,
 inline Barycentrics make_barycentrics(const Screen& screen,
                                       const std::array<glm::vec3, 3>& vertices) {
   const scenes::View& view = screen.view;
-  const glm::dvec3 v[3] = {vertices[0], vertices[1], vertices[2]};
+  glm::dvec3 v[3] = {vertices[0], vertices[1], vertices[2]};
+  // Seen along parallel rays, everything might as well lie in one plane.
+  for (glm::dvec3& p : v) p.z = view.orthographic ? 1 : p.z;
   // The origin is a pixel of the frame amid the triangle: planes lose the least precision there.
   double low_x = screen.width, high_x = 0, low_y = screen.height, high_y = 0;
   for (const glm::dvec3& p : v) {
-    const bool in_front = p.z >= view.near;
+    const bool in_front = view.orthographic || p.z >= view.near;
     const double x = p.x / p.z * view.scale + view.half_width;
     const double y = view.half_height - p.y / p.z * view.scale;
     low_x = in_front ? std::min(low_x, x) : 0;
@@ -129,7 +138,8 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   // Their sum is least where the triangle is farthest. Snapping moves a point by less than 1/256
   // of a pixel; rounding is a matter of all terms.
   const double least_sum =
-      std::abs(volume) * scale / std::max({v[0].z, v[1].z, v[2].z, double{view.near}});
+      std::abs(volume) * scale /
+      std::max({v[0].z, v[1].z, v[2].z, view.orthographic ? 0.0 : double{view.near}});
   result.proper = true;
   for (int k = 0; k < 3; ++k) {
     const double a = plane[k][0] * scale, b = plane[k][1] * scale, c = plane[k][2] * scale;

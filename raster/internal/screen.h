@@ -45,7 +45,7 @@ struct Screen {
   }
 };
 
-// REQUIRES: 1 <= view.width, view.height <= kLargestSide; view.near > 0.
+// REQUIRES: 1 <= view.width, view.height <= kLargestSide; view.near > 0 unless it is orthographic.
 inline Screen make_screen(const scenes::View& view) {
   Screen screen;
   screen.view = view;
@@ -60,8 +60,11 @@ inline Screen make_screen(const scenes::View& view) {
   return screen;
 }
 
-// The distance along the view axis of a depth in the rasterizer's unit, -near / distance.
-inline float distance_of(float depth, float near) { return -near / depth; }
+// The distance along the view axis of a depth in the rasterizer's unit: -near / distance, or of an
+// orthographic view from -1 at `near` to 0 at `far`. Both are planes over the screen.
+inline float distance_of(float depth, const scenes::View& view) {
+  return view.orthographic ? view.far + depth * (view.far - view.near) : -view.near / depth;
+}
 
 // The first pixel of an axis whose centre is at or after `subpixel`, and the last at or before it,
 // relative to the centre pixel.

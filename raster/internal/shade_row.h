@@ -30,8 +30,8 @@ void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
 void store_colours(const shading::Vectors16& colours, shading::LaneMask shown,
                    image::RgbaF* pixels);
 
-// The depths of `count` keys, or the distances that they stand for if `near` is not 0, infinity
-// where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
-void store_depths(const std::int64_t* keys, int count, float near, float* depths);
+// The depths of `count` keys, or the distances that they stand for in `view` if it is given,
+// infinity where nothing is seen. `depths` may be changed up to the next multiple of kBlockSize.
+void store_depths(const std::int64_t* keys, int count, const scenes::View* view, float* depths);
 
 }  // namespace delray::raster

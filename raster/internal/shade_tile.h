@@ -32,7 +32,7 @@ struct FrameShading {
 
   float shown_depth(std::int64_t key) const {
     const float depth = depth_of(key);
-    const float distance = distance_of(depth, screen.view.near);
+    const float distance = distance_of(depth, screen.view);
     return distances && depth < 0 ? distance : depth;
   }
 };
