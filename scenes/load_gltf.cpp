@@ -154,7 +154,7 @@ class Placer {
     if (orthographic) {
       // The frame's height is that of the file, its width what the picture's shape asks for.
       const double half = std::abs(orthographic["ymag"].number(1));
-      if (!(static_cast<float>(half) > 0)) orthographic["ymag"].fail("should not be 0");
+      if (!(half > 1e-18)) orthographic["ymag"].fail("should not be 0");
       camera.height = static_cast<float>(2 * half);
     } else {
       const double degrees = perspective["yfov"].number(0.7) * (180 / std::numbers::pi);

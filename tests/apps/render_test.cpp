@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/generate.h"
+#include "scenes/write_glb.h"
 #include "tests/support/run_program.h"
 
 namespace delray::tests {
@@ -116,6 +118,35 @@ TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
             statistics(base + "--camera 1,1,3.5,0,1,0,0,1,0,45", folder)["image"]["hash"]);
 }
 
+TEST(RenderCommand, CamerasOfTheSceneByNameAndNumber) {
+  const Folder folder;
+  scenes::Scene scene = scenes::generate("gen:cornell:100");
+  scene.cameras[0].name = "front door";
+  scenes::Camera plan = scene.cameras[0];
+  plan.name = "plan";
+  plan.height = 3;
+  scene.cameras.push_back(plan);
+  scenes::write_glb(folder.path() / "a.glb", scene);
+  const std::string base = "delray render a.glb -o a.png --size 48x32 ";
+  const std::string first = statistics(base, folder)["image"]["hash"];
+  const std::string second = statistics(base + "--camera plan", folder)["image"]["hash"];
+  EXPECT_NE(first, second);
+  EXPECT_EQ(statistics(base + "--camera 'front door'", folder)["image"]["hash"], first);
+  EXPECT_EQ(statistics(base + "--camera 1", folder)["image"]["hash"], first);
+  EXPECT_EQ(statistics(base + "--camera 2", folder)["image"]["hash"], second);
+  EXPECT_EQ(statistics(base + "--camera plan --ranks 3", folder)["image"]["hash"], second);
+  EXPECT_EQ(statistics(base + "--camera plan", folder)["camera"]["height"], 3);
+  const std::string traced =
+      statistics(base + "--camera plan --engine raytrace", folder)["image"]["hash"];
+  EXPECT_EQ(statistics(base + "--camera plan --engine raytrace --ranks 2", folder)["image"]["hash"],
+            traced);
+  for (const char* camera : {"door", "0", "3", "-1"}) {
+    const auto refused = run(base + "--camera=" + std::string(camera), folder.path());
+    EXPECT_EQ(refused.exit_code, 2) << camera;
+    EXPECT_NE(refused.err.find("1 'front door', 2 'plan'"), std::string::npos) << refused.err;
+  }
+}
+
 TEST(RenderCommand, TellsTheCameraAsItCanBeGiven) {
   const Folder folder;
   const std::string base = "delray render gen:spheres:500 -o a.png --size 48x32 ";
@@ -125,7 +156,7 @@ TEST(RenderCommand, TellsTheCameraAsItCanBeGiven) {
     for (const json& number : told["camera"][key]) camera += number.dump() + ",";
   }
   camera += told["camera"]["fov"].dump();
-  EXPECT_EQ(statistics(base + "--camera=" + camera, folder)["image"]["hash"],
+  EXPECT_EQ(statistics(base + "--camera=" + std::string(camera), folder)["image"]["hash"],
             told["image"]["hash"]);
 }
 

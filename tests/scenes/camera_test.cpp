@@ -45,6 +45,36 @@ TEST(Camera, RayThroughTheProjectionOfAPointMeetsThePoint) {
   }
 }
 
+TEST(Camera, OrthographicRaysAreParallelAndMeetWhatIsProjected) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto vector = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+  for (int trial = 0; trial < 300; ++trial) {
+    Camera camera;
+    camera.eye = vector() * 5.0F;
+    camera.at = vector();
+    camera.up = vector();
+    camera.height = 0.5F + std::abs(unit(random)) * 3;
+    camera.aperture = 1;
+    const View view = make_view(camera, 1 + trial % 300, 1 + trial % 200);
+    EXPECT_FLOAT_EQ(view.scale * camera.height, static_cast<float>(view.height));
+    EXPECT_GT(view.far, view.near);
+    const glm::vec3 p = vector() * 3.0F, v = p - view.eye;
+    const float x = view.half_width + glm::dot(v, view.right) * view.scale;
+    const float y = view.half_height - glm::dot(v, view.up) * view.scale;
+    const View::Ray ray = view.ray(x, y, {0.5F, 0.5F});
+    EXPECT_EQ(ray.direction, view.forward);
+    const glm::vec3 met = ray.origin + ray.direction * glm::dot(v, view.forward);
+    EXPECT_LT(glm::distance(met, p), 1e-4F) << trial;
+    // Its pixel is among those of any box that holds it, in front of the eye or behind.
+    const glm::vec3 size = glm::abs(vector()) * 0.1F;
+    const geometry::Rect pixels = pixels_of(view, {p - size, p + size});
+    const auto column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+    const bool in_frame = column >= 0 && row >= 0 && column < view.width && row < view.height;
+    EXPECT_TRUE(!in_frame || pixels.contains(column, row)) << trial;
+  }
+}
+
 // Whatever is seen of a box is seen in its pixels, however close to the edge of the frame.
 TEST(Camera, PixelsOfABoxHaveAllRaysThatMeetIt) {
   std::mt19937 random(7);

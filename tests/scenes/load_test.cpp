@@ -8,6 +8,7 @@
 #include <string>
 
 #include "files/error.h"
+#include "files/read_file.h"
 #include "image/io.h"
 #include "tests/scenes/sample_files.h"
 #include "tests/support/temporary_folder.h"
@@ -216,6 +217,38 @@ TEST(Load, GltfStripsFansAndUnindexedTriangles) {
   const Scene plain = load_mode("4");
   EXPECT_EQ(plain.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}}));
   EXPECT_EQ(plain.meshes[0].positions.size(), 3U);  // no triangle uses the others
+}
+
+TEST(Load, GltfCamerasOfBothKindsWithTheirNames) {
+  const tests::TemporaryFolder folder;
+  const std::string gltf =
+      with(with(sample_gltf(), "\"children\":[1]}",
+                R"("children":[1]},{"camera":1,"name":"plan","translation":[0,0,9]},
+{"camera":0,"translation":[0,0,20]})"),
+           "\"scenes\":[{\"nodes\":[0]}]", R"("scenes":[{"nodes":[0,3,2]}],
+"cameras":[{"name":"lens","type":"perspective","perspective":{"yfov":1,"znear":0.5}},
+{"type":"orthographic","orthographic":{"xmag":3,"ymag":2,"znear":0.25,"zfar":1000}}])");
+  // The nodes are 0, then the two cameras, then what was node 1.
+  const Scene scene =
+      load_quietly(folder.write("a.gltf", with(with(gltf, "\"children\":[1]", "\"children\":[3]"),
+                                               "\"nodes\":[0,3,2]", "\"nodes\":[0,2,1]")));
+  ASSERT_EQ(scene.cameras.size(), 2U);
+  const Camera &lens = scene.cameras[0], &plan = scene.cameras[1];
+  EXPECT_EQ(lens.name, "lens");
+  EXPECT_FALSE(lens.orthographic());
+  EXPECT_NEAR(lens.vertical_fov, 57.29578, 1e-4);
+  EXPECT_EQ(plan.name, "plan");
+  EXPECT_EQ(plan.height, 4);
+  EXPECT_EQ(plan.eye, glm::vec3(0, 0, 9));
+  // The scene reaches from z = 3 to 5, that is from 4 to 6 before the camera.
+  EXPECT_NEAR(plan.near, 4, 0.01);
+  EXPECT_NEAR(plan.far, 6, 0.01);
+  for (const char* ymag : {"0", "1e-30"}) {
+    EXPECT_THROW(
+        load_quietly(folder.write("b.gltf", with(files::read_file(folder / "a.gltf"), "\"ymag\":2",
+                                                 "\"ymag\":" + std::string(ymag)))),
+        files::FileError);
+  }
 }
 
 TEST(Load, GltfSparseAndQuantizedPositions) {

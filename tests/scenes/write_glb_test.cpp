@@ -187,6 +187,18 @@ TEST(WriteGlb, TurnsScenesWithZUpUpright) {
   expect_near(make_view(back.cameras[0], 4, 4).forward, {0, 0, -1}, 1e-6F);
 }
 
+TEST(WriteGlb, OrthographicCamerasComeBack) {
+  Scene scene = generate("gen:cornell");
+  scene.cameras[0].height = 3;
+  scene.cameras[0].near = 0.5F;
+  scene.cameras[0].name = "plan";
+  const Scene back = round_trip(scene);
+  ASSERT_EQ(back.cameras.size(), 1U);
+  EXPECT_EQ(back.cameras[0].height, 3);
+  EXPECT_EQ(back.cameras[0].name, "plan");
+  EXPECT_EQ(back.cameras[0].eye, scene.cameras[0].eye);
+}
+
 TEST(WriteGlb, WritesTheSameBytesForTheSameScene) {
   const tests::TemporaryFolder folder;
   const Scene scene = generate("gen:spheres:5000");
