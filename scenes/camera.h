@@ -22,7 +22,7 @@ struct Camera {
   // Of an orthographic camera: how much of the world fits the frame's height, above 0, instead of
   // fov, lens and focus; `near` may be 0, and nothing lies beyond `far` (0: twice |at - eye|).
   float height = 0, far = 0;
-  std::string name;  // in its file
+  std::string name = {};  // in its file
 
   bool orthographic() const { return height > 0; }
 };
