@@ -4,10 +4,14 @@
 #include "scenes/internal/gltf_draco.h"
 
 #include <draco/compression/decode.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
 
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <optional>
 
 namespace delray::scenes::internal {
 namespace {
@@ -36,7 +40,45 @@ void check_indices(const draco::Mesh& mesh, const JsonView& extension) {
   }
 }
 
-std::unique_ptr<draco::Mesh> decode(std::string_view bytes, const JsonView& extension) {
+struct Sizes {
+  std::uint32_t triangles = 0, vertices = 0;
+};
+
+// What the bytes say that they unpack to: the decoder believes them before it looks any further.
+// glTF has bitstreams of version 2.2 only.
+std::optional<Sizes> announced(std::string_view bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  std::array<char, 5> magic{};
+  std::array<std::uint8_t, 4> start{};  // two parts of the version, kind of geometry, method
+  std::uint16_t flags = 0;
+  if (!buffer.Decode(&magic) || !buffer.Decode(&start) || !buffer.Decode(&flags)) return {};
+  const auto [version, revision, geometry, method] = start;
+  if (version != 2 || revision != 2 || geometry != draco::TRIANGULAR_MESH) return {};
+  buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(2, 2));
+  if ((flags & METADATA_FLAG_MASK) != 0) {
+    draco::GeometryMetadata ignored;
+    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &ignored)) return {};
+  }
+  Sizes sizes;
+  std::uint8_t traversal = 0;
+  const bool edgebreaker = method == draco::MESH_EDGEBREAKER_ENCODING;
+  if (edgebreaker && !buffer.Decode(&traversal)) return {};
+  std::uint32_t* const first = edgebreaker ? &sizes.vertices : &sizes.triangles;
+  std::uint32_t* const second = edgebreaker ? &sizes.triangles : &sizes.vertices;
+  if (!draco::DecodeVarint(first, &buffer) || !draco::DecodeVarint(second, &buffer)) return {};
+  return sizes;
+}
+
+std::unique_ptr<draco::Mesh> decode(const Source& source, std::string_view bytes,
+                                    const JsonView& extension) {
+  const std::optional<Sizes> sizes = announced(bytes);
+  if (!sizes) extension.fail("is no mesh that Draco 1.0 or later compressed");
+  // Its table of corners and ours of triangles; positions and what else vertices have, both as they
+  // were compressed and as they are.
+  constexpr std::uint64_t kBytesOfTriangle = 72, kBytesOfVertex = 64;
+  source.require_memory(sizes->triangles * kBytesOfTriangle + sizes->vertices * kBytesOfVertex,
+                        extension.place());
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::string why;
@@ -78,7 +120,8 @@ std::optional<DracoPrimitive> DracoPrimitive::read(const GltfDocument& document,
   const std::uint32_t view =
       extension["bufferView"].reference(document.root()["bufferViews"].size());
   if (view == kNone) extension["bufferView"].fail("is missing");
-  std::unique_ptr<draco::Mesh> mesh = decode(buffer_view(document, view), extension);
+  std::unique_ptr<draco::Mesh> mesh =
+      decode(document.source, buffer_view(document, view), extension);
   check_indices(*mesh, extension);
   return DracoPrimitive(std::move(mesh), extension);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "files/error.h"
+#include "files/memory_budget.h"
 #include "scenes/internal/gltf_document.h"
 #include "scenes/internal/load_content.h"
 #include "tests/scenes/sample_files.h"
@@ -38,7 +39,9 @@ std::string gltf(const std::string& encoded, std::size_t bytes,
 
 Scene read(const std::string& content) {
   std::vector<std::string> warnings;
-  return internal::load_content("/nowhere/a.gltf", content, warnings);
+  LoadOptions options;
+  options.memory = files::MemoryBudget(files::resident_set() + (std::uint64_t{256} << 20));
+  return internal::load_content("/nowhere/a.gltf", content, warnings, options);
 }
 
 TEST(GltfDraco, TrianglesAndAttributesComeBack) {
@@ -79,6 +82,20 @@ TEST(GltfDraco, AttributesThatAreNotThereAreRefusedByName) {
     } catch (const files::FileError& e) {
       EXPECT_NE(std::string(e.what()).find("KHR_draco_mesh_compression"), std::string::npos);
     }
+  }
+}
+
+TEST(GltfDraco, FewBytesThatClaimMuchDoNotGetTheMemory) {
+  std::string bytes;
+  ASSERT_TRUE(internal::decode_data_uri("data:;base64," + std::string(kEncoded), bytes));
+  // After the header of 11 bytes and the kind of traversal: 7 vertices and 3 triangles.
+  ASSERT_EQ(bytes.substr(12, 2), "\7\3");
+  bytes.replace(12, 2, "\xFF\xFF\xFF\x7F\xFF\xFF\xFF\x7F");
+  try {
+    read(gltf(base64(bytes), bytes.size()));
+    ADD_FAILURE() << "was read";
+  } catch (const files::FileError& e) {
+    EXPECT_EQ(e.cause(), files::Cause::memory) << e.what();
   }
 }
 
