@@ -49,7 +49,7 @@ TEST(Transform, SnapsWhereTheCameraSays) {
     EXPECT_NEAR(vertices[i].x / 256.0 + screen.centre_x, x, 0.6 / 256);
     EXPECT_NEAR(vertices[i].y / 256.0 + screen.centre_y, y, 0.6 / 256);
     EXPECT_NEAR(vertices[i].depth, -view.near / z, 1e-6 * view.near / z);
-    EXPECT_NEAR(distance_of(vertices[i].depth, view.near), z, 1e-5 * z);
+    EXPECT_NEAR(distance_of(vertices[i].depth, view), z, 1e-5 * z);
   }
 }
 
