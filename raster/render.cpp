@@ -79,7 +79,7 @@ void check(const scenes::Camera& camera) {
   if (!is_finite(camera.eye) || !is_finite(camera.at) || !is_finite(camera.up) ||
       !(camera.vertical_fov > 0 && camera.vertical_fov < 180) || !(camera.near >= 0) ||
       !(camera.aperture >= 0) || !(camera.focus >= 0) ||
-      !std::isfinite(camera.near + camera.aperture + camera.focus))
+      !std::isfinite(camera.near + camera.aperture + camera.focus + camera.height + camera.far))
     throw std::invalid_argument(
         "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
 }
