@@ -19,6 +19,7 @@
 #include "apps/commands.h"
 #include "apps/launch.h"
 #include "files/printable.h"
+#include "parallel/stack.h"
 
 namespace {
 
@@ -115,15 +116,19 @@ int run(int argc, char** argv) {
   return run_guarded(session);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  occupy_closed_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // writing then fails with EFBIG, which is told of
+int run_and_flush(int argc, char** argv) {
   try {
     return flushed(run(argc, argv));
   } catch (const std::exception& error) {  // before a subcommand began
     std::fprintf(stderr, "error: %s\n", delray::files::printable(error.what()).c_str());
     return kFailed;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupy_closed_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // writing then fails with EFBIG, which is told of
+  return delray::parallel::run_on_own_stack([&] { return run_and_flush(argc, argv); });
 }

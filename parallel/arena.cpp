@@ -6,13 +6,17 @@
 
 #include <algorithm>
 
+#include "parallel/stack.h"
+
 namespace delray::parallel {
 
 struct Arena::Threads {
   tbb::task_arena arena;
 };
 
-Arena::Arena(int threads) : threads_(new Threads{tbb::task_arena(threads, 1)}) {}
+Arena::Arena(int threads) : threads_(new Threads{tbb::task_arena(threads, 1)}) {
+  set_worker_stack_size();
+}
 Arena::~Arena() = default;
 void Arena::run(FunctionRef<void()> f) { threads_->arena.execute(f); }
 
