@@ -95,9 +95,12 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
     comm::all_or_none(communicator, comm::Phase::load, [&] {
       if (!root) return;
       mark = mark_of(request, camera, prepared);
-      if (practice.resume)
-        saved = raytrace::load_checkpoint(practice.checkpoint, mark,
-                                          request.scene.file.limits.budget());
+      if (!practice.resume) return;
+      const geometry::Rect all{0, 0, frame.width, frame.height};
+      const geometry::Rect window = practice.window.empty() ? all : practice.window;
+      saved = raytrace::load_checkpoint(practice.checkpoint,
+                                        {mark, raytrace::grown(window, all), frame.samples},
+                                        request.scene.file.limits.budget());
     });
   }
   if (saved) options.resume = &*saved;

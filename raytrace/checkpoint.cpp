@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -68,6 +69,41 @@ std::string checksum(std::string_view content) {
   return result;
 }
 
+// Whether a pixel that has got so many samples gets another chunk, or has got all.
+bool is_whole(std::uint32_t samples, int most) {
+  if (samples > static_cast<std::uint32_t>(most)) return false;
+  const int size = chunk_size(static_cast<int>(samples));
+  return samples == static_cast<std::uint32_t>(most) || static_cast<int>(samples) % size == 0;
+}
+
+bool is_possible(const PixelSum& sum) {
+  const image::RgbaF& c = sum.colour;
+  for (const float value : {c.r, c.g, c.b, c.a, sum.squares, sum.depth}) {
+    if (std::isnan(value)) return false;
+  }
+  return sum.squares >= 0.0F && c.a >= 0.0F;
+}
+
+// What is wrong with a cell of the film and its pixels; null: nothing.
+const char* fault_of_cell(const Film& film, std::size_t cell, int most) {
+  const std::uint32_t samples = film.samples()[cell];
+  if (!is_whole(samples, most)) return "the number of samples is impossible";
+  const CellCost& cost = film.costs()[cell];
+  if (!(cost.rays >= 0.0F) || !(cost.seconds >= 0.0F)) return "the cost is impossible";
+  const geometry::Rect pixels = film.cell(cell);
+  const PixelSum none;
+  for (int y = pixels.y0; y < pixels.y1; ++y) {
+    for (int x = pixels.x0; x < pixels.x1; ++x) {
+      const PixelSum& sum = film.pixels()[film.pixel(x, y)];
+      if (!is_possible(sum)) return "a sum of samples is impossible";
+      if (samples == 0 && std::memcmp(&sum, &none, sizeof none) != 0) {
+        return "there are sums of no samples";
+      }
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
@@ -110,35 +146,45 @@ void save_checkpoint(const std::filesystem::path& path, std::string_view fingerp
   files::write_file(path, content);
 }
 
-Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
+Film load_checkpoint(const std::filesystem::path& path, const Resumed& resumed,
                      const files::MemoryBudget& memory) {
-  const auto fail = [&](const char* why) {
-    return files::FileError(files::Cause::input, path.string(), "", why);
-  };
   // What is no checkpoint may have no end.
-  if (files::read_start(path, kMagic.size(), memory) != kMagic) throw fail("this is no checkpoint");
-  const std::string content = files::read_file(path, memory);
+  if (files::read_start(path, kMagic.size(), memory) != kMagic) {
+    throw files::FileError(files::Cause::input, path.string(), "", "this is no checkpoint");
+  }
+  return parse_checkpoint(files::read_file(path, memory), path.string(), resumed);
+}
+
+Film parse_checkpoint(std::string_view content, const std::string& name, const Resumed& resumed) {
+  const auto fail = [&](const std::string& place, const char* why) {
+    return files::FileError(files::Cause::input, name, place, why);
+  };
   std::string_view rest = content;
   constexpr std::size_t kLeast = kMagic.size() + kFingerprint + sizeof(geometry::Rect) + kChecksum;
-  if (!rest.starts_with(kMagic) || rest.size() < kLeast) throw fail("this is no checkpoint");
+  if (!rest.starts_with(kMagic) || rest.size() < kLeast) throw fail("", "this is no checkpoint");
   if (checksum(rest.substr(0, rest.size() - kChecksum)) != rest.substr(rest.size() - kChecksum)) {
-    throw fail("the checkpoint is damaged");
+    throw fail("", "the checkpoint is damaged");
   }
   rest.remove_suffix(kChecksum);
   rest.remove_prefix(kMagic.size());
-  if (rest.substr(0, kFingerprint) != fingerprint) {
-    throw fail("the checkpoint is of another scene or of other options");
+  if (rest.substr(0, kFingerprint) != resumed.fingerprint) {
+    throw fail("", "the checkpoint is of another scene or of other options");
   }
   rest.remove_prefix(kFingerprint);
   geometry::Rect window;
   take(rest, std::span<geometry::Rect>(&window, 1));
+  if (window != resumed.window) throw fail("", "the checkpoint is of another part of the picture");
   Film film(window);
   const std::size_t bytes =
       film.samples().size_bytes() + film.costs().size_bytes() + film.pixels().size_bytes();
-  if (rest.size() != bytes) throw fail("the checkpoint is damaged");
+  if (rest.size() != bytes) throw fail("", "the checkpoint is damaged");
   take(rest, film.samples());
   take(rest, film.costs());
   take(rest, film.pixels());
+  for (std::size_t c = 0; c < film.samples().size(); ++c) {
+    const char* const fault = fault_of_cell(film, c, resumed.samples);
+    if (fault != nullptr) throw fail(fmt::format("cell {}", c), fault);
+  }
   return film;
 }
 

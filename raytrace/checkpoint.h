@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "files/memory_budget.h"
+#include "geometry/rect.h"
 #include "raytrace/film.h"
 #include "scenes/scene.h"
 
@@ -19,9 +20,21 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings);
 void save_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
                      const Film& film);
 
+// The rendering that a film is to be of.
+struct Resumed {
+  std::string_view fingerprint;
+  geometry::Rect window;  // of the film: a picture's, grown
+  int samples = 0;        // of a pixel, at most
+};
+
 // Reads a film that was written with the same fingerprint, bit by bit what it was. Throws
-// files::FileError (input) for a file that is missing, damaged, or of another rendering.
-Film load_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
+// files::FileError (input) for a file that is missing, damaged, or of another rendering, and for
+// one that no rendering can have written, whatever its checksum: another window, samples that are
+// no whole chunks or too many, values that are not numbers or negative where none can be. Memory is
+// taken for the film that is expected only.
+Film load_checkpoint(const std::filesystem::path& path, const Resumed& resumed,
                      const files::MemoryBudget& memory = {});
+// From the content of the file `name`.
+Film parse_checkpoint(std::string_view content, const std::string& name, const Resumed& resumed);
 
 }  // namespace delray::raytrace

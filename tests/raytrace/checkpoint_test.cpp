@@ -5,6 +5,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <random>
 
 #include "files/error.h"
@@ -16,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kMark(32, 'a');
+const Resumed kResumed{kMark, {16, 32, 70, 75}, 64};
 
 Film exposed() {
   std::mt19937 random(1);
@@ -35,7 +38,7 @@ class Checkpoint : public testing::Test {
 };
 
 TEST_F(Checkpoint, ComesBackBitByBit) {
-  const Film film = exposed(), loaded = load_checkpoint(path_, kMark);
+  const Film film = exposed(), loaded = load_checkpoint(path_, kResumed);
   EXPECT_EQ(loaded.window(), film.window());
   EXPECT_EQ(std::memcmp(loaded.pixels().data(), film.pixels().data(), film.pixels().size_bytes()),
             0);
@@ -44,8 +47,9 @@ TEST_F(Checkpoint, ComesBackBitByBit) {
 }
 
 TEST_F(Checkpoint, OfAnotherRenderingIsRefused) {
-  EXPECT_THROW(load_checkpoint(path_, std::string(32, 'b')), files::FileError);
-  EXPECT_THROW(load_checkpoint(path_.string() + ".none", kMark), files::FileError);
+  EXPECT_THROW(load_checkpoint(path_, {std::string(32, 'b'), kResumed.window, 64}),
+               files::FileError);
+  EXPECT_THROW(load_checkpoint(path_.string() + ".none", kResumed), files::FileError);
 }
 
 TEST_F(Checkpoint, DamageIsFound) {
@@ -58,13 +62,46 @@ TEST_F(Checkpoint, DamageIsFound) {
     file.seekp(static_cast<std::streamoff>(at));
     file.put(static_cast<char>(byte ^ 0x10));
     file.close();
-    EXPECT_THROW(load_checkpoint(path_, kMark), files::FileError) << at;
+    EXPECT_THROW(load_checkpoint(path_, kResumed), files::FileError) << at;
   }
   for (const std::uintmax_t length : {std::uintmax_t{0}, std::uintmax_t{40}, size - 5}) {
     fs::resize_file(path_, length);
-    EXPECT_THROW(load_checkpoint(path_, kMark), files::FileError) << length;
+    EXPECT_THROW(load_checkpoint(path_, kResumed), files::FileError) << length;
     save_checkpoint(path_, kMark, exposed());
   }
+}
+
+// The checksum is right: only the film is none that a rendering could have left.
+TEST_F(Checkpoint, OfAnImpossibleFilmIsRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<std::function<void(Film&)>> faults = {
+      [](Film& film) {
+        film = Film({16, 32, 70, 60});
+      },
+      [](Film& film) {
+        film = Film({0, 0, 1 << 20, 0});
+      },
+      [](Film& film) { film = Film(); },
+      [](Film& film) { film.samples()[3] = 65; },
+      [](Film& film) { film.samples()[3] = 13; },
+      [](Film& film) { film.samples()[3] = 0xFFFFFFFFU; },
+      [](Film& film) { film.samples()[3] = 0; },
+      [=](Film& film) { film.costs()[2].rays = nan; },
+      [](Film& film) { film.costs()[2].seconds = -1.0F; },
+      [=](Film& film) { film.pixels()[700].colour.g = nan; },
+      [=](Film& film) { film.pixels()[700].depth = nan; },
+      [](Film& film) { film.pixels()[700].squares = -1.0F; },
+  };
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    Film film = exposed();
+    faults[i](film);
+    save_checkpoint(path_, kMark, film);
+    EXPECT_THROW(load_checkpoint(path_, kResumed), files::FileError) << i;
+  }
+  Film film = exposed();
+  for (std::uint32_t& samples : film.samples()) samples = 64;
+  save_checkpoint(path_, kMark, film);
+  EXPECT_NO_THROW(load_checkpoint(path_, kResumed));
 }
 
 TEST(Fingerprint, ChangesWithWhatPicturesDependOn) {
