@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "comm/bad_message.h"
 #include "composite/coverage.h"
 #include "composite/internal/active_pixels.h"
 #include "parallel/parallel_for.h"
@@ -47,11 +48,12 @@ template <class Colour>
 std::uint64_t ActiveLayer<Colour>::apply(PixelRange range, const comm::Buffer& pixels,
                                          Action action) {
   assert(range.begin <= range.end && range.end <= this->pixels());
-  const Coverage coverage(range.size(), pixels.data());
+  const Coverage coverage(range.size(), {pixels.data(), pixels.size()});
   const std::uint64_t covered = coverage.covered();
+  comm::check_message(pixels.size() ==
+                      coverage.encoded_bytes() + covered * this->bytes_per_pixel());
   const auto* colour = reinterpret_cast<const Colour*>(pixels.data() + coverage.encoded_bytes());
   const auto* depth = reinterpret_cast<const float*>(colour + covered);
-  assert(pixels.size() == coverage.encoded_bytes() + covered * this->bytes_per_pixel());
   parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
     const Coverage::Group at = coverage.group(i);
     const std::size_t first = range.begin + at.begin, size = at.end - at.begin;

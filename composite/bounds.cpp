@@ -5,6 +5,7 @@
 #include <cstring>
 #include <vector>
 
+#include "comm/bad_message.h"
 #include "composite/internal/bounds.h"
 #include "parallel/parallel_for.h"
 
@@ -61,10 +62,14 @@ std::uint64_t BoundsLayer<Colour>::apply(PixelRange range, const comm::Buffer& p
                                          Action action) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   Bounds bounds;
+  comm::check_message(pixels.size() >= sizeof bounds);
   std::memcpy(&bounds, pixels.data(), sizeof bounds);
+  comm::check_message(bounds.x0 <= bounds.x1 && bounds.y0 <= bounds.y1 &&
+                      bounds.x1 <= static_cast<std::uint32_t>(this->image().width) &&
+                      bounds.y1 <= static_cast<std::uint32_t>(this->image().height));
   const Runs runs(bounds, static_cast<std::uint64_t>(this->image().width), range);
   const std::uint64_t all = runs.before.back();
-  assert(pixels.size() == sizeof bounds + all * this->bytes_per_pixel());
+  comm::check_message(pixels.size() == sizeof bounds + all * this->bytes_per_pixel());
   const auto* const colour = reinterpret_cast<const Colour*>(pixels.data() + sizeof bounds);
   const auto* const depth = reinterpret_cast<const float*>(colour + all);
   if (all < range.size()) this->apply_to_none(action, range.begin, range.size());

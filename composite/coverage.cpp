@@ -2,10 +2,13 @@
 
 #include <cstring>
 
+#include "comm/bad_message.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::composite {
 namespace {
+
+using comm::check_message;
 
 // The element of a mask that has all bits of a group of `size` pixels.
 std::uint64_t full_element(std::uint64_t size, std::size_t i) {
@@ -85,10 +88,15 @@ Coverage::Coverage(
   }
 }
 
-Coverage::Coverage(std::uint64_t pixels, const std::byte* encoded)
+Coverage::Coverage(std::uint64_t pixels, std::span<const std::byte> message)
     : pixels_(pixels), covered_before_(groups_of(pixels) + 1) {
-  const std::byte* const begin = encoded;
+  const std::byte* const end = message.data() + message.size();
+  const std::byte* encoded = message.data();
+  const auto require = [&](const std::byte* from, std::size_t bytes) {
+    check_message(static_cast<std::size_t>(end - from) >= bytes);
+  };
   std::uint64_t all = 0;
+  require(encoded, sizeof all);
   encoded = take(encoded, all);
   if (all == 0) return;
   if (all == pixels) {
@@ -97,18 +105,23 @@ Coverage::Coverage(std::uint64_t pixels, const std::byte* encoded)
     }
     return;
   }
+  require(encoded, bytes_of_counts(groups()));
   for (std::size_t i = 0; i < groups(); ++i) {
     std::uint16_t count = 0;
     take(encoded + i * sizeof count, count);
+    check_message(count <= group_size(i));
     covered_before_[i + 1] = count;
   }
   sum_up(covered_before_);
+  check_message(covered() == all);
   encoded += bytes_of_counts(groups());
 
   masks_.reset(new GroupMask[groups()]);
   blocks_.resize(groups());
-  const std::byte* elements = encoded;
-  for (std::size_t i = 0; i < groups(); ++i) elements += is_mixed(i) ? sizeof(Blocks) : 0;
+  std::size_t mixed = 0;
+  for (std::size_t i = 0; i < groups(); ++i) mixed += is_mixed(i) ? 1 : 0;
+  require(encoded, mixed * sizeof(Blocks));
+  const std::byte* elements = encoded + mixed * sizeof(Blocks);
   for (std::size_t i = 0; i < groups(); ++i) {
     if (!is_mixed(i)) continue;
     Blocks& blocks = blocks_[i];
@@ -116,10 +129,24 @@ Coverage::Coverage(std::uint64_t pixels, const std::byte* encoded)
     const std::uint64_t size = group_size(i);
     GroupMask& mask = masks_[i];
     mask.fill(0);
-    for_each_bit(blocks.full, [&](std::size_t k) { mask[k] = full_element(size, k); });
-    for_each_bit(blocks.mixed(), [&](std::size_t k) { elements = take(elements, mask[k]); });
+    std::uint64_t set = 0;
+    const auto count = [&](std::size_t k) {
+      check_message((mask[k] & ~full_element(size, k)) == 0);
+      set += static_cast<std::uint64_t>(std::popcount(mask[k]));
+    };
+    for_each_bit(blocks.full, [&](std::size_t k) {
+      mask[k] = full_element(size, k);
+      count(k);
+    });
+    require(elements,
+            sizeof(std::uint64_t) * static_cast<std::size_t>(std::popcount(blocks.mixed())));
+    for_each_bit(blocks.mixed(), [&](std::size_t k) {
+      elements = take(elements, mask[k]);
+      count(k);
+    });
+    check_message(set == group(i).covered);
   }
-  encoded_bytes_ = static_cast<std::size_t>(elements - begin);
+  encoded_bytes_ = static_cast<std::size_t>(elements - message.data());
 }
 
 std::byte* Coverage::encode(std::byte* to) const {

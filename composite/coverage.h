@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "parallel/function_ref.h"
@@ -44,8 +45,9 @@ class Coverage {
       std::uint64_t pixels,
       parallel::FunctionRef<std::uint64_t(std::uint64_t begin, std::uint64_t end, GroupMask& mask)>
           find);
-  // What encode wrote for a range of `pixels`.
-  Coverage(std::uint64_t pixels, const std::byte* encoded);
+  // What encode wrote for a range of `pixels`, at the start of a message. Throws comm::BadMessage
+  // for what it cannot have written: masks and counts agree, and nothing lies outside of the range.
+  Coverage(std::uint64_t pixels, std::span<const std::byte> message);
 
   std::uint64_t covered() const { return covered_before_.back(); }
   std::size_t groups() const { return covered_before_.size() - 1; }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "comm/bad_message.h"
 #include "composite/coverage.h"
 #include "composite/deep_image.h"
 #include "composite/layer.h"
@@ -80,18 +81,23 @@ struct DeepLayer<Payload>::Arrived {
   std::vector<std::uint64_t> before;  // fragments before each group
 
   Arrived(PixelRange range, const comm::Buffer& message)
-      : coverage(range.size(), message.data()), before(coverage.groups() + 1) {
+      : coverage(range.size(), {message.data(), message.size()}), before(coverage.groups() + 1) {
     const std::byte* const after = message.data() + coverage.encoded_bytes();
+    const std::size_t rest = message.size() - coverage.encoded_bytes();
+    const std::size_t bytes_of_sizes = coverage.covered() * sizeof(std::uint32_t);
+    comm::check_message(rest >= bytes_of_sizes);
     sizes = reinterpret_cast<const std::uint32_t*>(after);
     fragments = reinterpret_cast<const DeepFragment<Payload>*>(after + coverage.covered() *
                                                                            sizeof(std::uint32_t));
     parallel::parallel_for(0, coverage.groups(), 1, [&](std::size_t i) {
       const Coverage::Group at = coverage.group(i);
-      for (std::uint64_t k = 0; k < at.covered; ++k) before[i + 1] += sizes[at.covered_before + k];
+      for (std::uint64_t k = 0; k < at.covered; ++k) {
+        comm::check_message(sizes[at.covered_before + k] > 0);
+        before[i + 1] += sizes[at.covered_before + k];
+      }
     });
     for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
-    assert(reinterpret_cast<const std::byte*>(fragments + before.back()) ==
-           message.data() + message.size());
+    comm::check_message(rest == bytes_of_sizes + before.back() * sizeof(DeepFragment<Payload>));
   }
 };
 

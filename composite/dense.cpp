@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "comm/bad_message.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::composite {
@@ -35,7 +36,7 @@ template <class Colour>
 std::uint64_t DenseLayer<Colour>::apply(PixelRange range, const comm::Buffer& pixels,
                                         Action action) {
   assert(range.begin <= range.end && range.end <= this->pixels());
-  assert(pixels.size() == range.size() * this->bytes_per_pixel());
+  comm::check_message(pixels.size() == range.size() * this->bytes_per_pixel());
   const auto* colour = reinterpret_cast<const Colour*>(pixels.data());
   const auto* depth = reinterpret_cast<const float*>(pixels.data() + range.size() * sizeof(Colour));
   parallel::parallel_blocks(0, range.size(), kGrain, [&](std::size_t first, std::size_t last) {

@@ -117,7 +117,8 @@ class HollowMaskLayer : public HollowLayer {
   template <class F>
   static void for_each_group(PixelRange range, const comm::Buffer& pixels, F&& f) {
     if (pixels.empty()) return;
-    const Coverage coverage(range.size(), pixels.data() + sizeof(Sizes));
+    const Coverage coverage(range.size(),
+                            std::span(pixels.data(), pixels.size()).subspan(sizeof(Sizes)));
     for (std::size_t i = 0; i < coverage.groups(); ++i) {
       const Coverage::Group at = coverage.group(i);
       if (at.covered == 0) continue;

@@ -3,16 +3,17 @@
 #include <lz4.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cstring>
 #include <vector>
 
+#include "comm/bad_message.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::composite {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20;
+constexpr std::size_t kMostOfByte = 255;  // that a compressed byte may stand for
 
 std::size_t blocks_of(std::size_t bytes) { return (bytes + kBlock - 1) / kBlock; }
 
@@ -86,15 +87,26 @@ comm::Buffer compress(const comm::Buffer& plain) {
 
 comm::Buffer decompress(const comm::Buffer& message) {
   const std::byte* from = message.data();
+  const auto rest = [&] {
+    return message.size() - static_cast<std::size_t>(from - message.data());
+  };
   const auto take = [&] {
     std::uint64_t value = 0;
+    comm::check_message(rest() >= sizeof value);
     std::memcpy(&value, from, sizeof value);
     from += sizeof value;
     return value;
   };
-  comm::Buffer plain(take());
+  const std::uint64_t bytes = take();
+  comm::check_message(bytes / kMostOfByte <= message.size());
+  comm::Buffer plain(bytes);
   std::vector<std::size_t> begins(blocks_of(plain.size()) + 1);
-  for (std::size_t i = 1; i < begins.size(); ++i) begins[i] = begins[i - 1] + take();
+  for (std::size_t i = 1; i < begins.size(); ++i) {
+    const std::uint64_t size = take();
+    comm::check_message(size <= block_at(i - 1, plain.size()).size);
+    begins[i] = begins[i - 1] + size;
+  }
+  comm::check_message(begins.back() == rest());
   parallel::parallel_for(0, begins.size() - 1, 1, [&](std::size_t i) {
     const Block block = block_at(i, plain.size());
     const std::size_t size = begins[i + 1] - begins[i];
@@ -103,10 +115,10 @@ comm::Buffer decompress(const comm::Buffer& message) {
       return;
     }
     std::vector<std::byte> sorted(block.size);
-    [[maybe_unused]] const int decompressed = LZ4_decompress_safe(
+    const int decompressed = LZ4_decompress_safe(
         reinterpret_cast<const char*>(from + begins[i]), reinterpret_cast<char*>(sorted.data()),
         static_cast<int>(size), static_cast<int>(block.size));
-    assert(decompressed == static_cast<int>(block.size));
+    comm::check_message(decompressed == static_cast<int>(block.size));
     unsort_bytes(sorted.data(), block.size, plain.data() + block.begin);
   });
   return plain;

@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "comm/bad_message.h"
+
 namespace delray::raytrace {
 namespace {
 
@@ -55,6 +57,7 @@ class Reader {
   std::vector<T> array(std::size_t spare = 0) {
     std::vector<T> values;
     const auto size = static_cast<std::size_t>(value<std::uint64_t>());
+    comm::check_message(size <= bytes_.size() / sizeof(T));
     values.reserve(size + spare);
     values.resize(size);
     take(values.data(), size * sizeof(T));
@@ -64,6 +67,7 @@ class Reader {
  private:
   void take(void* to, std::size_t size) {
     if (size == 0) return;
+    comm::check_message(size <= bytes_.size());
     std::memcpy(to, bytes_.data(), size);
     bytes_ = bytes_.subspan(size);
   }
@@ -176,7 +180,9 @@ comm::Buffer pack(const ClusterData& cluster) {
 ClusterData unpack_cluster(std::span<const std::byte> message) {
   Reader in(message);
   ClusterData cluster;
-  cluster.pieces.resize(static_cast<std::size_t>(in.value<std::uint64_t>()));
+  const auto pieces = in.value<std::uint64_t>();
+  comm::check_message(pieces <= message.size() / sizeof(std::uint64_t));  // each has several
+  cluster.pieces.resize(pieces);
   for (Piece& piece : cluster.pieces) {
     piece.mesh.material = in.value<std::uint32_t>();
     piece.mesh.positions = in.array<glm::vec3>(1);  // Embree loads past the last one

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "comm/bad_message.h"
+
 namespace delray::raytrace {
 namespace {
 
@@ -45,23 +47,46 @@ comm::Buffer pack(MessageKind kind, std::span<const TravellingRay> rays,
   return out.take();
 }
 
+MessageHeader header_of(const comm::Buffer& message) {
+  comm::check_message(message.size() >= sizeof(MessageHeader));
+  MessageHeader header;
+  std::memcpy(&header, message.data(), sizeof header);
+  comm::check_message(header.kind <= MessageKind::load);
+  return header;
+}
+
 Travellers unpack_travellers(const comm::Buffer& message, const MessageHeader& header) {
-  Travellers result;
+  constexpr std::size_t kRay = offsetof(TravellingRay, point);
+  constexpr std::size_t kShadow = offsetof(TravellingShadow, layer);
   const std::byte* at = message.data() + sizeof(MessageHeader);
+  std::size_t rest = message.size() - sizeof(MessageHeader);
+  const auto read = [&](void* to, std::size_t size) {
+    comm::check_message(rest >= size);
+    std::memcpy(to, at, size);
+  };
+  const auto advance = [&](std::size_t size) {
+    at += size;
+    rest -= size;
+  };
+  comm::check_message(rest / kRay >= header.rays && rest / kShadow >= header.shadows);
+  Travellers result;
   result.rays.reserve(header.rays);
   for (std::uint32_t i = 0; i < header.rays; ++i) {
     TravellingRay& ray = result.rays.emplace_back();
-    std::memcpy(static_cast<void*>(&ray), at, offsetof(TravellingRay, point));
-    if (ray.placement != kMiss) std::memcpy(static_cast<void*>(&ray), at, sizeof(ray));
-    at += size_of(ray);
+    read(static_cast<void*>(&ray), kRay);
+    if (ray.placement != kMiss) read(static_cast<void*>(&ray), sizeof(ray));
+    advance(size_of(ray));
   }
   result.shadows.reserve(header.shadows);
   for (std::uint32_t i = 0; i < header.shadows; ++i) {
     TravellingShadow& shadow = result.shadows.emplace_back();
-    std::memcpy(static_cast<void*>(&shadow), at, offsetof(TravellingShadow, layer));
-    std::memcpy(static_cast<void*>(&shadow), at, size_of(shadow));
-    at += size_of(shadow);
+    read(static_cast<void*>(&shadow), kShadow);
+    comm::check_message(shadow.layers <= SeeThrough::kMost &&
+                        at[offsetof(TravellingShadow, occluded)] <= std::byte{1});
+    read(static_cast<void*>(&shadow), size_of(shadow));
+    advance(size_of(shadow));
   }
+  comm::check_message(rest == 0);
   return result;
 }
 

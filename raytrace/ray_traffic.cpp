@@ -118,8 +118,7 @@ void RayTraffic::receive_all() {
 void RayTraffic::receive(const comm::Envelope& envelope) {
   const comm::Buffer message = communicator_.receive(envelope.source, kTagTraffic);
   termination_.count_received();
-  MessageHeader header;
-  std::memcpy(&header, message.data(), sizeof(header));
+  const MessageHeader header = header_of(message);
   const std::span<const std::byte> content(message.data() + sizeof(MessageHeader),
                                            message.size() - sizeof(MessageHeader));
   switch (header.kind) {

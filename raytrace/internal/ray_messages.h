@@ -25,7 +25,11 @@ struct MessageHeader {
 comm::Buffer pack(MessageKind kind, std::span<const TravellingRay> rays,
                   std::span<const TravellingShadow> shadows);
 
-// The rays and shadows of a message of pack(). REQUIRES: they are all that follows the header.
+// How a message begins. Throws comm::BadMessage where it is too short or of no kind.
+MessageHeader header_of(const comm::Buffer& message);
+
+// The rays and shadows of a message of pack(), which are all that follows the header. Throws
+// comm::BadMessage where they are not.
 struct Travellers {
   std::vector<TravellingRay> rays;
   std::vector<TravellingShadow> shadows;
