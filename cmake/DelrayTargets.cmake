@@ -39,7 +39,7 @@ endif()
 if(DELRAY_SANITIZE)
   # GCC 12 takes parts of <regex> for uninitialized then.
   add_compile_options(-fsanitize=${DELRAY_SANITIZE} -fno-omit-frame-pointer -g1
-                      -Wno-maybe-uninitialized)
+                      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   # The sanitizers call dlopen in our place: a RUNPATH would be theirs.
   add_link_options(-fsanitize=${DELRAY_SANITIZE} -Wl,--disable-new-dtags)
   if(DELRAY_SANITIZE MATCHES undefined)

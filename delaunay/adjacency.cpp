@@ -66,8 +66,7 @@ std::vector<std::uint32_t> vertices_around(const Triangulation& triangulation,
     }
   }
   std::ranges::sort(result);
-  const auto repeated = std::ranges::unique(result);
-  result.erase(repeated.begin(), repeated.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 

@@ -12,8 +12,7 @@ std::vector<std::uint32_t> hull_vertices(const Triangulation& triangulation) {
   if (facets.empty()) return {};
   if (triangulation.dim == 3) {
     std::ranges::sort(facets);
-    const auto repeated = std::ranges::unique(facets);
-    facets.erase(repeated.begin(), repeated.end());
+    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
     return facets;
   }
   std::unordered_map<std::uint32_t, std::uint32_t> next;

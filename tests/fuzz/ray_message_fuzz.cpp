@@ -1,0 +1,22 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "comm/bad_message.h"
+#include "raytrace/internal/ray_messages.h"
+
+// Whatever the bytes, as many rays come out as the header says, or the message is refused.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace delray;
+  const comm::Buffer message = comm::Buffer::of(std::as_bytes(std::span(data, size)));
+  try {
+    const raytrace::MessageHeader header = raytrace::header_of(message);
+    const raytrace::Travellers found = raytrace::unpack_travellers(message, header);
+    if (found.rays.size() != header.rays || found.shadows.size() != header.shadows) std::abort();
+    const comm::Buffer again = raytrace::pack(header.kind, found.rays, found.shadows);
+    if (again.size() != message.size()) std::abort();
+  } catch (const comm::BadMessage&) {
+  }
+  return 0;
+}
