@@ -68,7 +68,7 @@ TEST(Coverage, ComesBackFromItsBytes) {
       const Coverage found = coverage_of(size, covered);
       EXPECT_EQ(pixels_of(found), expected);
       const std::vector<std::byte> bytes = encoded(found);
-      const Coverage decoded(size, bytes.data());
+      const Coverage decoded(size, bytes);
       EXPECT_EQ(pixels_of(decoded), expected);
       EXPECT_EQ(decoded.encoded_bytes(), bytes.size());
       EXPECT_EQ(encoded(decoded), bytes);
