@@ -6,15 +6,16 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <typeinfo>
 #include <utility>
 
 #include "comm/agree_on_failure.h"
-#include "comm/collectives.h"
 #include "composite/interlaced.h"
 #include "composite/internal/members.h"
+#include "composite/internal/range.h"
 #include "composite/scheme.h"
 
 namespace delray::composite {
@@ -59,6 +60,20 @@ std::array<std::uint64_t, 2> agreement(const Layer* layer, std::string_view sche
   return {hash, ~hash};
 }
 
+// A bit of every rank, combined by or. Dissemination (Hensgen, Finkel and Manber 1988): a bit may
+// count twice, so ceil(log2 n) rounds do for every number of ranks.
+void combine_bits(comm::Communicator& communicator, std::vector<std::uint64_t>& bits) {
+  const int size = communicator.size(), rank = communicator.rank();
+  for (int step = 1; step < size; step *= 2) {
+    communicator.send((rank + step) % size, internal::kTagTakingPart,
+                      comm::Buffer::of(std::span<const std::uint64_t>(bits)));
+    const comm::Buffer message =
+        communicator.receive((rank - step + size) % size, internal::kTagTakingPart);
+    const std::span<const std::uint64_t> theirs = message.as<std::uint64_t>();
+    std::ranges::transform(bits, theirs, bits.begin(), std::bit_or<>());
+  }
+}
+
 // Ranks whose layer is not empty, all where all are; in the order that is asked for, or ascending.
 // Throws on all ranks where they differ in `own`, `objection` where there is one.
 std::vector<int> taking_part(comm::Communicator& communicator, bool empty, std::vector<int> order,
@@ -69,7 +84,7 @@ std::vector<int> taking_part(comm::Communicator& communicator, bool empty, std::
   std::vector<std::uint64_t> bits((size + 63) / 64);
   if (!empty) bits[rank / 64] |= std::uint64_t{1} << rank % 64;
   bits.insert(bits.end(), own.begin(), own.end());
-  comm::all_reduce(communicator, std::span(bits), std::bit_or<>());
+  combine_bits(communicator, bits);
   if ((bits[bits.size() - 2] & bits.back()) != 0) {
     throw comm::Agreed<std::invalid_argument>(
         !objection.empty() ? objection

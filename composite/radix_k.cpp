@@ -1,44 +1,55 @@
 #include "composite/internal/exchange.h"
+#include "composite/internal/members.h"
+#include "composite/internal/radices.h"
 #include "composite/internal/schemes.h"
 
 namespace delray::composite::internal {
 namespace {
 
-// Few rounds, and messages large enough: the best of a range on machines with fast networks
-// (Kendall, Peterka, Huang, Shen and Ross 2010).
-constexpr int kRadix = 8;
-
-// The largest divisor of `size` up to `radix`, or else its smallest factor.
-int radix_for(int size, int radix) {
-  for (int k = std::min(radix, size); k > 1; --k) {
-    if (size % k == 0) return k;
+// The piece that a member of a block holds when its block is one group.
+PixelRange piece_in_block(const Radices& radices, PixelRange range, int member,
+                          int samples_per_pixel) {
+  for (int round = 0; round < radices.joined_rounds; ++round) {
+    const int k = radices.radices[static_cast<std::size_t>(round)];
+    range = piece_of(range, member % k, k, samples_per_pixel);
+    member /= k;
   }
-  for (int k = 2; k < size; ++k) {
-    if (size % k == 0) return k;
-  }
-  return size;
+  return range;
 }
 
 }  // namespace
 
 Part radix_k(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
              const ComposeOptions& options) {
+  const int samples = options.samples_per_pixel;
+  const Radices radices = choose_radices(communicator.size(), options.radices);
+  const RadixPlace place = place_of(radices, communicator.rank());
   PixelRange range{0, layer->pixels()};
-  const int rank = communicator.rank(), size = communicator.size();
-  int round = 0;
-  // Ranks that differ only in the digits of earlier rounds are neighbours; `stride` of them have
+  if (place.member < 0) {
+    communicator.mark(comm::Phase::compose, radices.joined_rounds - 1);
+    for (int i = 0; i < radices.block(); ++i) {
+      send(communicator, *layer, piece_in_block(radices, range, i, samples), place.first_rank + i,
+           samples);
+    }
+    return {{}, std::move(layer)};
+  }
+  std::vector<int> ranks;
+  for (int i = 0; i < radices.members; ++i) ranks.push_back(rank_of(radices, i));
+  Members members(communicator, std::move(ranks));
+  const int me = members.rank();
+  // Members that differ only in the digits of earlier rounds are neighbours; `stride` of them have
   // been merged and hold the range's pieces.
-  for (int stride = 1; stride < size; ++round) {
-    const std::vector<int>& wished = options.radices;
-    const int radix =
-        wished.empty()
-            ? kRadix
-            : wished[std::min<std::size_t>(static_cast<std::size_t>(round), wished.size() - 1)];
-    const int k = radix_for(size / stride, radix);
-    const Group group{rank / (stride * k) * (stride * k) + rank % stride, stride, k};
+  int stride = 1;
+  for (int round = 0; round < static_cast<int>(radices.radices.size()); ++round) {
+    const int k = radices.radices[static_cast<std::size_t>(round)];
+    const Group group{me / (stride * k) * (stride * k) + me % stride, stride, k};
     communicator.mark(comm::Phase::compose, round);
-    range = exchange(communicator, *layer, range, group, options.samples_per_pixel);
+    range = exchange(members, *layer, range, group, samples);
     stride *= k;
+    if (round + 1 != radices.joined_rounds) continue;
+    for (int i = 0; i < place.extra; ++i) {
+      merge(communicator, *layer, range, place.first_rank + stride + i, samples);
+    }
   }
   return part_of(range, std::move(layer));
 }

@@ -15,6 +15,7 @@ inline constexpr comm::Tag kTagGatherRanges = 65;
 inline constexpr comm::Tag kTagGatherPixels = 66;
 inline constexpr comm::Tag kTagTile = 67;  // its number, followed by
 inline constexpr comm::Tag kTagTilePixels = 68;
+inline constexpr comm::Tag kTagTakingPart = 69;
 
 // Piece i of `count` pieces of a range, as equal as they can be, cut between whole pixels. Empty
 // where there are fewer pixels than pieces. REQUIRES: range.size() is a multiple of

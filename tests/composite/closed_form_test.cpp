@@ -13,6 +13,7 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "composite/hollow.h"
+#include "composite/internal/radices.h"
 #include "composite/scheme.h"
 
 namespace delray::composite {
@@ -160,18 +161,17 @@ Counts bus(std::uint64_t a, int n, int rank) {
   return {u(rank == 0 ? n - 1 : n - rank) * a, merged, merged};
 }
 
+Counts radix_k(std::uint64_t a, int n, int rank) {
+  const internal::Radices plan = internal::choose_radices(n, {});
+  const internal::RadixPlace place = internal::place_of(plan, rank);
+  if (place.member < 0) return {a, 0, 0};
+  const std::uint64_t exchanged = a - a / u(plan.members);
+  const std::uint64_t merged = exchanged + u(place.extra) * (a / u(plan.block()));
+  return {exchanged, merged, merged};
+}
+
 int radix_k_rounds(int n) {
-  int rounds = 0;
-  for (; n > 1; ++rounds) {
-    int k = std::min(n, 8);
-    while (k > 1 && n % k != 0) --k;
-    if (k == 1) {
-      k = 2;
-      while (n % k != 0) ++k;
-    }
-    n /= k;
-  }
-  return rounds;
+  return static_cast<int>(internal::choose_radices(n, {}).radices.size());
 }
 
 int mesh_rounds(int n) {
@@ -206,7 +206,7 @@ std::map<std::string, Form> forms() {
       {"binary-swap:telescoping", {telescoping, above}},
       {"binary-swap:234", {two_three_four, below}},
       {"2-3-swap", {two_three_swap_of, below}},
-      {"radix-k", {equal_pieces, [](std::uint64_t, int n) { return radix_k_rounds(n); }}},
+      {"radix-k", {radix_k, [](std::uint64_t, int n) { return radix_k_rounds(n); }}},
       {"mesh", {equal_pieces, [](std::uint64_t, int n) { return mesh_rounds(n); }}},
       {"direct-send", {equal_pieces, one}},
       {"bus", {bus, [](std::uint64_t, int n) { return n > 1 ? n : 0; }}},

@@ -239,6 +239,21 @@ TEST(Schemes, EqualTheReferenceOnLargerImages) {
   }
 }
 
+// Primes, most of which are far from a product of small factors.
+TEST(Schemes, EqualTheReferenceWithManyRanks) {
+  const Kind kind = opaque<Rgba8>(*find_codec("dense"), "of 8 bits");
+  for (const int ranks : {23, 47, 127}) {
+    comm::run_simulated(ranks, comm::any_order(), 3, [&](comm::Communicator& communicator) {
+      for (const Scheme& scheme : schemes()) {
+        expect_reference(communicator, scheme.name, kind, {67, 41}, 1);
+      }
+      for (const char* radices : {"radix-k:2", "radix-k:4,3", "radix-k:100"}) {
+        expect_reference(communicator, radices, kind, {67, 41}, ranks - 1);
+      }
+    });
+  }
+}
+
 TEST(Schemes, GatherColoursAlone) {
   const Size size{67, 41};
   for (const Codec& codec : codecs()) {
