@@ -3,12 +3,15 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/commands.h"
 #include "apps/outputs.h"
 #include "apps/point_input.h"
 #include "apps/statistics.h"
+#include "delaunay/match_points.h"
 #include "delaunay/read_mesh.h"
+#include "delaunay/simplify_terrain.h"
 #include "delaunay/verify.h"
 #include "files/error.h"
 
@@ -19,34 +22,91 @@ struct VerifyOptions {
   std::string mesh, statistics;
   PointInput points;
   int dim = 2;
-  bool canonical = false;
+  bool canonical = false, complete = false;
 };
 
-// Throws FileError where the vertices of the mesh are not the points.
-void require_same_points(const VerifyOptions& options, const delaunay::PointCloud& vertices,
-                         const delaunay::PointCloud& points) {
-  const auto row = delaunay::first_different_row(delaunay::view(vertices.positions),
-                                                 delaunay::view(points.positions), options.dim);
-  if (!row) return;
-  throw files::FileError(files::Cause::input, options.mesh, fmt::format("vertex {}", *row),
-                         *row < vertices.size() && *row < points.size()
-                             ? fmt::format("is not row {} of {}", *row, options.points.path)
-                             : fmt::format("{} vertices, but {} has {} points", vertices.size(),
-                                           options.points.path, points.size()));
+// How the vertices of the mesh were found among the points.
+struct Matched {
+  const char* how = "rows";              // "coordinates", "32-bit coordinates"
+  std::vector<std::uint32_t> rows;       // of each vertex; none where they are numbered alike
+  std::size_t points = 0;                // of the file
+  std::size_t distinct = 0, unused = 0;  // not known of rows
+  bool by_rows() const { return rows.empty(); }
+};
+
+std::string place_of(const glm::dvec3& p, int dim) {
+  return dim == 2 ? fmt::format("({}, {})", p.x, p.y) : fmt::format("({}, {}, {})", p.x, p.y, p.z);
+}
+
+// Throws FileError where a vertex of the mesh is not a point, or might be several. Gives vertices
+// with coordinates of 32 bits those of their points.
+Matched match(const VerifyOptions& options, delaunay::PointMesh& mesh,
+              const delaunay::PointCloud& points) {
+  Matched matched;
+  matched.points = points.size();
+  const auto vertex_view = delaunay::view(mesh.points.positions);
+  const auto point_view = delaunay::view(points.positions);
+  const bool rounded = mesh.has_float_coordinates;
+  if (!rounded && !delaunay::first_different_row(vertex_view, point_view, options.dim)) {
+    return matched;
+  }
+  const bool has_heights =
+      points.has_z &&
+      std::ranges::any_of(mesh.points.positions, [](const glm::dvec3& p) { return p.z != 0; });
+  const delaunay::PointMatch found = delaunay::match_points(
+      vertex_view, point_view,
+      {.dim = options.dim, .as_floats = rounded, .with_z = rounded && has_heights});
+  const auto fail = [&](std::size_t vertex, const std::string& what) {
+    throw files::FileError(
+        files::Cause::input, options.mesh, fmt::format("vertex {}", vertex),
+        fmt::format("{} {}", place_of(mesh.points.positions[vertex], options.dim), what));
+  };
+  if (found.unknown) fail(*found.unknown, "is none of the points of " + options.points.path);
+  if (found.ambiguous) {
+    fail(found.ambiguous->vertex,
+         fmt::format("may be row {} or row {} of {}, which are equal as 32-bit floats: check a "
+                     "mesh with 64-bit coordinates (PLY, OBJ, OFF, VTU, NODE)",
+                     found.ambiguous->rows[0], found.ambiguous->rows[1], options.points.path));
+  }
+  if (rounded) mesh.points = delaunay::select_rows(points, found.rows);
+  matched.how = rounded ? "32-bit coordinates" : "coordinates";
+  matched.rows = found.rows;
+  matched.distinct = found.distinct;
+  matched.unused = found.unused;
+  return matched;
+}
+
+// With the points' rows as vertices, as `triangulate` counts them.
+std::string hash_of(const delaunay::PointMesh& mesh, const Matched& matched) {
+  if (matched.by_rows()) return to_string(hash(mesh.triangulation));
+  delaunay::Triangulation numbered = mesh.triangulation;
+  for (std::uint32_t& vertex : numbered.vertices) vertex = matched.rows[vertex];
+  return to_string(hash(numbered));
+}
+
+std::string what_was_checked(const delaunay::PointMesh& mesh, const Matched& matched) {
+  if (matched.by_rows()) {
+    return fmt::format("{} vertices, each the point of its row", mesh.points.size());
+  }
+  return fmt::format("{} vertices, each a point by its {}; {} of {} distinct points are no vertex",
+                     mesh.points.size(), matched.how, matched.unused, matched.distinct);
 }
 
 Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh,
-                   const delaunay::Verdict& verdict) {
+                   const Matched& matched, const delaunay::Verdict& verdict) {
   return {
       {"schema", "delray.verify/1"},
       {"mesh", options.mesh},
       {"points", options.points.path},
       {"dim", options.dim},
       {"result",
-       {{"points", mesh.points.size()},
-        {"distinct", verdict.distinct},
+       {{"points", matched.points},
+        {"vertices", mesh.points.size()},
+        {"matched", matched.how},
+        {"unused", matched.unused},
+        {"distinct", matched.by_rows() ? verdict.distinct : matched.distinct},
         {"simplices", mesh.triangulation.size()},
-        {"hash", to_string(hash(mesh.triangulation))},
+        {"hash", hash_of(mesh, matched)},
         {"valid", verdict.valid},
         {"delaunay", verdict.delaunay},
         {"canonical", verdict.canonical},
@@ -59,29 +119,41 @@ int run(const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
   if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
   check_outputs({{"--stats", options.statistics}}, {options.mesh, options.points.path});
-  const delaunay::PointMesh mesh =
-      delaunay::read_mesh(options.mesh, options.points.limits.budget());
+  delaunay::PointMesh mesh = delaunay::read_mesh(options.mesh, options.points.limits.budget());
   if (mesh.triangulation.dim != options.dim && mesh.triangulation.size() > 0) {
     throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,
                                  options.mesh, mesh.triangulation.dim));
   }
-  require_same_points(options, mesh.points, load_points(options.points, options.dim));
+  const Matched matched = match(options, mesh, load_points(options.points, options.dim));
   const delaunay::Verdict verdict = verify_simplices(
       options.dim, delaunay::view(mesh.points.positions), mesh.triangulation.vertices);
 
-  const bool good = options.canonical ? verdict.canonical : verdict.delaunay;
+  const bool good = (options.canonical ? verdict.canonical : verdict.delaunay) &&
+                    !(options.complete && matched.unused > 0);
   const std::string where = verdict.simplex ? fmt::format("simplex {}: ", *verdict.simplex) : "";
-  write_statistics(options.statistics, statistics_of(options, mesh, verdict));
+  write_statistics(options.statistics, statistics_of(options, mesh, matched, verdict));
   if (!verdict.reason.empty()) {
+    const char* const rows = matched.by_rows() ? "" : " (rows are those of the mesh's vertices)";
     if (good) {
-      spdlog::info("{}{}", where, verdict.reason);
+      spdlog::info("{}{}{}", where, verdict.reason, rows);
     } else {
-      spdlog::error("{}: {}{}", options.mesh, where, verdict.reason);
+      spdlog::error("{}: {}{}{}", options.mesh, where, verdict.reason, rows);
+    }
+  }
+  if (matched.unused > 0) {
+    const std::string text =
+        fmt::format("{} of {} distinct points of {} are no vertex of {}", matched.unused,
+                    matched.distinct, options.points.path, options.mesh);
+    if (options.complete) {
+      spdlog::error("{}", text);
+    } else {
+      spdlog::warn("{}, which is checked as the triangulation of its own vertices", text);
     }
   }
   if (options.statistics != "-") {
-    fmt::print("valid: {}\ndelaunay: {}\ncanonical: {}\n", verdict.valid ? "yes" : "no",
-               verdict.delaunay ? "yes" : "no", verdict.canonical ? "yes" : "no");
+    fmt::print("valid: {}\ndelaunay: {}\ncanonical: {}\nchecked: {}\n",
+               verdict.valid ? "yes" : "no", verdict.delaunay ? "yes" : "no",
+               verdict.canonical ? "yes" : "no", what_was_checked(mesh, matched));
   }
   return good ? kDone : kNotVerified;
 }
@@ -98,11 +170,15 @@ void add_verify(CLI::App& program, Session& session) {
   command->add_flag(
       "--canonical", options->canonical,
       "also demand the choice among cocircular or cospherical points that delray makes");
+  command->add_flag(
+      "--complete", options->complete,
+      "also demand that every point is a vertex (a simplified terrain leaves out some)");
   command->add_option("--stats", options->statistics, "write the verdict as JSON; - for stdout");
   add_point_options(*command, options->points);
   add_common_options(*command, session,
                      "verify mesh.ply --points points.las\n"
-                     "verify mesh.off --points points.csv --canonical --stats -");
+                     "verify mesh.off --points points.csv --canonical --stats -\n"
+                     "verify simplified.stl --points terrain.tif");
   command->callback([&session, options] { session.run = [options] { return run(*options); }; });
 }
 

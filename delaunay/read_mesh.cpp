@@ -11,7 +11,7 @@ namespace {
 
 using files::Format;
 
-constexpr const char* kNoMesh = "not a mesh; known formats: PLY, OBJ, OFF, VTU, NODE+ELE";
+constexpr const char* kNoMesh = "not a mesh; known formats: PLY, OBJ, OFF, STL, VTU, NODE+ELE";
 
 // A file in memory that an Input refers to.
 struct Content {
@@ -49,7 +49,7 @@ PointMesh read_any(const std::filesystem::path& path, const files::MemoryBudget&
     case Format::vtu:
       return read_vtu_mesh(file.input);
     case Format::stl:
-      fail(file.input, "", "STL has no vertex numbers, so it does not say which point is which");
+      return read_stl_mesh(file.input);
     default:
       fail(file.input, "", kNoMesh);
   }

@@ -21,6 +21,7 @@ PointCloud read_vtu_points(const Input& input);
 PointMesh read_ply_mesh(const Input& input);
 PointMesh read_obj_mesh(const Input& input);
 PointMesh read_off_mesh(const Input& input);
+PointMesh read_stl_mesh(const Input& input);
 PointMesh read_vtu_mesh(const Input& input);
 // `input` is the .node file, `elements` the .ele file.
 PointMesh read_node_mesh(const Input& input, const Input& elements);

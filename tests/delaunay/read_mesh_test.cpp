@@ -49,6 +49,23 @@ TEST(ReadMesh, ReadsWhatOthersWrite) {
   EXPECT_EQ(read_mesh(folder / "a.ele").triangulation.vertices, expected);
 }
 
+TEST(ReadMesh, MakesVerticesOfTheCornersOfStl) {
+  const std::string facet = "facet normal 0 0 0\nouter loop\n";
+  const std::string text = "solid a b\n" + facet +
+                           "vertex 0 0 0\nvertex 1e0 -0 0\nvertex +.5 1 0\nendloop\nendfacet\n" +
+                           facet + "vertex 1 0 0\nvertex 2 1 1e-60\nvertex 0.5 1 0\nendloop\n";
+  const PointMesh mesh = read("a.stl", text);
+  EXPECT_TRUE(mesh.has_float_coordinates);
+  EXPECT_EQ(mesh.points.size(), 4U);
+  EXPECT_EQ(mesh.triangulation.vertices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+  expect_error("a.stl", "solid a\n" + facet + "vertex 0 0 0\nvertex 1 0 0\nendloop\n");
+  expect_error("a.stl", "solid a\n" + facet + "vertex 0 0 0\n" + facet);
+  expect_error("a.stl", "solid a\n" + facet + "vertex 0 0 nan\n");
+  expect_error("a.stl", "solid a\n" + facet + "vertex 0 0 1e60\n");
+  expect_error("a.stl",
+               "solid a\n" + facet + "vertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\n");
+}
+
 TEST(ReadMesh, RefusesFacesThatAreNoTriangles) {
   const std::string off = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
   expect_error("a.off", off + "4 0 1 2 3\n");

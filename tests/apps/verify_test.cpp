@@ -1,0 +1,102 @@
+// delray verify on meshes that are not numbered as their points are.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using nlohmann::json;
+
+// Half of it flat, so that most points are not needed.
+std::string hill() {
+  std::string text;
+  for (int i = 0; i < 400; ++i) {
+    const double x = i % 20 + 0.1 * std::sin(i * 7.0), y = i / 20 + 0.1 * std::cos(i * 5.0);
+    text += std::to_string(x) + " " + std::to_string(y) + " " +
+            std::to_string(x < 10 ? 0 : (x - 10) * y / 5) + "\n";
+  }
+  return text;
+}
+
+TEST(VerifyCommand, ChecksMeshesThatLeaveOutPoints) {
+  const Folder folder;
+  folder.write("p.xyz", hill());
+  for (const std::string format : {"ply", "obj", "off", "vtu", "stl", "node"}) {
+    SCOPED_TRACE(format);
+    const std::string mesh = "m." + format;
+    const Ran made =
+        run("delray triangulate p.xyz --max-error 0.1 --stats - -o " + mesh, folder.path());
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const Ran ran =
+        run("delray verify --canonical --points p.xyz --stats - " + mesh, folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_NE(ran.err.find("are no vertex"), std::string::npos) << ran.err;
+    const json result = json::parse(ran.out)["result"];
+    EXPECT_EQ(result["points"], 400);
+    EXPECT_EQ(result["distinct"], 400);
+    const int vertices = result["vertices"], unused = result["unused"];
+    EXPECT_EQ(vertices + unused, 400);
+    EXPECT_GT(unused, 0);
+    EXPECT_EQ(result["matched"], format == "stl" ? "32-bit coordinates" : "coordinates");
+    EXPECT_EQ(result["hash"], json::parse(made.out)["result"]["hash"]);
+    EXPECT_EQ(run("delray verify --complete --points p.xyz " + mesh, folder.path()).exit_code, 4);
+  }
+}
+
+TEST(VerifyCommand, ChecksStl) {
+  const Folder folder;
+  folder.write("p.xyz", hill());
+  ASSERT_EQ(run("delray triangulate p.xyz -o m.stl", folder.path()).exit_code, 0);
+  const Ran ran = run("delray verify m.stl --canonical --complete --points p.xyz", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("0 of 400 distinct points are no vertex"), std::string::npos) << ran.out;
+  // As text, with one edge of a square of points that are not on one circle.
+  const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
+    return "facet normal 0 0 1\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
+           "\nendloop\nendfacet\n";
+  };
+  const std::string a = "0 0 0", b = "1 0 0", c = "1.1 1.1 0", d = "0 1 0";
+  folder.write("q.xyz", "0 0\n1 0\n1.1 1.1\n0 1\n");
+  folder.write("good.stl", "solid q\n" + facet(a, b, d) + facet(b, c, d) + "endsolid q\n");
+  folder.write("flipped.stl", "solid q\n" + facet(a, b, c) + facet(a, c, d) + "endsolid q\n");
+  folder.write("moved.stl", "solid q\n" + facet(a, b, "0 1.5 0") + "endsolid q\n");
+  EXPECT_EQ(run("delray verify good.stl --points q.xyz", folder.path()).exit_code, 0);
+  EXPECT_EQ(run("delray verify flipped.stl --points q.xyz", folder.path()).exit_code, 4);
+  const Ran moved = run("delray verify moved.stl --points q.xyz", folder.path());
+  EXPECT_EQ(moved.exit_code, 3);
+  EXPECT_NE(moved.err.find("vertex 2: (0, 1.5) is none of the points"), std::string::npos)
+      << moved.err;
+}
+
+TEST(VerifyCommand, RefusesStlThatMayBeOfSeveralPoints) {
+  const Folder folder;
+  folder.write("p.xyz", "600000.0001 0\n600000.0002 1\n600000.0003 1\n600001 0\n");
+  ASSERT_EQ(run("delray triangulate p.xyz -o m.stl", folder.path()).exit_code, 0);
+  const Ran ran = run("delray verify m.stl --points p.xyz", folder.path());
+  EXPECT_EQ(ran.exit_code, 3);
+  EXPECT_NE(ran.err.find("row 1 or row 2"), std::string::npos) << ran.err;
+}
+
+TEST(VerifyCommand, TakesVerticesInAnyOrder) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0\n4 0\n5 5\n0 4\n2 2\n2 2\n");
+  folder.write("m.off",
+               "OFF\n5 4 0\n2 2 0\n0 4 0\n5 5 0\n4 0 0\n0 0 0\n"
+               "3 0 1 4\n3 0 4 3\n3 0 3 2\n3 0 2 1\n");
+  const Ran ran = run("delray verify m.off --complete --points p.xyz --stats -", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  const json result = json::parse(ran.out)["result"];
+  EXPECT_EQ(result["distinct"], 5);
+  EXPECT_EQ(result["unused"], 0);
+  // A vertex without triangles is one that is not covered.
+  folder.write("h.off", "OFF\n4 1 0\n0 4 0\n4 0 0\n0 0 0\n5 5 0\n3 0 2 1\n");
+  EXPECT_EQ(run("delray verify h.off --points p.xyz", folder.path()).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace delray::tests
