@@ -19,9 +19,11 @@ struct NaturalNeighbour {
 // neighbour. On the hull the shares are those that they tend to from within: those of the areas
 // within a plane of the hull, or of lengths on an edge of it. None outside.
 //
-// Which neighbours is decided exactly; shares are in floating point, and lose digits where
-// simplices are almost flat. The cost of Query::locate, plus O(k^2) for k simplices whose spheres
-// hold q.
+// Which neighbours is decided exactly. Shares are never negative; their errors, added up, are at
+// most 1e-10, so that linear functions are off by less than that part of their range among the
+// neighbours, for all finite points: in doubles where a bound of the error says so, in wider
+// numbers else. The cost of Query::locate, plus O(k log k) for k simplices whose spheres hold q;
+// some hundred times that where simplices are almost flat, and on faces of a hull in space.
 std::vector<NaturalNeighbour> natural_neighbours(const Query& query, const glm::dvec3& q);
 
 }  // namespace delray::delaunay
