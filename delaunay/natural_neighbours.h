@@ -20,7 +20,7 @@ struct NaturalNeighbour {
 // within a plane of the hull, or of lengths on an edge of it. None outside.
 //
 // Which neighbours is decided exactly. Shares are never negative; their errors, added up, are at
-// most 1e-10, so that linear functions are off by less than that part of their range among the
+// most 3e-10, so that linear functions are off by less than that part of their range among the
 // neighbours, for all finite points: in doubles where a bound of the error says so, in wider
 // numbers else. The cost of Query::locate, plus O(k log k) for k simplices whose spheres hold q;
 // some hundred times that where simplices are almost flat, and on faces of a hull in space.

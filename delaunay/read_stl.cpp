@@ -102,6 +102,10 @@ PointMesh read_stl_mesh(const Input& input) {
   if (!is_binary && !input.content.starts_with("solid")) {
     fail(input, "", "the number of triangles in the header and the size of the file do not agree");
   }
+  constexpr std::uint64_t kBytesOfTriangle = 3 * (2 * sizeof(glm::dvec3) + 3 * sizeof(int));
+  constexpr std::uint64_t kShortestText = 36;  // of three corners, "vertex 0 0 0" each
+  input.require_memory((is_binary ? triangles : input.content.size() / kShortestText) *
+                       kBytesOfTriangle);
   const Corners corners = is_binary ? read_binary_stl(input, triangles) : read_text_stl(input);
   PointMesh mesh;
   mesh.has_float_coordinates = true;

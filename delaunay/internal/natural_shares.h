@@ -27,7 +27,7 @@
 namespace delray::delaunay::internal {
 
 // The error that shares may have, all together, as a part of the whole.
-constexpr double kShareError = 0x1p-34;
+constexpr double kShareError = 0x1p-32;
 
 // u, and whether numbers overflow or underflow; for others than double see natural_shares.cpp.
 template <class T>
