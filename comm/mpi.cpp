@@ -142,14 +142,14 @@ class MpiCommunicator final : public Communicator {
   std::unique_ptr<Communicator> split_port(const std::vector<int>& chosen) {
     std::vector<int> members, root_ranks;
     for (const int rank : chosen) {
-      members.push_back(member(rank));
+      members.push_back(world_rank(rank));
       root_ranks.push_back(world_rank(rank));
     }
     MPI_Group all = MPI_GROUP_NULL, own = MPI_GROUP_NULL;
     MPI_Comm part = MPI_COMM_NULL;
-    MPI_Comm_group(port_.communicator(), &all);
+    MPI_Comm_group(engine_->for_splits, &all);
     MPI_Group_incl(all, static_cast<int>(members.size()), members.data(), &own);
-    MPI_Comm_create_group(port_.communicator(), own, /*tag=*/0, &part);
+    MPI_Comm_create_group(engine_->for_splits, own, /*tag=*/0, &part);
     MPI_Group_free(&own);
     MPI_Group_free(&all);
     engine_->ports.push_back(std::make_shared<Port>(*engine_, part, std::move(root_ranks)));
@@ -223,6 +223,7 @@ class MpiCommunicator final : public Communicator {
     for (Patience patience(*engine_); !engine_->unfinished.empty(); patience.pause()) {
       engine_->finish_some();
     }
+    MPI_Comm_free(&engine_->for_splits);
     for (const auto& port : engine_->ports) {
       MPI_Comm communicator = port->communicator();
       MPI_Comm_free(&communicator);
@@ -247,6 +248,7 @@ std::unique_ptr<Communicator> make_mpi_communicator(const void* mpi_communicator
   const auto engine = std::make_shared<Engine>();
   engine->options = options;
   MPI_Comm_dup(*static_cast<const MPI_Comm*>(mpi_communicator), &engine->root);
+  MPI_Comm_dup(engine->root, &engine->for_splits);
   MPI_Comm_rank(engine->root, &engine->root_rank);
   internal::look_at_this_machine(*engine);
   int size = 0;

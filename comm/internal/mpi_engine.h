@@ -33,6 +33,7 @@ class Port;
 struct Engine {
   MpiOptions options;
   MPI_Comm root = MPI_COMM_NULL;
+  MPI_Comm for_splits = MPI_COMM_NULL;  // as root; nobody receives there what MPI sends to split
   int root_rank = 0;
   bool cores_are_scarce = false;      // for the ranks of this machine
   Clock::time_point crowded_until{};  // by whatever else runs on it, as far as was noticed
