@@ -18,3 +18,4 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/delrayConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/delrayConfig.cmake ${PROJECT_BINARY_DIR}/delrayConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/delray)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/delray)
