@@ -131,7 +131,7 @@ TEST(WriteMesh, StlHoldsEveryTriangle) {
     EXPECT_NEAR(values[0] * values[0] + values[1] * values[1] + values[2] * values[2], 1, 1e-5);
   }
   EXPECT_EQ(files::identify(folder / "a.stl").format, files::Format::stl);
-  EXPECT_THROW(read_mesh(folder / "a.stl"), files::FileError);
+  EXPECT_EQ(read_mesh(folder / "a.stl").triangulation.size(), 6U);
 }
 
 TEST(WriteMesh, WritesPointsWithoutTriangles) {
