@@ -71,10 +71,7 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
   if (lighting == Lighting::gouraud) {
     frame.untextured = shader.materials;
     for (scenes::Material& material : frame.untextured) {
-      material.base_colour_texture = scenes::kNone;
-      material.metallic_roughness_texture = scenes::kNone;
-      material.normal_texture = scenes::kNone;
-      material.emission_texture = scenes::kNone;
+      for (std::uint32_t* const texture : material.textures()) *texture = scenes::kNone;
     }
     frame.untextured_batch = shading::make_batch_shader(shader, frame.untextured);
   }
@@ -90,10 +87,7 @@ void add_draws(FrameShading& frame) {
     frame.any_blended |= frame.draws.back().blended;
     frame.any_colours |= !draw.mesh->colours.empty();
     frame.any_normal_maps |= material.normal_texture != scenes::kNone;
-    for (const std::uint32_t texture :
-         {material.base_colour_texture, material.metallic_roughness_texture,
-          material.normal_texture, material.emission_texture})
-      frame.any_textures |= texture != scenes::kNone;
+    frame.any_textures |= material.textured();
   }
 }
 

@@ -72,9 +72,7 @@ std::uint8_t attributes_of(const FrameShading& frame, const PreparedDraw& prepar
         kRadiances | bits(base_texture && !mesh.uvs.empty(), kUvs) |
         bits((prepared.masked || prepared.blended) && coloured, kColours));
   const bool normal_texture = material.normal_texture != scenes::kNone;
-  const bool any_texture = base_texture || normal_texture ||
-                           material.metallic_roughness_texture != scenes::kNone ||
-                           material.emission_texture != scenes::kNone;
+  const bool any_texture = material.textured();
   return static_cast<std::uint8_t>(kWorld | bits(!mesh.normals.empty(), kNormals) |
                                    bits(any_texture && !mesh.uvs.empty(), kUvs) |
                                    bits(normal_texture && !mesh.tangents.empty(), kTangents) |

@@ -47,8 +47,10 @@ class Hasher {
 
 void add_material(const scenes::Material& m, Hasher& hasher) {
   hasher.add_numbers(m.base_colour, m.metallic, m.roughness, m.transmission, m.ior, m.emission,
-                     m.normal_scale, m.alpha, m.alpha_cutoff, m.double_sided, m.base_colour_texture,
-                     m.metallic_roughness_texture, m.normal_texture, m.emission_texture);
+                     m.normal_scale, m.alpha, m.alpha_cutoff, m.double_sided, m.unlit, m.specular,
+                     m.specular_colour, m.clearcoat, m.clearcoat_roughness, m.sheen_colour,
+                     m.sheen_roughness, m.attenuation_colour, m.attenuation_distance, m.thickness,
+                     m.textures());
 }
 
 template <class T>

@@ -34,10 +34,7 @@ void move_to_world(Placement& placement) {
 void look_at_material(Placement& placement, const scenes::Material& material) {
   placement.layered = material.alpha != scenes::Material::Alpha::opaque;
   placement.see_through = placement.layered || material.transmission > 0.0F;
-  placement.textured = material.base_colour_texture != scenes::kNone ||
-                       material.metallic_roughness_texture != scenes::kNone ||
-                       material.normal_texture != scenes::kNone ||
-                       material.emission_texture != scenes::kNone;
+  placement.textured = material.textured();
 }
 
 // The largest coordinate of a mesh.

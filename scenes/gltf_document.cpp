@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "files/read_file.h"
+#include "scenes/internal/gltf_material.h"
 
 namespace delray::scenes::internal {
 namespace {
@@ -12,12 +13,11 @@ namespace {
 constexpr std::string_view kMagic = "glTF";
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
-// Extensions of materials change looks only: those that are not known are left out.
 bool is_supported(std::string_view extension) {
   constexpr std::array<std::string_view, 5> kKnown = {
       "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_mesh_quantization",
       "KHR_texture_transform", "EXT_texture_webp"};
-  return extension.starts_with("KHR_materials_") ||
+  return is_material_extension(extension) ||
          std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
 }
 

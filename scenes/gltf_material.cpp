@@ -1,5 +1,7 @@
 #include "scenes/internal/gltf_material.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -65,6 +67,10 @@ struct Reader {
     return kNone;
   }
 
+  void left_out(const JsonView& what) const {
+    document.source.warn(what.place() + " is not supported and left out");
+  }
+
  private:
   static UvUse uv_use(const JsonView& info) {
     UvUse use;
@@ -112,6 +118,56 @@ Material::Alpha alpha_mode(const JsonView& mode) {
   return Material::Alpha::opaque;
 }
 
+float factor(const JsonView& json, const char* key, double otherwise = 0) {
+  return static_cast<float>(json[key].number(otherwise, 0, 1));
+}
+
+void read_transmission(const Reader& reader, const JsonView& extensions, std::vector<UvUse>& uses,
+                       Material& material) {
+  const JsonView transmission = extensions["KHR_materials_transmission"];
+  material.transmission = factor(transmission, "transmissionFactor");
+  material.transmission_texture = reader.texture(transmission["transmissionTexture"], false, uses);
+  const JsonView volume = extensions["KHR_materials_volume"];
+  material.thickness = static_cast<float>(volume["thicknessFactor"].number(0, 0, 1e18));
+  if (volume["thicknessTexture"]) reader.left_out(volume["thicknessTexture"]);
+  const double distance = volume["attenuationDistance"].number(0, 0, 1e18);
+  if (distance > 0) material.attenuation_distance = static_cast<float>(distance);
+  material.attenuation_colour =
+      glm::clamp(volume["attenuationColor"].vector<3>({1, 1, 1}), glm::dvec3(0), glm::dvec3(1));
+}
+
+void read_reflection(const Reader& reader, const JsonView& extensions, std::vector<UvUse>& uses,
+                     Material& material) {
+  const JsonView ior = extensions["KHR_materials_ior"]["ior"];
+  // 0 stands for a dielectric that reflects everything.
+  const double index = ior.number(1.5, 0, 100);
+  material.ior = static_cast<float>(index == 0 ? 1000 : std::max(index, 1.0));
+  const JsonView specular = extensions["KHR_materials_specular"];
+  material.specular = factor(specular, "specularFactor", 1);
+  material.specular_colour = nonnegative(specular["specularColorFactor"].vector<3>({1, 1, 1}));
+  material.specular_texture = reader.texture(specular["specularTexture"], false, uses);
+  material.specular_colour_texture = reader.texture(specular["specularColorTexture"], true, uses);
+  const JsonView coat = extensions["KHR_materials_clearcoat"];
+  material.clearcoat = factor(coat, "clearcoatFactor");
+  material.clearcoat_roughness = factor(coat, "clearcoatRoughnessFactor");
+  material.clearcoat_texture = reader.texture(coat["clearcoatTexture"], false, uses);
+  material.clearcoat_roughness_texture =
+      reader.texture(coat["clearcoatRoughnessTexture"], false, uses);
+  if (coat["clearcoatNormalTexture"]) reader.left_out(coat["clearcoatNormalTexture"]);
+  const JsonView sheen = extensions["KHR_materials_sheen"];
+  material.sheen_colour =
+      glm::clamp(sheen["sheenColorFactor"].vector<3>({0, 0, 0}), glm::dvec3(0), glm::dvec3(1));
+  material.sheen_roughness = factor(sheen, "sheenRoughnessFactor");
+  material.sheen_colour_texture = reader.texture(sheen["sheenColorTexture"], true, uses);
+  material.sheen_roughness_texture = reader.texture(sheen["sheenRoughnessTexture"], false, uses);
+}
+
+void warn_of_others(const Reader& reader, const JsonView& extensions) {
+  for (const std::string& name : extensions.keys()) {
+    if (!is_material_extension(name)) reader.left_out(extensions[name.c_str()]);
+  }
+}
+
 GltfMaterial read_material(const Reader& reader, const JsonView& json) {
   GltfMaterial result;
   Material& material = result.material;
@@ -128,13 +184,10 @@ GltfMaterial read_material(const Reader& reader, const JsonView& json) {
   material.alpha = alpha_mode(json["alphaMode"]);
   material.alpha_cutoff = static_cast<float>(json["alphaCutoff"].number(0.5, 0, 2));
   material.double_sided = json["doubleSided"].flag(false);
-  material.transmission = static_cast<float>(
-      extensions["KHR_materials_transmission"]["transmissionFactor"].number(0, 0, 1));
-  material.ior = static_cast<float>(extensions["KHR_materials_ior"]["ior"].number(1.5, 1, 100));
-  if (extensions["KHR_materials_unlit"]) {
-    material.metallic = 0;
-    material.roughness = 1;
-  }
+  material.unlit = static_cast<bool>(extensions["KHR_materials_unlit"]);
+  read_transmission(reader, extensions, uses, material);
+  read_reflection(reader, extensions, uses, material);
+  warn_of_others(reader, extensions);
   if (!uses.empty()) result.uvs = uses.front();
   for (const UvUse& use : uses) {
     if (use == result.uvs) continue;
@@ -145,6 +198,16 @@ GltfMaterial read_material(const Reader& reader, const JsonView& json) {
 }
 
 }  // namespace
+
+bool is_material_extension(std::string_view name) {
+  constexpr std::array<std::string_view, 9> kKnown = {
+      "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+      "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
+      "KHR_materials_sheen",        "KHR_materials_specular",
+      "KHR_materials_transmission", "KHR_materials_unlit",
+      "KHR_materials_volume"};
+  return std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
+}
 
 std::vector<GltfMaterial> read_materials(const GltfDocument& document, TextureFiles& textures) {
   const Reader reader{document, textures};

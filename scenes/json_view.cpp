@@ -13,6 +13,14 @@ JsonView JsonView::operator[](const char* key) const {
   return {*source_, found == json_->end() ? nullptr : &*found, std::move(place)};
 }
 
+std::vector<std::string> JsonView::keys() const {
+  std::vector<std::string> result;
+  if (!json_) return result;
+  if (!json_->is_object()) fail("should be an object");
+  for (const auto& item : json_->items()) result.push_back(item.key());
+  return result;
+}
+
 std::size_t JsonView::size() const {
   if (!json_) return 0;
   if (!json_->is_array()) fail("should be an array");

@@ -25,6 +25,27 @@ geometry::Box3 bounds_of(const Mesh& mesh, const glm::mat4x3& transform) {
 
 }  // namespace
 
+std::array<std::uint32_t*, Material::kTextures> Material::textures() {
+  return {&base_colour_texture,     &metallic_roughness_texture, &normal_texture,
+          &emission_texture,        &transmission_texture,       &specular_texture,
+          &specular_colour_texture, &clearcoat_texture,          &clearcoat_roughness_texture,
+          &sheen_colour_texture,    &sheen_roughness_texture};
+}
+
+std::array<std::uint32_t, Material::kTextures> Material::textures() const {
+  std::array<std::uint32_t, kTextures> result{};
+  const auto all = const_cast<Material*>(this)->textures();
+  for (int i = 0; i < kTextures; ++i) result[i] = *all[i];
+  return result;
+}
+
+bool Material::textured() const {
+  for (const std::uint32_t texture : textures()) {
+    if (texture != kNone) return true;
+  }
+  return false;
+}
+
 std::uint64_t triangle_count(const Scene& scene) {
   std::uint64_t count = 0;
   for (const Instance& i : scene.instances) count += scene.meshes[i.mesh].triangles.size();

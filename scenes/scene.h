@@ -1,8 +1,10 @@
 // What is rendered: meshes, placed by instances, with materials, textures, lights and cameras.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,21 +35,49 @@ struct Instance {
   glm::mat4x3 transform{1.0F};  // columns: x, y, z axis and origin of the mesh in the world
 };
 
-// glTF's metallic-roughness model, with transmission. Textures multiply their factor; kNone: none.
+// glTF's metallic-roughness model with its extensions. Textures multiply their factor; kNone: none.
 struct Material {
   std::string name;
   glm::vec4 base_colour{0.8F, 0.8F, 0.8F, 1.0F};  // linear
   float metallic = 0.0F, roughness = 0.6F;
   float transmission = 0.0F, ior = 1.5F;  // transmission 1: glass
+  bool unlit = false;                     // shows its base colour whatever the light
   glm::vec3 emission{0.0F};               // radiance
   float normal_scale = 1.0F;
   enum class Alpha : std::uint8_t { opaque, mask, blend } alpha = Alpha::opaque;
   float alpha_cutoff = 0.5F;
   bool double_sided = true;
+
+  // Multiplies what a dielectric reflects; the colour does so at normal incidence only.
+  float specular = 1.0F;
+  glm::vec3 specular_colour{1.0F};
+  float clearcoat = 0.0F, clearcoat_roughness = 0.0F;  // varnish on top of everything else
+  glm::vec3 sheen_colour{0.0F};                        // of fibres that stand up, under the coat
+  float sheen_roughness = 0.0F;
+  // Inside a body that transmits, light of this colour is left after so long a way.
+  glm::vec3 attenuation_colour{1.0F};
+  float attenuation_distance = std::numeric_limits<float>::infinity();
+  // Of the body, for renderers that do not follow light through it; 0: a pane without an inside,
+  // which light passes straight.
+  float thickness = 1.0F;
+
   std::uint32_t base_colour_texture = kNone;
   std::uint32_t metallic_roughness_texture = kNone;  // G roughness, B metallic
   std::uint32_t normal_texture = kNone;
   std::uint32_t emission_texture = kNone;
+  std::uint32_t transmission_texture = kNone;  // R
+  std::uint32_t specular_texture = kNone;      // A
+  std::uint32_t specular_colour_texture = kNone;
+  std::uint32_t clearcoat_texture = kNone;            // R
+  std::uint32_t clearcoat_roughness_texture = kNone;  // G
+  std::uint32_t sheen_colour_texture = kNone;
+  std::uint32_t sheen_roughness_texture = kNone;  // A
+
+  static constexpr int kTextures = 11;
+  // All of them, in the order above.
+  std::array<std::uint32_t*, kTextures> textures();
+  std::array<std::uint32_t, kTextures> textures() const;
+  bool textured() const;  // has any
 };
 
 struct Texture {

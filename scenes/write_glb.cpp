@@ -160,16 +160,57 @@ class Writer {
       json["alphaMode"] = "MASK";
       json["alphaCutoff"] = material.alpha_cutoff;
     }
-    if (material.transmission > 0) {
-      use_extension("KHR_materials_transmission");
-      json["extensions"]["KHR_materials_transmission"] = {
-          {"transmissionFactor", material.transmission}};
-    }
-    if (material.ior != Material{}.ior) {
-      use_extension("KHR_materials_ior");
-      json["extensions"]["KHR_materials_ior"] = {{"ior", material.ior}};
-    }
+    add_transmission(material, json);
+    add_reflection(material, json);
+    if (material.unlit) extend(json, "KHR_materials_unlit", Json::object());
     document_["materials"].push_back(std::move(json));
+  }
+
+  void extend(Json& json, const char* name, Json&& extension) {
+    use_extension(name);
+    json["extensions"][name] = std::move(extension);
+  }
+
+  void add_transmission(const Material& material, Json& json) {
+    if (!(material.transmission > 0)) return;
+    Json transmission = {{"transmissionFactor", material.transmission}};
+    refer(transmission, "transmissionTexture", material.transmission_texture);
+    extend(json, "KHR_materials_transmission", std::move(transmission));
+    if (!(material.thickness > 0)) return;
+    Json volume = {{"thicknessFactor", material.thickness}};
+    if (std::isfinite(material.attenuation_distance)) {
+      volume["attenuationDistance"] = material.attenuation_distance;
+      volume["attenuationColor"] = json_of(material.attenuation_colour);
+    }
+    extend(json, "KHR_materials_volume", std::move(volume));
+  }
+
+  // What is reflected besides the colours of the base.
+  void add_reflection(const Material& material, Json& json) {
+    const Material plain;
+    if (material.ior != plain.ior) extend(json, "KHR_materials_ior", {{"ior", material.ior}});
+    if (material.specular != plain.specular || material.specular_colour != plain.specular_colour ||
+        material.specular_texture != kNone || material.specular_colour_texture != kNone) {
+      Json specular = {{"specularFactor", material.specular},
+                       {"specularColorFactor", json_of(material.specular_colour)}};
+      refer(specular, "specularTexture", material.specular_texture);
+      refer(specular, "specularColorTexture", material.specular_colour_texture);
+      extend(json, "KHR_materials_specular", std::move(specular));
+    }
+    if (material.clearcoat > 0) {
+      Json coat = {{"clearcoatFactor", material.clearcoat},
+                   {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
+      refer(coat, "clearcoatTexture", material.clearcoat_texture);
+      refer(coat, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture);
+      extend(json, "KHR_materials_clearcoat", std::move(coat));
+    }
+    if (material.sheen_colour != plain.sheen_colour) {
+      Json sheen = {{"sheenColorFactor", json_of(material.sheen_colour)},
+                    {"sheenRoughnessFactor", material.sheen_roughness}};
+      refer(sheen, "sheenColorTexture", material.sheen_colour_texture);
+      refer(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture);
+      extend(json, "KHR_materials_sheen", std::move(sheen));
+    }
   }
 
   // The factor may be at most 1; what is brighter needs a strength beside it.
@@ -180,8 +221,7 @@ class Writer {
     const float strength = brightest > 1 ? power_of_two_above(brightest) : 1.0F;
     json["emissiveFactor"] = json_of(emission / strength);
     if (strength == 1.0F) return;
-    use_extension("KHR_materials_emissive_strength");
-    json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
+    extend(json, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
   }
 
   void add_node(Json&& node, const glm::mat4x3& transform) {

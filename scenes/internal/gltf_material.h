@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <string_view>
 #include <vector>
 
 #include "scenes/internal/gltf_document.h"
@@ -22,8 +23,12 @@ struct GltfMaterial {
   UvUse uvs;
 };
 
+// Whether an extension is one of materials that is read.
+bool is_material_extension(std::string_view name);
+
 // All materials in the order of the file. Where textures of one material use different coordinates
 // those of the first (base colour, metallic-roughness, normal, emission) are taken, with a warning.
+// What other extensions say of a material is left out with a warning.
 std::vector<GltfMaterial> read_materials(const GltfDocument& document, TextureFiles& textures);
 
 }  // namespace delray::scenes::internal

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "scenes/internal/source.h"
 #include "scenes/scene.h"
@@ -27,6 +28,7 @@ class JsonView {
   [[noreturn]] void fail(const std::string& what) const { source_->fail(place_, what); }
 
   JsonView operator[](const char* key) const;  // of an object; absent if it or the key is
+  std::vector<std::string> keys() const;       // of an object; none if absent
   std::size_t size() const;                    // of an array; 0 if absent
   JsonView operator[](std::size_t i) const;    // REQUIRES: i < size()
 

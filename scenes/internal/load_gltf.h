@@ -7,7 +7,8 @@
 namespace delray::scenes::internal {
 
 // Meshes, nodes, materials, textures, punctual lights and perspective cameras of the default scene,
-// with the extensions KHR_materials_transmission, _ior, _emissive_strength and _unlit,
+// with the extensions KHR_materials_clearcoat, _emissive_strength, _ior, _sheen, _specular,
+// _transmission, _unlit, _volume and _pbrSpecularGlossiness (its reflections left out),
 // KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization and KHR_draco_mesh_compression.
 // Animations and skins are left out with a warning. Every number of the file is checked before it
 // is used.

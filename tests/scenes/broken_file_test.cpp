@@ -231,6 +231,8 @@ TEST(BrokenFile, GltfThatIsNotSound) {
   refused(sound.substr(uri, sound.find('"', uri) - uri), "none.bin", "none.bin");
   refused("\"scene\":0", "\"extensionsRequired\":[\"EXT_meshopt_compression\"]",
           "EXT_meshopt_compression");
+  refused("\"scene\":0", "\"scene\":0,\"extensionsRequired\":[\"KHR_materials_nonsense\"]",
+          "KHR_materials_nonsense");
   refused("\"scene\":0", "\"scene\":5", "scene");
 }
 

@@ -277,6 +277,66 @@ TEST(Load, GltfSparseAndQuantizedPositions) {
             (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
+// The sample with an object in place of its material, and the scene's first material.
+Material gltf_material(const tests::TemporaryFolder& folder, const std::string& json,
+                       std::vector<std::string>& warnings) {
+  const std::string red =
+      R"({"name":"red","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"metallicFactor":0}})";
+  return load(folder.write("a.gltf", with(sample_gltf(), red, json)), warnings).materials[0];
+}
+
+TEST(Load, GltfExtensionsOfMaterials) {
+  const tests::TemporaryFolder folder;
+  std::vector<std::string> warnings;
+  const Material m = gltf_material(folder, R"({"extensions":{
+"KHR_materials_ior":{"ior":1.4},
+"KHR_materials_emissive_strength":{"emissiveStrength":5},
+"KHR_materials_specular":{"specularFactor":0.25,"specularColorFactor":[1,0.5,2]},
+"KHR_materials_clearcoat":{"clearcoatFactor":0.75,"clearcoatRoughnessFactor":0.125},
+"KHR_materials_sheen":{"sheenColorFactor":[0.5,0.25,1],"sheenRoughnessFactor":0.375},
+"KHR_materials_transmission":{"transmissionFactor":0.5},
+"KHR_materials_volume":{"thicknessFactor":2,"attenuationDistance":3,"attenuationColor":[1,0,0.5]}},
+"emissiveFactor":[1,0.5,0]})",
+                                   warnings);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_FALSE(m.unlit);
+  EXPECT_EQ(m.ior, 1.4F);
+  EXPECT_EQ(m.emission, glm::vec3(5, 2.5F, 0));
+  EXPECT_EQ(m.specular, 0.25F);
+  EXPECT_EQ(m.specular_colour, glm::vec3(1, 0.5F, 2));
+  EXPECT_EQ(m.clearcoat, 0.75F);
+  EXPECT_EQ(m.clearcoat_roughness, 0.125F);
+  EXPECT_EQ(m.sheen_colour, glm::vec3(0.5F, 0.25F, 1));
+  EXPECT_EQ(m.sheen_roughness, 0.375F);
+  EXPECT_EQ(m.transmission, 0.5F);
+  EXPECT_EQ(m.thickness, 2.0F);
+  EXPECT_EQ(m.attenuation_distance, 3.0F);
+  EXPECT_EQ(m.attenuation_colour, glm::vec3(1, 0, 0.5F));
+  const Material pane = gltf_material(
+      folder, R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}})",
+      warnings);
+  EXPECT_EQ(pane.thickness, 0.0F);
+  const Material mirror =
+      gltf_material(folder, R"({"extensions":{"KHR_materials_ior":{"ior":0}}})", warnings);
+  EXPECT_GT(mirror.ior, 100.0F);
+  EXPECT_TRUE(
+      gltf_material(folder, R"({"extensions":{"KHR_materials_unlit":{}}})", warnings).unlit);
+  EXPECT_TRUE(warnings.empty());
+}
+
+TEST(Load, GltfWarnsOfExtensionsThatAreLeftOut) {
+  const tests::TemporaryFolder folder;
+  std::vector<std::string> warnings;
+  gltf_material(folder, R"({"extensions":{"KHR_materials_iridescence":{"iridescenceFactor":1},
+"KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatNormalTexture":{"index":0}}}})",
+                warnings);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[0].find("clearcoatNormalTexture"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("materials[0].extensions.KHR_materials_iridescence"),
+            std::string::npos)
+      << warnings[1];
+}
+
 TEST(Load, GltfReadsBuffersBesideIt) {
   const tests::TemporaryFolder folder;
   std::string gltf = sample_gltf();

@@ -46,10 +46,19 @@ void expect_equal(const Material& a, const Material& b) {
   EXPECT_EQ(a.alpha, b.alpha);
   EXPECT_EQ(a.alpha_cutoff, b.alpha_cutoff);
   EXPECT_EQ(a.double_sided, b.double_sided);
-  EXPECT_EQ(a.base_colour_texture, b.base_colour_texture);
-  EXPECT_EQ(a.metallic_roughness_texture, b.metallic_roughness_texture);
-  EXPECT_EQ(a.normal_texture, b.normal_texture);
-  EXPECT_EQ(a.emission_texture, b.emission_texture);
+  EXPECT_EQ(a.unlit, b.unlit);
+  EXPECT_EQ(a.specular, b.specular);
+  EXPECT_EQ(a.specular_colour, b.specular_colour);
+  EXPECT_EQ(a.clearcoat, b.clearcoat);
+  EXPECT_EQ(a.clearcoat_roughness, b.clearcoat_roughness);
+  EXPECT_EQ(a.sheen_colour, b.sheen_colour);
+  EXPECT_EQ(a.sheen_roughness, b.sheen_roughness);
+  EXPECT_EQ(a.attenuation_colour, b.attenuation_colour);
+  EXPECT_EQ(a.attenuation_distance, b.attenuation_distance);
+  if (a.transmission > 0) {
+    EXPECT_EQ(a.thickness, b.thickness);
+  }
+  EXPECT_EQ(a.textures(), b.textures());
 }
 
 void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance) {
@@ -123,6 +132,19 @@ Scene everything() {
   m.metallic_roughness_texture = 1;
   m.normal_texture = 2;
   m.emission_texture = 3;
+  m.unlit = true;
+  m.specular = 0.6F;
+  m.specular_colour = {0.1F, 1.2F, 0.3F};
+  m.clearcoat = 0.4F;
+  m.clearcoat_roughness = 0.2F;
+  m.sheen_colour = {0.1F, 0.2F, 0.7F};
+  m.sheen_roughness = 0.9F;
+  m.attenuation_colour = {0.3F, 0.6F, 0.9F};
+  m.attenuation_distance = 0.7F;
+  m.thickness = 0.3F;
+  m.transmission_texture = m.specular_texture = m.clearcoat_texture = 1;
+  m.clearcoat_roughness_texture = m.sheen_roughness_texture = 2;
+  m.specular_colour_texture = m.sheen_colour_texture = 3;
   using Wrap = Texture::Wrap;
   for (int i = 0; i < 4; ++i) {
     const auto value = static_cast<std::uint8_t>(60 * i);
