@@ -99,7 +99,8 @@ Layer layer_of(std::span<const Placement> placements, const shading::Shader& sha
   const float share = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
   const float reflected = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior).reflected;
   return {hit.distance, hit.placement, hit.triangle,
-          glm::vec3(1.0F - s.alpha) + s.base_colour * (s.alpha * share * (1.0F - reflected))};
+          glm::vec3(1.0F - s.alpha) +
+              s.base_colour * s.attenuation * (s.alpha * share * (1.0F - reflected))};
 }
 
 glm::vec3 left_by(std::span<Layer> layers) {

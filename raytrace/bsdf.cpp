@@ -1,4 +1,4 @@
-#include "raytrace/bsdf.h"
+#include "raytrace/internal/base_bsdf.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/bsdf.cpp"
@@ -57,9 +57,9 @@ HWY_INLINE RefractionLanes refraction(F cosine, F ratio) {
 // One vector of Bsdfs.
 struct BsdfLanes {
   FrameLanes frame;
-  F3 geometric_normal, view, diffuse, specular, transmitted;
-  F grazing, alpha, glass, ratio, diffuse_share;
-  M smooth, straight, black;
+  F3 geometric_normal, view, diffuse, specular, scale, transmitted;
+  F grazing, alpha, glass, glass_scale, ratio, diffuse_share;
+  M smooth, straight, thin, black;
   bool some_glass;
 };
 
@@ -70,14 +70,17 @@ HWY_INLINE BsdfLanes loaded(const Bsdfs& b, int i, M active) {
           load(b.view, i),
           load(b.diffuse, i),
           load(b.specular, i),
+          load(b.scale, i),
           load(b.transmitted, i),
           load(b.grazing, i),
           load(b.alpha, i),
           glass,
+          load(b.glass_scale, i),
           load(b.ratio, i),
           load(b.diffuse_share, i),
           mask_of(b.smooth, i),
           mask_of(b.straight, i),
+          mask_of(b.thin, i),
           mask_of(b.black, i),
           !none(hn::And(active, hn::Gt(glass, set(0.0F))))};
 }
@@ -91,12 +94,14 @@ struct InterfaceLanes {
 HWY_INLINE InterfaceLanes interface_at(const BsdfLanes& b, F cosine) {
   const F one = set(1.0F), zero = set(0.0F);
   cosine = clamp01(cosine);
-  InterfaceLanes result = {schlick(b.specular, b.grazing, cosine), set(glm::vec3(0.0F)), one};
+  InterfaceLanes result = {schlick(b.specular, b.grazing, cosine) * b.scale, set(glm::vec3(0.0F)),
+                           one};
   if (!b.some_glass) return result;
   const M glass = hn::Gt(b.glass, zero);
   const F f = refraction(cosine, b.ratio).reflected;
-  const F3 reflected = mix(result.reflected, F3{f, f, f}, b.glass);
-  const F3 transmitted = b.transmitted * (one - f);
+  const F mirrored = f * b.glass_scale;
+  const F3 reflected = mix(result.reflected, F3{mirrored, mirrored, mirrored}, b.glass);
+  const F3 transmitted = b.transmitted * ((one - f) * b.glass_scale);
   const F r = mean(reflected), t = mean(transmitted);
   const M passes = hn::And(glass, hn::Gt(t, zero));
   return {choose(glass, reflected, result.reflected), where(glass, transmitted),
@@ -142,10 +147,7 @@ HWY_INLINE ValueLanes where(M m, const ValueLanes& v) {
 // `light` in the frame, above it.
 HWY_INLINE ValueLanes reflected_value(const BsdfLanes& b, const F3& light) {
   const F one = set(1.0F), n_l = light.z, n_v = b.view.z;
-  const F3 white = set(glm::vec3(1.0F));
-  const F3 in = white - schlick(b.specular, b.grazing, min_of(n_l, one));
-  const F3 out = white - schlick(b.specular, b.grazing, min_of(n_v, one));
-  const F3 diffuse = b.diffuse * (in * out) * n_l;
+  const F3 diffuse = b.diffuse * n_l;
   const F diffuse_pdf = b.diffuse_share * n_l * set(shading::kInversePi);
   const F3 sum = b.view + light;
   const F length2 = max_of(dot(sum, sum), set(shading::kLeastSum));
@@ -159,6 +161,22 @@ HWY_INLINE ValueLanes reflected_value(const BsdfLanes& b, const F3& light) {
   const F pdf = (one - b.diffuse_share) * at.reflection_share * density / seen;
   const M rough = hn::Not(b.smooth);
   return {diffuse + where(rough, specular), diffuse_pdf + hn::IfThenElseZero(rough, pdf)};
+}
+
+// `light` in the frame, below a thin pane.
+HWY_INLINE ValueLanes passed_value(const BsdfLanes& b, const F3& light) {
+  const F one = set(1.0F), n_v = b.view.z, n_l = hn::Neg(light.z);
+  const F3 sum = b.view + F3{light.x, light.y, n_l};
+  const F length2 = max_of(dot(sum, sum), set(shading::kLeastSum));
+  const F length = hn::Sqrt(length2);
+  const F a2 = b.alpha * b.alpha;
+  const InterfaceLanes at = interface_at(b, min_of(set(0.5F) * length, one));
+  const F seen = masking(n_v, a2), lit = masking(n_l, a2);
+  const F density = distribution(sum * (one / length), a2) / (set(4.0F) * n_v);
+  const M passes = hn::And(hn::Gt(b.glass, set(0.0F)), hn::Not(hn::Or(b.smooth, b.straight)));
+  return where(passes,
+               ValueLanes{at.transmitted * (density / (seen + lit - one)),
+                          (one - b.diffuse_share) * (one - at.reflection_share) * density / seen});
 }
 
 // `light` in the frame, below it. The viewer's index of refraction is taken as `ratio`, the other
@@ -190,14 +208,20 @@ HWY_INLINE ValueLanes value_of(const BsdfLanes& b, const F3& local, const F3& wo
   ValueLanes result = where(above, reflected_value(b, local));
   const M below = hn::And(fits, hn::Lt(local.z, set(-kLeastHeight)));
   if (!b.some_glass || none(hn::And(active, below))) return result;
-  const ValueLanes other = transmitted_value(b, local);
+  ValueLanes other = transmitted_value(b, local);
+  if (!none(hn::And(active, b.thin))) {
+    const ValueLanes pane = passed_value(b, local);
+    other = {choose(b.thin, pane.value, other.value), hn::IfThenElse(b.thin, pane.pdf, other.pdf)};
+  }
   return {choose(below, other.value, result.value), hn::IfThenElse(below, other.pdf, result.pdf)};
 }
 
-void bsdfs_block(const shading::Surfaces& s, const shading::Vectors16& views,
-                 shading::LaneMask mask, Bsdfs& out) {
+shading::LaneMask bsdfs_block(const shading::Surfaces& s, const shading::Vectors16& views,
+                              shading::LaneMask mask, Bsdfs& out) {
   const F one = set(1.0F), zero = set(0.0F);
   out.smooth = out.straight = out.black = 0;
+  out.thin = s.thin & mask;
+  shading::LaneMask rough_glass = 0;
   for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
     const M active = mask_of(mask, i);
     if (none(active)) continue;
@@ -214,9 +238,11 @@ void bsdfs_block(const shading::Surfaces& s, const shading::Vectors16& views,
     const M smooth = hn::Lt(load(s.lobe_roughness, i), set(shading::kMinRoughness));
     const F3 specular = load(s.specular, i);
     const F grazing = load(s.grazing, i);
+    const F3 scale = load(s.scale, i);
     const F3 mirrored =
-        choose(smooth, schlick(specular, grazing, clamp01(view.z)), load(s.mirrored, i));
-    const F3 diffuse = load(s.diffuse, i);
+        choose(smooth, schlick(specular, grazing, clamp01(view.z)) * scale, load(s.mirrored, i));
+    const F entering = load(s.entering, i);
+    const F3 diffuse = load(s.diffuse, i) * entering;
     const F scattered = mean(diffuse);
     const F others = mean(mirrored) * (one - glass) + max_of(glass, mean(transmitted));
     const M black = hn::Not(hn::Gt(scattered + others, zero));
@@ -225,19 +251,25 @@ void bsdfs_block(const shading::Surfaces& s, const shading::Vectors16& views,
     store(frame.z, active, i, out.z);
     store(load(s.geometric_normal, i), active, i, out.geometric_normal);
     store(view, active, i, out.view);
-    store(diffuse * (load(s.entering, i) * set(shading::kInversePi)), active, i, out.diffuse);
+    store(diffuse * set(shading::kInversePi), active, i, out.diffuse);
     store(specular, active, i, out.specular);
+    store(scale, active, i, out.scale);
     store(grazing, active, i, out.grazing);
     store(load(s.lobe_alpha, i), active, i, out.alpha);
     store(transmitted, active, i, out.transmitted);
     store(glass, active, i, out.glass);
+    store(one, active, i, out.glass_scale);
     store(ratio, active, i, out.ratio);
     store(hn::IfThenElse(black, one, scattered / (scattered + others)), active, i,
           out.diffuse_share);
     out.smooth |= bits_of(hn::And(active, smooth), i);
-    out.straight |= bits_of(hn::And(active, hn::Lt(hn::Abs(ratio - one), set(kSameDensity))), i);
+    const M straight = hn::Lt(hn::Abs(ratio - one), set(kSameDensity));
+    out.straight |= bits_of(hn::And(active, straight), i);
+    const M bends = hn::And(hn::Gt(glass, zero), hn::Not(hn::Or(smooth, straight)));
+    rough_glass |= bits_of(hn::And(active, bends), i);
     out.black |= bits_of(hn::And(active, black), i);
   }
+  return rough_glass;
 }
 
 void values_block(const Bsdfs& bsdfs, const shading::Vectors16& lights, shading::LaneMask mask,
@@ -256,7 +288,7 @@ void values_block(const Bsdfs& bsdfs, const shading::Vectors16& lights, shading:
 void samples_block(const Bsdfs& bsdfs, const shading::Floats16& lobes, const shading::Floats16& us,
                    const shading::Floats16& vs, shading::LaneMask mask, BsdfSamples& out) {
   const F one = set(1.0F), zero = set(0.0F);
-  out.transmitted = 0;
+  out.transmitted = out.diffuse = 0;
   for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
     const M active = mask_of(mask, i);
     if (none(active)) continue;
@@ -278,7 +310,9 @@ void samples_block(const Bsdfs& bsdfs, const shading::Floats16& lobes, const sha
       const M delta = hn::Or(b.smooth, hn::And(b.straight, passes));
       const RefractionLanes bent = refraction(clamp01(v_h), b.ratio);
       const F3 mirrored = half * (set(2.0F) * v_h) - b.view;
-      const F3 refracted = choose(b.straight, negated(b.view), half * bent.bend - b.view * b.ratio);
+      F3 refracted = choose(b.straight, negated(b.view), half * bent.bend - b.view * b.ratio);
+      refracted = choose(hn::AndNot(b.straight, b.thin),
+                         F3{mirrored.x, mirrored.y, hn::Neg(mirrored.z)}, refracted);
       const F3 other = choose(passes, refracted, mirrored);
       const M dark =
           hn::Or(hn::Not(hn::Gt(v_h, zero)),
@@ -302,6 +336,7 @@ void samples_block(const Bsdfs& bsdfs, const shading::Floats16& lobes, const sha
     store(weight, active, i, out.weight);
     store(hn::IfThenElseZero(hn::And(usable, hn::Not(deltas)), found.pdf), active, i, out.pdf);
     out.transmitted |= bits_of(hn::And(active, through), i);
+    out.diffuse |= bits_of(hn::And(active, diffuse), i);
   }
 }
 
@@ -316,18 +351,19 @@ HWY_EXPORT(bsdfs_block);
 HWY_EXPORT(values_block);
 HWY_EXPORT(samples_block);
 
-void make_bsdfs(const shading::Surfaces& surfaces, const shading::Vectors16& views,
-                shading::LaneMask lanes, Bsdfs& bsdfs) {
-  HWY_DYNAMIC_DISPATCH(bsdfs_block)(surfaces, views, lanes, bsdfs);
+shading::LaneMask make_base_bsdfs(const shading::Surfaces& surfaces,
+                                  const shading::Vectors16& views, shading::LaneMask lanes,
+                                  Bsdfs& bsdfs) {
+  return HWY_DYNAMIC_DISPATCH(bsdfs_block)(surfaces, views, lanes, bsdfs);
 }
 
-void evaluate(const Bsdfs& bsdfs, const shading::Vectors16& lights, shading::LaneMask lanes,
-              BsdfValues& values) {
+void evaluate_base(const Bsdfs& bsdfs, const shading::Vectors16& lights, shading::LaneMask lanes,
+                   BsdfValues& values) {
   HWY_DYNAMIC_DISPATCH(values_block)(bsdfs, lights, lanes, values);
 }
 
-void sample(const Bsdfs& bsdfs, const shading::Floats16& lobe, const shading::Floats16& u,
-            const shading::Floats16& v, shading::LaneMask lanes, BsdfSamples& samples) {
+void sample_base(const Bsdfs& bsdfs, const shading::Floats16& lobe, const shading::Floats16& u,
+                 const shading::Floats16& v, shading::LaneMask lanes, BsdfSamples& samples) {
   HWY_DYNAMIC_DISPATCH(samples_block)(bsdfs, lobe, u, v, lanes, samples);
 }
 

@@ -26,6 +26,10 @@ class Direct final : public LitWalk {
     add_lanes(colour_, seen, shown.colour);
     shading::ambient_specular(shader, surfaces_, group.view, seen, colour_);
     add_lanes(colour_, seen, shown.colour);
+    if (const LaneMask layered = surfaces_.layered & seen; layered != 0) {
+      shading::ambient_coat(shader, surfaces_, group.view, layered, colour_);
+      add_lanes(colour_, layered, shown.colour);
+    }
     shading::ambient_transmitted(shader, surfaces_, group.view, seen, colour_);
     add_lanes(colour_, seen, shown.colour);
     ask_lights(group, lanes, seen, surfaces_);

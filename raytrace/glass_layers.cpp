@@ -43,7 +43,7 @@ void left_block(const shading::Surfaces& s, const shading::Vectors16& views,
     const F ratio = hn::IfThenElse(front, one / ior, ior);
     const F mirrored = mirrored_share(load(views, i), load(s.normal, i), ratio);
     const F alpha = load(s.alpha, i), past = one - alpha;
-    const F3 through = load(s.base_colour, i) * (alpha * share * (one - mirrored));
+    const F3 through = load(s.tint, i) * (alpha * share * (one - mirrored));
     hn::Store(past + through.x, d, left.x.lane + i);
     hn::Store(past + through.y, d, left.y.lane + i);
     hn::Store(past + through.z, d, left.z.lane + i);

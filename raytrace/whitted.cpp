@@ -25,6 +25,7 @@ class Whitted final : public LitWalk {
   LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
     const LaneMask seen = look_at(group, lanes, surfaces_);
     if (seen == 0) return 0;
+    absorb(group, lanes, seen);
     shading::Vectors16 &sum = shown.colour, &colour = colour_;
     copy_lanes(surfaces_.emission, seen, sum);
     shading::ambient_diffuse(setting_.shader, surfaces_, group.view, seen, colour);
@@ -36,6 +37,7 @@ class Whitted final : public LitWalk {
     LaneMask some = 0, ended = 0;
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
+      blurred_coat_[i] = 1.0F;
       if (depth_of(lanes, i) <= 0) {
         ended |= 1U << i;
         blurred[i] = 1.0F;
@@ -57,6 +59,11 @@ class Whitted final : public LitWalk {
       shading::ambient_transmitted(setting_.shader, surfaces_, group.view, ended, colour);
       add_lanes(colour, ended, sum);
     }
+    if ((surfaces_.layered & seen) != 0) {
+      shading::ambient_coat(setting_.shader, surfaces_, group.view, seen, colour);
+      for (int i = 0; i < kPacketRays; ++i) colour.set(i, colour.get(i) * blurred_coat_[i]);
+      add_lanes(colour, seen & surfaces_.layered, sum);
+    }
     return seen;
   }
 
@@ -68,16 +75,19 @@ class Whitted final : public LitWalk {
     // Inside glass there is no environment to stand in for a reflection.
     const bool inside = glass > 0.0F && !s.front;
     const float roughness = surfaces_.lobe_roughness[i];
-    const float mirror =
-        inside ? 1.0F : shading::clamp01((kMatt - roughness) * (1.0F / (kMatt - kMirror)));
-    if (mirror == 0.0F && glass == 0.0F) return 1.0F;
+    const float mirror = inside ? 1.0F : mirror_share(roughness);
+    const bool layered = (surfaces_.layered >> i & 1) != 0;
+    const shading::Layers layers = layered ? surfaces_.layers[i] : shading::Layers{};
+    const float coat = layers.coat > 0.0F ? mirror_share(layers.coat_roughness) : 0.0F;
+    if (mirror == 0.0F && glass == 0.0F && coat == 0.0F) return 1.0F;
     const glm::vec3 view = group.view.get(i);
-    glm::vec3 reflectance = shading::fresnel(shading::lobes_at(surfaces_, i),
-                                             shading::clamp01(glm::dot(s.normal, view)));
+    const float cosine = shading::clamp01(glm::dot(s.normal, view));
+    glm::vec3 reflectance =
+        shading::fresnel(shading::lobes_at(surfaces_, i), cosine) * surfaces_.scale.get(i);
     Refraction refraction;
     if (glass > 0.0F) {
       refraction = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior);
-      reflectance += (glm::vec3(refraction.reflected) - reflectance) * glass;
+      reflectance += (glm::vec3(refraction.reflected * layers.below) - reflectance) * glass;
     }
     NextRay ray;
     ray.spread = setting_.view.spread();
@@ -86,19 +96,23 @@ class Whitted final : public LitWalk {
     ray.depth = depth_of(lanes, i) - 1;
     const glm::vec3 weight = lanes.weight_of(i);
     float blurred = inside ? 0.0F : 1.0F;
-    ray.weight = weight * reflectance * mirror;
+    // One ray for surface and coat, whose normals hardly differ.
+    const float by_coat = coat * layers.coat * shading::coat_fresnel(cosine);
+    ray.weight = weight * (reflectance * mirror + glm::vec3(by_coat));
     if (brightest(ray.weight) >= kLeastWeight) {
       blurred = inside ? 0.0F : 1.0F - mirror;
+      blurred_coat_[i] = inside ? 0.0F : 1.0F - coat;
       ray.origin = s.position + s.geometric_normal * group.offset[i];
       ray.direction = kept_on_side(mirrored(view, s.normal), s.geometric_normal);
       ray.view = -ray.direction;
       ask(ray, Bundle::mirrored);
     }
     if (glass > 0.0F && refraction.reflected < 1.0F) {
-      ray.weight = weight * s.base_colour * (glass * (1.0F - refraction.reflected));
+      ray.weight = weight * s.base_colour * (glass * (1.0F - refraction.reflected) * layers.below);
       if (brightest(ray.weight) >= kLeastWeight) {
+        const bool thin = (surfaces_.thin >> i & 1) != 0;
         ray.origin = s.position - s.geometric_normal * group.offset[i];
-        ray.direction = kept_on_side(refraction.direction, -s.geometric_normal);
+        ray.direction = thin ? -view : kept_on_side(refraction.direction, -s.geometric_normal);
         ray.view = -ray.direction;
         ask(ray, Bundle::refracted);
       }
@@ -106,6 +120,30 @@ class Whitted final : public LitWalk {
     return blurred;
   }
 
+  // Bodies of glass take from the light that comes out of them.
+  void absorb(const RayGroup& group, RayLanes& lanes, LaneMask seen) {
+    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const auto& material = setting_.shader.material(group.material[i]);
+      if (!material.absorbs || surfaces_.front[i] != 0) continue;
+      if (!lanes.weighted) {
+        for (int k = 0; k < kPacketRays; ++k) lanes.weight.set(k, glm::vec3(1.0F));
+        lanes.weighted = true;
+      }
+      const RayPacket& packet = group.packet;
+      const float distance =
+          glm::distance(surfaces_.position.get(i),
+                        glm::vec3(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]));
+      lanes.weight.set(i,
+                       lanes.weight.get(i) * shading::transmittance(material.material, distance));
+    }
+  }
+
+  static float mirror_share(float roughness) {
+    return shading::clamp01((kMatt - roughness) * (1.0F / (kMatt - kMirror)));
+  }
+
+  shading::Floats16 blurred_coat_;  // of the environment in the coat, what each lane shows
   shading::Surfaces surfaces_;
   shading::Vectors16 colour_;
 };

@@ -1,5 +1,6 @@
 #include "shading/batch.h"
 
+#include <bit>
 #include <cassert>
 
 #undef HWY_TARGET_INCLUDE
@@ -28,88 +29,103 @@ void directions_to_block(const glm::vec3& eye, const glm::vec3& otherwise,
 
 template <class Reflectance>
 HWY_INLINE F3 direct(const BatchShader& shader, const LobeLanes<Reflectance>& lobes,
-                     const F3& position, const F3& normal, const F3& view, F cosine, int i,
+                     const F3& position, const F3& normal, const F3& view, int i,
                      std::span<const Vectors16> visibility) {
-  const ViewTerms<Reflectance> viewer = view_terms(lobes, cosine);
   F3 sum = set(glm::vec3(0.0F));
   for (std::size_t l = 0; l < shader.lights.size(); ++l) {
     if (shader.lights[l].dark) continue;
-    const ReflectedLanes one = reflected(shader.lights[l], lobes, viewer, position, normal, view);
+    const ReflectedLanes one = reflected(shader.lights[l], lobes, position, normal, view);
     const F3 all = visibility.empty() ? one.reflected : one.reflected * load(visibility[l], i);
     sum = sum + where(one.matters, all);
   }
   return sum;
 }
 
-// One vector of points whose lobes are known.
+// What one vector of points is shaded by.
+struct Block {
+  const BatchShader& shader;
+  const BatchMaterial& material;
+  const Points& points;
+  std::span<const Vectors16> visibility;
+};
+
+// One vector of points whose lobes are known: `diffuse` is Lobes::diffuse.
 template <class Reflectance>
-HWY_INLINE void shade_lit(const BatchShader& shader, const scenes::Material& material,
-                          const Points& points, const SurfaceLanes& surface,
-                          const LobeLanes<Reflectance>& lobes, const F3& view, M active, int i,
-                          std::span<const Vectors16> visibility, Shaded& shaded) {
-  const Shader& scene = *shader.shader;
-  const F cosine = dot(surface.normal, view);
+HWY_INLINE void shade_lit(const Block& block, const SurfaceLanes& surface, const F3& diffuse,
+                          F roughness, const LobeLanes<Reflectance>& lobes,
+                          const ResponseLanes<Reflectance>& response, const F3& view, F cosine,
+                          M active, int i, Shaded& shaded) {
+  const Shader& scene = *block.shader.shader;
   F3 sum = surface.emission;
   if (!scene.environment.black) {
-    const Reflectance mirrored = specular_albedo(lobes, clamp01(cosine));
-    sum = sum + ambient_diffuse(scene.environment, lobes.diffuse, mirrored, surface.normal);
-    sum = sum +
-          ambient_specular(scene, lobes.roughness, mirrored, surface.normal, view, cosine, active);
-    const float transmission = shading::clamp01(material.transmission);
-    if (transmission > 0.0F) {
-      const F share = set(transmission) * (set(1.0F) - clamp01(surface.metallic));
-      sum = sum + ambient_transmitted(scene, lobes.roughness, mirrored, surface.base_colour, share,
-                                      view, active);
+    sum = sum + diffuse * response.entering * diffuse_radiance(scene.environment, surface.normal);
+    sum = sum + ambient_specular(scene, roughness, response.specular, surface.normal, view, cosine,
+                                 active);
+    if (block.material.material.transmission > 0.0F) {
+      const F share = transmitted_share(surface.transmission, surface.metallic);
+      const F3 tint = tint_of(block.material, surface.base_colour, surface.front);
+      sum =
+          sum + ambient_transmitted(scene, roughness, response.entering, tint, share, view, active);
     }
   }
-  sum = sum + direct(shader, lobes, load(points.position, i), surface.normal, view, cosine, i,
-                     visibility);
+  sum = sum + direct(block.shader, lobes, load(block.points.position, i), surface.normal, view, i,
+                     block.visibility);
   store(sum, active, i, shaded.colour);
   store(surface.alpha, active, i, shaded.alpha);
 }
 
-template <class Reflectance>
-HWY_NOINLINE void shade_constant(const BatchShader& shader, const BatchMaterial& material,
-                                 const Points& points, const Vectors16& views, LaneMask lane_mask,
-                                 std::span<const Vectors16> visibility, Shaded& shaded) {
+HWY_NOINLINE void shade_grey(const Block& block, const Vectors16& views, LaneMask lane_mask,
+                             Shaded& shaded) {
+  const BatchMaterial& material = block.material;
   for (int i = 0; i < kBlockPoints; i += lanes()) {
     const M active = mask_of(lane_mask, i);
     if (hn::AllFalse(FloatTag(), active)) continue;
     const F3 view = load(views, i);
-    const SurfaceLanes surface = evaluate(shader, material.material, points, view, i, active);
-    const LobeLanes<Reflectance> lobes =
-        constant_lobes<Reflectance>(material, diffuse_of(material.material, surface));
-    shade_lit(shader, material.material, points, surface, lobes, view, active, i, visibility,
-              shaded);
+    const SurfaceLanes surface =
+        evaluate(block.shader, material.material, block.points, view, i, active);
+    const F cosine = dot(surface.normal, view);
+    const F3 diffuse = diffuse_of(surface);
+    const ResponseLanes<Grey> response =
+        grey_response(material.lobes, constant_shares(material, clamp01(cosine)));
+    shade_lit(block, surface, diffuse, set(material.lobes.roughness),
+              seen_lobes(material.lobes, diffuse, response, cosine), response, view, cosine, active,
+              i, shaded);
   }
 }
 
-HWY_NOINLINE void shade_varying(const BatchShader& shader, const BatchMaterial& material,
-                                const Points& points, const Vectors16& views, LaneMask lane_mask,
-                                std::span<const Vectors16> visibility, Shaded& shaded) {
+template <bool kVarying>
+HWY_NOINLINE void shade_coloured(const Block& block, const Vectors16& views, LaneMask lane_mask,
+                                 Shaded& shaded) {
+  const BatchMaterial& material = block.material;
   for (int i = 0; i < kBlockPoints; i += lanes()) {
     const M active = mask_of(lane_mask, i);
     if (hn::AllFalse(FloatTag(), active)) continue;
     const F3 view = load(views, i);
-    const SurfaceLanes surface = evaluate(shader, material.material, points, view, i, active);
-    const LobeLanes<Coloured> lobes = ready(varying_lobes(material.material, surface));
-    shade_lit(shader, material.material, points, surface, lobes, view, active, i, visibility,
-              shaded);
+    const SurfaceLanes surface =
+        evaluate(block.shader, material.material, block.points, view, i, active);
+    const F cosine = dot(surface.normal, view);
+    const LobesLanes lobes =
+        kVarying ? varying_lobes(block.shader, material, surface, block.points, i, active)
+                 : constant_lobes(material.lobes, diffuse_of(surface));
+    const SharesLanes shares = kVarying ? varying_shares(lobes.roughness, clamp01(cosine))
+                                        : constant_shares(material, clamp01(cosine));
+    const ResponseLanes<Coloured> seen = response(lobes, shares);
+    shade_lit(block, surface, lobes.diffuse, lobes.roughness, seen_lobes(lobes, seen, cosine), seen,
+              view, cosine, active, i, shaded);
   }
 }
 
 void shade_block(const BatchShader& shader, std::uint32_t number, const Points& points,
                  const Vectors16& views, LaneMask lane_mask, std::span<const Vectors16> visibility,
                  Shaded& shaded) {
-  const BatchMaterial& material = shader.material(number);
-  switch (points.coloured ? material.coloured : material.plain) {
+  const Block block{shader, shader.material(number), points, visibility};
+  switch (points.coloured ? block.material.coloured : block.material.plain) {
     case BatchMaterial::Specular::grey:
-      return shade_constant<Grey>(shader, material, points, views, lane_mask, visibility, shaded);
+      return shade_grey(block, views, lane_mask, shaded);
     case BatchMaterial::Specular::coloured:
-      return shade_constant<Coloured>(shader, material, points, views, lane_mask, visibility,
-                                      shaded);
+      return shade_coloured<false>(block, views, lane_mask, shaded);
     case BatchMaterial::Specular::varying:
-      return shade_varying(shader, material, points, views, lane_mask, visibility, shaded);
+      return shade_coloured<true>(block, views, lane_mask, shaded);
   }
 }
 
@@ -128,10 +144,53 @@ void directions_to(const glm::vec3& eye, const glm::vec3& otherwise, const Vecto
   HWY_DYNAMIC_DISPATCH(directions_to_block)(eye, otherwise, positions, views);
 }
 
+namespace {
+
+void add(const Vectors16& some, LaneMask lanes, Vectors16& sum) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = std::countr_zero(lanes);
+    sum.set(i, sum.get(i) + some.get(i));
+  }
+}
+
+// Materials with a coat or a sheen, part by part.
+void shade_layered(const BatchShader& shader, std::uint32_t material, const Points& points,
+                   const Vectors16& views, LaneMask lanes, std::span<const Vectors16> visibility,
+                   Shaded& shaded) {
+  Surfaces surfaces;
+  Vectors16 some, lit;
+  Arriving arriving;
+  evaluate(shader, material, points, views, lanes, surfaces);
+  for (LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    shaded.colour.set(i, surfaces.emission.get(i));
+    shaded.alpha[i] = surfaces.alpha[i];
+  }
+  for (const auto part : {ambient_diffuse, ambient_specular, ambient_coat, ambient_transmitted}) {
+    part(shader, surfaces, views, lanes, some);
+    add(some, lanes, shaded.colour);
+  }
+  for (std::size_t l = 0; l < shader.lights.size(); ++l) {
+    const LaneMask reached = reflect_light(shader, l, surfaces, views, lanes, arriving);
+    for (LaneMask rest = visibility.empty() ? 0 : reached; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      arriving.reflected.set(i, arriving.reflected.get(i) * visibility[l].get(i));
+    }
+    add(arriving.reflected, reached, lit);
+  }
+  add(lit, lanes, shaded.colour);
+}
+
+}  // namespace
+
 void shade(const BatchShader& shader, std::uint32_t material, const Points& points,
            const Vectors16& views, LaneMask lanes, std::span<const Vectors16> visibility,
            Shaded& shaded) {
   assert(visibility.empty() || visibility.size() == shader.lights.size());
+  if (shader.material(material).layered) {
+    shade_layered(shader, material, points, views, lanes, visibility, shaded);
+    return;
+  }
   HWY_DYNAMIC_DISPATCH(shade_block)(shader, material, points, views, lanes, visibility, shaded);
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "shading/batch_shader.h"
+#include "shading/layers.h"
 #include "shading/points.h"
 
 namespace delray::shading {
@@ -50,14 +51,24 @@ struct Surfaces {
   Floats16 alpha;
   Floats16 metallic, roughness, transmission, ior;
   Vectors16 emission;
-  Vectors16 diffuse, entering, specular;  // of Lobes, as the next three
+  Vectors16 diffuse, specular;  // of Lobes, as the next three
   Floats16 grazing, lobe_alpha, lobe_roughness;
-  Vectors16 mirrored;  // specular_albedo towards the viewer
+  Vectors16 mirrored, scale;  // Response::specular and the others, below the layers
+  Floats16 entering;
+  Vectors16 tint;        // base colour times attenuation; read where the material transmits
+  LaneMask thin = 0;     // what is transmitted passes straight
+  LaneMask layered = 0;  // these have layers, and emission is what the coat leaves of it
+  Layers layers[kBlockPoints];
 };
 
 void evaluate(const BatchShader& shader, std::uint32_t material, const Points& points,
               const Vectors16& views, LaneMask lanes, Surfaces& surfaces);
 
+// Takes from a lane all lobes that scatter diffusely, or all others.
+void remove_diffuse(Surfaces& surfaces, int lane);
+void keep_diffuse(Surfaces& surfaces, int lane);
+
+// As far as Surfaces and its lobes say.
 Surface surface_at(const Surfaces& surfaces, int lane);
 Lobes lobes_at(const Surfaces& surfaces, int lane);
 
@@ -65,6 +76,8 @@ void ambient_diffuse(const BatchShader& shader, const Surfaces& surfaces, const 
                      LaneMask lanes, Vectors16& colours);
 void ambient_specular(const BatchShader& shader, const Surfaces& surfaces, const Vectors16& views,
                       LaneMask lanes, Vectors16& colours);
+void ambient_coat(const BatchShader& shader, const Surfaces& surfaces, const Vectors16& views,
+                  LaneMask lanes, Vectors16& colours);
 void ambient_transmitted(const BatchShader& shader, const Surfaces& surfaces,
                          const Vectors16& views, LaneMask lanes, Vectors16& colours);
 
@@ -80,7 +93,7 @@ struct Arriving {
 LaneMask reflect_light(const BatchShader& shader, std::size_t light, const Surfaces& surfaces,
                        const Vectors16& views, LaneMask lanes, Arriving& arriving);
 
-// reflect() with a direction of each lane's own.
+// reflect(), of layers too, with a direction of each lane's own.
 void reflect(const Surfaces& surfaces, const Vectors16& views, const Vectors16& directions,
              LaneMask lanes, Vectors16& reflected);
 

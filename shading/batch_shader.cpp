@@ -13,8 +13,13 @@ namespace {
 using Specular = BatchMaterial::Specular;
 
 Specular specular_of(const scenes::Material& material, bool colour_varies) {
-  if (material.metallic_roughness_texture != scenes::kNone) return Specular::varying;
-  if (clamp01(material.metallic) == 0.0F) return Specular::grey;
+  if (material.unlit) return Specular::grey;
+  if (material.metallic_roughness_texture != scenes::kNone || has_specular_texture(material)) {
+    return Specular::varying;
+  }
+  const glm::vec3& colour = material.specular_colour;
+  const bool grey = colour.x == colour.y && colour.y == colour.z;
+  if (clamp01(material.metallic) == 0.0F) return grey ? Specular::grey : Specular::coloured;
   return colour_varies ? Specular::varying : Specular::coloured;
 }
 
@@ -31,10 +36,8 @@ bool covers(const Shader& shader, const scenes::Material& material) {
 BatchMaterial make_material(const Shader& shader, const scenes::Material& material) {
   BatchMaterial result;
   result.covers = covers(shader, material);
-  result.textured = material.base_colour_texture != scenes::kNone ||
-                    material.metallic_roughness_texture != scenes::kNone ||
-                    material.normal_texture != scenes::kNone ||
-                    material.emission_texture != scenes::kNone;
+  result.textured = material.textured();
+  result.layered = is_layered(material);
   result.material = material;
   result.material.name.clear();
   result.plain = specular_of(material, material.base_colour_texture != scenes::kNone);
@@ -45,15 +48,20 @@ BatchMaterial make_material(const Shader& shader, const scenes::Material& materi
   surface.roughness = material.roughness;
   surface.transmission = material.transmission;
   surface.ior = material.ior;
+  surface.unlit = material.unlit;
+  surface.specular = material.specular;
+  surface.specular_colour = material.specular_colour;
   result.lobes = lobes(surface);
+  if (material.transmission > 0.0F && material.thickness > 0.0F) {
+    result.absorbs = std::isfinite(material.attenuation_distance);
+    result.attenuation = transmittance(material, material.thickness);
+  }
   static_assert(SpecularTable::kCosines == kBlockPoints + 1);
   for (int j = 0; j < kBlockPoints; ++j) {
-    const glm::vec3 low = specular_albedo_at(result.lobes, j);
-    const glm::vec3 step = specular_albedo_at(result.lobes, j + 1) - low;
-    for (int k = 0; k < 3; ++k) {
-      result.albedo[k][j] = low[k];
-      result.albedo_step[k][j] = step[k];
-    }
+    const SpecularShares low = specular_shares_at(result.lobes.roughness, j);
+    const SpecularShares high = specular_shares_at(result.lobes.roughness, j + 1);
+    result.normal[j] = low.normal, result.normal_step[j] = high.normal - low.normal;
+    result.grazing[j] = low.grazing, result.grazing_step[j] = high.grazing - low.grazing;
   }
   return result;
 }

@@ -21,10 +21,14 @@ struct BatchMaterial {
   bool textured = false;                  // looks at uv
   Lobes lobes;                            // of the material's factors alone
 
-  // specular_albedo of these lobes, channel by channel: at the first 16 cosines of its table, and
-  // its growth from each to the next.
-  alignas(64) float albedo[3][kBlockPoints];
-  alignas(64) float albedo_step[3][kBlockPoints];
+  bool layered = false;         // has a coat or a sheen
+  bool absorbs = false;         // light on its way through bodies of it
+  glm::vec3 attenuation{1.0F};  // Surface::attenuation of front sides
+
+  // specular_shares of its roughness at the first 16 cosines of their table, and their growth from
+  // each to the next.
+  alignas(64) float normal[kBlockPoints], normal_step[kBlockPoints];
+  alignas(64) float grazing[kBlockPoints], grazing_step[kBlockPoints];
 };
 
 struct BatchLight {

@@ -6,33 +6,47 @@
 
 #include "shading/brdf.h"
 #include "shading/environment.h"
+#include "shading/layers.h"
 #include "shading/lighting.h"
 #include "shading/shader.h"
 #include "shading/surface.h"
 
 namespace delray::shading {
 
-// What the surface reflects diffusely of the environment, as if nothing stood around it.
-glm::vec3 ambient_diffuse(const Shader& shader, const Surface& surface, const Lobes& lobes,
-                          const glm::vec3& view);
+// A surface as one viewer sees it.
+struct Seen {
+  glm::vec3 view;  // unit vector to the viewer
+  Lobes lobes;
+  Layers layers;
+  Response response;  // below the layers
+};
 
-// What it mirrors of the environment, blurred by its roughness, and what it lets through from
-// behind without bending: for renderers, and surfaces, that send no further rays.
-glm::vec3 ambient_specular(const Shader& shader, const Surface& surface, const Lobes& lobes,
-                           const glm::vec3& view);
-glm::vec3 ambient_transmitted(const Shader& shader, const Surface& surface, const Lobes& lobes,
-                              const glm::vec3& view);
+Seen seen_from(const Surface& surface, const glm::vec3& view);
+
+// What the surface reflects diffusely of the environment, as if nothing stood around it.
+glm::vec3 ambient_diffuse(const Shader& shader, const Surface& surface, const Seen& seen);
+
+// What it mirrors of the environment, blurred by its roughness, what its coat does, and what it
+// lets through from behind without bending: for renderers, and surfaces, that send no further rays.
+glm::vec3 ambient_specular(const Shader& shader, const Surface& surface, const Seen& seen);
+glm::vec3 ambient_coat(const Shader& shader, const Seen& seen);
+glm::vec3 ambient_transmitted(const Shader& shader, const Surface& surface, const Seen& seen);
+
+// reflect() of the surface and its layers.
+inline glm::vec3 reflect(const Surface& surface, const Seen& seen, const glm::vec3& light) {
+  const glm::vec3 base = reflect(seen.lobes, seen.response, surface.normal, seen.view, light);
+  return base + reflect(seen.layers, surface.normal, seen.view, light);
+}
 
 // Light of all lights in ascending order. visibility(light number, incident) says how much of it
 // arrives, as a glm::vec3 or a float from 0 to 1; it is asked only for light that would matter.
 template <class Visibility>
-glm::vec3 direct(const Shader& shader, const Surface& surface, const Lobes& lobes,
-                 const glm::vec3& view, Visibility&& visibility) {
+glm::vec3 direct(const Shader& shader, const Surface& surface, const Seen& seen,
+                 Visibility&& visibility) {
   glm::vec3 sum(0.0F);
   for (std::size_t i = 0; i < shader.lights.size(); ++i) {
     const Incident light = incident(shader.lights[i], surface.position);
-    const glm::vec3 reflected =
-        reflect(lobes, surface.normal, view, light.direction) * light.irradiance;
+    const glm::vec3 reflected = reflect(surface, seen, light.direction) * light.irradiance;
     if (reflected.x > 0.0F || reflected.y > 0.0F || reflected.z > 0.0F) {
       sum += reflected * visibility(i, light);
     }
@@ -45,12 +59,13 @@ glm::vec3 direct(const Shader& shader, const Surface& surface, const Lobes& lobe
 template <class Visibility>
 glm::vec3 shade(const Shader& shader, const Surface& surface, const glm::vec3& view,
                 Visibility&& visibility) {
-  const Lobes reflection = lobes(surface);
-  glm::vec3 sum = surface.emission;
-  sum += ambient_diffuse(shader, surface, reflection, view);
-  sum += ambient_specular(shader, surface, reflection, view);
-  sum += ambient_transmitted(shader, surface, reflection, view);
-  sum += direct(shader, surface, reflection, view, visibility);
+  const Seen seen = seen_from(surface, view);
+  glm::vec3 sum = surface.emission * seen.layers.below_coat;
+  sum += ambient_diffuse(shader, surface, seen);
+  sum += ambient_specular(shader, surface, seen);
+  sum += ambient_coat(shader, seen);
+  sum += ambient_transmitted(shader, surface, seen);
+  sum += direct(shader, surface, seen, visibility);
   return sum;
 }
 

@@ -6,6 +6,15 @@ namespace delray::shading {
 
 namespace {
 
+// Of what shows its colour whatever the light nothing else counts.
+void leave_colour_only(scenes::Material& m) {
+  m.metallic = m.transmission = m.clearcoat = 0.0F;
+  m.sheen_colour = m.emission = glm::vec3(0.0F);
+  const std::uint32_t colour = m.base_colour_texture;
+  for (std::uint32_t* const texture : m.textures()) *texture = scenes::kNone;
+  m.base_colour_texture = colour;
+}
+
 // `texture_of` makes the scene's texture of a number.
 template <class TextureOf>
 Shader shader_of(const scenes::Scene& scene, TextureOf&& texture_of) {
@@ -20,10 +29,8 @@ Shader shader_of(const scenes::Scene& scene, TextureOf&& texture_of) {
     if (texture >= shader.textures.size()) texture = scenes::kNone;
   };
   for (scenes::Material& m : shader.materials) {
-    check(m.base_colour_texture);
-    check(m.metallic_roughness_texture);
-    check(m.normal_texture);
-    check(m.emission_texture);
+    for (std::uint32_t* const texture : m.textures()) check(*texture);
+    if (m.unlit) leave_colour_only(m);
   }
   shader.lights = scene.lights;
   shader.environment = make_environment(scene.environment, shader.textures);

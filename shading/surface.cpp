@@ -35,7 +35,42 @@ glm::vec3 normal_mapped(const Shader& shader, const scenes::Material& material,
   return squared > 0.0F ? mapped * (1.0F / std::sqrt(squared)) : point.normal;
 }
 
+glm::vec4 looked_up(const Shader& shader, std::uint32_t texture, const Point& point) {
+  if (texture == scenes::kNone) return glm::vec4(1.0F);
+  return sample(shader.textures[texture], point.uv, point.footprint);
+}
+
+// On the viewer's side. Meshes exist whose normals contradict their winding; the winding says which
+// side is outside.
+glm::vec3 turned(const glm::vec3& normal, const Point& point, bool front) {
+  const bool agree = glm::dot(normal, point.geometric_normal) >= 0.0F;
+  return agree == front ? normal : -normal;
+}
+
 }  // namespace
+
+bool is_layered(const scenes::Material& material) {
+  return material.clearcoat > 0.0F || material.sheen_colour != glm::vec3(0.0F);
+}
+
+void evaluate_layers(const Shader& shader, const scenes::Material& material, const Point& point,
+                     Surface& surface) {
+  surface.clearcoat = material.clearcoat * looked_up(shader, material.clearcoat_texture, point).x;
+  surface.clearcoat_roughness = material.clearcoat_roughness *
+                                looked_up(shader, material.clearcoat_roughness_texture, point).y;
+  surface.coat_normal = turned(point.normal, point, surface.front);
+  surface.sheen_colour =
+      material.sheen_colour * glm::vec3(looked_up(shader, material.sheen_colour_texture, point));
+  surface.sheen_roughness =
+      material.sheen_roughness * looked_up(shader, material.sheen_roughness_texture, point).w;
+}
+
+glm::vec3 transmittance(const scenes::Material& material, float distance) {
+  const float ways = distance / material.attenuation_distance;
+  if (!(ways > 0.0F)) return glm::vec3(1.0F);
+  const glm::vec3& colour = material.attenuation_colour;
+  return {exp2(ways * log2(colour.x)), exp2(ways * log2(colour.y)), exp2(ways * log2(colour.z))};
+}
 
 Surface evaluate(const Shader& shader, const scenes::Material& material, const Point& point,
                  const glm::vec3& view) {
@@ -47,9 +82,8 @@ Surface evaluate(const Shader& shader, const scenes::Material& material, const P
     normal = normal_mapped(shader, material, point);
   }
   surface.geometric_normal = surface.front ? point.geometric_normal : -point.geometric_normal;
-  // Meshes exist whose normals contradict their winding; the winding says which side is outside.
-  const bool agree = glm::dot(normal, point.geometric_normal) >= 0.0F;
-  surface.normal = agree == surface.front ? normal : -normal;
+  surface.normal = turned(normal, point, surface.front);
+  if (is_layered(material)) evaluate_layers(shader, material, point, surface);
 
   glm::vec4 colour = material.base_colour * point.colour;
   if (material.base_colour_texture != scenes::kNone) {
@@ -67,11 +101,33 @@ Surface evaluate(const Shader& shader, const scenes::Material& material, const P
     surface.metallic *= texel.z;
   }
   surface.transmission = material.transmission;
+  if (material.transmission_texture != scenes::kNone) {
+    surface.transmission *= looked_up(shader, material.transmission_texture, point).x;
+  }
   surface.ior = material.ior;
+  surface.specular = material.specular;
+  surface.specular_colour = material.specular_colour;
+  if (has_specular_texture(material)) {
+    surface.specular *= looked_up(shader, material.specular_texture, point).w;
+    surface.specular_colour *=
+        glm::vec3(looked_up(shader, material.specular_colour_texture, point));
+  }
+  if (material.transmission > 0.0F) {
+    if (material.thickness > 0.0F) {
+      if (surface.front) surface.attenuation = transmittance(material, material.thickness);
+    } else {
+      surface.front = true;
+    }
+  }
   surface.emission = material.emission;
   if (material.emission_texture != scenes::kNone) {
     surface.emission *=
         glm::vec3(sample(shader.textures[material.emission_texture], point.uv, point.footprint));
+  }
+  surface.unlit = material.unlit;
+  if (material.unlit) {
+    surface.emission = surface.base_colour;
+    surface.base_colour = glm::vec3(0.0F);
   }
   return surface;
 }

@@ -15,14 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace delray::shading {
 namespace HWY_NAMESPACE {
 
-// `mirrored` is specular_albedo at the cosine between normal and view.
-template <class Reflectance>
-HWY_INLINE F3 ambient_diffuse(const Environment& e, const F3& diffuse, const Reflectance& mirrored,
-                              const F3& normal) {
-  return times(diffuse, one_minus(mirrored)) * diffuse_radiance(e, normal);
-}
-
-// `cosine` is that between normal and view, of either sign.
+// `mirrored` is Response::specular.
 template <class Reflectance>
 HWY_INLINE F3 ambient_specular(const Shader& shader, F roughness, const Reflectance& mirrored,
                                const F3& normal, const F3& view, F cosine, M active) {
@@ -31,13 +24,21 @@ HWY_INLINE F3 ambient_specular(const Shader& shader, F roughness, const Reflecta
                mirrored);
 }
 
-// `share` is what of the light that is not mirrored goes through, 0 to 1.
-template <class Reflectance>
-HWY_INLINE F3 ambient_transmitted(const Shader& shader, F roughness, const Reflectance& mirrored,
-                                  const F3& base_colour, F share, const F3& view, M active) {
-  const F3 through = times(base_colour, one_minus(mirrored)) * share;
+// `tint` is base colour times attenuation, `share` what of the light that enters goes through.
+HWY_INLINE F3 ambient_transmitted(const Shader& shader, F roughness, F entering, const F3& tint,
+                                  F share, const F3& view, M active) {
+  const F3 through = tint * entering * share;
   const F3 behind = radiance(shader.environment, shader.textures, negated(view), roughness, active);
   return where(hn::Gt(share, set(0.0F)), through * behind);
+}
+
+HWY_INLINE F transmitted_share(F transmission, F metallic) {
+  return clamp01(transmission) * (set(1.0F) - clamp01(metallic));
+}
+
+// Base colour times attenuation.
+HWY_INLINE F3 tint_of(const BatchMaterial& material, const F3& base_colour, M front) {
+  return choose(front, base_colour * set(material.attenuation), base_colour);
 }
 
 struct ReflectedLanes {
@@ -49,10 +50,9 @@ struct ReflectedLanes {
 // REQUIRES: the light is not dark.
 template <class Reflectance>
 HWY_INLINE ReflectedLanes reflected(const BatchLight& light, const LobeLanes<Reflectance>& lobes,
-                                    const ViewTerms<Reflectance>& viewer, const F3& position,
-                                    const F3& normal, const F3& view) {
+                                    const F3& position, const F3& normal, const F3& view) {
   const IncidentLanes arriving = incident(light, position);
-  const F3 all = reflect(lobes, viewer, normal, view, arriving.direction) * arriving.irradiance;
+  const F3 all = reflect(lobes, normal, view, arriving.direction) * arriving.irradiance;
   return {arriving, all, hn::And(arriving.arrives, any_positive(all))};
 }
 

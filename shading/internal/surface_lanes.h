@@ -19,7 +19,7 @@ struct SurfaceLanes {
   F3 geometric_normal, normal;
   M front;
   F3 base_colour;
-  F alpha, metallic, roughness;
+  F alpha, metallic, roughness, transmission;
   F3 emission;
 };
 
@@ -96,7 +96,16 @@ HWY_INLINE SurfaceLanes evaluate(const BatchShader& shader, const scenes::Materi
     surface.roughness = surface.roughness * texel.colour.y;
     surface.metallic = surface.metallic * texel.colour.z;
   }
+  surface.transmission = set(material.transmission);
+  if (material.transmission_texture != scenes::kNone) {
+    const TexelLanes texel = looked_up(textures[material.transmission_texture], points, i, active);
+    surface.transmission = surface.transmission * texel.colour.x;
+  }
   surface.emission = set(material.emission);
+  if (material.unlit) {
+    surface.emission = surface.base_colour;
+    surface.base_colour = set(glm::vec3(0.0F));
+  }
   if (material.emission_texture != scenes::kNone) {
     surface.emission =
         surface.emission * looked_up(textures[material.emission_texture], points, i, active).colour;
@@ -104,57 +113,60 @@ HWY_INLINE SurfaceLanes evaluate(const BatchShader& shader, const scenes::Materi
   return surface;
 }
 
-HWY_INLINE F3 diffuse_of(const scenes::Material& material, const SurfaceLanes& surface) {
+HWY_INLINE F3 diffuse_of(const SurfaceLanes& surface) {
   const F one = set(1.0F);
-  const F opaque = set(1.0F - shading::clamp01(material.transmission));
-  return surface.base_colour * ((one - clamp01(surface.metallic)) * opaque);
+  return surface.base_colour *
+         ((one - clamp01(surface.metallic)) * (one - clamp01(surface.transmission)));
 }
 
-// Lobes::entering, not divided by pi.
-HWY_INLINE F entering_of(F specular, F grazing) {
-  const F mean = specular + (grazing - specular) * set(1.0F / 21.0F);
-  return set(1.0F) / max_of(set(1.0F) - mean, set(1e-3F));
+HWY_INLINE F grazing_of(const F3& reflectance) {
+  return min_of(set(50.0F) * max_of(max_of(reflectance.x, reflectance.y), reflectance.z),
+                set(1.0F));
 }
 
-// Lobes of surfaces that differ from lane to lane.
-struct VaryingLobes {
-  F3 diffuse, entering, specular;
-  F grazing, alpha, roughness;
-};
-
-HWY_INLINE VaryingLobes varying_lobes(const scenes::Material& material,
-                                      const SurfaceLanes& surface) {
+// Where textures say how strongly the dielectric reflects. Sets dielectric and dielectric_grazing.
+inline HWY_NOINLINE void look_up_specular(const BatchShader& shader,
+                                          const scenes::Material& material, const Points& points,
+                                          int i, M active, LobesLanes& lobes) {
+  const std::vector<Texture>& textures = shader.shader->textures;
+  const F one = set(1.0F);
+  F strength = set(material.specular);
+  F3 colour = set(material.specular_colour);
+  if (material.specular_texture != scenes::kNone) {
+    strength = strength * looked_up(textures[material.specular_texture], points, i, active).alpha;
+  }
+  if (material.specular_colour_texture != scenes::kNone) {
+    colour =
+        colour * looked_up(textures[material.specular_colour_texture], points, i, active).colour;
+  }
   const float ratio = (material.ior - 1.0F) / (material.ior + 1.0F);
-  const F dielectric = set(ratio * ratio);
-  const F metallic = clamp01(surface.metallic);
-  const F3 specular{mix(dielectric, surface.base_colour.x, metallic),
-                    mix(dielectric, surface.base_colour.y, metallic),
-                    mix(dielectric, surface.base_colour.z, metallic)};
-  const F brightest = max_of(max_of(specular.x, specular.y), specular.z);
-  const F grazing = min_of(set(50.0F) * brightest, set(1.0F));
-  const F3 entering{entering_of(specular.x, grazing), entering_of(specular.y, grazing),
-                    entering_of(specular.z, grazing)};
-  const F roughness = clamp01(surface.roughness);
-  const F wide = max_of(roughness, set(kMinRoughness));
-  return {diffuse_of(material, surface), entering, specular, grazing, wide * wide, roughness};
+  const F3 head_on = colour * set(ratio * ratio);
+  lobes.dielectric =
+      F3{min_of(head_on.x, one), min_of(head_on.y, one), min_of(head_on.z, one)} * strength;
+  lobes.dielectric_grazing = grazing_of(lobes.dielectric) * strength;
 }
 
-HWY_INLINE VaryingLobes constant_lobes(const BatchMaterial& material, const SurfaceLanes& surface) {
-  const Lobes& l = material.lobes;
-  return {diffuse_of(material.material, surface),
-          set(l.entering),
-          set(l.specular),
-          set(l.grazing),
-          set(l.alpha),
-          set(l.roughness)};
-}
-
-HWY_INLINE LobeLanes<Coloured> ready(const VaryingLobes& l) {
-  const F3 rise{l.grazing - l.specular.x, l.grazing - l.specular.y, l.grazing - l.specular.z};
-  return {l.diffuse,         {l.entering * set(kInversePi)},
-          {l.specular},      {rise},
-          l.grazing,         l.roughness,
-          l.alpha * l.alpha, nullptr};
+// Of surfaces that differ from lane to lane.
+HWY_INLINE LobesLanes varying_lobes(const BatchShader& shader, const BatchMaterial& constants,
+                                    const SurfaceLanes& surface, const Points& points, int i,
+                                    M active) {
+  const scenes::Material& material = constants.material;
+  LobesLanes l = constant_lobes(constants.lobes, diffuse_of(surface));
+  if (has_specular_texture(material)) {
+    look_up_specular(shader, material, points, i, active, l);
+  }
+  l.metallic = clamp01(surface.metallic);
+  l.metal = surface.base_colour;
+  l.metal_grazing = grazing_of(l.metal);
+  l.specular = mix(l.dielectric, l.metal, l.metallic);
+  l.grazing = mix(l.dielectric_grazing, l.metal_grazing, l.metallic);
+  l.roughness = clamp01(surface.roughness);
+  const F mean = mean_albedo(l.roughness);
+  l.dielectric_again = again(l.dielectric, l.dielectric_grazing, mean);
+  l.metal_again = again(l.metal, l.metal_grazing, mean);
+  const F wide = max_of(l.roughness, set(kMinRoughness));
+  l.alpha = wide * wide;
+  return l;
 }
 
 }  // namespace HWY_NAMESPACE

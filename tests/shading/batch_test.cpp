@@ -97,9 +97,10 @@ TEST(Batch, PartsAreThoseOfTheScalarFunctions) {
       const std::uint32_t m = seed % 3;
       Surfaces surfaces;
       evaluate(c.batch, m, c.points, c.views, kAllLanes, surfaces);
-      Vectors16 diffuse, specular, transmitted, around, reflected, directions;
+      Vectors16 diffuse, specular, coat, transmitted, around, reflected, directions;
       ambient_diffuse(c.batch, surfaces, c.views, kAllLanes, diffuse);
       ambient_specular(c.batch, surfaces, c.views, kAllLanes, specular);
+      ambient_coat(c.batch, surfaces, c.views, kAllLanes, coat);
       ambient_transmitted(c.batch, surfaces, c.views, kAllLanes, transmitted);
       environment_radiance(c.batch, c.views, 0.3F, kAllLanes, around);
       for (int i = 0; i < kBlockPoints; ++i) directions.set(i, c.view[(i + 5) % kBlockPoints]);
@@ -116,19 +117,24 @@ TEST(Batch, PartsAreThoseOfTheScalarFunctions) {
                           {expected.alpha, expected.metallic, expected.roughness}));
         ASSERT_TRUE(
             equal({got.transmission, got.ior, 0}, {expected.transmission, expected.ior, 0}));
-        ASSERT_TRUE(equal(got.emission, expected.emission));
-        const Lobes lobe = lobes(expected), got_lobe = lobes_at(surfaces, i);
+        const glm::vec3& view = c.view[i];
+        const Seen seen = seen_from(expected, view);
+        ASSERT_TRUE(equal(got.emission, expected.emission * seen.layers.below_coat));
+        const Lobes& lobe = seen.lobes;
+        const Lobes got_lobe = lobes_at(surfaces, i);
         ASSERT_TRUE(equal(got_lobe.diffuse, lobe.diffuse));
-        ASSERT_TRUE(equal(got_lobe.entering, lobe.entering));
+        ASSERT_TRUE(equal(surfaces.scale.get(i), seen.response.scale));
+        ASSERT_TRUE(equal(surfaces.mirrored.get(i), seen.response.specular));
+        ASSERT_TRUE(same(surfaces.entering[i], seen.response.entering));
         ASSERT_TRUE(equal(got_lobe.specular, lobe.specular));
         ASSERT_TRUE(equal({got_lobe.grazing, got_lobe.alpha, got_lobe.roughness},
                           {lobe.grazing, lobe.alpha, lobe.roughness}));
-        const glm::vec3& view = c.view[i];
-        ASSERT_TRUE(equal(diffuse.get(i), ambient_diffuse(c.shader, expected, lobe, view)));
-        ASSERT_TRUE(equal(specular.get(i), ambient_specular(c.shader, expected, lobe, view)));
-        ASSERT_TRUE(equal(transmitted.get(i), ambient_transmitted(c.shader, expected, lobe, view)));
-        ASSERT_TRUE(equal(reflected.get(i),
-                          reflect(lobe, expected.normal, view, c.view[(i + 5) % kBlockPoints])));
+        ASSERT_TRUE(equal(diffuse.get(i), ambient_diffuse(c.shader, expected, seen)));
+        ASSERT_TRUE(equal(specular.get(i), ambient_specular(c.shader, expected, seen)));
+        ASSERT_TRUE(equal(coat.get(i), ambient_coat(c.shader, seen)));
+        ASSERT_TRUE(equal(transmitted.get(i), ambient_transmitted(c.shader, expected, seen)));
+        ASSERT_TRUE(
+            equal(reflected.get(i), reflect(expected, seen, c.view[(i + 5) % kBlockPoints])));
         ASSERT_TRUE(
             equal(around.get(i), radiance(c.shader.environment, c.shader.textures, view, 0.3F)));
       }
@@ -153,7 +159,7 @@ TEST(Batch, LightsComeOneByOne) {
         std::vector<LaneMask> asked(c.shader.lights.size());
         glm::vec3 sum(0.0F);
         const glm::vec3 all =
-            direct(c.shader, surface, lobes(surface), c.view[i],
+            direct(c.shader, surface, seen_from(surface, c.view[i]),
                    [&](std::size_t l, const Incident& light) {
                      asked[l] = 1U << i;
                      EXPECT_TRUE(equal(arriving[l].direction.get(i), light.direction));

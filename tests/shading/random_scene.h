@@ -119,7 +119,29 @@ class RandomScene {
     material.metallic_roughness_texture = texture_or_none(textures);
     material.normal_texture = texture_or_none(textures);
     material.emission_texture = texture_or_none(textures);
+    if (one_in(2)) add_extensions(material, textures);
     return material;
+  }
+
+  void add_extensions(scenes::Material& material, int textures) {
+    material.unlit = one_in(8);
+    if (one_in(2)) material.specular = share();
+    if (one_in(3)) material.specular_colour = {unit(), 1.5F * unit(), unit()};
+    if (one_in(3)) {
+      material.clearcoat = share();
+      material.clearcoat_roughness = share();
+    }
+    if (one_in(3)) {
+      material.sheen_colour = {unit(), unit(), unit()};
+      material.sheen_roughness = share();
+    }
+    material.thickness = one_in(3) ? 0.0F : unit();
+    if (one_in(2)) {
+      material.attenuation_colour = {unit(), unit(), one_in(3) ? 0.0F : 1.0F};
+      material.attenuation_distance = unit();
+    }
+    if (one_in(2)) return;
+    for (std::uint32_t* const texture : material.textures()) *texture = texture_or_none(textures);
   }
 
   scenes::Light light() {
