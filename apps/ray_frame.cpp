@@ -39,13 +39,14 @@ std::string settings_of(const RenderRequest& request, const scenes::Camera& came
                         std::uint64_t triangles) {
   const Practice& p = request.practice;
   return fmt::format(
-      "{} triangles {} {}x{} spp {} depth {} reach {:a} shadows {} build {} isa {} seed {} noise "
+      "{} triangles {} {}x{} spp {} depth {} diffuse {} reach {:a} shadows {} build {} isa {} seed "
+      "{} noise "
       "{:a} scattered {} window {} {} {} {} "
       "eye {:a} {:a} "
       "{:a} at {:a} {:a} {:a} up {:a} {:a} {:a} fov {:a} near {:a} lens {:a} {:a} height {:a}",
       request.integrator, triangles, request.width, request.height, request.samples, request.depth,
-      request.reach, !request.no_shadows, request.build, request.isa, p.seed, p.noise,
-      p.noise > 0.0 || p.seconds > 0.0, p.window.x0, p.window.y0, p.window.x1, p.window.y1,
+      request.diffuse_depth, request.reach, !request.no_shadows, request.build, request.isa, p.seed,
+      p.noise, p.noise > 0.0 || p.seconds > 0.0, p.window.x0, p.window.y0, p.window.x1, p.window.y1,
       camera.eye.x, camera.eye.y, camera.eye.z, camera.at.x, camera.at.y, camera.at.z, camera.up.x,
       camera.up.y, camera.up.z, camera.vertical_fov, camera.near, camera.aperture, camera.focus,
       camera.height);

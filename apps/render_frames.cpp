@@ -79,6 +79,7 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
   options.height = request.height;
   options.samples = request.samples;
   options.trace.depth = request.depth;
+  options.trace.diffuse_depth = request.diffuse_depth;
   options.trace.shadows = !request.no_shadows;
   if (request.reach > 0) options.trace.reach = static_cast<float>(request.reach);
   options.trace.background = raytrace::TraceOptions::Background::transparent;

@@ -47,8 +47,8 @@ void check_master(const CLI::App& command, const std::string& schedule) {
 
 void check_raster(const CLI::App& command, const RenderRequest& request) {
   refuse(command,
-         {"--integrator", "--spp", "--depth", "--reach", "--no-shadows", "--build", "--isa",
-          "--data", "--deal", "--cache"},
+         {"--integrator", "--spp", "--depth", "--diffuse-depth", "--reach", "--no-shadows",
+          "--build", "--isa", "--data", "--deal", "--cache"},
          "--engine raster");
   refuse_practice(command);
   find_entry(raster::strategies(), request.strategy, "--strategy");
@@ -102,6 +102,8 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
   if (request.integrator != "ao") refuse(command, {"--reach"}, "another --integrator than ao");
   if (request.integrator != "direct")
     refuse(command, {"--no-shadows"}, "another --integrator than direct");
+  if (request.integrator != "path")
+    refuse(command, {"--diffuse-depth"}, "another --integrator than path");
   check_practice(command, request);
   find_entry(loadbalance::schedules(), request.schedule, "--schedule");
   check_master(command, request.schedule);
@@ -247,8 +249,13 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--spp", request.samples, "samples per pixel (default 1)")
       ->check(CLI::Range(1, 65536))
       ->group(raytrace);
-  command.add_option("--depth", request.depth, "mirrored or refracted how often (default 8)")
+  command.add_option("--depth", request.depth, "maximum reflections and refractions (default 8)")
       ->check(CLI::Range(0, 64))
+      ->group(raytrace);
+  command
+      .add_option("--diffuse-depth", request.diffuse_depth,
+                  "path: maximum diffuse scatterings (default 64, more than most paths last)")
+      ->check(CLI::Range(0, 1024))
       ->group(raytrace);
   command
       .add_option("--reach", request.reach,

@@ -35,7 +35,7 @@ struct RenderRequest {
   std::string integrator = "whitted", schedule, master = "works", data = "replicated",
               deal = "neighbours";
   double cache_mebibytes = 0;  // 0: a tenth of the scene
-  int samples = 1, depth = 8;
+  int samples = 1, depth = 8, diffuse_depth = 64;
   double reach = 0;  // 0: without end
   bool no_shadows = false;
   std::string build = "medium", isa = "best";

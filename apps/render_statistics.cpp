@@ -51,6 +51,7 @@ Json options_of(const RenderRequest& request, int ranks, int threads) {
     options["integrator"] = request.integrator;
     options["spp"] = request.samples;
     options["depth"] = request.depth;
+    options["diffuse_depth"] = request.diffuse_depth;
     options["reach"] = request.reach;
     options["shadows"] = !request.no_shadows;
     options["build"] = request.build;

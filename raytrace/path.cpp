@@ -134,7 +134,7 @@ class Path final : public Walk {
   }
 
   // The surfaces that a group's rays met: looks at them at once where they fill it.
-  void find(std::uint32_t number, const PathLanes& lanes) {
+  void find(std::uint32_t number, PathLanes& lanes) {
     const RayGroup& group = wave_.rays[number];
     const LaneMask seen = see(group, lanes);
     for (LaneMask rest = seen; rest != 0;) {
@@ -148,7 +148,7 @@ class Path final : public Walk {
     }
   }
 
-  void meet_all(std::uint32_t number, const PathLanes& lanes) {
+  void meet_all(std::uint32_t number, PathLanes& lanes) {
     for (std::uint32_t i = 0; i < kPacketRays; ++i) sources_[i] = number * kPacketRays + i;
     meet(wave_.rays[number], lanes, shading::kAllLanes);
   }
@@ -164,18 +164,18 @@ class Path final : public Walk {
   }
 
   // Surfaces side by side, of which lane i is that of hit sources_[i] of the wave.
-  void meet(const RayGroup& group, const PathLanes& lanes, LaneMask seen) {
+  void meet(const RayGroup& group, PathLanes& lanes, LaneMask seen) {
     for (LaneMask rest = seen; rest != 0;) {
       const LaneMask same = same_material(group, rest);
-      shading::evaluate(setting_.shader, group.material[std::countr_zero(rest)], group.points,
-                        group.view, same, surfaces_);
+      const std::uint32_t material = group.material[std::countr_zero(rest)];
+      shading::evaluate(setting_.shader, material, group.points, group.view, same, surfaces_);
+      if (setting_.shader.material(material).absorbs) absorb(group, lanes, same);
       rest &= ~same;
     }
     LaneMask alive = 0;
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const bool more = static_cast<int>(lanes.bounce[i]) < setting_.options.depth;
-      alive |= more ? 1U << i : 0U;
+      alive |= may_scatter(lanes, i) ? 1U << i : 0U;
     }
     for (LaneMask rest = glowing_lanes(surfaces_, seen); rest != 0; rest &= rest - 1) {
       add_glow(lanes, std::countr_zero(rest));
@@ -193,6 +193,30 @@ class Path final : public Walk {
     sample(bsdfs_, pairs_[kLobe].x, pairs_[kDirection].x, pairs_[kDirection].y, alive, scattered_);
     scattered_rays(vertices, scattered_, pairs_[kLobe].y, kCertain, alive, next_rays_);
     if (next_rays_.count != 0) ask_scattered();
+  }
+
+  // Bodies of glass take from the light that comes out of them.
+  void absorb(const RayGroup& group, PathLanes& lanes, LaneMask same) {
+    for (LaneMask rest = same; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      if (surfaces_.front[i] != 0) continue;
+      // Rays of the camera have directions of any length.
+      const float distance = lanes.bounce[i] == 0
+                                 ? glm::distance(surfaces_.position.get(i), setting_.view.eye)
+                                 : group.packet.far[i];
+      const auto& material = setting_.shader.material(group.material[i]).material;
+      lanes.weight.set(i, lanes.weight.get(i) * shading::transmittance(material, distance));
+    }
+  }
+
+  // Takes the lobes from a surface of which light has been scattered by its kind as often as it
+  // may. Returns whether some are left.
+  bool may_scatter(const PathLanes& lanes, int i) {
+    const bool diffuse = diffuse_bounces(lanes.bounce[i]) < setting_.options.diffuse_depth;
+    const bool others = other_bounces(lanes.bounce[i]) < setting_.options.depth;
+    if (!diffuse) shading::remove_diffuse(surfaces_, i);
+    if (!others) shading::keep_diffuse(surfaces_, i);
+    return diffuse || others;
   }
 
   // Pairs of numbers from a dimension on.
@@ -266,7 +290,11 @@ class Path final : public Walk {
   }
 
   void go_behind(const RayGroup& group, const PathLanes& lanes, int i, const Hit& hit) {
-    if (lanes.vertex[i] >= kMostLayers + static_cast<std::uint32_t>(setting_.options.depth)) return;
+    const auto& limits = setting_.options;
+    if (lanes.vertex[i] >=
+        kMostLayers + static_cast<std::uint32_t>(limits.depth + limits.diffuse_depth)) {
+      return;
+    }
     // The camera's rays have not been turned aside.
     Filling& filling = lanes.bounce[i] == 0 ? straight_ : filling_;
     make_room(filling);

@@ -117,7 +117,9 @@ void scattered_block(const Vertices& at, const BsdfSamples& samples, const shadi
     F3 weight = load(at.lanes.weight, i) * load(samples.weight, i);
     M goes_on = hn::And(mask_of(mask, i), hn::And(any_positive(weight), finite(weight)));
     const I bounce = word(at.lanes.bounce, i);
-    const M tried = hn::RebindMask(d, hn::Gt(bounce, set(static_cast<std::int32_t>(certain) - 1)));
+    const I scatterings = hn::ShiftRight<16>(bounce) + (bounce & set(0xFFFF));
+    const M tried =
+        hn::RebindMask(d, hn::Gt(scatterings, set(static_cast<std::int32_t>(certain) - 1)));
     const F chance = min_of(brightest(weight), one);
     goes_on = hn::And(goes_on, hn::Or(hn::Not(tried), hn::Lt(load(luck, i), chance)));
     if (hn::AllFalse(d, goes_on)) continue;
@@ -136,7 +138,9 @@ void scattered_block(const Vertices& at, const BsdfSamples& samples, const shadi
     append.add(weight);
     append.add(pdf);
     append.add(word(at.lanes.pixel, i));
-    append.add(bounce + set(1));
+    const I kind = hn::IfThenElse(hn::RebindMask(IntTag(), mask_of(samples.diffuse, i)),
+                                  set(static_cast<std::int32_t>(kDiffuse)), set(1));
+    append.add(bounce + kind);
     append.add(word(at.lanes.vertex, i) + set(1));
   }
 }

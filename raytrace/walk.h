@@ -18,8 +18,10 @@
 namespace delray::raytrace {
 
 struct TraceOptions {
-  int depth = 8;        // how often light may be mirrored or refracted on its way to the camera
-  bool shadows = true;  // of integrators that can do without
+  int depth = 8;  // how often light may be mirrored or refracted on its way to the camera
+  // How often it may be scattered diffusely, by `path`. Russian roulette ends paths long before.
+  int diffuse_depth = 64;
+  bool shadows = true;                                   // of integrators that can do without
   float reach = std::numeric_limits<float>::infinity();  // of ambient occlusion, in the world
   std::uint64_t seed = 0;                                // of everything random
   enum class Background : std::uint8_t {

@@ -160,7 +160,7 @@ void compare(const std::string& name, const Arguments& arguments) {
   options.build.isa = arguments.isa;
   options.integrator = integrator == "primary" ? "direct" : integrator;
   options.trace.shadows = integrator != "primary";
-  if (integrator == "path") options.trace.depth = 4;
+  if (integrator == "path") options.trace.depth = options.trace.diffuse_depth = 4;
 
   std::vector<std::string> warnings;
   scenes::Scene scene =

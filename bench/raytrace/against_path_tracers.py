@@ -69,6 +69,7 @@ def ours(delray, model, camera, threads, bounces):
         out = subprocess.run(
             [delray, "render", model, "-o", f"{folder}/a.png", "--size", "%dx%d" % SIZE,
              "--engine", "raytrace", "--integrator", "path", "--depth", str(bounces),
+             "--diffuse-depth", str(bounces),
              f"--camera={numbers}", "--threads", str(threads), "--frames", "5", "--stats", "-", "-q"],
             check=True, capture_output=True, text=True).stdout
     told = json.loads(out)

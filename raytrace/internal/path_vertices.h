@@ -11,14 +11,20 @@
 
 namespace delray::raytrace {
 
+// In PathLanes::bounce.
+inline constexpr std::uint32_t kDiffuse = 1U << 16;
+inline int diffuse_bounces(std::uint32_t bounce) { return static_cast<int>(bounce / kDiffuse); }
+inline int other_bounces(std::uint32_t bounce) { return static_cast<int>(bounce % kDiffuse); }
+
 // What a path tracer knows of the rays of a group besides.
 struct PathLanes {
   bool whole = true;          // the primary rays of `block`: the rest is not set
   std::uint32_t block = 0;    // of samples()
   shading::Vectors16 weight;  // what the sample makes of radiance along the ray
   shading::Floats16 pdf;      // with which the direction was drawn; 0: no other way finds it
-  alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * sample block + lane in it
-  alignas(64) std::uint32_t bounce[kPacketRays];  // scatterings so far
+  alignas(64) std::uint32_t pixel[kPacketRays];  // 16 * sample block + lane in it
+  // Scatterings so far: diffuse ones times kDiffuse, and others.
+  alignas(64) std::uint32_t bounce[kPacketRays];
   alignas(64) std::uint32_t vertex[kPacketRays];  // surfaces met so far, layers among them
   alignas(64) std::uint32_t placement[kPacketRays], triangle[kPacketRays];  // left behind
 };
