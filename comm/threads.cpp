@@ -30,6 +30,7 @@ struct alignas(64) Inbox {
   // What the rank sleeps for; a sender that delivers it clears `waiting`.
   bool waiting = false;
   bool counted_as_blocked = false;
+  bool has_stalled = false;  // waited for longer than ranks may, and is about to say so
   const Group* group = nullptr;
   int from = 0;
   Tag tag = 0;
@@ -82,7 +83,7 @@ class World {
     for (std::size_t steps = 0; steps < inboxes.size(); ++steps) {
       Inbox& inbox = inboxes[static_cast<std::size_t>(rank)];
       const std::scoped_lock lock(inbox.mutex);
-      if (!inbox.waiting || !inbox.counted_as_blocked) return rank;
+      if (!inbox.has_stalled && !(inbox.waiting && inbox.counted_as_blocked)) return rank;
       if (inbox.from == kAnyRank) return first;
       rank = inbox.group->world_ranks[static_cast<std::size_t>(inbox.from)];
     }
@@ -236,6 +237,9 @@ class ThreadCommunicator final : public Communicator {
         end_known = true;
         if (now >= end) {
           if (longest == deadline.wait) return nullptr;
+          inbox_.has_stalled = true;
+          inbox_.group = group_.get();
+          inbox_.from = from;
           lock.unlock();
           end_stalled(from, tag, longest);
         }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <latch>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -359,15 +360,17 @@ TEST(ThreadsFailure, TakesALongWaitForAStall) {
 // Rank 2 is at fault, whoever of the others has waited the longest.
 TEST(ThreadsFailure, NamesTheRankThatAllWaitForInTheEnd) {
   for (int i = 0; i < 5; ++i) {
+    std::latch begun(4);  // a rank that has not begun waits for nobody
     try {
       run_threads(4, 1,
-                  [](Communicator& c) {
+                  [&](Communicator& c) {
+                    begun.arrive_and_wait();
                     c.mark(Phase::load, 0);
                     if (c.rank() != 2) c.receive((c.rank() + 1) % 4, 4);
                     c.mark(Phase::shade, 0);
                     while (true) c.probe(0, 1, Deadline::in(std::chrono::milliseconds(1)));
                   },
-                  {.timeout = std::chrono::milliseconds(20)});
+                  {.timeout = std::chrono::milliseconds(100)});
       FAIL() << "did not end";
     } catch (const RankFailure& failure) {
       EXPECT_EQ(failure.rank(), 2);
