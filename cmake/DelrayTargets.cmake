@@ -65,16 +65,19 @@ if(NOT TARGET delray_headers)
   target_precompile_headers(delray_headers PRIVATE ${DELRAY_COMMON_HEADERS})
 endif()
 
-# delray_compile_together(<target> [FIRST <source>...] [ALONE <source>...])
+# delray_compile_together(<target> [SIZE <sources>] [FIRST <source>...] [ALONE <source>...])
 #
-# Half of the time of a small source goes into headers, so six of a target are compiled in one go: first
+# Half of the time of a small source goes into headers, so SIZE (six) of a target are compiled in one go: first
 # those of FIRST, so that users of a heavy header share it, then the others by name. No two of them
 # declare the same name at the start of a line, so private names need not differ between files. Alone are
 # those of ALONE, which take long by themselves, and those that Highway compiles once per instruction set.
 # -DDELRAY_TOGETHER=OFF compiles each alone; with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources
 # show what they fail to include.
 function(delray_compile_together target)
-  cmake_parse_arguments(ARG "" "" "FIRST;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "" "SIZE" "FIRST;ALONE" ${ARGN})
+  if(NOT ARG_SIZE)
+    set(ARG_SIZE 6)
+  endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_MODE GROUP)
   if(DELRAY_TOGETHER AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # takes sources for headers
@@ -103,7 +106,7 @@ function(delray_compile_together target)
       set(others ${names})
       list(REMOVE_ITEM others ${names_${group}})
       list(LENGTH sources_${group} size)
-      if(size LESS 6 AND "${others}" STREQUAL "${names}")
+      if(size LESS ARG_SIZE AND "${others}" STREQUAL "${names}")
         break()
       endif()
       math(EXPR group "${group} + 1")
