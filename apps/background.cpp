@@ -4,8 +4,10 @@
 
 #include <charconv>
 #include <utility>
+#include <vector>
 
 #include "apps/session.h"
+#include "files/similar_name.h"
 #include "image/srgb.h"
 #include "parallel/parallel_for.h"
 #include "shading/environment.h"
@@ -66,10 +68,12 @@ void put_behind_picture(image::BasicImage<Colour>& picture, const Background& ba
 
 Background parse_background(const std::string& text) {
   using Kind = Background::Kind;
+  std::vector<std::string> names;
   for (const auto& [name, kind] :
        {std::pair{"auto", Kind::automatic}, std::pair{"environment", Kind::environment},
         std::pair{"studio", Kind::studio}, std::pair{"transparent", Kind::transparent}}) {
     if (text == name) return {kind, {}};
+    names.emplace_back(name);
   }
   unsigned code = 0;
   const char* const begin = text.data() + 1;
@@ -80,8 +84,9 @@ Background parse_background(const std::string& text) {
     };
     return {Kind::colour, {channel(16), channel(8), channel(0), 1.0F}};
   }
-  throw UsageError(fmt::format(
-      "--background: '{}' is not auto, environment, studio, transparent or #rrggbb", text));
+  throw UsageError(
+      fmt::format("--background: '{}' is not auto, environment, studio, transparent or #rrggbb{}",
+                  text, files::did_you_mean(text, names)));
 }
 
 void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,

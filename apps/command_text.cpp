@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "apps/colour_by.h"
+#include "apps/list.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "delaunay/methods.h"
@@ -15,13 +16,6 @@
 
 namespace delray::apps {
 namespace {
-
-template <class Table>
-std::vector<std::string> names_in(const Table& table) {
-  std::vector<std::string> names;
-  for (const auto& entry : table) names.emplace_back(entry.name);
-  return names;
-}
 
 // The names in the table that the option chooses from; empty if it chooses from none.
 std::vector<std::string> table_of(const std::string& option) {

@@ -17,7 +17,7 @@ void add_completion(CLI::App& program, Session& session) {
   const auto name = std::make_shared<std::string>();
   std::vector<std::string> names;
   for (const Shell& shell : shells()) names.emplace_back(shell.name);
-  command->add_option("SHELL", *name, "which shell")->check(CLI::IsMember(names))->required();
+  command->add_option("SHELL", *name, "which shell")->check(one_of(names))->required();
   std::string footer = "Examples:\n";
   for (const Shell& shell : shells()) footer += fmt::format("  {}\n", shell.description);
   command->footer(footer);

@@ -9,6 +9,7 @@
 
 #include "apps/build_id.h"
 #include "apps/numbers.h"
+#include "apps/usage.h"
 #include "comm/failure.h"
 #include "comm/handshake.h"
 #include "comm/mpi.h"
@@ -39,20 +40,6 @@ std::chrono::nanoseconds timeout_of(const Launch& launch) {
 [[noreturn]] void end_process(const comm::RankFailure& failure) {
   spdlog::error("{}", failure.what());
   std::_Exit(kRankLost);
-}
-
-// The subcommand that arguments lead to, however much of them was understood.
-const CLI::App& command_of(const CLI::App& program, const std::vector<std::string>& arguments) {
-  const CLI::App* command = &program;
-  for (const std::string& argument : arguments) {
-    for (const CLI::App* sub : command->get_subcommands([](const CLI::App*) { return true; })) {
-      if (sub->get_name() == argument) {
-        command = sub;
-        break;
-      }
-    }
-  }
-  return *command;
 }
 
 // What each rank may choose for itself.

@@ -12,12 +12,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <iostream>
 #include <memory>
-#include <sstream>
 
 #include "apps/commands.h"
 #include "apps/launch.h"
+#include "apps/usage.h"
 #include "files/printable.h"
 #include "parallel/stack.h"
 
@@ -101,17 +100,18 @@ int run(int argc, char** argv) {
     note_options(program, arguments, session);
   } catch (const CLI::ParseError& error) {
     note_options(program, arguments, session);
-    if (!session.first_process) {
-      if (error.get_exit_code() != 0) meet_ranks_with_failure(session, error.what());
+    const bool asked_for_help = error.get_exit_code() == 0;  // or for the version
+    if (asked_for_help && unknown_name(program, arguments).empty()) {
+      if (session.first_process) program.exit(error);
       return kDone;
     }
-    std::ostringstream told;
-    const int code = program.exit(error, std::cout, told);
-    std::istringstream lines(told.str());
-    for (std::string line; std::getline(lines, line);) {
-      std::fprintf(stderr, "%s\n", delray::files::printable(line).c_str());
+    const std::string why = usage_message(program, arguments, error);
+    if (session.first_process) {
+      spdlog::error("{}", why);
+    } else {
+      meet_ranks_with_failure(session, why);
     }
-    return code == 0 ? kDone : kUsage;
+    return session.first_process ? kUsage : kDone;
   }
   return run_guarded(session);
 }

@@ -147,7 +147,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command.add_option("-o,--output", request.output, "the picture: .png .exr .tif .jpg");
   command.add_option("--size", request.size, "WIDTHxHEIGHT (default 1280x720)");
   command.add_option("--engine", request.engine, "raster (default) or raytrace")
-      ->check(CLI::IsMember({"raster", "raytrace"}));
+      ->check(one_of({"raster", "raytrace"}));
   command
       .add_option("--frames", request.frames,
                   "render so often and report the median time (default 1)")
@@ -181,19 +181,19 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raster);
   command.add_option("--compose", request.scheme, "compositing scheme, sort-last")->group(raster);
   command.add_option("--shading", request.lighting, "phong (default) or gouraud")
-      ->check(CLI::IsMember({"phong", "gouraud"}))
+      ->check(one_of({"phong", "gouraud"}))
       ->group(raster);
   command.add_option("--codec", request.codec, "how pixels travel, sort-last")->group(raster);
   command
       .add_option("--blend", request.blend,
                   "transparent surfaces: by-owner (of the pixel, exactly; default), or by-cell: "
                   "each rank those in its cell of space, then front to back; sort-last")
-      ->check(CLI::IsMember({"by-owner", "by-cell"}))
+      ->check(one_of({"by-owner", "by-cell"}))
       ->group(raster);
   command
       .add_option("--shade", request.shade,
                   "pixels: deferred (default), immediate, or composited (once ranks are)")
-      ->check(CLI::IsMember({"deferred", "immediate", "composited"}))
+      ->check(one_of({"deferred", "immediate", "composited"}))
       ->group(raster);
   command
       .add_option("--samples", request.supersampling,
@@ -203,13 +203,13 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--travel", request.travel,
                   "primitives as geometry (default) or numbers, where they change rank")
-      ->check(CLI::IsMember({"geometry", "numbers"}))
+      ->check(one_of({"geometry", "numbers"}))
       ->group(raster);
   command
       .add_option("--costs", request.costs,
                   "what partitions go by: model (default; rays counted in the last frame), or "
                   "measured in the last frame")
-      ->check(CLI::IsMember({"model", "measured"}))
+      ->check(one_of({"model", "measured"}))
       ->group(raster);
   command
       .add_option("--regions", request.regions_per_rank, "of the screen, for each rank (default 1)")
@@ -231,7 +231,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--groups", request.groups,
                   "sort-middle: ranks do both halves (one, default), or some geometry and the "
                   "others pixels (two)")
-      ->check(CLI::IsMember({"one", "two"}))
+      ->check(one_of({"one", "two"}))
       ->group(raster);
   command
       .add_option("--geometry-ranks", request.geometry_ranks,
@@ -242,7 +242,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option(
           "--redistribute", request.redistribution,
           "sort-middle: triangles are sent in batches at once (immediate, default) or at-end")
-      ->check(CLI::IsMember({"immediate", "at-end"}))
+      ->check(one_of({"immediate", "at-end"}))
       ->group(raster);
   const std::string raytrace = "Ray tracer";
   command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);
@@ -268,13 +268,13 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--build", request.build,
                   "Embree's structures: low (quick to build), medium (default) or high (quick to "
                   "trace, splits triangles)")
-      ->check(CLI::IsMember({"low", "medium", "high"}))
+      ->check(one_of({"low", "medium", "high"}))
       ->group(raytrace);
   command
       .add_option("--isa", request.isa,
                   "instructions for Embree: best (default); avx2 may be quicker than avx512 where "
                   "rays go everywhere")
-      ->check(CLI::IsMember({"best", "sse2", "sse4.2", "avx", "avx2", "avx512"}))
+      ->check(one_of({"best", "sse2", "sse4.2", "avx", "avx2", "avx512"}))
       ->group(raytrace);
   command
       .add_option("--schedule", request.schedule,
@@ -285,7 +285,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--master", request.master,
                   "ranks that hand out blocks (demand, guided, hierarchical): works (on some "
                   "itself, default) or serves (the others only)")
-      ->check(CLI::IsMember({"works", "serves"}))
+      ->check(one_of({"works", "serves"}))
       ->group(raytrace);
   command
       .add_option("--data", request.data,
@@ -294,7 +294,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--deal", request.deal,
                   "clusters of a shared scene: neighbours to one rank (default), or at random")
-      ->check(CLI::IsMember({"neighbours", "random"}))
+      ->check(one_of({"neighbours", "random"}))
       ->group(raytrace);
   command
       .add_option("--cache", request.cache_mebibytes,

@@ -193,7 +193,7 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       .add_option("--draw", input.draw,
                   "Draw points as a surface of heights over x and y, or as single points (default: "
                   "single points for scans, where many lie above each other; else a surface)")
-      ->check(CLI::IsMember({"surface", "points"}));
+      ->check(one_of({"surface", "points"}));
   add_point_options(command, input.file);
   add_outside_option(command, input.file.limits);
 }

@@ -112,6 +112,20 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
   };
 }
 
+// Throws UsageError unless `name` leaves the choice to the program or is in the table.
+template <class Table>
+void check_choice(const Table& table, const std::string& name, const char* option) {
+  if (name != "auto" && name != "none") find_entry(table, name, option);
+}
+
+void check_choices(const delaunay::Options& how) {
+  check_choice(delaunay::methods(), how.method, "--method");
+  check_choice(delaunay::locations(), how.location, "--location");
+  check_choice(delaunay::splits(), how.split, "--split");
+  check_choice(delaunay::orders(), how.order, "--order");
+  check_choice(delaunay::deadlock_strategies(), how.deadlocks, "--deadlocks");
+}
+
 int run(Session& session, TriangulateOptions options) {
   if (options.list) {
     print_table(delaunay::methods());
@@ -133,6 +147,7 @@ int run(Session& session, TriangulateOptions options) {
     require_plain(options);
     how.threads = 1;
   }
+  check_choices(how);
   try {
     how = resolve(how);
   } catch (const std::invalid_argument& error) {

@@ -14,6 +14,7 @@
 #include "delaunay/internal/insertion.h"
 #include "delaunay/internal/optimistic.h"
 #include "delaunay/internal/pessimistic.h"
+#include "files/similar_name.h"
 
 namespace delray::delaunay {
 namespace {
@@ -26,6 +27,10 @@ std::string list(std::span<const std::string_view> names) {
     text += (text.empty() ? "" : ", ") + std::string(name);
   }
   return text;
+}
+
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> names) {
+  return files::did_you_mean(name, std::vector<std::string>(names.begin(), names.end()));
 }
 
 bool serves(const Method& method, int dim) {
@@ -41,7 +46,8 @@ const Method& choose_method(const Options& options) {
   }
   throw std::invalid_argument(
       "there is no method \"" + options.method + "\" in " + std::to_string(options.dim) +
-      "D; methods: " + (legal.empty() ? "none yet" : "auto, " + list(legal)));
+      "D; methods: " + (legal.empty() ? "none yet" : "auto, " + list(legal)) +
+      did_you_mean(options.method, legal));
 }
 
 std::string choose(const char* what, const std::string& wanted,
@@ -54,7 +60,7 @@ std::string choose(const char* what, const std::string& wanted,
     throw std::invalid_argument("method \"" + name + "\" leaves no choice of " + what);
   }
   throw std::invalid_argument("method \"" + name + "\" has no " + what + " \"" + wanted +
-                              "\"; it has: " + list(legal));
+                              "\"; it has: " + list(legal) + did_you_mean(wanted, legal));
 }
 
 }  // namespace

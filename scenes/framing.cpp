@@ -15,7 +15,9 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "files/similar_name.h"
 #include "scenes/internal/axes.h"
 
 namespace delray::scenes {
@@ -53,8 +55,12 @@ Stand stand_of(std::string_view name, const glm::dvec3& size, bool z_up) {
   const auto* found = std::ranges::find(kStands, name, &Stand::name);
   if (found != kStands.end()) return *found;
   std::string message = "no view is called '" + std::string(name) + "'; views: default";
-  for (const Stand& s : kStands) message += ", " + std::string(s.name);
-  throw std::invalid_argument(message);
+  std::vector<std::string> names = {"default"};
+  for (const Stand& s : kStands) {
+    message += ", " + std::string(s.name);
+    names.emplace_back(s.name);
+  }
+  throw std::invalid_argument(message + files::did_you_mean(name, names));
 }
 
 struct Orientation {

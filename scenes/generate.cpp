@@ -4,7 +4,9 @@
 #include <charconv>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "files/similar_name.h"
 #include "scenes/internal/generators.h"
 #include "scenes/internal/order.h"
 
@@ -73,7 +75,9 @@ Wanted parsed(std::string_view name) {
     if (!seed.empty()) wanted.seed = number(name, seed);
     return wanted;
   }
-  refuse(name, "there is no such kind of scene");
+  std::vector<std::string> kinds;
+  for (const Generator& g : kGenerators) kinds.emplace_back(g.name);
+  refuse(name, "there is no such kind of scene" + files::did_you_mean(kind, kinds));
 }
 
 }  // namespace

@@ -1,0 +1,95 @@
+// Command lines that cannot be: one line that begins with "error: ", and what was probably meant.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+struct Mistake {
+  std::string arguments;  // of delray
+  std::string told;       // is part of the message
+};
+
+void expect_told(const std::string& command, const std::string& told, const Folder& folder) {
+  const Ran ran = run(command, folder.path());
+  EXPECT_EQ(ran.exit_code, 2) << command << "\n" << ran.err;
+  EXPECT_EQ(ran.out, "") << command;
+  EXPECT_EQ(ran.err.rfind("error: ", 0), 0U) << command << "\n" << ran.err;
+  EXPECT_EQ(ran.err.find("error", 1), std::string::npos) << command << "\n" << ran.err;
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << command << "\n" << ran.err;
+  EXPECT_NE(ran.err.find(told), std::string::npos) << command << "\n" << ran.err;
+}
+
+TEST(Usage, TellsWhatWasProbablyMeant) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0\n1 0\n0 1\n");
+  const std::string gen = "render gen:cornell -o a.png --size 8x8 ";
+  for (const Mistake& mistake :
+       {Mistake{"rendr a.obj", "'rendr' is not a command of delray; did you mean 'render'?"},
+        {"rendr --help", "did you mean 'render'?"},
+        {"compare compos a.obj", "command of delray compare; did you mean 'compose'?"},
+        {"compare --quick compose", "'--quick' is not an option of delray compare"},
+        {gen + "--ranks 2 --egnine raster", "did you mean '--engine'?"},
+        {gen + "--egnine=raster", "'--egnine' is not an option of delray render;"},
+        {gen + "-frames 2", "'-frames' is not an option of delray render; did you mean '--fra"},
+        {gen + "--noi 0.1", "did you mean '--noise'?"},
+        {gen + "--engine rastr", "--engine: 'rastr' is not one of raster, raytrace; did you m"},
+        {gen + "--strategy sort-frist", "did you mean 'sort-first'?"},
+        {gen + "--compose binary-swp", "did you mean 'binary-swap'?"},
+        {gen + "--view tpo", "did you mean 'top'?"},
+        {gen + "--background studoi", "did you mean 'studio'?"},
+        {gen + "--color-by materail", "did you mean 'material'?"},
+        {"render gen:cornel -o a.png", "did you mean 'cornell'?"},
+        {"generate points unifrom -o a.ply", "did you mean 'uniform'?"},
+        {"triangulate p.xyz -o a.ply --order brioo", "did you mean 'brio'?"},
+        {"triangulate p.xyz -o a.ply --method optimstic", "did you mean 'optimistic'?"},
+        {"completion bsh", "did you mean 'bash'?"}}) {
+    expect_told("delray " + mistake.arguments, mistake.told, folder);
+  }
+}
+
+TEST(Usage, DoesNotGuessWhereNothingIsNear) {
+  const Folder folder;
+  for (const Mistake& mistake :
+       {Mistake{"bake", "'bake' is not a command of delray, which has info, generate, "},
+        {"render gen:cornell -o a.png --nonsense 3",
+         "'--nonsense' is not an option of delray render (delray render --help tells more)"},
+        {"", "delray: a command is missing: info, generate, "},
+        {"compare", "delray compare: a command is missing: compose, "}}) {
+    expect_told("delray " + mistake.arguments, mistake.told, folder);
+    const Ran ran = run("delray " + mistake.arguments, folder.path());
+    EXPECT_EQ(ran.err.find("did you mean"), std::string::npos) << ran.err;
+  }
+}
+
+// A value may look like an option or be that of a command.
+TEST(Usage, TakesNoValueForAName) {
+  const Folder folder;
+  const std::string gen = "delray render gen:cornell --size 8x8 -o a.png ";
+  const std::string camera = "--camera -5,1,2,0,0,0,0,1,0,40";
+  expect_told(gen + camera + " --frames x", "--frames: ", folder);
+  expect_told(gen + "--checkpoint --nonsense --frames x", "--frames: ", folder);
+  expect_told("delray render -o compse --frames x", "--frames: ", folder);
+  const Ran ran = run(gen + camera, folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+}
+
+TEST(Usage, EveryKindOfMistakeIsTheSameKindOfLine) {
+  const Folder folder;
+  const std::string gen = "delray render gen:cornell -o a.png --size 8x8 ";
+  expect_told(gen + "b.glb", "b.glb", folder);
+  expect_told(gen + "--frames 0", "--frames: ", folder);
+  expect_told(gen + "--camera", "--camera: ", folder);
+  expect_told(gen + "--turntable 3 --frames 2", "--turntable", folder);
+  expect_told("delray completion", "SHELL", folder);
+  expect_told("delray completion bash zsh", "zsh", folder);
+  expect_told("delray render", "SCENE", folder);
+  expect_told("delray render 'a\nb' c", "delray render --help tells more", folder);
+}
+
+}  // namespace
+}  // namespace delray::tests
