@@ -167,7 +167,7 @@ Outcome compose_parts(comm::Communicator& communicator, const ComposeRequest& re
   return outcome;
 }
 
-void check(const ComposeRequest& request) {
+void check(const Session& session, const ComposeRequest& request) {
   if (request.parts.empty()) throw UsageError("compose: PART is missing");
   if (request.output.empty()) throw UsageError("compose: -o IMAGE is missing");
   if (!image::is_picture_suffix(request.output)) {
@@ -180,6 +180,9 @@ void check(const ComposeRequest& request) {
   if (request.in_pieces && !request.output.ends_with(".exr")) {
     throw UsageError("--in-pieces: only .exr files have a place for every pixel beforehand");
   }
+  if (request.in_pieces && session.metadata) {
+    throw UsageError("--metadata has no effect with --in-pieces");
+  }
   refuse_overwriting({{"-o", request.output}, {"--stats", request.statistics}}, request.parts);
 }
 
@@ -191,7 +194,7 @@ int run(const Session& session, const ComposeRequest& request) {
     }
     return kDone;
   }
-  check(request);
+  check(session, request);
   check(session, request.launch);
   // A rank reads its own parts only, which may lie on its machine alone.
   run_ranks(session, request.launch, {}, [&](comm::Communicator& communicator) {
@@ -255,6 +258,7 @@ void add_compose(CLI::App& program, Session& session) {
       "told");
   add_memory_option(*command, request->limits);
   add_launch_options(*command, request->launch);
+  add_metadata_option(*command, session);
   command->add_option("--stats", request->statistics, "write statistics as JSON; - for stdout");
   command->add_flag("--list", request->list, "list schemes and codecs");
   add_common_options(*command, session,

@@ -161,6 +161,7 @@ void add_render(CLI::App& program, Session& session) {
   CLI::App* command = program.add_subcommand("render", "make a picture of a scene, mesh or points");
   const auto request = std::make_shared<RenderRequest>();
   add_render_options(*command, *request);
+  add_metadata_option(*command, session);
   add_common_options(
       *command, session,
       "render model.glb -o model.png --engine raytrace --integrator path --noise 0.01 "

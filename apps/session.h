@@ -36,6 +36,7 @@ struct Session {
   bool under_mpi = false;
   bool first_process = true;  // the one that speaks; the only one without MPI
   std::string command_line;
+  bool metadata = false;            // pictures tell how they were made: --metadata
   std::vector<comm::Fact> options;  // those that were given, but for what each rank may choose
   bool has_ranks = false;           // the subcommand runs on all processes of mpirun together
   parallel::Progress progress;

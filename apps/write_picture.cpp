@@ -1,4 +1,11 @@
+// Pictures in files: what equal pictures have in common, and no more unless --metadata is given.
 #include "apps/write_picture.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <initializer_list>
 
 #include "image/hash.h"
 #include "image/io.h"
@@ -15,7 +22,33 @@ const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& conver
   return converted;
 }
 
+bool has_suffix(const std::string& path, std::initializer_list<const char*> suffixes) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::ranges::find(suffixes, suffix) != suffixes.end();
+}
+
+// A file must not tell where it was made, or how, unless its maker wants it.
+std::vector<image::Attribute> attributes_of(const Session& session, const std::string& path,
+                                            const Extras& extras) {
+  std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION}};
+  if (!session.metadata) return attributes;
+  const bool has_free_names = has_suffix(path, {".png", ".exr"});
+  attributes.push_back({has_free_names ? "CommandLine" : "ImageDescription", session.command_line});
+  if (extras.passes > 0) {
+    attributes.push_back({"delray:samples", extras.samples});
+    attributes.push_back({"delray:passes", static_cast<double>(extras.passes)});
+  }
+  return attributes;
+}
+
 }  // namespace
+
+void add_metadata_option(CLI::App& command, Session& session) {
+  command.add_flag("--metadata", session.metadata,
+                   "Write the command line, with its paths, and the number of samples into the "
+                   "picture (default: only what equal pictures have in common)");
+}
 
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,
                            const scenes::Camera& camera, Picture& picture) {
@@ -36,12 +69,7 @@ void put_background_behind(const RenderRequest& request, const Prepared& prepare
 
 std::string write_picture(const Session& session, const std::string& path, const Picture& picture,
                           const Extras& extras) {
-  std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION},
-                                              {"CommandLine", session.command_line}};
-  if (extras.passes > 0) {
-    attributes.push_back({"delray:samples", extras.samples});
-    attributes.push_back({"delray:passes", static_cast<double>(extras.passes)});
-  }
+  const std::vector<image::Attribute> attributes = attributes_of(session, path, extras);
   image::WriteOptions options;
   options.channels = extras.channels;
   options.attributes = attributes;
@@ -49,7 +77,7 @@ std::string write_picture(const Session& session, const std::string& path, const
       [&](const auto& pixels) {
         image::Image8 converted;
         const image::Image8& codes = as_8bit(pixels, converted);
-        if (path.ends_with(".exr") || path.ends_with(".EXR")) {
+        if (has_suffix(path, {".exr"})) {
           write_image(path, pixels, options);
         } else {
           write_image(path, codes, options);

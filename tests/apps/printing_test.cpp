@@ -33,9 +33,9 @@ TEST(Printing, NamesThatAreNotText) {
   const Ran ran = run("delray info a.obj", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_NE(ran.out.find("materials: [\"a\xef\xbf\xbd\"]"), std::string::npos) << ran.out;
-  const Ran json = run("delray info a.obj --stats -", folder.path());
-  EXPECT_EQ(json.exit_code, 0) << json.err;
-  EXPECT_EQ(nlohmann::json::parse(json.out)["materials"][0], "a\xef\xbf\xbd");
+  const Ran told = run("delray info a.obj --stats -", folder.path());
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_EQ(nlohmann::json::parse(told.out)["materials"][0], "a\xef\xbf\xbd");
 }
 
 TEST(Printing, NamesThatTerminalsWouldObey) {
