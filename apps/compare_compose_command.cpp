@@ -9,6 +9,7 @@
 #include "apps/compose_figures.h"
 #include "apps/compose_report.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "comm/network.h"
 #include "composite/codec.h"
 #include "composite/hollow.h"
@@ -71,7 +72,7 @@ void add_compare_compose(CLI::App& compare, Session& session) {
       "(default 2,3,4,8,16,64, and 256,1024,4096 of schemes that are soon simulated); more than 64 "
       "are simulated");
   command->add_option("--threads", request->render.launch.threads, "workers per rank (default 1)")
-      ->check(CLI::Range(1, 4096));
+      ->transform(count_between(1, 4096));
   add_timeout_option(*command, request->render.launch);
   command
       ->add_option("--codec", request->codecs,

@@ -4,6 +4,7 @@
 #include "apps/compare_commands.h"
 #include "apps/compare_partition.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/partition_figures.h"
 #include "apps/partition_report.h"
 #include "comm/network.h"
@@ -51,7 +52,7 @@ void add_compare_partition(CLI::App& compare, Session& session) {
                    "for the most ranks up to 16 alone")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Range(1, 64));
+      ->transform(count_between(1, 64));
   command
       ->add_option("--partition", request->partitions,
                    "partitions, separated by commas (default all)")

@@ -4,6 +4,7 @@
 #include "apps/compare_commands.h"
 #include "apps/compare_schedule.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/schedule_figures.h"
 #include "apps/schedule_report.h"
 #include "comm/network.h"
@@ -54,11 +55,11 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       "(default 2,4,8,16,32,64,128,256); all are simulated, as many as there are cores traced too");
   command->add_option("--integrator", request->render.integrator, "(default whitted)");
   command->add_option("--spp", request->render.samples, "rays per pixel (default 1)")
-      ->check(CLI::Range(1, 65536));
+      ->transform(count_between(1, 65536));
   command->add_option("--depth", request->render.depth, "reflections and refractions (default 8)")
-      ->check(CLI::Range(0, 64));
+      ->transform(count_between(0, 64));
   command->add_option("--tile", request->tile, "pixels, the side of a tile (default 16)")
-      ->check(CLI::Range(16, 4096));
+      ->transform(count_between(16, 4096));
   command
       ->add_option("--schedule", request->schedules, "schedules, separated by commas (default all)")
       ->delimiter(',')

@@ -5,6 +5,7 @@
 #include "apps/compare_commands.h"
 #include "apps/compare_triangulate.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/progress_bar.h"
 #include "apps/triangulate_figures.h"
 #include "apps/triangulate_report.h"
@@ -83,11 +84,12 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
                    "twice the cores if they are few)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Range(1, 4096));
+      ->transform(count_between(1, 4096));
   command->add_option("--method", request->methods, "methods, separated by commas (default all)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--seed", request->seed, "seed of everything random (default 1)");
+  command->add_option("--seed", request->seed, "seed of everything random (default 1)")
+      ->transform(any_count());
   add_point_options(*command, request->input);
   add_comparison_options(*command, *request, "time each three times, the slow ones once",
                          "the methods");

@@ -5,6 +5,7 @@
 
 #include "apps/commands.h"
 #include "apps/list.h"
+#include "apps/numbers.h"
 #include "apps/outputs.h"
 #include "delaunay/generate.h"
 #include "delaunay/write_points.h"
@@ -13,6 +14,8 @@
 
 namespace delray::apps {
 namespace {
+
+constexpr std::uint64_t kMostPoints = 4'294'967'295;  // rows have 32-bit numbers
 
 struct GenerateOptions {
   std::string kind, output;
@@ -64,24 +67,27 @@ void add_generate(CLI::App& program, Session& session) {
   generate->require_subcommand(1);
   const auto options = std::make_shared<GenerateOptions>();
   const auto add = [&](const char* name, const char* description, const char* kind,
-                       const char* count, int (*run)(const GenerateOptions&),
+                       const char* count, std::uint64_t most, int (*run)(const GenerateOptions&),
                        const char* examples) {
     CLI::App* command = generate->add_subcommand(name, description);
     command->add_option("KIND", options->kind, kind);
-    command->add_option("-n", options->count, count)->check(CLI::PositiveNumber);
-    command->add_option("--seed", options->seed, "seed of everything random (default 1)");
+    command->add_option("-n", options->count, count)->transform(count_between(1, most));
+    command->add_option("--seed", options->seed, "seed of everything random (default 1)")
+        ->transform(any_count());
     command->add_option("-o,--output", options->output, "the file to write");
     command->add_flag("--list", options->list, "list the kinds");
     add_common_options(*command, session, examples);
     command->callback([&session, options, run] { session.run = [=] { return run(*options); }; });
     return command;
   };
-  add("points", "make points", "what they are like", "how many (default 1000)", generate_points,
+  add("points", "make points", "what they are like", "how many: 10000, 1e6, 10k (default 1000)",
+      kMostPoints, generate_points,
       "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
       "generate points --list")
       ->add_option("--dim", options->dim, "2 or 3 (default 2)")
       ->check(CLI::IsMember({2, 3}));
-  add("scene", "make a scene", "what it shows", "about how many triangles", generate_scene,
+  add("scene", "make a scene", "what it shows", "about how many triangles: 10000, 1e6, 10k",
+      scenes::kMostTriangles, generate_scene,
       "generate scene terrain -n 1000000 -o terrain.glb\n"
       "generate scene field -o field.glb");
 }

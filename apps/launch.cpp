@@ -92,11 +92,11 @@ void check(const Session& session, const Launch& launch) {
 
 void add_launch_options(CLI::App& command, Launch& launch) {
   command.add_option("--ranks", launch.ranks, "ranks, as threads of this process (default 1)")
-      ->check(CLI::Range(1, 4096));
+      ->transform(count_between(1, 4096));
   command
       .add_option("--threads", launch.threads,
                   "workers per rank (default: cores / ranks, at least 1)")
-      ->check(CLI::Range(1, 4096));
+      ->transform(count_between(1, 4096));
   add_timeout_option(command, launch);
 }
 

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "files/parse_count.h"
 
 namespace delray::apps {
 namespace {
@@ -32,6 +36,26 @@ CLI::Validator number_between(double least, double most) {
   return numbers([least, most](double value) { return least <= value && value <= most; },
                  fmt::format("from {} to {}", least, most),
                  fmt::format("FLOAT in [{} - {}]", least, most));
+}
+
+CLI::Validator count_between(std::uint64_t least, std::uint64_t most) {
+  const auto check = [least, most](std::string& text) {
+    try {
+      const std::uint64_t count = files::parse_count(text);
+      if (count < least || count > most)
+        return fmt::format("'{}' is not from {} to {}", text, least, most);
+      text = std::to_string(count);
+      return std::string();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+  };
+  return CLI::Validator(check, fmt::format("INT in [{} - {}]", least, most));
+}
+
+CLI::Validator any_count() {
+  CLI::Validator count = count_between(0, std::numeric_limits<std::uint64_t>::max());
+  return count.description("INT");
 }
 
 }  // namespace delray::apps

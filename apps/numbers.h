@@ -3,11 +3,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 
 namespace delray::apps {
 
 CLI::Validator positive_number();      // above 0, finite
 CLI::Validator non_negative_number();  // 0 or more, finite
 CLI::Validator number_between(double least, double most);
+
+// A whole number, also as 1e6, 2.5e5, 10k or 1_000_000 (files/parse_count.h), which it rewrites as
+// digits: for Option::transform.
+CLI::Validator count_between(std::uint64_t least, std::uint64_t most);
+CLI::Validator any_count();
 
 }  // namespace delray::apps

@@ -113,7 +113,9 @@ void add_practice_options(CLI::App& command, Practice& practice) {
                   "distance of what is sharp, along the view (default: that of what is looked at)")
       ->check(positive_number())
       ->group(group);
-  command.add_option("--seed", practice.seed, "of all random numbers (default 0)")->group(group);
+  command.add_option("--seed", practice.seed, "of all random numbers (default 0)")
+      ->transform(any_count())
+      ->group(group);
 }
 
 void refuse_practice(const CLI::App& command) {

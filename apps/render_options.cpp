@@ -151,14 +151,14 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--frames", request.frames,
                   "render so often and report the median time (default 1)")
-      ->check(CLI::Range(1, 100000));
+      ->transform(count_between(1, 100000));
   command.add_option("--background", request.background,
                      "auto (default), environment, studio, transparent or #rrggbb");
   add_camera_options(command, request.camera);
   command
       .add_option("--turntable", request.turntable,
                   "an animation once around the scene: so many frames, IMAGE-0000 and on")
-      ->check(CLI::Range(1, 1000000))
+      ->transform(count_between(1, 1000000))
       ->excludes("--frames");
   command
       .add_option("--camera-path", request.camera_path,
@@ -171,7 +171,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--frames-at-once", request.frames_at_once,
                   "of an animation that are in the making at the same time (default: threads + 2, "
                   "from 4 to 8); 1: one after the other")
-      ->check(CLI::Range(1, 64));
+      ->transform(count_between(1, 64));
   add_launch_options(command, request.launch);
   const std::string raster = "Rasterizer";
   command.add_option("--strategy", request.strategy, "how ranks share the work")->group(raster);
@@ -213,7 +213,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(raster);
   command
       .add_option("--regions", request.regions_per_rank, "of the screen, for each rank (default 1)")
-      ->check(CLI::Range(1, 64))
+      ->transform(count_between(1, 64))
       ->group(raster);
   command
       .add_option("--keep", request.keep_factor,
@@ -225,7 +225,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--block", request.block,
                   "pixels, the side of a block that --schedule hands out (default 64; with rays a "
                   "multiple of 16, by default 32 of path, else 16)")
-      ->check(CLI::Range(1, 4096))
+      ->transform(count_between(1, 4096))
       ->group(raster);
   command
       .add_option("--groups", request.groups,
@@ -236,7 +236,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--geometry-ranks", request.geometry_ranks,
                   "sort-middle, two groups: how many ranks do geometry (default half)")
-      ->check(CLI::Range(1, 1000000))
+      ->transform(count_between(1, 1000000))
       ->group(raster);
   command
       .add_option(
@@ -247,15 +247,15 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   const std::string raytrace = "Ray tracer";
   command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);
   command.add_option("--spp", request.samples, "samples per pixel (default 1)")
-      ->check(CLI::Range(1, 65536))
+      ->transform(count_between(1, 65536))
       ->group(raytrace);
   command.add_option("--depth", request.depth, "maximum reflections and refractions (default 8)")
-      ->check(CLI::Range(0, 64))
+      ->transform(count_between(0, 64))
       ->group(raytrace);
   command
       .add_option("--diffuse-depth", request.diffuse_depth,
                   "path: maximum diffuse scatterings (default 64, more than most paths last)")
-      ->check(CLI::Range(0, 1024))
+      ->transform(count_between(0, 1024))
       ->group(raytrace);
   command
       .add_option("--reach", request.reach,

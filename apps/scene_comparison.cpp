@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apps/numbers.h"
 #include "apps/progress_bar.h"
 #include "comm/network.h"
 #include "parallel/arena.h"
@@ -34,7 +35,7 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
   command.add_option("--ranks", options.ranks, "how many, separated by commas " + ranks)
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Range(1, 4096));
+      ->transform(count_between(1, 4096));
 }
 
 int run_scene_comparison(

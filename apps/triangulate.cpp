@@ -227,16 +227,19 @@ void add_triangulate(CLI::App& program, Session& session) {
                       "order of insertion: auto, random, brio, hilbert");
   command->add_option("--deadlocks", options->how.deadlocks,
                       "of the optimistic method: detection, priorities");
-  command->add_option("--queue", options->how.queue,
-                      "places in the queue of the batch method (default: by the number of points)");
+  command
+      ->add_option("--queue", options->how.queue,
+                   "places in the queue of the batch method (default: by the number of points)")
+      ->transform(any_count());
   command
       ->add_option("--max-error", options->max_error,
                    "keep only points of a terrain such that no other is farther than this above or "
                    "below it, in units of z; the mesh has the points that are kept")
       ->check(non_negative_number());
   command->add_option("--threads", options->threads, "workers (default: cores)")
-      ->check(CLI::Range(1, 4096));
-  command->add_option("--seed", options->how.seed, "seed of everything random (default 1)");
+      ->transform(count_between(1, 4096));
+  command->add_option("--seed", options->how.seed, "seed of everything random (default 1)")
+      ->transform(any_count());
   command->add_option("--stats", options->statistics, "write statistics as JSON; - for stdout");
   command->add_flag("--makers", options->makers,
                     "tell of each simplex which thread made it, as \"thread\" in a .vtu");

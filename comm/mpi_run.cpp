@@ -34,7 +34,7 @@ Phase noted_phase() { return current_phase.load(std::memory_order_relaxed); }
 void end_all_ranks(MPI_Comm communicator, int rank, Phase phase, const std::string& why,
                    int exit_code) {
   const std::string what = RankFailure(rank, phase, why).what();
-  const std::string line = "delray: " + files::printable(what) + "\n";
+  const std::string line = "error: " + files::printable(what) + "\n";
   // One call, so that lines of several ranks do not mix.
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
@@ -68,7 +68,7 @@ extern "C" void report_termination(int signal) {
     digits[--first] = static_cast<char>('0' + rest % 10);
     rest /= 10;
   } while (rest > 0);
-  put("delray: rank ");
+  put("error: rank ");
   put(&digits[first]);
   put(" was told to end in phase ");
   put(name(internal::noted_phase()));

@@ -1,11 +1,11 @@
 #include "scenes/generate.h"
 
 #include <array>
-#include <charconv>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "files/parse_count.h"
 #include "files/similar_name.h"
 #include "scenes/internal/generators.h"
 #include "scenes/internal/order.h"
@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::string_view kPrefix = "gen:";
 constexpr std::uint64_t kDefaultSeed = 1;
-constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // 3e9 corners still have 32-bit numbers
 
 constexpr std::array kGenerators = {
     Generator{"terrain", "fractal height field with lakes, woods and snow", 1'000'000,
@@ -47,12 +46,11 @@ std::string_view next_field(std::string_view& rest) {
 }
 
 std::uint64_t number(std::string_view name, std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    refuse(name, "'" + std::string(text) + "' is not a whole number");
+  try {
+    return files::parse_count(text);
+  } catch (const std::invalid_argument& error) {
+    refuse(name, error.what());
   }
-  return value;
 }
 
 struct Wanted {

@@ -30,10 +30,14 @@ struct Generator {
                              int parts) = nullptr;
 };
 
+// That a generated scene may be asked for: 3e9 corners still have 32-bit numbers.
+inline constexpr std::uint64_t kMostTriangles = 1'000'000'000;
+
 // terrain, cornell, spheres, city, field, corner.
 std::span<const Generator> generators();
 
-// "gen:KIND[:TRIANGLES[:SEED]]" -> the scene. Throws std::invalid_argument naming the legal kinds.
+// "gen:KIND[:TRIANGLES[:SEED]]" -> the scene; numbers as files::parse_count reads them. Throws
+// std::invalid_argument naming the legal kinds.
 Scene generate(std::string_view name);
 bool is_generated(std::string_view name);  // starts with "gen:"
 // The name with triangles and seed, whatever was left to the defaults. Throws as generate.

@@ -82,7 +82,7 @@ TEST(Program, WrongUsageIsTwo) {
                                       "generate scene terrain -o a.png"}) {
     const Ran ran = run("delray " + arguments, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << arguments << "\n" << ran.err;
-    EXPECT_FALSE(ran.err.empty()) << arguments;
+    EXPECT_TRUE(ran.err.starts_with("error: ")) << arguments << "\n" << ran.err;
     ASSERT_EQ(folder.files(), std::vector<std::string>{"p.xyz"}) << arguments;
   }
 }
@@ -104,6 +104,7 @@ TEST(Program, RefusesOptionsWithoutEffect) {
         "p.xyz --color-by intensity", "gen:cornell --view top --camera 0,0,5,0,0,0,0,1,0,40"}) {
     const Ran ran = run("delray render " + arguments + " -o a.png --size 32x32", folder.path());
     EXPECT_EQ(ran.exit_code, 2) << arguments << "\n" << ran.err;
+    EXPECT_TRUE(ran.err.starts_with("error: ")) << arguments << "\n" << ran.err;
     EXPECT_EQ(folder.files().size(), 1U) << arguments;
   }
 }

@@ -78,6 +78,41 @@ TEST(Usage, TakesNoValueForAName) {
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
 }
 
+TEST(Usage, CountsMayBeWrittenShort) {
+  const Folder folder;
+  for (const std::string count : {"2000", "2e3", "2k", "2_000", "0.002M"}) {
+    const Ran ran =
+        run("delray generate points uniform -n " + count + " -o " + count + ".xyz", folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << count << ran.err;
+    EXPECT_EQ(folder.read(count + ".xyz"), folder.read("2000.xyz")) << count;
+  }
+  const Ran ran =
+      run("delray render gen:terrain:1e3 -o a.png --size 8x8 --ranks 1e0 --threads 0.1e1",
+          folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(run("delray compare partition gen:terrain:1e3 --size 64x64 --quick --regions 0.1e1 "
+                "--partition interlaced --ranks 2,0.4e1",
+                folder.path())
+                .exit_code,
+            0);
+}
+
+TEST(Usage, CountsThatAreNoneAreRefused) {
+  const Folder folder;
+  const std::string points = "delray generate points uniform -o a.xyz -n ";
+  expect_told(points + "2.5", "-n: '2.5' is not a whole number such as", folder);
+  expect_told(points + "1e30", "-n: '1e30' is too large", folder);
+  expect_told(points + "0", "-n: '0' is not from 1 to 4294967295", folder);
+  expect_told(points + "-3", "-n: '-3' is not a whole number", folder);
+  expect_told(points + "5 --seed 1.5", "--seed: '1.5' is not a whole number", folder);
+  expect_told("delray generate scene city -o a.glb -n 1e10", "1000000000", folder);
+  const std::string render = "delray render gen:cornell -o a.png --size 8x8 --engine raytrace ";
+  expect_told(render + "--spp 1e5", "--spp: '1e5' is not from 1 to 65536", folder);
+  expect_told("delray compare partition gen:cornell --ranks 2,0.5", "--ranks: '0.5'", folder);
+  expect_told("delray render gen:city:1.5 -o a.png", "'1.5' is not a whole number", folder);
+  EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(Usage, EveryKindOfMistakeIsTheSameKindOfLine) {
   const Folder folder;
   const std::string gen = "delray render gen:cornell -o a.png --size 8x8 ";

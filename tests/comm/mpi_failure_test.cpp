@@ -46,7 +46,7 @@ Outcome launch(const std::string& arguments) {
 TEST(MpiFailure, ExceptionEndsAllWithFiveAndNamesTheRank) {
   const Outcome outcome = launch("throw 2");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
-  EXPECT_NE(outcome.output.find("rank 2 failed in phase compose: the disk is on fire"),
+  EXPECT_NE(outcome.output.find("error: rank 2 failed in phase compose: the disk is on fire"),
             std::string::npos)
       << outcome.output;
 }
@@ -54,7 +54,7 @@ TEST(MpiFailure, ExceptionEndsAllWithFiveAndNamesTheRank) {
 TEST(MpiFailure, AbortIsAFailure) {
   const Outcome outcome = launch("abort 3");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
-  EXPECT_NE(outcome.output.find("rank 3 failed in phase compose: nothing left to do"),
+  EXPECT_NE(outcome.output.find("error: rank 3 failed in phase compose: nothing left to do"),
             std::string::npos)
       << outcome.output;
 }
@@ -85,14 +85,16 @@ TEST(MpiFailure, StallEndsAllWithFive) {
 TEST(MpiFailure, AStoppedProcessIsNamedWithItsPhase) {
   const Outcome outcome = launch("stop 2");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.output;
-  EXPECT_NE(outcome.output.find("rank 2 failed in phase compose: stalled: rank"), std::string::npos)
+  EXPECT_NE(outcome.output.find("error: rank 2 failed in phase compose: stalled: rank"),
+            std::string::npos)
       << outcome.output;
 }
 
 TEST(MpiFailure, OutOfMemoryIsNoLostRank) {
   const Outcome outcome = launch("memory 1");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
-  EXPECT_NE(outcome.output.find("rank 1 failed in phase compose: out of memory"), std::string::npos)
+  EXPECT_NE(outcome.output.find("error: rank 1 failed in phase compose: out of memory"),
+            std::string::npos)
       << outcome.output;
 }
 

@@ -49,7 +49,11 @@ TEST(GeneratedName, TellsWhatWasLeftToTheDefaults) {
   EXPECT_EQ(full_name("gen:city:300:7"), "gen:city:300:7");
   EXPECT_EQ(full_name("gen:city:300"), "gen:city:300:1");
   EXPECT_EQ(full_name("gen:terrain"), "gen:terrain:1000000:1");
-  EXPECT_THROW(full_name("gen:nothing"), std::invalid_argument);
+  EXPECT_EQ(full_name("gen:city:2.5e5:1k"), "gen:city:250000:1000");
+  for (const char* name : {"gen:nothing", "gen:city:2.5", "gen:city:0", "gen:city:2e9",
+                           "gen:city:1e30", "gen:city:-1", "gen:city:10:x"}) {
+    EXPECT_THROW(full_name(name), std::invalid_argument) << name;
+  }
 }
 
 TEST_P(Generated, HasAboutAsManyTrianglesAsAskedFor) {
