@@ -74,6 +74,16 @@ std::vector<float> variance_of(const raytrace::Film& film, const geometry::Rect&
   return result;
 }
 
+// The part of the film's pixels that are in cells noisier than the threshold.
+double noisy_part(const raytrace::Film& film, float threshold) {
+  const std::vector<float> noise = raytrace::noise(film);
+  std::int64_t noisy = 0;
+  for (std::size_t c = 0; c < noise.size(); ++c) {
+    if (noise[c] > threshold) noisy += film.cell(c).area();
+  }
+  return static_cast<double>(noisy) / static_cast<double>(film.window().area());
+}
+
 }  // namespace
 
 RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& renderer,
@@ -138,6 +148,16 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
                             ? static_cast<double>(frame.samples)
                             : static_cast<double>(result.film.total_samples()) /
                                   static_cast<double>(result.film.pixels().size());
+  if (options.noise > 0.0F) {
+    done.extras.noisy = noisy_part(result.film, options.noise);
+    if (done.extras.noisy > 0.0) {
+      spdlog::info("{:.3g} % of the picture is noisier than --noise {}: {} ended sampling",
+                   100.0 * done.extras.noisy, practice.noise,
+                   result.out_of_time
+                       ? "--time"
+                       : fmt::format("a maximum of {} samples per pixel (--spp)", frame.samples));
+    }
+  }
   if (practice.channels) done.extras.channels = channels_of(result, practice.window);
   done.picture = std::move(result.image);
   if (practice.denoise) {

@@ -165,7 +165,7 @@ void add_render(CLI::App& program, Session& session) {
   add_common_options(
       *command, session,
       "render model.glb -o model.png --engine raytrace --integrator path --noise 0.01 "
-      "--denoise --tone filmic\n"
+      "--time 20 --denoise --tone filmic\n"
       "render points.las -o relief.png --color-by z --view iso");
   command->callback([&session, request, command] {
     session.run = [&session, request, command] { return run(session, *command, *request); };

@@ -47,6 +47,7 @@ struct Extras {
   int passes = 0;
   double samples = 0;  // per pixel, on average
   bool out_of_time = false;
+  double noisy = 0;  // part of the picture that is noisier than it was to be
 };
 
 using Picture = std::variant<image::Image8, image::ImageF>;

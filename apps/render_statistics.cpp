@@ -256,7 +256,8 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"sampling",
              {{"passes", frames.extras.passes},
               {"samples", frames.extras.samples},
-              {"out_of_time", frames.extras.out_of_time}}},
+              {"out_of_time", frames.extras.out_of_time},
+              {"noisy", frames.extras.noisy}}},
             {"imbalance", imbalance_of(s.ranks)},
             {"ranks", ranks_of(s.ranks, frames.launched.peak_rss)},
         };

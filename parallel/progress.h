@@ -25,6 +25,8 @@ class Progress {
     done_.store(0, std::memory_order_relaxed);
     total_.store(steps, std::memory_order_relaxed);
   }
+  // Corrects how many steps the task has.
+  void expect(std::uint64_t steps) { total_.store(steps, std::memory_order_relaxed); }
   // Throws Interrupted if a stop was requested.
   void advance(std::uint64_t steps = 1) {
     done_.fetch_add(steps, std::memory_order_relaxed);

@@ -180,4 +180,23 @@ std::vector<std::uint8_t> unfinished(const Film& film, int most, float threshold
   return result;
 }
 
+std::uint64_t samples_left(const Film& film, std::span<const std::uint8_t> cells, int most,
+                           float threshold) {
+  std::vector<float> noise_of;
+  if (threshold > 0.0F) noise_of = noise(film);
+  double sum = 0.0;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto samples = static_cast<int>(film.samples()[c]);
+    if (cells[c] == 0 || samples >= most) continue;
+    double needed = most;
+    if (!noise_of.empty() && std::isfinite(noise_of[c])) {
+      const double ratio = static_cast<double>(noise_of[c]) / static_cast<double>(threshold);
+      const double next = samples + chunk_size(samples);
+      needed = std::min(needed, std::max(next, samples * ratio * ratio));
+    }
+    sum += (needed - samples) * static_cast<double>(film.cell(c).area());
+  }
+  return static_cast<std::uint64_t>(sum);
+}
+
 }  // namespace delray::raytrace

@@ -106,4 +106,10 @@ std::vector<float> noise(const Film& film);
 // threshold (<= 0: noise counts for nothing). 0 otherwise.
 std::vector<std::uint8_t> unfinished(const Film& film, int most, float threshold);
 
+// How many samples the pixels of the cells in `cells` (one element each, 1: yes) will still get
+// together, by `most` and the threshold as above: a variance falls with the number of samples. All
+// that they may get where the noise is not known yet.
+std::uint64_t samples_left(const Film& film, std::span<const std::uint8_t> cells, int most,
+                           float threshold);
+
 }  // namespace delray::raytrace

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "comm/collectives.h"
@@ -67,6 +68,14 @@ std::uint64_t work(const Film& film, const Pass& pass) {
     if (pass.cells[c] != 0) pixels += static_cast<std::uint64_t>(film.cell(c).area());
   }
   return pixels * static_cast<std::uint64_t>(pass.samples);
+}
+
+// Samples of pixels until nothing is left to do or time is up, the pass among them.
+double work_left(const Film& film, const Pass& pass, const ProgressiveOptions& options,
+                 double work_in_time) {
+  const auto left =
+      static_cast<double>(samples_left(film, pass.cells, options.frame.samples, options.noise));
+  return std::max(static_cast<double>(work(film, pass)), std::min(left, work_in_time));
 }
 
 static_assert(kCellSide == kTaskSide);
@@ -245,13 +254,23 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
         }
       }
       pass = broadcast(communicator, std::move(pass));
-      if (pass.samples == 0) break;
+      if (pass.samples == 0) {
+        if (root && whole != nullptr) whole->expect(whole->done());
+        break;
+      }
       // A single pass tells by itself how far it is.
       const bool several = whole != nullptr && pass.samples < options.frame.samples;
       if (several) pass_options.progress = &part;
       if (several && root && result.passes == 0) {
-        whole->start(static_cast<std::uint64_t>(options.frame.samples));
-        whole->advance(static_cast<std::uint64_t>(pass.first));
+        whole->start(0);
+        whole->advance(film.total_samples());
+      }
+      if (several && root) {
+        const double in_time = last_work == 0 ? std::numeric_limits<double>::infinity()
+                                              : (options.seconds - elapsed()) / last_seconds *
+                                                    static_cast<double>(last_work);
+        const double left = work_left(film, pass, options, in_time);
+        whole->expect(film.total_samples() + static_cast<std::uint64_t>(left));
       }
       const double before = elapsed();
       pass_options.part.first_sample = pass.first;
@@ -266,7 +285,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
         add_costs(traced.tile_costs, {film_window, side, side}, pass, film);
         if (options.after_pass) options.after_pass(film);
         last_seconds = elapsed() - before;
-        if (several) whole->advance(static_cast<std::uint64_t>(pass.samples));
+        if (several) whole->advance(last_work);
       }
       add_statistics(std::move(traced.statistics), result.statistics);
     }

@@ -96,6 +96,22 @@ TEST(Practice, NoiseAndTimeEndSampling) {
   EXPECT_GE(timed["sampling"]["samples"], 4);
 }
 
+TEST(Practice, NoiseAloneEndsAfterAModerateNumberOfSamples) {
+  const Folder folder;
+  const std::string picture = "delray render gen:cornell --engine raytrace --size 16x16 -q ";
+  const std::string noise = "--integrator path --noise 0.0001 -o a.png ";
+  const json alone = stats_of(noise, folder, picture);
+  EXPECT_EQ(alone["options"]["spp"], 256);
+  EXPECT_EQ(alone["sampling"]["samples"], 256);
+  EXPECT_EQ(alone["sampling"]["noisy"], 1.0);
+  EXPECT_EQ(stats_of(noise + "--spp 300", folder, picture)["sampling"]["samples"], 300);
+  const json timed = stats_of(noise + "--time 0.1", folder, picture);
+  EXPECT_EQ(timed["options"]["spp"], 65536);
+  EXPECT_TRUE(timed["sampling"]["out_of_time"]);
+  EXPECT_EQ(stats_of("--integrator path --noise 1 -o a.png", folder, picture)["sampling"]["noisy"],
+            0.0);
+}
+
 TEST(Practice, ACropIsAPartOfThePicture) {
   const Folder folder;
   const std::string picture = "--integrator direct --spp 4 --background studio ";

@@ -101,6 +101,22 @@ TEST(Film, OnlyNoisyCellsAndThoseBesideThemGoOn) {
   EXPECT_EQ(unfinished(film, 1000, 0.0F), std::vector<std::uint8_t>(10, 1));
 }
 
+TEST(Film, SamplesLeftGoByTheSquareOfTheNoise) {
+  std::mt19937 random(5);
+  Film film({0, 0, 128, 128});
+  const std::vector<std::uint8_t> all(film.samples().size(), 1);
+  const std::uint64_t pixels = film.pixels().size();
+  EXPECT_EQ(samples_left(film, all, 256, 0.01F), 256 * pixels);  // nothing is known
+  expose(film, 64, 0.25F, 0.1F, random);
+  EXPECT_EQ(samples_left(film, all, 256, 0.0F), 192 * pixels);
+  EXPECT_EQ(samples_left(film, std::vector<std::uint8_t>(all.size(), 0), 256, 0.0F), 0U);
+  double needed = 0.0;
+  for (const float n : noise(film)) needed += 64.0 * (n / 0.005) * (n / 0.005) - 64.0;
+  const double told = static_cast<double>(samples_left(film, all, 100000, 0.005F));
+  EXPECT_NEAR(told / static_cast<double>(pixels), needed / static_cast<double>(all.size()), 0.01);
+  EXPECT_EQ(samples_left(film, all, 65, 0.005F), pixels);  // no more than there may be
+}
+
 TEST(Film, OnlyTheCellsInAMaskGetSamples) {
   Film film({0, 0, 40, 16});
   image::ImageF means(40, 16);

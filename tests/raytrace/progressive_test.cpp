@@ -181,6 +181,34 @@ TEST(Progressive, AnInterruptionHandsOverTheFilm) {
   EXPECT_EQ(saved, 70U * 50U * 12U);
 }
 
+// A bar that shows done over total estimates the time that is left by it.
+TEST(Progressive, ProgressCountsTheSamplesThatAreExpected) {
+  parallel::Progress progress;
+  ProgressiveOptions options = balls_of(256);
+  options.noise = 0.004F;
+  options.frame.progress = &progress;
+  std::vector<std::uint64_t> expected;
+  options.after_pass = [&](const Film&) { expected.push_back(progress.total()); };
+  const ProgressiveResult result = render_by(1, options);
+  EXPECT_EQ(expected.front(), 70U * 50U * 256U);  // nothing is known of the noise
+  EXPECT_EQ(progress.done(), result.film.total_samples());
+  EXPECT_EQ(progress.total(), progress.done());
+  ASSERT_GE(expected.size(), 6U);
+  EXPECT_LT(expected[5], expected[0]);
+  EXPECT_NEAR(static_cast<double>(expected[5]) / static_cast<double>(progress.done()), 1.0, 0.3);
+}
+
+TEST(Progressive, ProgressExpectsNoMoreThanTimeAllows) {
+  parallel::Progress progress;
+  ProgressiveOptions options = balls_of(60000);
+  options.seconds = 0.2;
+  options.frame.progress = &progress;
+  const ProgressiveResult result = render_by(1, options);
+  EXPECT_TRUE(result.out_of_time);
+  EXPECT_LT(progress.total(), 70U * 50U * 60000U);
+  EXPECT_EQ(progress.done(), result.film.total_samples());
+}
+
 TEST(Progressive, AWindowShowsWhatTheWholePictureShowsThere) {
   ProgressiveOptions options = balls_of(8);
   options.features = true;
