@@ -17,6 +17,7 @@
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 #include "apps/shown_scheme.h"
+#include "apps/variant_looks.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -54,7 +55,8 @@ std::vector<Series> series_of(const std::vector<ComparedScheme>& rows, const std
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_codec),
                [&](const ComparedScheme& row) { return row.codec == codec; });
   return series_by(
-      of_codec, [](const ComparedScheme& row) { return row.scheme; }, source, point);
+      of_codec, [](const ComparedScheme& row) { return row.scheme; },
+      [](const std::string& name) { return look_of(Family::scheme, name); }, source, point);
 }
 
 Html chart_over_ranks(const std::vector<ComparedScheme>& rows, const std::string& codec,
@@ -202,70 +204,72 @@ Html answer(const ComposeComparison& comparison) {
     result += sentence(rows, *last, codecs);
   else if (!networks.empty())
     result += predicted_sentence(rows, networks.front(), codecs);
-  return result + paragraph("Fastest with so many ranks, gather included:") + table(best_of) +
-         omissions(comparison.left_out);
+  return advice_beside(result, paragraph("Fastest with so many ranks, gather included:") +
+                                   table(best_of) + omissions(comparison.left_out));
 }
 
 Html times(const std::vector<ComparedScheme>& rows) {
-  Html result;
+  std::vector<Html> charts;
   for (const std::string& codec : codecs_of(rows)) {
-    result += chart_over_ranks(rows, codec, "Compositing and gather on this machine", "time, ms",
-                               Source::measured,
-                               [](const ComparedScheme& row) -> std::optional<ChartPoint> {
-                                 if (!row.compose_seconds) return std::nullopt;
-                                 return measured_point(row);
-                               });
-    result += chart_over_ranks(rows, codec, "Compositing alone on this machine", "time, ms",
-                               Source::measured,
-                               [](const ComparedScheme& row) -> std::optional<ChartPoint> {
-                                 if (!row.compose_seconds) return std::nullopt;
-                                 const Spread& s = *row.compose_seconds;
-                                 return ChartPoint{static_cast<double>(row.ranks), s.median * 1e3,
-                                                   s.least * 1e3, s.most * 1e3};
-                               });
+    charts.push_back(chart_over_ranks(rows, codec, "Compositing and gather on this machine",
+                                      "time, ms", Source::measured,
+                                      [](const ComparedScheme& row) -> std::optional<ChartPoint> {
+                                        if (!row.compose_seconds) return std::nullopt;
+                                        return measured_point(row);
+                                      }));
+    charts.push_back(chart_over_ranks(
+        rows, codec, "Compositing alone on this machine", "time, ms", Source::measured,
+        [](const ComparedScheme& row) -> std::optional<ChartPoint> {
+          if (!row.compose_seconds) return std::nullopt;
+          const Spread& s = *row.compose_seconds;
+          return ChartPoint{static_cast<double>(row.ranks), s.median * 1e3, s.least * 1e3,
+                            s.most * 1e3};
+        }));
   }
-  return result +
+  return in_columns(charts) +
          paragraph(
              "Medians; the upright lines are the spread of the repetitions. Times end when "
              "the last rank is done. More ranks than cores share the cores.");
 }
 
 Html bytes(const std::vector<ComparedScheme>& rows) {
-  Html result;
+  std::vector<Html> charts;
   const auto of = [](std::uint64_t composite::Counts::*amount) {
     return [amount](const ComparedScheme& row) -> std::optional<ChartPoint> {
       const double value = static_cast<double>(row.counts.*amount) / 1e6;
       return ChartPoint{static_cast<double>(row.ranks), value, value, value};
     };
   };
+  const auto add = [&](const std::string& codec, const std::string& title, const std::string& unit,
+                       std::uint64_t composite::Counts::*amount) {
+    charts.push_back(chart_over_ranks(rows, codec, title, unit, Source::counted, of(amount)));
+  };
   for (const std::string& codec : codecs_of(rows)) {
-    result += chart_over_ranks(rows, codec, "Bytes that all ranks send", "MB", Source::counted,
-                               of(&composite::Counts::bytes_total));
-    result += chart_over_ranks(rows, codec, "Most bytes that a rank receives", "MB",
-                               Source::counted, of(&composite::Counts::bytes_received_max));
-    result += chart_over_ranks(rows, codec, "Most pixels that a rank composites", "Mpixel",
-                               Source::counted, of(&composite::Counts::pixels_composited_max));
+    add(codec, "Bytes that all ranks send", "MB", &composite::Counts::bytes_total);
+    add(codec, "Most bytes that a rank receives", "MB", &composite::Counts::bytes_received_max);
+    add(codec, "Most pixels that a rank composites", "Mpixel",
+        &composite::Counts::pixels_composited_max);
   }
-  return result;
+  return in_columns(charts);
 }
 
 Html predictions(const ComposeComparison& comparison) {
   const std::vector<ComparedScheme>& rows = comparison.rows;
-  Html result;
+  std::vector<Html> charts;
   for (const std::string& network : networks_of(rows))
     for (const std::string& codec : codecs_of(rows))
-      result += chart_over_ranks(rows, codec, "Compositing over " + network, "time, ms",
-                                 Source::predicted,
-                                 [&](const ComparedScheme& row) -> std::optional<ChartPoint> {
-                                   const Predicted* p = prediction(row, network);
-                                   if (p == nullptr) return std::nullopt;
-                                   const double ms = p->seconds * 1e3;
-                                   return ChartPoint{static_cast<double>(row.ranks), ms, ms, ms};
-                                 });
-  if (result.empty())
+      charts.push_back(chart_over_ranks(
+          rows, codec, "Compositing over " + network, "time, ms", Source::predicted,
+          [&](const ComparedScheme& row) -> std::optional<ChartPoint> {
+            const Predicted* p = prediction(row, network);
+            if (p == nullptr) return std::nullopt;
+            const double ms = p->seconds * 1e3;
+            return ChartPoint{static_cast<double>(row.ranks), ms, ms, ms};
+          }));
+  if (charts.empty())
     return paragraph(comparison.unfinished ? "Predictions had not begun."
                                            : "Nothing is predicted of these layers.");
-  return result + omissions(comparison.left_out) +
+  return in_columns(charts) + omissions(comparison.left_out) +
          paragraph(
              "Predicted: the schemes' own code runs on a simulated machine whose ranks "
              "have a core each. On this machine by a model that was fitted to the times "
@@ -383,6 +387,7 @@ std::string compose_report(const Session& session, const CompareRequest& request
   const std::filesystem::path file(request.render.scene.file.path);
   result.title = fmt::format("Compositing {}, {}", file.filename().string(), request.render.size);
   result.unfinished = comparison.unfinished;
+  result.machine = machine_and_compiler();
   result.answer = answer(comparison);
   result.tabs.push_back({"Times", times(rows)});
   result.tabs.push_back({"Bytes", bytes(rows)});

@@ -9,11 +9,13 @@
 
 #include "apps/partition_figures.h"
 #include "apps/provenance.h"
+#include "apps/report/bar_chart.h"
 #include "apps/report/chart.h"
 #include "apps/report/overlay.h"
 #include "apps/report/page.h"
 #include "apps/report/series.h"
 #include "apps/report/table.h"
+#include "apps/variant_looks.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -144,16 +146,19 @@ Html answer(const PartitionComparison& comparison) {
   }
   Html result;
   if (best_of.rows.empty())
-    return sentence(comparison, *best_partition(comparison.rows, comparison.rows.back().ranks)) +
-           paragraph("Frames are drawn by fewer ranks: of so many the balance is foretold.");
+    return advice_beside(
+        sentence(comparison, *best_partition(comparison.rows, comparison.rows.back().ranks)) +
+            paragraph("Frames are drawn by fewer ranks: of so many the balance is foretold."),
+        "");
   result += sentence(comparison, *last) + fastest_frames(comparison.strategies);
-  return result +
-         paragraph(fmt::format(
-             "By number of ranks, the partition that is cut soonest of those within {:.0f} % of "
-             "the most even shares, and over each network the strategy whose frames take "
-             "least:",
-             (kAsEven - 1) * 100)) +
-         table(best_of);
+  return advice_beside(
+      result,
+      paragraph(fmt::format(
+          "By number of ranks, the partition that is cut soonest of those within {:.0f} % of "
+          "the most even shares, and over each network the strategy whose frames take "
+          "least:",
+          (kAsEven - 1) * 100)) +
+          table(best_of));
 }
 
 using PointOf = std::function<std::optional<ChartPoint>(const ComparedPartition&)>;
@@ -168,7 +173,8 @@ Html chart(const Rows& rows, const std::string& title, const std::string& x, con
   chart.y_scale = scale;
   chart.ticks_at_points = true;
   chart.series = series_by(
-      rows, [](const ComparedPartition& row) { return row.partition; }, source, of);
+      rows, [](const ComparedPartition& row) { return row.partition; },
+      [](const std::string& name) { return look_of(Family::partition, name); }, source, of);
   return chart.series.empty() ? Html() : line_chart(chart);
 }
 
@@ -199,7 +205,7 @@ PointOf time_imbalance(X x) {
 Html balance(const PartitionRequest& request, const PartitionComparison& comparison) {
   const Rows rows = with_regions(comparison.rows, request.regions.front());
   const auto x_ranks = ranks_of;
-  Html result = in_pairs(
+  Html result = in_columns(
       {chart(rows, "How even the ranks' work is", "ranks", "most work over mean", Source::counted,
              Scale::logarithmic, work_imbalance(x_ranks)),
        chart(rows, "The same as the costs foretell it", "ranks", "largest load over mean",
@@ -225,7 +231,7 @@ Html balance(const PartitionRequest& request, const PartitionComparison& compari
     };
     const std::string label = "regions for each rank";
     result += heading(fmt::format("More regions than ranks, with {} ranks", ranks));
-    result += in_pairs(
+    result += in_columns(
         {chart(shown, "How even the ranks' work is", label, "most work over mean", Source::counted,
                Scale::logarithmic, work_imbalance(x)),
          chart(shown, "The same as the costs foretell it", label, "largest load over mean",
@@ -276,12 +282,11 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   bars.label = "work, samples' worth";
   bars.source = Source::counted;
   bars.mark = mean;
-  bars.name_width = 70;
   const auto busiest = std::max_element(shown.work.begin(), shown.work.end());
   for (std::size_t rank = 0; rank < shown.work.size(); ++rank)
     bars.bars.push_back({fmt::format("rank {}", rank), shown.work[rank], told(rank),
                          shown.work.begin() + static_cast<std::ptrdiff_t>(rank) == busiest});
-  return beside({overlay(drawn, kPicture), bar_chart(bars)});
+  return "<div>" + overlay(drawn, kPicture) + bar_chart(bars) + "</div>";
 }
 
 Html regions(const PartitionRequest& request, const PartitionComparison& comparison) {
@@ -290,32 +295,34 @@ Html regions(const PartitionRequest& request, const PartitionComparison& compari
       "mean.",
       shown_ranks(request)));
   result += overlay_key("less than the mean", "even", "more than the mean, at twice it in full");
-  for (const ShownPartition& shown : comparison.shown) result += shown_partition(request, shown);
-  return result;
+  std::vector<Html> shown;
+  for (const ShownPartition& one : comparison.shown) shown.push_back(shown_partition(request, one));
+  return result + in_columns(shown);
 }
 
 Html price(const PartitionRequest& request, const PartitionComparison& comparison) {
   const Rows rows = with_regions(comparison.rows, request.regions.front());
-  Html result = chart(rows, "Overlap: ranks that get a primitive", "ranks", "ranks, on average",
-                      Source::counted, Scale::linear,
-                      [](const ComparedPartition& row) -> std::optional<ChartPoint> {
-                        return point(ranks_of(row), row.overlap);
-                      });
-  result +=
-      chart(rows, "Own time: what cutting takes", "ranks", "time, ms", Source::measured,
-            Scale::logarithmic, [](const ComparedPartition& row) -> std::optional<ChartPoint> {
-              return point(ranks_of(row), row.cut_seconds, 1e3);
-            });
   const auto bytes = [](std::uint64_t DrawnFrames::*amount) {
     return [amount](const ComparedPartition& row) -> std::optional<ChartPoint> {
       if (!row.drawn) return std::nullopt;
       return point(ranks_of(row), static_cast<double>(*row.drawn.*amount) / 1e6);
     };
   };
-  result += chart(rows, "Bytes that ranks send for the first frame", "ranks", "MB", Source::counted,
-                  Scale::linear, bytes(&DrawnFrames::bytes_total));
-  result += chart(rows, "Bytes that ranks send for a frame after it", "ranks", "MB",
-                  Source::counted, Scale::linear, bytes(&DrawnFrames::bytes_next));
+  const Html result =
+      in_columns({chart(rows, "Overlap: ranks that get a primitive", "ranks", "ranks, on average",
+                        Source::counted, Scale::linear,
+                        [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+                          return point(ranks_of(row), row.overlap);
+                        }),
+                  chart(rows, "Own time: what cutting takes", "ranks", "time, ms", Source::measured,
+                        Scale::logarithmic,
+                        [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+                          return point(ranks_of(row), row.cut_seconds, 1e3);
+                        }),
+                  chart(rows, "Bytes that ranks send for the first frame", "ranks", "MB",
+                        Source::counted, Scale::linear, bytes(&DrawnFrames::bytes_total)),
+                  chart(rows, "Bytes that ranks send for a frame after it", "ranks", "MB",
+                        Source::counted, Scale::linear, bytes(&DrawnFrames::bytes_next))});
   return result +
          paragraph(
              "Primitives are sent in groups; a group goes to every rank whose region its box "
@@ -334,7 +341,8 @@ Html strategies(const PartitionComparison& comparison) {
     chart.x_scale = chart.y_scale = Scale::logarithmic;
     chart.ticks_at_points = true;
     chart.series = series_by(
-        all, [](const ComparedStrategy& row) { return row.strategy; }, source,
+        all, [](const ComparedStrategy& row) { return row.strategy; },
+        [](const std::string& name) { return look_of(Family::strategy, name); }, source,
         [&](const ComparedStrategy& row) -> std::optional<ChartPoint> { return of(row); });
     return line_chart(chart);
   };
@@ -347,17 +355,17 @@ Html strategies(const PartitionComparison& comparison) {
   for (const comm::NamedNetwork& named : comm::networks()) {
     result += heading(fmt::format("Over {}: {}", named.name, named.description));
     result +=
-        in_pairs({lines("A frame after the first", "time, ms", Source::predicted,
-                        [&](const ComparedStrategy& row) {
-                          return point(x(row), over(row.drawn, named.name)->seconds * 1e3);
-                        }),
-                  lines("The first frame: primitives travel", "time, ms", Source::predicted,
-                        [&](const ComparedStrategy& row) {
-                          return point(x(row), over(row.drawn, named.name)->first_seconds * 1e3);
-                        })});
+        in_columns({lines("A frame after the first", "time, ms", Source::predicted,
+                          [&](const ComparedStrategy& row) {
+                            return point(x(row), over(row.drawn, named.name)->seconds * 1e3);
+                          }),
+                    lines("The first frame: primitives travel", "time, ms", Source::predicted,
+                          [&](const ComparedStrategy& row) {
+                            return point(x(row), over(row.drawn, named.name)->first_seconds * 1e3);
+                          })});
   }
   result += heading("What goes into it");
-  result += in_pairs(
+  result += in_columns(
       {lines("Busiest rank", "processor time, ms", Source::measured,
              [&](const ComparedStrategy& row) { return point(x(row), row.drawn.busiest, 1e3); }),
        lines("Bytes that ranks send for a frame after the first", "MB", Source::counted,
@@ -402,6 +410,7 @@ std::string partition_report(const Session& session, const PartitionRequest& req
   result.title = fmt::format("Partitions of the screen for {}, {}", file.filename().string(),
                              request.render.size);
   result.unfinished = comparison.unfinished;
+  result.machine = machine_and_compiler();
   result.answer = backdrop(comparison.picture, kPicture) + answer(comparison);
   result.tabs.push_back({"Balance", balance(request, comparison)});
   if (!comparison.shown.empty()) result.tabs.push_back({"Regions", regions(request, comparison)});

@@ -26,13 +26,19 @@ std::string processor() {
 
 }  // namespace
 
+std::string machine_text() {
+  return fmt::format("{}, {} hardware threads", processor(), std::thread::hardware_concurrency());
+}
+
+std::string machine_and_compiler() { return machine_text() + "; " DELRAY_COMPILER; }
+
 std::vector<std::pair<std::string, std::string>> provenance(const Session& session) {
   utsname system{};
   uname(&system);
   return {{"command", session.command_line},
-          {"version", "delray " DELRAY_VERSION ", compiled by " __VERSION__},
-          {"machine", fmt::format("{}, {} hardware threads", processor(),
-                                  std::thread::hardware_concurrency())},
+          {"version", "delray " DELRAY_VERSION},
+          {"machine", machine_text()},
+          {"compiler", DELRAY_COMPILER},
           {"system", fmt::format("{} {}", system.sysname, system.release)},
           {"ranks", session.under_mpi ? "processes of mpirun" : "threads of one process"},
           {"date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}};

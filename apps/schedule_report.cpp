@@ -14,6 +14,7 @@
 #include "apps/report/table.h"
 #include "apps/report/timeline.h"
 #include "apps/schedule_figures.h"
+#include "apps/variant_looks.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -106,11 +107,12 @@ Html first_screen(const ScheduleRequest& request, const ScheduleComparison& comp
     }
     best_of.rows.push_back(std::move(line));
   }
-  return advice(request, comparison) +
-         paragraph(
-             "By number of ranks, the schedule whose last tile is done first over each network; no "
-             "schedule could take less than what stands left of it:") +
-         table(best_of);
+  return advice_beside(
+      advice(request, comparison),
+      paragraph(
+          "By number of ranks, the schedule whose last tile is done first over each network; no "
+          "schedule could take less than what stands left of it:") +
+          table(best_of));
 }
 
 using PointOf = std::function<std::optional<ChartPoint>(const ComparedSchedule&)>;
@@ -125,7 +127,8 @@ Html chart_by_ranks(const ScheduleComparison& comparison, const std::string& tit
   chart.y_scale = scale;
   chart.ticks_at_points = true;
   chart.series = series_by(
-      comparison.rows, [](const ComparedSchedule& row) { return row.schedule; }, source, of);
+      comparison.rows, [](const ComparedSchedule& row) { return row.schedule; },
+      [](const std::string& name) { return look_of(Family::schedule, name); }, source, of);
   return line_chart(chart);
 }
 
@@ -139,7 +142,7 @@ PointOf value_of(std::function<double(const ScheduleOver&)> value, std::size_t n
 
 Html evenness(const ScheduleComparison& comparison) {
   const std::string& network = comparison.rows.front().over.front().network;
-  Html result = in_pairs(
+  Html result = in_columns(
       {chart_by_ranks(comparison, "How even the ranks' work is", "most rays over mean",
                       Source::counted, Scale::logarithmic,
                       value_of([](const ScheduleOver& over) { return over.ray_imbalance; })),
@@ -204,7 +207,7 @@ Html times(const ScheduleComparison& comparison) {
         chart_by_ranks(comparison, "Until the last tile is done, over " + over[i].network,
                        "time, ms", Source::predicted, Scale::logarithmic,
                        value_of([](const ScheduleOver& one) { return one.seconds * 1e3; }, i)));
-  return in_pairs(charts) + traced_here(comparison);
+  return in_columns(charts) + traced_here(comparison);
 }
 
 Html tile_costs(const ScheduleRequest& request, const ScheduleComparison& comparison) {
@@ -230,7 +233,7 @@ Html tile_costs(const ScheduleRequest& request, const ScheduleComparison& compar
                              fmt::format("{}, {} to {}", time_of(tile.seconds.median),
                                          time_of(tile.seconds.least), time_of(tile.seconds.most))});
   }
-  return in_pairs({overlay(rays, kFrame), overlay(seconds, kFrame)}) +
+  return in_columns({overlay(rays, kFrame), overlay(seconds, kFrame)}) +
          paragraph(fmt::format("The darker, the more: up to {} rays and {}.",
                                short_number(most_rays), time_of(most_seconds)));
 }
@@ -308,11 +311,11 @@ Html traffic(const ScheduleComparison& comparison) {
     return chart_by_ranks(comparison, title, label, Source::counted, Scale::logarithmic,
                           number(amount));
   };
-  return in_pairs({chart("Requests for tiles", "messages", &ScheduleOver::requests),
-                   chart("Steals: messages with tiles of another's share", "messages",
-                         &ScheduleOver::steals),
-                   chart("Tiles stolen", "tiles", &ScheduleOver::tasks_stolen),
-                   chart("All messages of the schedule", "messages", &ScheduleOver::messages)}) +
+  return in_columns({chart("Requests for tiles", "messages", &ScheduleOver::requests),
+                     chart("Steals: messages with tiles of another's share", "messages",
+                           &ScheduleOver::steals),
+                     chart("Tiles stolen", "tiles", &ScheduleOver::tasks_stolen),
+                     chart("All messages of the schedule", "messages", &ScheduleOver::messages)}) +
          paragraph(
              "Counted on the simulated machine, without those that bring pixels to rank 0. "
              "Schedules without any are not in the chart.");
@@ -347,6 +350,7 @@ std::string schedule_report(const Session& session, const ScheduleRequest& reque
   const std::filesystem::path file(request.render.scene.file.path);
   result.title = fmt::format("Schedules for {}, {}", file.filename().string(), request.render.size);
   result.unfinished = comparison.unfinished;
+  result.machine = machine_and_compiler();
   result.answer = first_screen(request, comparison);
   result.tabs.push_back({"Balance", evenness(comparison)});
   result.tabs.push_back({"Tiles", tiles(request, comparison)});

@@ -158,7 +158,8 @@ Html triangulate_answer(const TriangulateComparison& comparison) {
     }
     best_of.rows.push_back(std::move(line));
   }
-  return text + paragraph("Fastest of so many of the points, chosen at random:") + table(best_of);
+  return advice_beside(
+      text, paragraph("Fastest of so many of the points, chosen at random:") + table(best_of));
 }
 
 }  // namespace delray::apps

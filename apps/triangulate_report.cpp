@@ -17,6 +17,7 @@
 #include "apps/triangulate_answer.h"
 #include "apps/triangulate_figures.h"
 #include "apps/triangulate_rows.h"
+#include "apps/variant_looks.h"
 #include "delaunay/methods.h"
 
 namespace delray::apps {
@@ -56,68 +57,65 @@ ChartPoint ratio_at(double x, const Spread& base, const Spread& seconds, double 
   return {x, scale / seconds.median, scale / seconds.most, scale / seconds.least};
 }
 
-Html chart_of(const std::string& title, const std::string& x_label, const std::string& y_label,
-              Scale y_scale, std::vector<Series> series) {
+// What a chart shows upwards.
+struct Shown {
+  std::string title, label;  // the label with units
+  Scale scale = Scale::logarithmic;
+  Source source = Source::measured;
+  bool more_is_better = false;
+};
+
+Html chart_of(const Shown& shown, const std::string& x_label, std::vector<Series> series) {
   if (series.empty()) return "";
   LineChart chart;
-  chart.title = title;
+  chart.title = shown.title;
   chart.x_label = x_label;
-  chart.y_label = y_label;
+  chart.y_label = shown.label;
   chart.x_scale = Scale::logarithmic;
-  chart.y_scale = y_scale;
+  chart.y_scale = shown.scale;
   chart.ticks_at_points = true;
+  chart.more_is_better = shown.more_is_better;
   chart.series = std::move(series);
   return line_chart(chart);
 }
-// The charts of one comparison: a way to triangulate looks the same in each of them.
-class Charts {
- public:
-  explicit Charts(const Rows& rows) : names_(unique_of(rows_of(rows, has_own_split), name)) {
-    for (const std::string& other : unique_of(rows, name))
-      if (std::ranges::find(names_, other) == names_.end()) names_.push_back(other);
-  }
 
-  Html over_threads(const Rows& rows, const std::string& title, const std::string& label,
-                    Scale scale, const PointOf& point) const {
-    return chart_of(title, "threads", label, scale, series(rows, Source::measured, point));
-  }
-  Html over_points(const Rows& rows, const std::string& title, const std::string& label,
-                   Scale scale, Source source, const PointOf& point) const {
-    return chart_of(title, "points", label, scale, series(rows, source, point));
-  }
+report::Look look(const std::string& name) { return look_of(Family::method, name); }
 
- private:
-  static std::string name(const Row& row) { return name_of(row.how); }
-  std::vector<Series> series(const Rows& rows, Source source, const PointOf& point) const {
-    std::vector<Series> result = series_by(rows, name, source, point);
-    for (Series& one : result)
-      one.look = static_cast<int>(std::ranges::find(names_, one.name) - names_.begin());
-    return result;
-  }
+Html chart_of(const Rows& rows, const Shown& shown, const std::string& x_label,
+              const PointOf& point) {
+  return chart_of(
+      shown, x_label,
+      series_by(
+          rows, [](const Row& row) { return name_of(row.how); }, look, shown.source, point));
+}
+Html over_threads(const Rows& rows, const Shown& shown, const PointOf& point) {
+  return chart_of(rows, shown, "threads", point);
+}
+Html over_points(const Rows& rows, const Shown& shown, const PointOf& point) {
+  return chart_of(rows, shown, "points", point);
+}
 
-  std::vector<std::string> names_;
-};
-
-Html times(const TriangulateComparison& comparison, const Charts& charts) {
+Html times(const TriangulateComparison& comparison) {
   const Rows rows = rows_of(comparison.rows, has_own_split);
   const std::size_t points = most_points(rows);
   const int threads = threads_of_own(comparison);
-  Html result =
-      charts.over_threads(rows_of(rows, [&](const Row& row) { return row.points == points; }),
-                          fmt::format("Time for {} points", points), "time, ms", Scale::logarithmic,
-                          [](const Row& row) { return time_at(row.how.threads, row); });
-  result += charts.over_points(
-      rows_of(rows, [&](const Row& row) { return is_alone(row) || row.how.threads == threads; }),
-      "Time with " + threads_text(threads), "time, ms", Scale::logarithmic, Source::measured,
-      [](const Row& row) { return time_at(static_cast<double>(row.points), row); });
-  return result +
+  return in_columns(
+             {over_threads(rows_of(rows, [&](const Row& row) { return row.points == points; }),
+                           {fmt::format("Time for {} points", points), "time, ms"},
+                           [](const Row& row) { return time_at(row.how.threads, row); }),
+              over_points(
+                  rows_of(
+                      rows,
+                      [&](const Row& row) { return is_alone(row) || row.how.threads == threads; }),
+                  {"Time with " + threads_text(threads), "time, ms"},
+                  [](const Row& row) { return time_at(static_cast<double>(row.points), row); })}) +
          paragraph(
              "Medians; the upright lines are the spread of the repetitions. Times are from "
              "points in memory to simplices in memory, sorting and extraction included. "
              "insertion always works with one thread.");
 }
 
-Html speed_ups(const TriangulateComparison& comparison, const Charts& charts) {
+Html speed_ups(const TriangulateComparison& comparison) {
   const Rows all = rows_of(comparison.rows, has_own_split);
   const std::size_t points = most_points(all);
   const Rows several = rows_of(all, [](const Row& row) { return !is_alone(row); });
@@ -127,36 +125,41 @@ Html speed_ups(const TriangulateComparison& comparison, const Charts& charts) {
     if (base == nullptr) return std::nullopt;
     return ratio_at(x, base->seconds, row.seconds, divisor);
   };
+  const auto shown = [](const std::string& title, const std::string& label) {
+    return Shown{title, label, Scale::linear, Source::measured, true};
+  };
   const std::string of = fmt::format(", {} points", points);
-  Html result = charts.over_threads(most, "Speed-up over one thread of the same method" + of,
-                                    "speed-up", Scale::linear,
-                                    [&](const Row& row) { return ratio(row.how.threads, row, 1); });
-  result += charts.over_threads(
-      most, "Efficiency: speed-up over threads" + of, "efficiency", Scale::linear,
-      [&](const Row& row) { return ratio(row.how.threads, row, row.how.threads); });
+  std::vector<Html> charts;
+  charts.push_back(
+      over_threads(most, shown("Speed-up over one thread of the same method" + of, "speed-up"),
+                   [&](const Row& row) { return ratio(row.how.threads, row, 1); }));
+  charts.push_back(
+      over_threads(most, shown("Efficiency: speed-up over threads" + of, "efficiency"),
+                   [&](const Row& row) { return ratio(row.how.threads, row, row.how.threads); }));
   for (const int threads : comparison.threads) {
     if (threads == 1) continue;
-    const std::string with = ", " + threads_text(threads);
     const Rows such = rows_of(several, [&](const Row& row) { return row.how.threads == threads; });
-    result += charts.over_points(
-        such, "Speed-up over one thread" + with, "speed-up", Scale::linear, Source::measured,
-        [&](const Row& row) { return ratio(static_cast<double>(row.points), row, 1); });
+    charts.push_back(over_points(
+        such, shown("Speed-up over one thread, " + threads_text(threads), "speed-up"),
+        [&](const Row& row) { return ratio(static_cast<double>(row.points), row, 1); }));
   }
   const auto sequential = std::ranges::find_if(
       all, [&](const Row& row) { return row.points == points && name_of(row.how) == kSequential; });
   if (sequential != all.end())
-    result +=
-        charts.over_threads(rows_of(all, [&](const Row& row) { return row.points == points; }),
-                            "Times as fast as the report's sequential algorithm, which is " +
-                                std::string(kSequential) + of,
-                            "times as fast", Scale::logarithmic, [&](const Row& row) {
-                              return ratio_at(row.how.threads, sequential->seconds, row.seconds, 1);
-                            });
-  if (result.empty()) return paragraph("One number of threads tells nothing about speed-up.");
-  return result + paragraph(
-                      "Of measured times; the upright lines are what the spread of the "
-                      "repetitions makes of them." +
-                      crowded_text(comparison));
+    charts.push_back(
+        over_threads(rows_of(all, [&](const Row& row) { return row.points == points; }),
+                     {"Times as fast as the report's sequential algorithm, which is " +
+                          std::string(kSequential) + of,
+                      "times as fast", Scale::logarithmic, Source::measured, true},
+                     [&](const Row& row) {
+                       return ratio_at(row.how.threads, sequential->seconds, row.seconds, 1);
+                     }));
+  std::erase(charts, Html());
+  if (charts.empty()) return paragraph("One number of threads tells nothing about speed-up.");
+  return in_columns(charts) + paragraph(
+                                  "Of measured times; the upright lines are what the spread of the "
+                                  "repetitions makes of them." +
+                                  crowded_text(comparison));
 }
 
 StackedBar phases_of(const std::string& name, const Row& row) {
@@ -177,7 +180,7 @@ StackedBars phase_bars(const std::string& title) {
 Html phases(const TriangulateComparison& comparison) {
   const Rows& rows = comparison.rows;
   const std::size_t points = most_points(rows);
-  Html result;
+  std::vector<Html> result;
   std::set<int> counts = {1, threads_of_own(comparison)};
   for (const int threads : counts) {
     StackedBars chart = phase_bars(
@@ -185,7 +188,7 @@ Html phases(const TriangulateComparison& comparison) {
     for (const Row& row : rows)
       if (row.points == points && row.how.threads == threads)
         chart.bars.push_back(phases_of(name_of(row.how), row));
-    if (!chart.bars.empty()) result += stacked_bars(chart);
+    if (!chart.bars.empty()) result.push_back(stacked_bars(chart));
   }
   for (const std::string& name :
        unique_of(rows, [](const Row& row) { return is_alone(row) ? name_of(row.how) : ""; })) {
@@ -194,15 +197,16 @@ Html phases(const TriangulateComparison& comparison) {
     for (const Row& row : rows)
       if (name_of(row.how) == name)
         chart.bars.push_back(phases_of(fmt::format("{} points", row.points), row));
-    result += stacked_bars(chart);
+    result.push_back(stacked_bars(chart));
   }
-  return result + paragraph(
-                      "Seconds of one run each, summed over threads; who waits for a lock waits in "
-                      "the phase that needs it. divide-and-conquer does everything but sorting and "
-                      "extraction in subdivide, cavity makes its simplices there.");
+  return in_columns(result) +
+         paragraph(
+             "Seconds of one run each, summed over threads; who waits for a lock waits in "
+             "the phase that needs it. divide-and-conquer does everything but sorting and "
+             "extraction in subdivide, cavity makes its simplices there.");
 }
 
-Html locks(const TriangulateComparison& comparison, const Charts& charts) {
+Html locks(const TriangulateComparison& comparison) {
   const Rows rows = rows_of(comparison.rows, [](const Row& row) {
     return row.statistics.synchronization.lock_calls > 0;
   });
@@ -211,24 +215,25 @@ Html locks(const TriangulateComparison& comparison, const Charts& charts) {
     return row.how.threads > 1 && row.statistics.synchronization.free > 0;
   });
   if (rows.empty()) return paragraph("No locks were taken.");
-  Html result;
+  std::vector<Html> charts;
   for (const int threads : unique_of(several, [](const Row& row) { return row.how.threads; })) {
     const Rows such = rows_of(several, [&](const Row& row) { return row.how.threads == threads; });
     const auto count = [&](const char* title, const char* label,
                            std::uint64_t delaunay::Synchronization::*amount, double per_points) {
-      return charts.over_points(such, title + (", " + threads_text(threads)), label, Scale::linear,
-                                Source::counted, [=](const Row& row) {
-                                  const double x = static_cast<double>(row.points);
-                                  const double y =
-                                      static_cast<double>(row.statistics.synchronization.*amount) *
-                                      (per_points > 0 ? per_points / x : 1);
-                                  return ChartPoint{x, y, y, y};
-                                });
+      charts.push_back(over_points(
+          such, {title + (", " + threads_text(threads)), label, Scale::linear, Source::counted},
+          [=](const Row& row) {
+            const double x = static_cast<double>(row.points);
+            const double y = static_cast<double>(row.statistics.synchronization.*amount) *
+                             (per_points > 0 ? per_points / x : 1);
+            return ChartPoint{x, y, y, y};
+          }));
     };
-    result += count("Deadlocks", "deadlocks", &delaunay::Synchronization::deadlocks, 0);
-    result += count("Simplices that another thread had locked", "for a thousand points",
-                    &delaunay::Synchronization::waits, 1000);
+    count("Deadlocks", "deadlocks", &delaunay::Synchronization::deadlocks, 0);
+    count("Simplices that another thread had locked", "for a thousand points",
+          &delaunay::Synchronization::waits, 1000);
   }
+  const Html result = in_columns(charts);
   Table numbers;
   numbers.columns = {
       {"points", true, false, {}}, {"method", false, false, {}}, {"threads", true, false, {}}};
@@ -257,7 +262,7 @@ Html locks(const TriangulateComparison& comparison, const Charts& charts) {
              "do at the end, where a burglary may have left something wrong.");
 }
 
-Html fragments(const TriangulateComparison& comparison, const Charts& charts) {
+Html fragments(const TriangulateComparison& comparison) {
   const int threads = comparison.shown_threads;
   const Rows rows =
       rows_of(comparison.rows, [&](const Row& row) { return row.how.threads == threads; });
@@ -279,11 +284,13 @@ Html fragments(const TriangulateComparison& comparison, const Charts& charts) {
                                                           one.name, one.points, one.fragments)));
     result += beside(pictures);
   }
-  result += charts.over_points(rows, "Fragments, " + threads_text(threads), "fragments",
-                               Scale::logarithmic, Source::counted, [](const Row& row) {
-                                 const auto y = static_cast<double>(row.fragments);
-                                 return ChartPoint{static_cast<double>(row.points), y, y, y};
-                               });
+  const Html chart = over_points(
+      rows,
+      {"Fragments, " + threads_text(threads), "fragments", Scale::logarithmic, Source::counted},
+      [](const Row& row) {
+        const auto y = static_cast<double>(row.fragments);
+        return ChartPoint{static_cast<double>(row.points), y, y, y};
+      });
   const std::size_t points = most_points(comparison.rows);
   Table table_of;
   table_of.columns = {{"method", false, false, {}},
@@ -298,7 +305,9 @@ Html fragments(const TriangulateComparison& comparison, const Charts& charts) {
     table_of.rows.push_back({row.how.method, row.how.split, std::to_string(row.fragments),
                              ms(row.seconds.median), ms(row.seconds.least), ms(row.seconds.most)});
   }
-  result += heading(fmt::format("{} points, {}", points, threads_text(threads))) + table(table_of);
+  result += in_columns(
+      {chart, "<div>" + heading(fmt::format("{} points, {}", points, threads_text(threads))) +
+                  table(table_of) + "</div>"});
   StackedBars shares;
   shares.title =
       fmt::format("Who made the {} {} of {} points", rows.empty() ? 0 : rows.back().simplices,
@@ -330,18 +339,15 @@ Html history(const TriangulateComparison& comparison) {
     return row.statistics.dag_nodes > 0 && row.how.threads <= comparison.cores;
   });
   if (rows.empty()) return paragraph("No history was kept.");
-  LineChart chart;
-  chart.title = "Time against nodes of the history";
-  chart.x_label = "nodes";
-  chart.y_label = "time, ms";
-  chart.x_scale = chart.y_scale = Scale::logarithmic;
-  chart.series = series_by(
-      rows, [](const Row& row) { return name_of(row.how) + ", " + threads_text(row.how.threads); },
-      Source::measured,
-      [](const Row& row) -> std::optional<ChartPoint> {
-        return time_at(static_cast<double>(row.statistics.dag_nodes), row);
-      });
-  Html result = line_chart(chart);
+  const Html chart = chart_of(
+      {"Time against nodes of the history", "time, ms"}, "nodes",
+      series_by(
+          rows,
+          [](const Row& row) { return name_of(row.how) + ", " + threads_text(row.how.threads); },
+          look, Source::measured,
+          [](const Row& row) -> std::optional<ChartPoint> {
+            return time_at(static_cast<double>(row.statistics.dag_nodes), row);
+          }));
   Table numbers;
   numbers.columns = {{"points", true, false, {}},
                      {"method", false, false, {}},
@@ -361,7 +367,7 @@ Html history(const TriangulateComparison& comparison) {
                             fmt::format("{:.2f}", row.seconds.median * 1e3),
                             fmt::format("{:.1f}", row.seconds.median * 1e9 / nodes)});
   }
-  return result + table(numbers) +
+  return in_columns({chart, table(numbers)}) +
          paragraph(
              "The history has a node for every simplex that ever was. Points that need more "
              "flips make more of them, and time goes with nodes rather than with points.");
@@ -390,13 +396,13 @@ std::string triangulate_report(const Session& session, const TriangulateRequest&
   result.title = fmt::format("Triangulating {}, {} points in {}D", file.filename().string(),
                              comparison.points, comparison.dim);
   result.unfinished = comparison.unfinished;
+  result.machine = machine_and_compiler();
   result.answer = triangulate_answer(comparison);
-  const Charts charts(comparison.rows);
-  result.tabs.push_back({"Times", times(comparison, charts)});
-  result.tabs.push_back({"Speed-up", speed_ups(comparison, charts)});
-  result.tabs.push_back({"Fragments", fragments(comparison, charts)});
+  result.tabs.push_back({"Times", times(comparison)});
+  result.tabs.push_back({"Speed-up", speed_ups(comparison)});
+  result.tabs.push_back({"Fragments", fragments(comparison)});
   result.tabs.push_back({"Phases", phases(comparison)});
-  result.tabs.push_back({"Locks", locks(comparison, charts)});
+  result.tabs.push_back({"Locks", locks(comparison)});
   result.tabs.push_back({"History", history(comparison)});
   result.tabs.push_back({"All figures", all_rows(comparison)});
   result.data = triangulate_statistics(request, comparison);

@@ -33,6 +33,7 @@ struct Scheme {
   const char* description;
   Part (*compose)(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
                   const ComposeOptions& options);
+  const char* group;  // of schemes that work alike; reports show these in one colour
   bool takes_radices = false;
 };
 

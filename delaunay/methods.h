@@ -19,6 +19,7 @@ struct Choice {
 struct Method {
   std::string_view name;
   std::string_view description;
+  std::string_view group;  // of methods that work alike; reports show these in one colour
   std::vector<int> dims;
   // What goes with the method, the default first; empty if it leaves no such choice.
   std::vector<std::string_view> locations, splits, orders;

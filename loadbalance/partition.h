@@ -30,6 +30,7 @@ struct Partitioner {
   // none. Throws std::invalid_argument unless parts >= 1, frame == costs.frame, and every cost is
   // finite and >= 0.
   Partition (*partition)(const Costs& costs, geometry::Rect frame, int parts);
+  const char* group;  // of partitions that work alike; reports show these in one colour
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -11,20 +11,20 @@ namespace {
 
 constexpr std::array kPartitioners = {
     Partitioner{"mahd", "rectangles of equal cost from a summed-area table (Mueller)",
-                &internal::mahd},
+                &internal::mahd, "bisection"},
     Partitioner{"kd-split",
                 "rectangles cut where the costs of both sides of a sweep line cross (Samanta)",
-                &internal::kd_split},
+                &internal::kd_split, "bisection"},
     Partitioner{"graph", "regions of any shape that few primitives cross, grown on the grid (Kurc)",
-                &internal::graph},
+                &internal::graph, "graph"},
     Partitioner{"whitman", "ten leaves of a quadtree each, the fullest first (Whitman)",
-                &internal::whitman},
+                &internal::whitman, "grid"},
     Partitioner{"whelan", "rectangles with equally many centroids, by median cut (Whelan)",
-                &internal::whelan},
+                &internal::whelan, "bisection"},
     Partitioner{"roble", "a grid whose full regions are halved and empty ones merged (Roble)",
-                &internal::roble},
+                &internal::roble, "grid"},
     Partitioner{"interlaced", "many square blocks dealt out in turn, whatever they cost",
-                &internal::interlaced},
+                &internal::interlaced, "fixed"},
 };
 
 }  // namespace

@@ -80,6 +80,7 @@ struct Schedule {
   // not. REQUIRES: the same grid and options on all ranks, but for threads and initial.
   RankReport (*run)(comm::Communicator& communicator, const TaskGrid& tasks,
                     const ScheduleOptions& options, TaskFunction work);
+  const char* group;  // of schedules that work alike; reports show these in one colour
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -9,19 +9,21 @@ namespace delray::loadbalance {
 namespace {
 
 constexpr std::array kSchedules = {
-    Schedule{"static", "consecutive tasks, as many for each rank", &internal::static_schedule},
+    Schedule{"static", "consecutive tasks, as many for each rank", &internal::static_schedule,
+             "fixed"},
     Schedule{"interlaced", "tasks dealt out in turn, each row shifted",
-             &internal::interlaced_schedule},
-    Schedule{"random", "tasks dealt out in random order", &internal::random_schedule},
+             &internal::interlaced_schedule, "fixed"},
+    Schedule{"random", "tasks dealt out in random order", &internal::random_schedule, "fixed"},
     Schedule{"demand", "a master hands out a few tasks whenever a rank asks (Badouel)",
-             &internal::demand},
-    Schedule{"guided", "a master hands out ever fewer lines of tasks (Pandzic)", &internal::guided},
-    Schedule{"hierarchical", "masters that ask masters (Green)", &internal::hierarchical},
+             &internal::demand, "master"},
+    Schedule{"guided", "a master hands out ever fewer lines of tasks (Pandzic)", &internal::guided,
+             "master"},
+    Schedule{"hierarchical", "masters that ask masters (Green)", &internal::hierarchical, "master"},
     Schedule{"stealing", "idle ranks take from all that have more than the mean",
-             &internal::stealing},
+             &internal::stealing, "stealing"},
     Schedule{"neighbour-stealing",
              "ranks ask their hypercube neighbours before they run dry (Heirich)",
-             &internal::neighbour_stealing},
+             &internal::neighbour_stealing, "stealing"},
 };
 
 }  // namespace

@@ -1,33 +1,46 @@
+// Line charts: axes, lines in the look of their variants, names at their ends.
 #include "apps/report/chart.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+
+#include "apps/report/internal/plot.h"
 
 namespace delray::apps::report {
 namespace {
 
-constexpr double kWidth = 720, kHeight = 400;
-constexpr double kLeft = 76, kRight = 30, kTop = 14, kBottom = 48;
-constexpr std::size_t kColours = 8;  // more series are dashed
+constexpr double kHeight = 280;
+constexpr double kTop = 26, kBottom = 40;
+constexpr double kBetweenNames = 15;
 constexpr std::size_t kMostTicksAtPoints = 12;
 
-struct Place {
-  double x, y;
-};
-
-// Colour and dash of series i.
-std::string look(const LineChart& chart, std::size_t i) {
-  const int wanted = chart.series[i].look;
-  const std::size_t k = wanted < 0 ? i : static_cast<std::size_t>(wanted);
-  return fmt::format("c{} d{}", k % kColours, k / kColours % 3);
+Look look_of(const LineChart& chart, std::size_t i) {
+  Look look = chart.series[i].look;
+  if (look.colour < 0) {
+    look.colour = static_cast<int>(i);
+    look.mark = static_cast<int>(i) / kColours;
+  }
+  return look;
+}
+std::string classes_of(const Look& look) {
+  return fmt::format("c{} d{}", look.colour % kColours,
+                     look.dash == 0 ? 0 : 1 + (look.dash - 1) % kDashes);
+}
+// Series of the same group have the same.
+std::string group_of(const LineChart& chart, std::size_t i) {
+  const Look look = look_of(chart, i);
+  return look.group.empty() ? fmt::format("{}/{}", look.colour, chart.series[i].name) : look.group;
 }
 
 class LinePlot {
  public:
   explicit LinePlot(const LineChart& chart)
       : chart_(chart),
+        strong_(strong_series(chart)),
         xs_(values(chart, [](const ChartPoint& p) { return std::vector{p.x}; })),
         x_(xs_, chart.x_scale),
         y_(values(chart,
@@ -36,18 +49,47 @@ class LinePlot {
                   }),
            chart.y_scale) {}
 
-  Html svg() const {
-    Html result = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
-                              kHeight, escaped(chart_.title));
-    result += grid();
+  Html html() const {
+    internal::Margins margins;
+    margins.top = kTop;
+    margins.bottom = kBottom;
+    const std::vector<Tick> ticks = y_.ticks();
+    for (const Tick& tick : ticks)
+      margins.left = std::max(margins.left, internal::text_width(tick.label) + 10);
+    for (std::size_t i = 0; i < chart_.series.size(); ++i)
+      if (strong_[i])
+        margins.right = std::max(margins.right, internal::text_width(chart_.series[i].name) + 12);
+    margins.right = std::max(margins.right, 24.0);
     Html lines;
-    for (std::size_t i = 0; i < chart_.series.size(); ++i) lines += line(i);
+    const std::vector<double> names = name_positions();
+    // Strong ones above the others.
+    for (const bool strong : {false, true})
+      for (std::size_t i = 0; i < chart_.series.size(); ++i)
+        if (strong_[i] == strong) lines += line(i, names[i]);
     if (lines.empty())
       lines = fmt::format(
-          "<text class=\"axis\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">nothing but "
+          "<text class=\"axis\" x=\"50%\" y=\"{:.0f}\" text-anchor=\"middle\">nothing but "
           "zeros</text>",
-          (kLeft + kWidth - kRight) / 2, (kTop + kHeight - kBottom) / 2);
-    return result + lines + "</svg>";
+          kHeight / 2);
+    return internal::plot(chart_.title, margins, kHeight, grid(ticks, margins.left) + lines);
+  }
+
+  // The names of all series, by groups.
+  Html legend(bool with_sources) const {
+    std::map<std::string, std::vector<std::size_t>> members;
+    std::vector<std::string> groups;
+    for (std::size_t i = 0; i < chart_.series.size(); ++i) {
+      const std::string group = group_of(chart_, i);
+      if (members[group].empty()) groups.push_back(group);
+      members[group].push_back(i);
+    }
+    Html result;
+    for (const std::string& group : groups) {
+      result += "<span class=\"group\">";
+      for (const std::size_t i : members[group]) result += key(i, with_sources);
+      result += "</span>";
+    }
+    return result;
   }
 
  private:
@@ -60,143 +102,158 @@ class LinePlot {
     return result;
   }
 
-  double at_x(double value) const { return kLeft + x_.position(value) * (kWidth - kLeft - kRight); }
-  double at_y(double value) const {
-    return kHeight - kBottom - y_.position(value) * (kHeight - kTop - kBottom);
-  }
+  // Per cent of the width, and pixels from the top.
+  double at_x(double value) const { return x_.position(value) * 100; }
+  double at_y(double value) const { return (1 - y_.position(value)) * kHeight; }
   bool is_shown(double x, double y) const {
     return std::isfinite(x) && std::isfinite(y) && (chart_.x_scale == Scale::linear || x > 0) &&
            (chart_.y_scale == Scale::linear || y > 0);
   }
+  std::optional<ChartPoint> last_shown(const Series& series) const {
+    std::optional<ChartPoint> last;
+    for (const ChartPoint& p : series.points)
+      if (is_shown(p.x, p.y)) last = p;
+    return last;
+  }
 
-  Html grid() const {
-    const double right = kWidth - kRight, bottom = kHeight - kBottom;
+  Html grid(const std::vector<Tick>& y_ticks, double left) const {
     Html result;
-    for (const Tick& tick : y_.ticks())
+    for (const Tick& tick : y_ticks)
       result += fmt::format(
-          "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
-          "<text class=\"tick\" x=\"{3}\" y=\"{2:.1f}\" text-anchor=\"end\" "
-          "dominant-baseline=\"middle\">{4}</text>",
-          kLeft, right, at_y(tick.value), kLeft - 6, escaped(tick.label));
+          "<line class=\"grid\" x2=\"100%\" y1=\"{0:.1f}\" y2=\"{0:.1f}\"/><text class=\"tick\" "
+          "x=\"-6\" y=\"{0:.1f}\" text-anchor=\"end\" dominant-baseline=\"middle\">{1}</text>",
+          at_y(tick.value), escaped(tick.label));
     std::vector<Tick> ticks = Axis::ticks_at(xs_);
     if (!chart_.ticks_at_points || ticks.size() > kMostTicksAtPoints) ticks = x_.ticks();
-    for (const Tick& tick : ticks)
-      result += fmt::format(
-          "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>"
-          "<text class=\"tick\" x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4}</text>",
-          at_x(tick.value), kTop, bottom, bottom + 16, escaped(tick.label));
-    result +=
-        fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                    (kLeft + right) / 2, kHeight - 8, escaped(chart_.x_label));
-    result += fmt::format(
-        "<text class=\"axis\" transform=\"translate(14 {:.1f}) rotate(-90)\" "
-        "text-anchor=\"middle\">{}</text>",
-        (kTop + bottom) / 2, escaped(chart_.y_label));
+    result += internal::ticks_across(
+        ticks, [this](double value) { return x_.position(value); }, kHeight, chart_.x_label);
+    return result + fmt::format("<text class=\"axis\" x=\"{:.0f}\" y=\"-12\">{}</text>", -left,
+                                escaped(chart_.y_label));
+  }
+
+  // Where the names of strong series stand, in pixels from the top; of the others where they end.
+  std::vector<double> name_positions() const {
+    std::vector<double> result(chart_.series.size()), moved;
+    std::vector<std::size_t> at_end;
+    double end = 0;
+    for (const Series& series : chart_.series)
+      if (const auto last = last_shown(series)) end = std::max(end, at_x(last->x));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const auto last = last_shown(chart_.series[i]);
+      if (!last) continue;
+      result[i] = at_y(last->y);
+      if (!strong_[i] || at_x(last->x) < end - 1e-6) continue;
+      at_end.push_back(i);
+      moved.push_back(result[i]);
+    }
+    internal::move_apart(moved, kBetweenNames, 0, kHeight);
+    for (std::size_t k = 0; k < at_end.size(); ++k) result[at_end[k]] = moved[k];
     return result;
   }
 
-  Html line(std::size_t i) const {
+  Html point(const Series& series, const ChartPoint& p, int mark, bool strong) const {
+    const std::string spread =
+        p.high > p.low ? fmt::format(", {} to {}", short_number(p.low), short_number(p.high))
+                       : std::string();
+    return fmt::format(
+        "<use class=\"point\" href=\"#m{}\" x=\"{:.2f}%\" y=\"{:.1f}\"{}><title>{}: {} {}, {} {} "
+        "({}{})</title></use>",
+        mark % kMarks, at_x(p.x), at_y(p.y), strong ? " tabindex=\"0\"" : "", escaped(series.name),
+        escaped(chart_.x_label), short_number(p.x), escaped(chart_.y_label), short_number(p.y),
+        name_of(series.source), spread);
+  }
+
+  Html line(std::size_t i, double name_position) const {
     const Series& series = chart_.series[i];
-    std::string path, spreads, points;
-    bool begun = false;
+    const Look look = look_of(chart_, i);
+    std::string path;
+    Html spreads, points;
     for (const ChartPoint& p : series.points) {
       if (!is_shown(p.x, p.y)) continue;
-      const Place at{at_x(p.x), at_y(p.y)};
-      path += fmt::format("{}{:.1f} {:.1f}", begun ? "L" : "M", at.x, at.y);
-      begun = true;
-      std::string spread;
-      if (p.high > p.low && is_shown(p.x, p.low)) {
-        spreads += fmt::format("M{:.1f} {:.1f}V{:.1f}", at.x, at_y(p.low), at_y(p.high));
-        spread = fmt::format(", {} to {}", short_number(p.low), short_number(p.high));
-      }
-      points += fmt::format(
-          "<circle class=\"point\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" tabindex=\"0\">"
-          "<title>{}: {} {}, {} {} ({}{})</title></circle>",
-          at.x, at.y, escaped(series.name), escaped(chart_.x_label), short_number(p.x),
-          escaped(chart_.y_label), short_number(p.y), name_of(series.source), spread);
+      path += fmt::format("{}{:.2f} {:.1f}", path.empty() ? "M" : "L", at_x(p.x), at_y(p.y));
+      if (p.high > p.low && is_shown(p.x, p.low))
+        spreads += fmt::format(
+            "<line class=\"spread\" x1=\"{0:.2f}%\" x2=\"{0:.2f}%\" y1=\"{1:.1f}\" "
+            "y2=\"{2:.1f}\"/>",
+            at_x(p.x), at_y(p.low), at_y(p.high));
+      points += point(series, p, look.mark, strong_[i]);
     }
-    if (!begun) return "";
-    const char* predicted = series.source == Source::predicted ? " predicted" : "";
+    if (path.empty()) return "";
+    const ChartPoint last = *last_shown(series);
     return fmt::format(
-        "<g class=\"series {0}{1}\" data-series=\"{2}\"><path class=\"line\" d=\"{3}\"/>"
-        "<path class=\"spread\" d=\"{4}\"/>{5}</g>",
-        look(chart_, i), predicted, i, path, spreads, points);
+        "<g class=\"series {0}{1}{2}\" data-name=\"{3}\"><svg viewBox=\"0 0 100 {4:.0f}\" "
+        "width=\"100%\" height=\"{4:.0f}\" preserveAspectRatio=\"none\"><path class=\"hit\" "
+        "d=\"{5}\"/><path class=\"line\" d=\"{5}\"/></svg>{6}{7}<text class=\"name\" "
+        "x=\"{8:.2f}%\" dx=\"9\" y=\"{9:.1f}\" data-y=\"{10:.1f}\" "
+        "dominant-baseline=\"middle\">{3}</text></g>",
+        classes_of(look), strong_[i] ? "" : " weak",
+        series.source == Source::predicted ? " predicted" : "", escaped(series.name), kHeight, path,
+        spreads, points, at_x(last.x), name_position, at_y(last.y));
+  }
+
+  Html key(std::size_t i, bool with_source) const {
+    const Series& series = chart_.series[i];
+    const Look look = look_of(chart_, i);
+    return fmt::format(
+        "<button type=\"button\" class=\"key {0}{1}{2}\" data-name=\"{3}\" "
+        "aria-pressed=\"false\"><svg viewBox=\"0 0 24 10\"><path class=\"line\" d=\"M0 "
+        "5H24\"/><use class=\"point\" href=\"#m{4}\" x=\"12\" y=\"5\"/></svg>{3}{5}</button>",
+        classes_of(look), strong_[i] ? "" : " weak",
+        series.source == Source::predicted ? " predicted" : "", escaped(series.name),
+        look.mark % kMarks,
+        with_source ? fmt::format(" <span class=\"source\">{}</span>", name_of(series.source))
+                    : "");
   }
 
   const LineChart& chart_;
+  std::vector<bool> strong_;
   std::vector<double> xs_;
   Axis x_, y_;
 };
 
+// How often each series is the best of its group at one of the chart's x.
+std::vector<int> times_best(const LineChart& chart) {
+  std::map<std::pair<std::string, double>, std::pair<double, std::size_t>> best;
+  for (std::size_t i = 0; i < chart.series.size(); ++i)
+    for (const ChartPoint& p : chart.series[i].points) {
+      if (!std::isfinite(p.y)) continue;
+      const double y = chart.more_is_better ? -p.y : p.y;
+      const auto [at, is_new] = best.try_emplace({group_of(chart, i), p.x}, y, i);
+      if (!is_new && y < at->second.first) at->second = {y, i};
+    }
+  std::vector<int> result(chart.series.size());
+  for (const auto& [where, value] : best) ++result[value.second];
+  return result;
+}
+
 }  // namespace
+
+std::vector<bool> strong_series(const LineChart& chart) {
+  std::vector<bool> result(chart.series.size(), chart.series.size() <= kMostStrong);
+  if (chart.series.size() <= kMostStrong) return result;
+  const std::vector<int> times = times_best(chart);
+  std::map<std::string, std::size_t> most;  // of each group
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto [at, is_new] = most.try_emplace(group_of(chart, i), i);
+    if (!is_new && times[i] > times[at->second]) at->second = i;
+  }
+  for (const auto& [group, i] : most) result[i] = true;
+  return result;
+}
 
 Html line_chart(const LineChart& chart) {
   const bool mixed =
       std::any_of(chart.series.begin(), chart.series.end(),
                   [&](const Series& series) { return series.source != chart.series[0].source; });
-  const auto label = [](Source source) {
-    return fmt::format("<span class=\"source\">{}</span>", name_of(source));
-  };
-  Html legend;
-  for (std::size_t i = 0; i < chart.series.size(); ++i)
-    legend += fmt::format(
-        "<button type=\"button\" class=\"key {}{}\" data-series=\"{}\" aria-pressed=\"true\">"
-        "<svg viewBox=\"0 0 24 8\"><path class=\"line\" d=\"M0 4H24\"/></svg>{}{}</button>",
-        look(chart, i), chart.series[i].source == Source::predicted ? " predicted" : "", i,
-        escaped(chart.series[i].name), mixed ? label(chart.series[i].source) : "");
+  const LinePlot plot(chart);
   return fmt::format(
       "<figure class=\"chart\"><figcaption>{}{}</figcaption>{}<div class=\"legend\">{}</div>"
       "</figure>\n",
-      escaped(chart.title), mixed || chart.series.empty() ? "" : label(chart.series[0].source),
-      LinePlot(chart).svg(), legend);
-}
-
-Html bar_chart(const BarChart& chart) {
-  constexpr double kBarHeight = 18, kValues = 80;
-  const double names = chart.name_width;
-  const double height = kTop + kBarHeight * static_cast<double>(chart.bars.size()) + kBottom;
-  std::vector<double> values = {chart.mark};
-  for (const Bar& bar : chart.bars) values.push_back(bar.value);
-  const Axis axis(values, Scale::linear);
-  const double room = kWidth - names - kValues;
-  const auto at = [&](double value) { return names + axis.position(value) * room; };
-  const double bottom = height - kBottom;
-  Html svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth,
-                         height, escaped(chart.title));
-  for (const Tick& tick : axis.ticks())
-    svg += fmt::format(
-        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>"
-        "<text class=\"tick\" x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4}</text>",
-        at(tick.value), kTop, bottom, bottom + 16, escaped(tick.label));
-  double y = kTop;
-  Html amounts;  // above the mark, or it would cross them out
-  for (const Bar& bar : chart.bars) {
-    const double value = std::isfinite(bar.value) ? std::max(bar.value, 0.0) : 0.0;
-    svg += fmt::format(
-        "<text class=\"tick\" x=\"{0}\" y=\"{1:.1f}\" text-anchor=\"end\" "
-        "dominant-baseline=\"middle\">{2}</text>"
-        "<rect class=\"bar{3}\" x=\"{4}\" y=\"{5:.1f}\" width=\"{6:.1f}\" height=\"{7}\" "
-        "tabindex=\"0\"><title>{2}: {8} {9} ({10}){11}</title></rect>",
-        names - 6, y + kBarHeight / 2, escaped(bar.name), bar.emphasised ? " emphasised" : "",
-        names, y + 2, at(value) - names, kBarHeight - 4, short_number(bar.value),
-        escaped(chart.label), name_of(chart.source),
-        bar.note.empty() ? "" : "; " + escaped(bar.note));
-    amounts += fmt::format(
-        "<text class=\"tick value\" x=\"{:.1f}\" y=\"{:.1f}\" "
-        "dominant-baseline=\"middle\">{}</text>",
-        at(value) + 4, y + kBarHeight / 2, short_number(bar.value));
-    y += kBarHeight;
-  }
-  if (chart.mark > 0)
-    svg += fmt::format("<line class=\"mark\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>",
-                       at(chart.mark), kTop, bottom);
-  svg += amounts;
-  svg += fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                     names + room / 2, height - 8, escaped(chart.label));
-  return fmt::format(
-      "<figure class=\"chart\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
-      "</svg></figure>\n",
-      escaped(chart.title), name_of(chart.source), svg);
+      escaped(chart.title),
+      mixed || chart.series.empty()
+          ? ""
+          : fmt::format(" <span class=\"source\">{}</span>", name_of(chart.series[0].source)),
+      plot.html(), plot.legend(mixed));
 }
 
 }  // namespace delray::apps::report

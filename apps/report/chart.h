@@ -6,6 +6,7 @@
 
 #include "apps/report/axis.h"
 #include "apps/report/html.h"
+#include "apps/report/look.h"
 
 namespace delray::apps::report {
 
@@ -20,7 +21,7 @@ struct Series {
   std::string name;
   Source source = Source::measured;
   std::vector<ChartPoint> points;  // by ascending x; those that are not finite are left out
-  int look = -1;                   // its colour and dash, from 0; -1: by its place among the series
+  Look look = {};
 };
 
 struct LineChart {
@@ -28,30 +29,20 @@ struct LineChart {
   std::string x_label, y_label;  // with units
   Scale x_scale = Scale::linear, y_scale = Scale::linear;
   bool ticks_at_points = false;  // of the x axis, where there are few
+  bool more_is_better = false;   // of y
   std::vector<Series> series;
 };
 
-// A figure; its legend turns series off and on. A logarithmic axis leaves out what is not above 0.
-// O(points).
+// So many lines are all drawn in colour.
+inline constexpr std::size_t kMostStrong = 5;
+
+// The series that are drawn in colour and named at their ends: all of a few; of more, of each
+// group the one that is best at most of the chart's x. O(points^2).
+std::vector<bool> strong_series(const LineChart& chart);
+
+// A figure. Lines that are not strong are grey until they, their name in the legend or a line of
+// the same name in another chart are pointed at or chosen. A logarithmic axis leaves out what is
+// not above 0. O(points^2).
 Html line_chart(const LineChart& chart);
-
-struct Bar {
-  std::string name;
-  double value = 0;
-  std::string note;  // on hover, after the value
-  bool emphasised = false;
-};
-
-struct BarChart {
-  std::string title;
-  std::string label;  // of the values, with units
-  Source source = Source::counted;
-  std::vector<Bar> bars;
-  double mark = 0;  // a line across all bars, e.g. their mean; 0: none
-  double name_width = 190;
-};
-
-// A figure with one bar below the other, from 0.
-Html bar_chart(const BarChart& chart);
 
 }  // namespace delray::apps::report

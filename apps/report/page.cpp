@@ -65,8 +65,11 @@ Html grid(const char* name, const std::vector<Html>& figures) {
 
 }  // namespace
 
+Html advice_beside(const Html& advice, const Html& evidence) {
+  return "<div>" + advice + "</div><div>" + evidence + "</div>";
+}
 Html beside(const std::vector<Html>& figures) { return grid("beside", figures); }
-Html in_pairs(const std::vector<Html>& figures) { return grid("beside pairs", figures); }
+Html in_columns(const std::vector<Html>& figures) { return grid("beside columns", figures); }
 
 Html page(const Page& page) {
   Html tabs, panels;
@@ -87,7 +90,9 @@ Html page(const Page& page) {
   Html result = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   result += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">";
   result += "<title>" + escaped(page.title) + "</title>\n<style>" + internal::kStyle + "</style>";
-  result += "</head>\n<body><header><h1>" + escaped(page.title) + "</h1>\n";
+  result += "</head>\n<body>" + std::string(internal::kMarks) + "<header><h1>" +
+            escaped(page.title) + "</h1>\n";
+  if (!page.machine.empty()) result += "<p class=\"machine\">" + escaped(page.machine) + "</p>\n";
   if (page.unfinished)
     result +=
         "<p class=\"unfinished\">This report was interrupted: it shows what had been finished.</p>";

@@ -19,6 +19,7 @@ struct Tab {
 
 struct Page {
   std::string title;
+  std::string machine;          // what measured and compiled; empty: not told
   Html answer;                  // the first screen: what to use here, and why
   bool unfinished = false;      // it was interrupted; the page says so
   std::vector<Tab> tabs;        // the evidence
@@ -36,8 +37,10 @@ Html picture(const image::Image8& image, const std::string& caption);
 // Paragraphs and headings.
 Html paragraph(const std::string& text);
 Html heading(const std::string& text);
-// Figures side by side where there is room: small ones, or two charts.
+// The first screen: what to do, and beside it, where there is room, what tells so.
+Html advice_beside(const Html& advice, const Html& evidence);
+// Figures side by side, as many as there is room for: small ones, or charts.
 Html beside(const std::vector<Html>& figures);
-Html in_pairs(const std::vector<Html>& figures);
+Html in_columns(const std::vector<Html>& figures);
 
 }  // namespace delray::apps::report

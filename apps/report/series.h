@@ -20,13 +20,14 @@ auto unique_of(const Rows& rows, F&& of) {
   return result;
 }
 
-// A line for each name, of the points that its rows have: point(row) is an optional<ChartPoint>.
-// REQUIRES: the rows of a name come by ascending x.
-template <class Rows, class Name, class Point>
-std::vector<Series> series_by(const Rows& rows, Name&& name, Source source, Point&& point) {
+// A line for each name, of the points that its rows have: point(row) is an optional<ChartPoint>,
+// look(name) a Look. REQUIRES: the rows of a name come by ascending x.
+template <class Rows, class Name, class Look, class Point>
+std::vector<Series> series_by(const Rows& rows, Name&& name, Look&& look, Source source,
+                              Point&& point) {
   std::vector<Series> result;
   for (const auto& one : unique_of(rows, name)) {
-    Series series{std::string(one), source, {}};
+    Series series{std::string(one), source, {}, look(one)};
     for (const auto& row : rows)
       if (name(row) == one)
         if (const std::optional<ChartPoint> at = point(row)) series.points.push_back(*at);

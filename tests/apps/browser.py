@@ -15,12 +15,12 @@ import time
 SKIPPED = 77
 REPORTS = [
     ("compose", "compare compose gen:city:3000 --size 160x90 --ranks 2,4,80 --quick"
-                " --compose tree radix-k:2 centralized"),
+                " --compose tree radix-k:2 radix-k binary-swap centralized direct-send mesh"),
     ("triangulate", "compare triangulate {points} --threads 1,3 --quick"),
     ("partition", "compare partition gen:city:2000 --size 160x90 --ranks 2,4,80 --regions 1,2"
-                  " --quick --partition mahd,graph,interlaced"),
+                  " --quick --partition mahd,kd-split,graph,whitman,whelan,interlaced"),
     ("schedule", "compare schedule gen:spheres:500 --size 160x90 --ranks 2,4,80 --tile 16 --quick"
-                 " --schedule static,demand,stealing"),
+                 " --schedule static,random,demand,guided,stealing,neighbour-stealing"),
 ]
 
 
@@ -43,7 +43,10 @@ for program in ("chromium", "chromedriver"):
 
 def open_browser(folder):
     options = webdriver.ChromeOptions()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+    options.add_argument(f"--user-data-dir={folder / 'browser'}")
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic",
+                     "--no-first-run", "--disable-background-networking",
+                     "--disable-component-update", "--disable-sync",
                      "--window-size=1280,1000"):
         options.add_argument(argument)
     options.add_experimental_option("prefs", {"download.default_directory": str(folder)})
@@ -95,6 +98,81 @@ def check_csv(browser, folder, statistics):
             assert same(row[name], value), (name, row[name], value)
 
 
+# Texts that are too small to be read, in pixels on the screen, whatever they are scaled by.
+SMALL_TEXTS = """
+return [...document.querySelectorAll('body *')].filter(e => e.getClientRects().length &&
+    [...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim()))
+  .map(e => [e.textContent, parseFloat(getComputedStyle(e).fontSize) *
+    (e.ownerSVGElement ? Math.hypot(e.getScreenCTM().a, e.getScreenCTM().b) : 1)]).filter(pair => pair[1] < 11)"""
+# Texts of plots that reach out of the window.
+CLIPPED_TEXTS = """
+return [...document.querySelectorAll('.plot text')].filter(e => {
+  const box = e.getBoundingClientRect();
+  return box.width && (box.left < 0 || box.right > document.documentElement.clientWidth);
+}).map(e => e.textContent)"""
+
+
+def check_widths(browser, tabs):
+    for width in (420, 1000, 1600):
+        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                {"width": width, "height": 900, "deviceScaleFactor": 1,
+                                 "mobile": False})
+        for tab in tabs:
+            tab.click()
+            root = browser.find_element(By.TAG_NAME, "html")
+            assert int(root.get_property("scrollWidth")) <= width, (width, tab.text)
+            assert not (small := browser.execute_script(SMALL_TEXTS)), (width, tab.text, small)
+            assert not (clipped := browser.execute_script(CLIPPED_TEXTS)), (width, clipped)
+        used = browser.execute_script(
+            "return document.querySelector('main').getBoundingClientRect().width")
+        assert used > 0.9 * width, (used, width)
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def colour(browser, element):
+    return browser.execute_script("return getComputedStyle(arguments[0]).stroke", element)
+
+
+def check_lights(browser):
+    """A line that is pointed at stands out; its name below the chart does the same, and keeps it."""
+    shown = "[role=tabpanel]:not(.hidden) "
+    for figure in browser.find_elements(By.CSS_SELECTOR, shown + "figure.chart"):
+        weak = figure.find_elements(By.CSS_SELECTOR, "g.series.weak")
+        strong = figure.find_elements(By.CSS_SELECTOR, "g.series:not(.weak)")
+        if not weak:
+            continue
+        line = weak[0].find_element(By.CSS_SELECTOR, ".line")
+        grey, name = colour(browser, line), weak[0].find_element(By.CSS_SELECTOR, ".name")
+        assert not name.is_displayed(), "a name of a grey line"
+        key = next(k for k in figure.find_elements(By.CSS_SELECTOR, "button.key")
+                   if k.get_attribute("data-name") == weak[0].get_attribute("data-name"))
+        browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
+        ActionChains(browser).move_to_element(key).perform()
+        assert colour(browser, line) != grey and name.is_displayed(), "no highlight on hover"
+        assert float(strong[0].value_of_css_property("opacity")) < 0.5, "others stay as bright"
+        key.click()
+        ActionChains(browser).move_to_element(browser.find_element(By.TAG_NAME, "h1")).perform()
+        browser.execute_script("document.activeElement.blur()")
+        assert colour(browser, line) != grey and name.is_displayed(), "a chosen line is grey"
+        assert float(strong[0].value_of_css_property("opacity")) == 1
+        key.click()
+        ActionChains(browser).move_to_element(browser.find_element(By.TAG_NAME, "h1")).perform()
+        browser.execute_script("document.activeElement.blur()")
+        assert colour(browser, line) == grey
+        return True
+    return False
+
+
+def check_colours(browser):
+    """Classes that make the look of each line, by name; the same in every chart."""
+    looks = {}
+    for series in browser.find_elements(By.CSS_SELECTOR, "g.series"):
+        look = tuple(c for c in series.get_attribute("class").split() if c[0] in "cd" and c[1:].isdigit())
+        name = series.get_attribute("data-name")
+        assert looks.setdefault(name, look) == look, (name, looks[name], look)
+    assert len(looks) > 5, looks
+
+
 def check(browser, name, command, delray, folder):
     page, statistics = folder / f"{name}.html", folder / f"{name}.json"
     command = command.format(points=folder / "points.xyz")
@@ -109,18 +187,23 @@ def check(browser, name, command, delray, folder):
                  if p.is_displayed()]
         assert [p.get_attribute("aria-labelledby") for p in shown] == [tab.get_attribute("id")]
         assert shown[0].text.strip(), "an empty tab: " + tab.text
+    check_widths(browser, tabs)
     tabs[0].click()
-    point = browser.find_element(By.CSS_SELECTOR, "[role=tabpanel]:not(.hidden) [data-tip]")
+    # The last one lies above the others.
+    point = browser.find_elements(By.CSS_SELECTOR, "[role=tabpanel]:not(.hidden) figure:first-of-type"
+                                                   " [data-tip]")[-1]
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", point)
     ActionChains(browser).move_to_element(point).perform()
     tip = browser.find_element(By.ID, "tip")
     assert tip.is_displayed() and tip.text, "no numbers on hover"
     assert any(source in tip.text for source in ("counted", "measured", "predicted")), tip.text
-    keys = browser.find_elements(By.CSS_SELECTOR, "[role=tabpanel]:not(.hidden) button.key")
-    if keys:
-        series = browser.find_element(By.CSS_SELECTOR, "[role=tabpanel]:not(.hidden) g.series")
-        keys[0].click()
-        assert not series.is_displayed(), "the legend turns nothing off"
+    check_colours(browser)
+    assert check_lights(browser), "no chart of many lines on the first tab"
+    for word in ("GNU", "Clang"):
+        if word in browser.find_element(By.CSS_SELECTOR, ".machine").text:
+            break
+    else:
+        raise AssertionError("no compiler is named")
     check_csv(browser, folder, json.loads(statistics.read_text()))
     errors = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
     assert not errors, errors

@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "apps/report/axis.h"
+#include "apps/report/bar_chart.h"
 #include "apps/report/chart.h"
+#include "apps/report/internal/plot.h"
 #include "apps/report/matrix.h"
 #include "apps/report/overlay.h"
 #include "apps/report/stacked_bars.h"
@@ -82,7 +84,7 @@ TEST(ReportCharts, DrawEveryPointThatCanBeShown) {
                   {"two", Source::predicted, {{1, 5}}},
                   {"none", Source::counted, {}}};
   const Html html = line_chart(chart);
-  EXPECT_EQ(count(html, "<circle"), 3U);
+  EXPECT_EQ(count(html, "</title></use>"), 3U);
   EXPECT_EQ(count(html, "<button"), 3U);
   EXPECT_NE(html.find("a &lt; b"), std::string::npos);
   EXPECT_NE(html.find("3 (measured, 2.5 to 4)"), std::string::npos);
@@ -124,18 +126,83 @@ TEST(ReportCharts, SayWhereThereIsNothingToSee) {
   chart.series[0].points[1].y = 3;
   const Html html = line_chart(chart);
   EXPECT_EQ(html.find("nothing but zeros"), std::string::npos);
-  EXPECT_EQ(count(html, "d0 predicted\""), 2U);  // the line, and its key looks like it
+  EXPECT_EQ(count(html, "c0 d0 predicted\""), 2U);  // the line, and its key looks like it
   const Html cells = matrix({"m", "from", "to", "bytes", Source::counted, 1, 2, {0, 0}}, 9);
   EXPECT_NE(cells.find("nothing"), std::string::npos);
 }
 
 TEST(ReportCharts, SeriesKeepTheirLookWhateverTheirPlace) {
   LineChart chart;
-  chart.series = {{"one", Source::measured, {{1, 2}}}, {"two", Source::measured, {{1, 3}}, 9}};
+  chart.series = {{"one", Source::measured, {{1, 2}}},
+                  {"two", Source::measured, {{1, 3}}, {4, 2, 1, "group"}}};
   const Html html = line_chart(chart);
   EXPECT_EQ(count(html, "class=\"series c0 d0\""), 1U);
-  EXPECT_EQ(count(html, "class=\"series c1 d1\""), 1U);
-  EXPECT_EQ(count(html, "class=\"key c1 d1\""), 1U);
+  EXPECT_EQ(count(html, "class=\"series c4 d1\""), 1U);
+  EXPECT_EQ(count(html, "class=\"key c4 d1\""), 1U);
+  EXPECT_EQ(count(html, "href=\"#m2\""), 2U);  // at its point and in the legend
+}
+
+// Two groups of three; the last is best most often although the first has the least value of all.
+LineChart crowded_chart() {
+  LineChart chart;
+  for (const char* name : {"a", "b", "c"})
+    chart.series.push_back({name, Source::measured, {}, {0, 0, 0, "first"}});
+  for (const char* name : {"d", "e", "f"})
+    chart.series.push_back({name, Source::measured, {}, {1, 0, 0, "second"}});
+  chart.series[0].points = {{1, 0}, {2, 9}, {3, 9}};
+  chart.series[1].points = {{1, 5}, {2, 5}, {3, 9}};
+  chart.series[2].points = {{1, 6}, {2, 4}, {3, 4}};
+  for (std::size_t i = 3; i < 6; ++i) chart.series[i].points = {{1, 10.0 + static_cast<double>(i)}};
+  return chart;
+}
+
+TEST(ReportCharts, OfManyLinesDrawTheBestOfEachGroupInColour) {
+  LineChart chart = crowded_chart();
+  EXPECT_EQ(strong_series(chart), (std::vector<bool>{false, false, true, true, false, false}));
+  const Html html = line_chart(chart);
+  EXPECT_EQ(count(html, "class=\"series c0 d0 weak\""), 2U);
+  EXPECT_EQ(count(html, "class=\"series c0 d0\""), 1U);
+  EXPECT_EQ(count(html, "class=\"name\""), 6U);
+  EXPECT_EQ(count(html, "class=\"group\""), 2U);
+  chart.more_is_better = true;
+  EXPECT_EQ(strong_series(chart), (std::vector<bool>{true, false, false, false, false, true}));
+  chart.series.resize(kMostStrong);
+  EXPECT_EQ(strong_series(chart), std::vector<bool>(kMostStrong, true));
+}
+
+TEST(ReportCharts, MoveNamesApartWithinTheChart) {
+  std::vector<double> names = {10, 12, 11, 95, 99};
+  internal::move_apart(names, 10, 0, 100);
+  EXPECT_EQ(names, (std::vector<double>{10, 30, 20, 90, 100}));
+  std::vector<double> many(21, 50.0);
+  internal::move_apart(many, 10, 0, 100);
+  for (std::size_t i = 0; i < many.size(); ++i)
+    EXPECT_NEAR(many[i], 5.0 * static_cast<double>(i), 1e-9);
+  std::vector<double> none;
+  internal::move_apart(none, 10, 0, 100);
+  EXPECT_TRUE(none.empty());
+}
+
+TEST(ReportCharts, LabelsOfTicksDoNotTouch) {
+  const std::vector<double> values = {2, 3, 4, 8, 16, 64, 256, 1024, 4096};
+  const Axis axis(values, Scale::logarithmic);
+  const Html html = internal::ticks_across(
+      Axis::ticks_at(values), [&](double value) { return axis.position(value); }, 280, "ranks");
+  EXPECT_EQ(count(html, "class=\"grid\""), values.size());
+  double end = -100;  // of the label before, in a plot of 190 pixels
+  std::size_t always = 0;
+  for (std::size_t at = html.find("class=\"tick\""); at != std::string::npos;
+       at = html.find("class=\"tick\"", at + 1)) {
+    const double centre = std::stod(html.substr(html.find("x=\"", at) + 3)) * 1.9;
+    const std::size_t text = html.find('>', at) + 1;
+    const double half = internal::text_width(html.substr(text, html.find('<', text) - text)) / 2;
+    EXPECT_GT(centre - half, end);
+    end = centre + half;
+    ++always;
+  }
+  EXPECT_GE(always, 4U);
+  EXPECT_LE(always + count(html, "tick spare"), values.size());
+  EXPECT_GE(count(html, "tick spare"), 1U);
 }
 
 TEST(ReportCharts, StackedBarsShowPartsWhereTheirSumBegins) {
@@ -190,10 +257,12 @@ TEST(ReportPage, HoldsAllAndNothingEndsItsScriptsEarly) {
   page.tabs = {{"First", table(rows)}, {"Second", picture(image::Image8(3, 2), "small")}};
   page.data = {{"schema", "delray.test/1"}, {"rows", {{{"text", "</script><b>"}}}}};
   page.provenance = {{"command", "delray <x>"}};
+  page.machine = "processor; compiler 1.2";
   const Html html = report::page(page);
   EXPECT_EQ(count(html, "<script"), 2U);
   EXPECT_EQ(count(html, "</script>"), 2U);
   EXPECT_EQ(count(html, "<section"), 2U);
+  EXPECT_NE(html.find("<p class=\"machine\">processor; compiler 1.2</p>"), std::string::npos);
   EXPECT_NE(html.find("was interrupted"), std::string::npos);
   EXPECT_NE(html.find("delray &lt;x&gt;"), std::string::npos);
   EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);

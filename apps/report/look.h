@@ -1,0 +1,19 @@
+// How a variant looks in all charts of all reports.
+#pragma once
+
+#include <string>
+
+namespace delray::apps::report {
+
+inline constexpr int kColours = 8, kMarks = 6, kDashes = 3;
+
+// Variants of a group share a colour and differ by the marks at their points; what is derived from
+// a variant by a parameter differs from it by the dashes of its line.
+struct Look {
+  int colour = -1;    // from 0, taken modulo kColours; -1: by the place among a chart's series
+  int mark = 0;       // from 0, taken modulo kMarks
+  int dash = 0;       // 0: a whole line; others are taken modulo kDashes
+  std::string group;  // empty: a group of its own
+};
+
+}  // namespace delray::apps::report
