@@ -23,7 +23,7 @@ struct NaturalNeighbour {
 // most 3e-10, so that linear functions are off by less than that part of their range among the
 // neighbours, for all finite points: in doubles where a bound of the error says so, in wider
 // numbers else. The cost of Query::locate, plus O(k log k) for k simplices whose spheres hold q;
-// some hundred times that where simplices are almost flat, and on faces of a hull in space.
+// some ten times that on lattices that rounding has bent, a hundred on faces of a hull in space.
 std::vector<NaturalNeighbour> natural_neighbours(const Query& query, const glm::dvec3& q);
 
 }  // namespace delray::delaunay

@@ -4,11 +4,6 @@
 // circumscribed circles or spheres. Where simplices are almost flat the centres lie far away and
 // the parts, large ones, cancel out. So each centre carries how far off it may be, each part adds
 // what that makes of it, and shares count only if all of it together is a small part of the whole.
-//
-// With a relative error u of each operation and of each difference of two coordinates, in norms
-// that are sums of absolute values: a determinant of a, b and c is off by at most 16 u |a| |b| |c|
-// (3 u of its factors, 5 for a minor, 5 for the sum of three, and second orders), the numerator of
-// a centre by 24 u |a| |b| |c| (|a| + |b| + |c|), and likewise in 2D. Constants are rounded up.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "delaunay/internal/circumcentres.h"
 #include "delaunay/natural_neighbours.h"
 
 namespace delray::delaunay::internal {
@@ -29,159 +25,57 @@ namespace delray::delaunay::internal {
 // The error that shares may have, all together, as a part of the whole.
 constexpr double kShareError = 0x1p-32;
 
-// u, and whether numbers overflow or underflow; for others than double see natural_shares.cpp.
-template <class T>
-struct Precision;
-template <>
-struct Precision<double> {
-  static constexpr double kRelative = 0x1p-53;
-  // Edges between these lengths leave all products of eight within the range of doubles.
-  static bool in_range(double length) { return length > 0x1p-110 && length < 0x1p110; }
-};
+using SharesFound = std::optional<std::vector<NaturalNeighbour>>;
 
-template <class T>
-struct Vector2 {
-  T x, y;
-};
-template <class T>
-struct Vector3 {
-  T x, y, z;
-};
-
-template <class T>
-Vector2<T> operator-(const Vector2<T>& a, const Vector2<T>& b) {
-  return {a.x - b.x, a.y - b.y};
-}
-template <class T>
-Vector2<T> operator+(const Vector2<T>& a, const Vector2<T>& b) {
-  return {a.x + b.x, a.y + b.y};
-}
-template <class T>
-Vector3<T> operator-(const Vector3<T>& a, const Vector3<T>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class T>
-Vector3<T> operator+(const Vector3<T>& a, const Vector3<T>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class T>
-Vector3<T> operator*(const T& s, const Vector3<T>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-template <class T>
-T cross(const Vector2<T>& a, const Vector2<T>& b) {
-  return a.x * b.y - a.y * b.x;
-}
-template <class T>
-Vector3<T> cross(const Vector3<T>& a, const Vector3<T>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-template <class T>
-T dot(const Vector3<T>& a, const Vector3<T>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class T>
-T norm(const Vector2<T>& a) {
-  using std::abs;
-  return abs(a.x) + abs(a.y);
-}
-template <class T>
-T norm(const Vector3<T>& a) {
-  using std::abs;
-  return abs(a.x) + abs(a.y) + abs(a.z);
-}
-
-// In double, a difference of coordinates is off by u of itself.
-template <class T>
-Vector2<T> to_vector(const glm::dvec2& p) {
-  return {T(p.x), T(p.y)};
-}
-template <class T>
-Vector3<T> to_vector(const glm::dvec3& p) {
-  return {T(p.x), T(p.y), T(p.z)};
-}
-
-// The middle of a circle or sphere, as seen from q; `error` is negative where it is not known.
-template <class Vector, class T>
-struct Centre {
-  Vector at;
-  T error;
-  bool known() const { return error >= 0; }
-};
-
-// The circle through three points: `at` as they are, of which q is subtracted.
-template <class T>
-Centre<Vector2<T>, T> centre_of(const std::array<Vector2<T>, 3>& at, const Vector2<T>& q) {
-  using std::abs;
-  const Vector2<T> a = at[1] - at[0], b = at[2] - at[0], p = at[0] - q;
-  const T kU = Precision<T>::kRelative, la = norm(a), lb = norm(b);
-  const T determinant = cross(a, b), product = la * lb, off = T(12) * kU * product;
-  if (!Precision<T>::in_range(la) || !Precision<T>::in_range(lb) ||
-      !(abs(determinant) > T(2) * off)) {
-    return {p, T(-1)};
+// The corners of simplices, ascending: neighbour i is the vertex of row `rows[i]`.
+template <class Simplex>
+std::vector<std::uint32_t> rows_of(const std::vector<Simplex>& cavity) {
+  std::vector<std::uint32_t> rows;
+  rows.reserve(cavity.size() * cavity.front().rows.size());
+  for (const Simplex& simplex : cavity) {
+    rows.insert(rows.end(), simplex.rows.begin(), simplex.rows.end());
   }
-  const T aa = a.x * a.x + a.y * a.y, bb = b.x * b.x + b.y * b.y;
-  const Vector2<T> sum = {b.y * aa - a.y * bb, a.x * bb - b.x * aa};
-  const T scale = T(1) / (T(2) * determinant);
-  const Vector2<T> h = {scale * sum.x, scale * sum.y};
-  const T error = (T(20) * kU * product * (la + lb) + T(2) * norm(h) * off) /
-                      (T(2) * (abs(determinant) - off)) +
-                  T(6) * kU * (norm(h) + norm(p));
-  return {p + h, error};
+  std::ranges::sort(rows);
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
 }
 
-// The sphere through four points.
+inline std::uint32_t number_of(const std::vector<std::uint32_t>& rows, std::uint32_t row) {
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(rows, row) - rows.begin());
+}
+
+// A part of what neighbours lose, and how far off it is before it is rounded.
 template <class T>
-Centre<Vector3<T>, T> centre_of(const std::array<Vector3<T>, 4>& at, const Vector3<T>& q) {
-  using std::abs;
-  const Vector3<T> a = at[1] - at[0], b = at[2] - at[0], c = at[3] - at[0], p = at[0] - q;
-  const T kU = Precision<T>::kRelative, la = norm(a), lb = norm(b), lc = norm(c);
-  const Vector3<T> bc = cross(b, c);
-  const T determinant = dot(a, bc), product = la * lb * lc, off = T(16) * kU * product;
-  if (!Precision<T>::in_range(la) || !Precision<T>::in_range(lb) || !Precision<T>::in_range(lc) ||
-      !(abs(determinant) > T(2) * off)) {
-    return {p, T(-1)};
-  }
-  const Vector3<T> sum = dot(a, a) * bc + dot(b, b) * cross(c, a) + dot(c, c) * cross(a, b);
-  const Vector3<T> h = (T(1) / (T(2) * determinant)) * sum;
-  const T error = (T(24) * kU * product * (la + lb + lc) + T(2) * norm(h) * off) /
-                      (T(2) * (abs(determinant) - off)) +
-                  T(6) * kU * (norm(h) + norm(p));
-  return {p + h, error};
-}
+struct Part {
+  T size, error;
+};
 
-// Parts of what neighbours lose.
+// Sums of what neighbours lose.
 template <class T>
 class Shares {
  public:
-  // `error`: that of the part, before it is rounded.
-  void add(std::uint32_t row, const T& part, const T& error) {
+  explicit Shares(std::size_t neighbours) : sums_(neighbours, T(0)) {}
+
+  void add(std::size_t neighbour, const Part<T>& part) {
     using std::abs;
-    parts_.emplace_back(row, part);
-    error_ += error;
-    absolute_ += abs(part);
+    sums_[neighbour] += part.size;
+    error_ += part.error;
+    absolute_ += abs(part.size);
+    ++parts_;
   }
 
-  // Their sums, as shares of the whole; none where they are not precise enough. No share is
-  // negative in truth, so that taking those that are for zero does not add to the error.
-  std::optional<std::vector<NaturalNeighbour>> normalized() && {
-    std::ranges::stable_sort(parts_, {}, [](const auto& part) { return part.first; });
-    std::vector<std::pair<std::uint32_t, T>> sums;
+  // As shares of the whole; none where they are not precise enough. No share is negative in truth,
+  // so that taking those that are for zero does not add to the error.
+  SharesFound normalized(const std::vector<std::uint32_t>& rows) const {
     T whole = 0;
-    for (auto& [row, part] : parts_) {
-      if (sums.empty() || sums.back().first != row) {
-        sums.emplace_back(row, part);
-      } else {
-        sums.back().second += part;
-      }
-      whole += part;
-    }
-    error_ += T(Precision<T>::kRelative) * T(static_cast<double>(parts_.size() + 2)) * absolute_;
-    if (!(whole > 0 && error_ <= T(kShareError) * whole)) return std::nullopt;
+    for (const T& lost : sums_) whole += lost;
+    const T rounded = T(Precision<T>::kRelative) * T(static_cast<double>(parts_ + 2)) * absolute_;
+    if (!(whole > 0 && error_ + rounded <= T(kShareError) * whole)) return std::nullopt;
     std::vector<NaturalNeighbour> shares;
+    shares.reserve(rows.size());
     double sum = 0;
-    for (auto& [row, part] : sums) {
-      shares.push_back({row, std::max(0.0, static_cast<double>(T(part / whole)))});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      shares.push_back({rows[i], std::max(0.0, static_cast<double>(T(sums_[i] / whole)))});
       sum += shares.back().weight;
     }
     for (NaturalNeighbour& share : shares) share.weight /= sum;
@@ -189,11 +83,10 @@ class Shares {
   }
 
  private:
-  std::vector<std::pair<std::uint32_t, T>> parts_;
+  std::vector<T> sums_;
   T error_ = 0, absolute_ = 0;
+  std::size_t parts_ = 0;
 };
-
-using SharesFound = std::optional<std::vector<NaturalNeighbour>>;
 
 // Of triangles whose circles hold q, in the plane or in one of space. Sides are their edges that
 // are no other's.
@@ -211,24 +104,27 @@ template <class T>
 SharesFound shares_of_area(const std::vector<Triangle<T>>& cavity, const Vector2<T>& q) {
   using Middle = Centre<Vector2<T>, T>;
   struct Edge {
-    std::uint32_t start, end;
-    Middle centre;  // of the triangle on its left; of a side: of that with q
+    std::uint32_t start, end;  // neighbours
+    Middle centre;             // of the triangle on its left; of a side: of that with q
   };
   const auto ends = [](const Edge& edge) { return std::pair(edge.start, edge.end); };
+  const std::vector<std::uint32_t> rows = rows_of(cavity);
   std::vector<Edge> edges, sides;
   for (const Triangle<T>& t : cavity) {
     const Middle centre = centre_of(t.at, q);
     if (!centre.known()) return std::nullopt;
-    for (std::size_t k = 0; k < 3; ++k) edges.push_back({t.rows[k], t.rows[(k + 1) % 3], centre});
+    std::array<std::uint32_t, 3> numbers;
+    for (std::size_t k = 0; k < 3; ++k) numbers[k] = number_of(rows, t.rows[k]);
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back({numbers[k], numbers[(k + 1) % 3], centre});
   }
   std::vector<Edge> sorted = edges;
   std::ranges::sort(sorted, {}, ends);
-  Shares<T> shares;
-  const auto add = [&](std::uint32_t row, const Middle& from, const Middle& to) {
+  Shares<T> shares(rows.size());
+  const auto add = [&](std::uint32_t neighbour, const Middle& from, const Middle& to) {
     const T a = norm(from.at), b = norm(to.at);
-    shares.add(row, cross(from.at, to.at),
-               a * to.error + b * from.error + from.error * to.error +
-                   T(4) * T(Precision<T>::kRelative) * a * b);
+    const T error = a * to.error + b * from.error + from.error * to.error;
+    shares.add(neighbour,
+               {cross(from.at, to.at), error + T(4) * T(Precision<T>::kRelative) * a * b});
   };
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Edge& edge = edges[i];
@@ -249,7 +145,7 @@ SharesFound shares_of_area(const std::vector<Triangle<T>>& cavity, const Vector2
     const Edge& leaving = *std::ranges::lower_bound(sides, entering.end, {}, &Edge::start);
     add(entering.end, entering.centre, leaving.centre);
   }
-  return std::move(shares).normalized();
+  return shares.normalized(rows);
 }
 
 // Of tetrahedra whose spheres hold q.
@@ -268,90 +164,154 @@ struct Tetrahedron {
 constexpr std::array<std::array<std::size_t, 3>, 4> kFacets = {
     {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
 
+// The two tetrahedra of q and a side that share one of the side's edges.
+struct EdgeOfSides {
+  std::uint32_t start, end;  // as they follow each other around the first side
+  std::size_t first, second;
+};
+
+// Of the sides of a cavity, by their corners. O(n log n).
+inline std::vector<EdgeOfSides> edges_of(const std::vector<std::array<std::uint32_t, 3>>& sides) {
+  struct Directed {
+    std::uint64_t key;  // both ends, in ascending order
+    std::size_t edge;
+  };
+  std::vector<Directed> directed;
+  directed.reserve(3 * sides.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(sides[i][k], sides[i][(k + 1) % 3]);
+      directed.push_back({std::uint64_t{low} << 32 | high, 3 * i + k});
+    }
+  }
+  std::ranges::sort(directed, {}, &Directed::key);
+  std::vector<EdgeOfSides> edges;
+  edges.reserve(directed.size() / 2);
+  for (std::size_t i = 0; i + 1 < directed.size(); i += 2) {
+    const std::size_t first = directed[i].edge;
+    const auto& side = sides[first / 3];
+    edges.push_back({side[first % 3], side[(first + 1) % 3], first / 3, directed[i + 1].edge / 3});
+  }
+  return edges;
+}
+
 // What a neighbour i loses is a polyhedron. Each of its faces lies half-way between i and a point
 // j, another neighbour or q, and its edges are between the centres of tetrahedra that follow each
 // other around the edge from i to j. So its volume is a sum of cones with the apex i over triangles
 // of two centres and the middle of i and j: those of the tetrahedra in the cavity, less those of
-// the tetrahedra that would replace them.
+// the tetrahedra that would replace them. A cone with the apex j over the same triangle has the
+// same volume, as part of what j loses.
 //
 // REQUIRES: none of the sides is in a plane with q.
 template <class T>
-SharesFound shares_of_volume(const std::vector<Tetrahedron>& cavity, const glm::dvec3& place) {
-  using Middle = Centre<Vector3<T>, T>;
-  const Vector3<T> q = to_vector<T>(place);
-  struct Place {
-    std::uint32_t row;
-    Vector3<T> p;  // as seen from q
-  };
-  Shares<T> shares;
-  const T kU = Precision<T>::kRelative;
-  const auto add_cone = [&](const Place& i, const Place& j, const Middle& from, const Middle& to,
-                            int sign) {
-    const Vector3<T> middle = T(0.5) * (i.p + j.p), axis = j.p - i.p;
-    const Vector3<T> f = from.at - middle, t = to.at - middle;
-    const T far = norm(i.p) + norm(j.p), lf = norm(f), lt = norm(t), length = norm(axis);
-    const T from_off = from.error + T(3) * kU * (far + norm(from.at));
-    const T to_off = to.error + T(3) * kU * (far + norm(to.at));
-    const T volume = dot(axis, cross(f, t));
-    shares.add(i.row, sign > 0 ? volume : T(-volume),
-               length * (lf * to_off + lt * from_off + from_off * to_off) +
-                   T(16) * kU * (length + far) * lf * lt);
-  };
-  // A tetrahedron of q and a side, by one of its edges.
-  struct NewEdge {
-    Place start, end;
-    Middle centre;
-  };
-  struct Corners {
-    std::array<Vector3<T>, 4> at;
-    std::array<Place, 4> places;
-    Middle centre;
-  };
-  std::vector<Corners> corners;
-  corners.reserve(cavity.size());
-  for (const Tetrahedron& t : cavity) {
-    Corners& own = corners.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) {
-      own.at[k] = to_vector<T>(t.at[k]);
-      own.places[k] = {t.rows[k], own.at[k] - q};
-    }
-    own.centre = centre_of(own.at, q);
-    if (!own.centre.known()) return std::nullopt;
+class SharesOfVolume {
+ public:
+  SharesOfVolume(const std::vector<Tetrahedron>& cavity, const glm::dvec3& q)
+      : cavity_(cavity), q_(to_vector<T>(q)), rows_(rows_of(cavity)), shares_(rows_.size()) {}
+
+  SharesFound compute() {
+    find_corners();
+    if (!find_centres()) return std::nullopt;
+    add_cavity();
+    subtract_new();
+    return shares_.normalized(rows_);
   }
-  std::vector<NewEdge> edges;
-  for (std::size_t number = 0; number < cavity.size(); ++number) {
-    const Tetrahedron& t = cavity[number];
-    const Corners& own = corners[number];
-    for (std::size_t k = 0; k < 4; ++k) {
-      const auto& facet = kFacets[k];
-      const Middle other =
-          t.is_side(k) ? centre_of({own.at[facet[0]], own.at[facet[1]], own.at[facet[2]], q}, q)
-                       : corners[t.beyond[k]].centre;
-      if (!other.known()) return std::nullopt;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Place &start = own.places[facet[i]], &end = own.places[facet[(i + 1) % 3]];
-        add_cone(start, end, other, own.centre, 1);
-        if (!t.is_side(k)) continue;
-        add_cone(end, start, own.centre, other, 1);
-        edges.push_back({end, start, other});
+
+ private:
+  using Middle = Centre<Vector3<T>, T>;
+  struct Corner {
+    Vector3<T> at, from_q;
+    T far;  // norm(from_q)
+  };
+
+  void find_corners() {
+    corners_.resize(rows_.size());
+    numbers_.resize(cavity_.size());
+    for (std::size_t t = 0; t < cavity_.size(); ++t) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t number = numbers_[t][k] = number_of(rows_, cavity_[t].rows[k]);
+        const Vector3<T> at = to_vector<T>(cavity_[t].at[k]);
+        corners_[number] = {at, at - q_, norm(at - q_)};
       }
     }
   }
-  std::vector<std::size_t> order(edges.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto key = [&](std::size_t i) { return std::pair(edges[i].start.row, edges[i].end.row); };
-  std::ranges::sort(order, {}, key);
-  const Place origin = {0, {T(0), T(0), T(0)}};
-  for (const std::size_t i : order) {
-    const NewEdge& edge = edges[i];
-    const NewEdge& twin =
-        edges[*std::ranges::lower_bound(order, std::pair(edge.end.row, edge.start.row), {}, key)];
-    // Around its edge from `start` to `end` the tetrahedron follows its twin, and so it does from
-    // `end` to q.
-    add_cone(edge.start, edge.end, twin.centre, edge.centre, -1);
-    add_cone(edge.end, origin, twin.centre, edge.centre, -1);
+
+  // Of all tetrahedra of the cavity, and of all of q and a side.
+  bool find_centres() {
+    for (std::size_t t = 0; t < cavity_.size(); ++t) {
+      const auto& n = numbers_[t];
+      const auto at = [&](std::size_t k) { return corners_[n[k]].at; };
+      centres_.push_back(centre_of<T>({at(0), at(1), at(2), at(3)}, q_));
+      if (!centres_.back().known()) return false;
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (!cavity_[t].is_side(k)) continue;
+        const auto& facet = kFacets[k];
+        new_centres_.push_back(centre_of<T>({at(facet[0]), at(facet[1]), at(facet[2]), q_}, q_));
+        if (!new_centres_.back().known()) return false;
+        sides_.push_back({n[facet[0]], n[facet[1]], n[facet[2]]});
+      }
+    }
+    return true;
   }
-  return std::move(shares).normalized();
+
+  void add_cavity() {
+    std::size_t side = 0;
+    for (std::size_t t = 0; t < cavity_.size(); ++t) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t beyond = cavity_[t].beyond[k];
+        if (!cavity_[t].is_side(k) && beyond < t) continue;
+        const Middle& other = cavity_[t].is_side(k) ? new_centres_[side++] : centres_[beyond];
+        for (std::size_t i = 0; i < 3; ++i) {
+          const std::uint32_t start = numbers_[t][kFacets[k][i]];
+          const std::uint32_t end = numbers_[t][kFacets[k][(i + 1) % 3]];
+          const Part<T> part = cone(corners_[start], corners_[end], other, centres_[t]);
+          shares_.add(start, part);
+          shares_.add(end, part);
+        }
+      }
+    }
+  }
+
+  void subtract_new() {
+    const Corner origin = {q_, {T(0), T(0), T(0)}, T(0)};
+    for (const EdgeOfSides& edge : edges_of(sides_)) {
+      const Corner &start = corners_[edge.start], &end = corners_[edge.end];
+      const Middle &first = new_centres_[edge.first], &second = new_centres_[edge.second];
+      // Around the edge from `end` to `start` the first tetrahedron follows the second, and so it
+      // does from `start` to q.
+      const Part<T> between = cone(end, start, first, second);
+      shares_.add(edge.start, between);
+      shares_.add(edge.end, between);
+      shares_.add(edge.start, cone(start, origin, first, second));
+      shares_.add(edge.end, cone(end, origin, second, first));
+    }
+  }
+
+  Part<T> cone(const Corner& i, const Corner& j, const Middle& from, const Middle& to) const {
+    const T kU = Precision<T>::kRelative;
+    const Vector3<T> middle = T(0.5) * (i.from_q + j.from_q), axis = j.from_q - i.from_q;
+    const Vector3<T> f = from.at - middle, t = to.at - middle;
+    const T far = i.far + j.far, lf = norm(f), lt = norm(t), length = norm(axis);
+    const T from_off = from.error + T(3) * kU * (far + norm(from.at));
+    const T to_off = to.error + T(3) * kU * (far + norm(to.at));
+    const T off = length * (lf * to_off + lt * from_off + from_off * to_off);
+    return {dot(axis, cross(f, t)), off + T(16) * kU * (length + far) * lf * lt};
+  }
+
+  const std::vector<Tetrahedron>& cavity_;
+  const Vector3<T> q_;
+  const std::vector<std::uint32_t> rows_;
+  std::vector<Corner> corners_;                        // of neighbour i
+  std::vector<std::array<std::uint32_t, 4>> numbers_;  // of tetrahedron i: its corners
+  std::vector<Middle> centres_;
+  std::vector<std::array<std::uint32_t, 3>> sides_;  // by facets of tetrahedra, in their order
+  std::vector<Middle> new_centres_;                  // of q and side i
+  Shares<T> shares_;
+};
+
+template <class T>
+SharesFound shares_of_volume(const std::vector<Tetrahedron>& cavity, const glm::dvec3& q) {
+  return SharesOfVolume<T>(cavity, q).compute();
 }
 
 // A triangle of a plane of space.
