@@ -1,13 +1,8 @@
 #include "apps/background.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
-#include <utility>
-#include <vector>
 
-#include "apps/session.h"
-#include "files/similar_name.h"
+#include "apps/list.h"
 #include "image/srgb.h"
 #include "parallel/parallel_for.h"
 #include "shading/environment.h"
@@ -19,6 +14,15 @@ using image::Rgba8;
 using image::RgbaF;
 
 constexpr std::size_t kRows = 8;  // rows a block: some microseconds of work
+struct NamedKind {
+  const char* name;
+  Background::Kind kind;
+};
+constexpr NamedKind kNamed[] = {{"auto", Background::Kind::automatic},
+                                {"environment", Background::Kind::environment},
+                                {"studio", Background::Kind::studio},
+                                {"transparent", Background::Kind::transparent}};
+
 constexpr glm::vec3 kStudioTop{0.93F, 0.94F, 0.96F}, kStudioBottom{0.56F, 0.61F, 0.68F};
 
 RgbaF opaque(const glm::vec3& colour) { return {colour.x, colour.y, colour.z, 1.0F}; }
@@ -66,14 +70,11 @@ void put_behind_picture(image::BasicImage<Colour>& picture, const Background& ba
 
 }  // namespace
 
+std::vector<std::string> background_names() { return names_in(kNamed); }
+
 Background parse_background(const std::string& text) {
-  using Kind = Background::Kind;
-  std::vector<std::string> names;
-  for (const auto& [name, kind] :
-       {std::pair{"auto", Kind::automatic}, std::pair{"environment", Kind::environment},
-        std::pair{"studio", Kind::studio}, std::pair{"transparent", Kind::transparent}}) {
-    if (text == name) return {kind, {}};
-    names.emplace_back(name);
+  for (const NamedKind& named : kNamed) {
+    if (text == named.name) return {named.kind, {}};
   }
   unsigned code = 0;
   const char* const begin = text.data() + 1;
@@ -82,11 +83,11 @@ Background parse_background(const std::string& text) {
     const auto channel = [code](int shift) {
       return image::decode_srgb(static_cast<std::uint8_t>(code >> shift));
     };
-    return {Kind::colour, {channel(16), channel(8), channel(0), 1.0F}};
+    return {Background::Kind::colour, {channel(16), channel(8), channel(0), 1.0F}};
   }
-  throw UsageError(
-      fmt::format("--background: '{}' is not auto, environment, studio, transparent or #rrggbb{}",
-                  text, files::did_you_mean(text, names)));
+  std::vector<std::string> legal = background_names();
+  legal.emplace_back("#rrggbb");
+  throw UsageError("--background: " + is_not_one_of(text, legal));
 }
 
 void put_behind(image::ImageF& picture, const Background& background, const shading::Shader& shader,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 #include "scenes/camera.h"
@@ -19,6 +20,9 @@ struct Background {
   } kind = Kind::automatic;
   image::RgbaF colour;  // linear; for Kind::colour
 };
+
+// What parse_background takes but for colours.
+std::vector<std::string> background_names();
 
 // "auto", "environment", "studio", "transparent", or "#rrggbb" in sRGB. Throws UsageError.
 Background parse_background(const std::string& text);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "apps/list.h"
 #include "apps/session.h"
 #include "scenes/camera_path.h"
 #include "scenes/framing.h"
@@ -19,6 +20,7 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   command
       .add_option("--view", options.view, "default, front, back, left, right, top, bottom or iso")
       ->excludes(camera);
+  choose_from(command, "--view", scenes::view_names());
 }
 
 namespace {

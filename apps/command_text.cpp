@@ -1,50 +1,15 @@
 #include "apps/command_text.h"
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <sstream>
-#include <utility>
 
-#include "apps/colour_by.h"
 #include "apps/list.h"
-#include "composite/codec.h"
-#include "composite/scheme.h"
-#include "delaunay/methods.h"
-#include "loadbalance/partition.h"
-#include "loadbalance/schedule.h"
-#include "raster/strategies.h"
-#include "raytrace/integrator.h"
 
 namespace delray::apps {
 namespace {
 
-// The names in the table that the option chooses from; empty if it chooses from none.
-std::vector<std::string> table_of(const std::string& option) {
-  if (option == "--method") return names_in(delaunay::methods());
-  if (option == "--location") return names_in(delaunay::locations());
-  if (option == "--split") return names_in(delaunay::splits());
-  if (option == "--order") return names_in(delaunay::orders());
-  if (option == "--deadlocks") return names_in(delaunay::deadlock_strategies());
-  if (option == "--strategy") return names_in(raster::strategies());
-  if (option == "--partition") return names_in(loadbalance::partitioners());
-  if (option == "--schedule") return names_in(loadbalance::schedules());
-  if (option == "--compose") return names_in(composite::schemes());
-  if (option == "--codec") return names_in(composite::codecs());
-  if (option == "--integrator") return names_in(raytrace::integrators());
-  if (option == "--color-by") return names_in(colour_bys());
-  return {};
-}
-
-// What stands in the braces of "TEXT:{raster,raytrace}".
-std::vector<std::string> members_in(const std::string& type) {
-  const std::size_t begin = type.find('{'), end = type.find('}');
-  std::vector<std::string> members;
-  if (begin == std::string::npos || end == std::string::npos) return members;
-  std::istringstream text(type.substr(begin + 1, end - begin - 1));
-  for (std::string member; std::getline(text, member, ',');) members.push_back(member);
-  return members;
-}
-
-OptionText option_text(const CLI::Option& option) {
+OptionText option_text(CLI::Option& option) {
   OptionText result;
   result.description = option.get_description();
   result.positional = option.get_positional();
@@ -55,9 +20,7 @@ OptionText option_text(const CLI::Option& option) {
     for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
   }
-  if (!result.takes_value) return result;
-  result.values = members_in(option.get_type_name());
-  if (result.values.empty()) result.values = table_of(result.names.back());
+  result.values = choices(option);
   return result;
 }
 
@@ -71,12 +34,12 @@ std::vector<std::string> examples_in(const std::string& footer) {
 
 }  // namespace
 
-CommandText command_text(const CLI::App& command) {
+CommandText command_text(CLI::App& command) {
   CommandText result{
       command.get_name(), command.get_description(), examples_in(command.get_footer()), {}, {}};
-  for (const CLI::Option* option : command.get_options())
+  for (CLI::Option* option : command.get_options(std::function<bool(CLI::Option*)>()))
     result.options.push_back(option_text(*option));
-  for (const CLI::App* below : command.get_subcommands(nullptr))
+  for (CLI::App* below : command.get_subcommands(std::function<bool(CLI::App*)>()))
     result.commands.push_back(command_text(*below));
   return result;
 }

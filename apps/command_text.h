@@ -15,7 +15,7 @@ struct OptionText {
   std::string description;
   bool positional = false;
   bool takes_value = false;
-  std::vector<std::string> values;  // that are legal, where they are few; else empty
+  std::vector<std::string> values;  // names to choose from; empty where anything goes
 };
 
 struct CommandText {
@@ -26,6 +26,6 @@ struct CommandText {
 };
 
 // Of the command and all below it.
-CommandText command_text(const CLI::App& command);
+CommandText command_text(CLI::App& command);
 
 }  // namespace delray::apps

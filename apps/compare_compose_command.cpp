@@ -10,6 +10,7 @@
 #include "apps/compose_report.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
+#include "apps/scheme_option.h"
 #include "comm/network.h"
 #include "composite/codec.h"
 #include "composite/hollow.h"
@@ -32,7 +33,6 @@ void check_codecs(const CompareRequest& request, bool asked) {
   const bool simulates = asked && std::any_of(request.ranks.begin(), request.ranks.end(),
                                               [](int ranks) { return ranks > kMostMeasuredRanks; });
   for (const std::string& codec : request.codecs) {
-    find_entry(composite::codecs(), codec, "--codec");
     if (simulates && !composite::hollow_of(codec))
       throw UsageError(
           fmt::format("--codec {}: what it sends depends on what pixels show, so that more than {} "
@@ -46,9 +46,6 @@ int run(Session& session, const CLI::App& command, CompareRequest request) {
   const bool asked = command.count("--ranks") > 0;
   check_codecs(request, asked);
   if (!asked) request.most_messages = request.quick ? kMostMessagesQuick : kMostMessages;
-  for (const std::string& scheme : request.schemes)
-    if (composite::find_scheme(scheme) == nullptr)
-      find_entry(composite::schemes(), scheme, "--compose");
   return run_scene_comparison(
       session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
         const auto comparison = std::make_shared<const ComposeComparison>(
@@ -82,6 +79,8 @@ void add_compare_compose(CLI::App& compare, Session& session) {
   command->add_flag("--interlace", request->interlace,
                     "deal pieces of the image out to the ranks in turn");
   command->add_option("--compose", request->schemes, "schemes, separated by spaces (default all)");
+  choose_scheme(*command);
+  choose_from(*command, "--codec", names_in(composite::codecs()));
   add_comparison_options(*command, *request, "measure less often", "schemes, codecs, networks");
   add_common_options(*command, session,
                      "compare compose model.glb --ranks 2,4,8,1024 --codec active,dense\n"

@@ -24,8 +24,6 @@ int run(Session& session, const CLI::App& command, PartitionRequest request) {
   if (request.list) return list();
   if (session.under_mpi)
     throw UsageError("compare partition: its ranks take turns in one process; leave out mpirun");
-  for (const std::string& partition : request.partitions)
-    find_entry(loadbalance::partitioners(), partition, "--partition");
   return run_scene_comparison(
       session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
         const auto comparison = std::make_shared<const PartitionComparison>(
@@ -58,6 +56,7 @@ void add_compare_partition(CLI::App& compare, Session& session) {
                    "partitions, separated by commas (default all)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  choose_from(*command, "--partition", names_in(loadbalance::partitioners()));
   add_comparison_options(*command, *request, "three frames each",
                          "partitions, strategies, networks");
   add_common_options(*command, session,

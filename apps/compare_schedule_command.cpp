@@ -24,10 +24,6 @@ int run(Session& session, const CLI::App& command, ScheduleRequest request) {
   if (request.list) return list();
   if (session.under_mpi)
     throw UsageError("compare schedule: its ranks are simulated in one process; leave out mpirun");
-  for (const std::string& schedule : request.schedules)
-    find_entry(loadbalance::schedules(), schedule, "--schedule");
-  find_entry(raytrace::integrators(), request.render.integrator, "--integrator");
-  find_entry(comm::networks(), request.network, "--network");
   if (request.tile % raytrace::kTaskSide != 0)
     throw UsageError("--tile: " + std::to_string(request.tile) + " is no multiple of " +
                      std::to_string(raytrace::kTaskSide));
@@ -66,6 +62,9 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       ->allow_extra_args(false);
   command->add_option("--network", request->network,
                       "the one that is counted and shown (default 10-gigabit-ethernet)");
+  choose_from(*command, "--integrator", names_in(raytrace::integrators()));
+  choose_from(*command, "--schedule", names_in(loadbalance::schedules()));
+  choose_from(*command, "--network", names_in(comm::networks()));
   add_comparison_options(*command, *request, "three frames each",
                          "schedules, integrators, networks");
   add_common_options(

@@ -34,7 +34,6 @@ delaunay::PointCloud load(const PointInput& input, int& dim) {
 
 void check_methods(const TriangulateRequest& request, int dim) {
   for (const std::string& name : request.methods) {
-    find_entry(delaunay::methods(), name, "--method");
     delaunay::Options how;
     how.dim = dim;
     how.method = name;
@@ -77,7 +76,7 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
       ->add_option("--dim", request->dim,
                    "2 (z is carried along) or 3; default: 3 for points with a z, but 2 for LAS "
                    "files and elevation pictures, which are terrain")
-      ->check(CLI::IsMember({2, 3}));
+      ->check(one_of({"2", "3"}));
   command
       ->add_option("--threads", request->threads,
                    "how many, separated by commas (default 1,2,4,8 as far as there are cores, and "
@@ -90,6 +89,7 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
       ->allow_extra_args(false);
   command->add_option("--seed", request->seed, "seed of everything random (default 1)")
       ->transform(any_count());
+  choose_from(*command, "--method", names_in(delaunay::methods()));
   add_point_options(*command, request->input);
   add_comparison_options(*command, *request, "time each three times, the slow ones once",
                          "the methods");

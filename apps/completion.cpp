@@ -39,24 +39,34 @@ void for_each_command(const CommandText& command, const std::string& path,
 std::string bash(const CommandText& program) {
   std::string paths, values, words;
   for_each_command(program, "", [&](const CommandText& command, const std::string& path) {
-    std::vector<std::string> options;
+    std::vector<std::string> options, next = names_below(command);
     for (const OptionText& option : command.options) {
-      if (option.positional) continue;
+      if (option.positional) {
+        next.insert(next.end(), option.values.begin(), option.values.end());
+        continue;
+      }
       options.insert(options.end(), option.names.begin(), option.names.end());
-      if (option.values.empty()) continue;
+      if (!option.takes_value) continue;
+      const std::string offer =
+          option.values.empty() ? "_files" : "_words " + quoted(joined(option.values));
       for (const std::string& name : option.names)
-        values +=
-            fmt::format("    {}) COMPREPLY=($(compgen -W {} -- \"$current\")); return ;;\n",
-                        quoted(fmt::format("{}:{}", path, name)), quoted(joined(option.values)));
+        values += fmt::format("    {}) _delray{}; return ;;\n",
+                              quoted(fmt::format("{}:{}", path, name)), offer);
     }
     if (!path.empty()) paths += fmt::format("      {}) path=$next ;;\n", quoted(path));
-    words += fmt::format("    {}) options={} commands={} ;;\n", quoted(path),
-                         quoted(joined(options)), quoted(joined(names_below(command))));
+    words += fmt::format("    {}) options={} words={} ;;\n", quoted(path), quoted(joined(options)),
+                         quoted(joined(next)));
   });
   return fmt::format(R"(# Completion of delray in bash: source <(delray completion bash)
+# One candidate a line, as names of files may have spaces.
+_delray_words() {{ mapfile -t COMPREPLY < <(compgen -W "$1" -- "$current"); }}
+_delray_files() {{
+  compopt -o filenames 2> /dev/null
+  mapfile -t COMPREPLY < <(compgen -f -- "$current")
+}}
 _delray() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}
-  local path= next= word options= commands=
+  local path= next= word options= words=
   for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
     next=${{path:+$path }}$word
     case $next in
@@ -67,14 +77,14 @@ _delray() {{
   case $path in
 {2}  esac
   if [[ $current == -* ]]; then
-    COMPREPLY=($(compgen -W "$options" -- "$current"))
-  elif [[ -n $commands ]]; then
-    COMPREPLY=($(compgen -W "$commands" -- "$current"))
+    _delray_words "$options"
+  elif [[ -n $words ]]; then
+    _delray_words "$words"
   else
-    COMPREPLY=($(compgen -f -- "$current"))
+    _delray_files
   fi
 }}
-complete -o filenames -F _delray delray
+complete -F _delray delray
 )",
                      paths, values, words);
 }

@@ -11,6 +11,7 @@
 #include "apps/launch.h"
 #include "apps/list.h"
 #include "apps/outputs.h"
+#include "apps/scheme_option.h"
 #include "apps/statistics.h"
 #include "apps/write_picture.h"
 #include "comm/agree_on_failure.h"
@@ -173,10 +174,6 @@ void check(const Session& session, const ComposeRequest& request) {
   if (!image::is_picture_suffix(request.output)) {
     throw UsageError(fmt::format("-o: '{}' is not a picture", request.output));
   }
-  if (composite::find_scheme(request.scheme) == nullptr) {
-    find_entry(composite::schemes(), request.scheme, "--compose");
-  }
-  find_entry(composite::codecs(), request.codec, "--codec");
   if (request.in_pieces && !request.output.ends_with(".exr")) {
     throw UsageError("--in-pieces: only .exr files have a place for every pixel beforehand");
   }
@@ -261,6 +258,8 @@ void add_compose(CLI::App& program, Session& session) {
   add_metadata_option(*command, session);
   command->add_option("--stats", request->statistics, "write statistics as JSON; - for stdout");
   command->add_flag("--list", request->list, "list schemes and codecs");
+  choose_scheme(*command);
+  choose_from(*command, "--codec", names_in(composite::codecs()));
   add_common_options(*command, session,
                      "compose part-0.exr part-1.exr -o picture.exr\n"
                      "compose front.exr back.exr --ordered -o picture.png --stats -");

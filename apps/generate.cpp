@@ -37,7 +37,6 @@ int generate_points(const GenerateOptions& options) {
     return kDone;
   }
   require(options);
-  find_entry(delaunay::point_generators(), options.kind, "KIND");
   if (options.output != "-") delaunay::point_writer_for(options.output);
   const std::size_t count = options.count > 0 ? options.count : 1000;
   delaunay::write_points(options.output,
@@ -80,16 +79,18 @@ void add_generate(CLI::App& program, Session& session) {
     command->callback([&session, options, run] { session.run = [=] { return run(*options); }; });
     return command;
   };
-  add("points", "make points", "what they are like", "how many: 10000, 1e6, 10k (default 1000)",
-      kMostPoints, generate_points,
-      "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
-      "generate points --list")
-      ->add_option("--dim", options->dim, "2 or 3 (default 2)")
-      ->check(CLI::IsMember({2, 3}));
-  add("scene", "make a scene", "what it shows", "about how many triangles: 10000, 1e6, 10k",
-      scenes::kMostTriangles, generate_scene,
-      "generate scene terrain -n 1000000 -o terrain.glb\n"
-      "generate scene field -o field.glb");
+  CLI::App* points = add("points", "make points", "what they are like",
+                         "how many: 10000, 1e6, 10k (default 1000)", kMostPoints, generate_points,
+                         "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
+                         "generate points --list");
+  choose_from(*points, "KIND", names_in(delaunay::point_generators()));
+  points->add_option("--dim", options->dim, "2 or 3 (default 2)")->check(one_of({"2", "3"}));
+  CLI::App* scene =
+      add("scene", "make a scene", "what it shows", "about how many triangles: 10000, 1e6, 10k",
+          scenes::kMostTriangles, generate_scene,
+          "generate scene terrain -n 1000000 -o terrain.glb\n"
+          "generate scene field -o field.glb");
+  choose_from(*scene, "KIND", names_in(scenes::generators()));
 }
 
 }  // namespace delray::apps

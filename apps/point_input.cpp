@@ -75,6 +75,7 @@ void add_point_options(CLI::App& command, PointInput& input) {
       ->check(positive_number());
   command.add_option("--duplicates", input.duplicates,
                      "height of places that have several: first (default), min, max, mean");
+  choose_from(command, "--duplicates", names_in(delaunay::duplicates_policies()));
   add_memory_option(command, input.limits);
 }
 

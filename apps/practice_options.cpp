@@ -1,6 +1,7 @@
 #include "apps/practice_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -97,7 +98,10 @@ void add_practice_options(CLI::App& command, Practice& practice) {
       .add_flag("--denoise", practice.denoise,
                 "smooth noise, led by normals, albedo, depth and variance")
       ->group(group);
-  command.add_option("--show", practice.show, "in place of colour: " + shown_names())->group(group);
+  command
+      .add_option("--show", practice.show,
+                  fmt::format("what the picture shows: {}", fmt::join(shown_names(), ", ")))
+      ->group(group);
   command
       .add_option("--exposure", practice.exposure,
                   "stops: light is multiplied by 2 to the power of this; not in EXR")
@@ -119,6 +123,8 @@ void add_practice_options(CLI::App& command, Practice& practice) {
   command.add_option("--seed", practice.seed, "of all random numbers (default 0)")
       ->transform(any_count())
       ->group(group);
+  choose_from(command, "--tone", names_in(image::tone_curves()));
+  choose_from(command, "--show", shown_names());
 }
 
 void refuse_practice(const CLI::App& command) {
@@ -135,8 +141,6 @@ void check_practice(const CLI::App& command, RenderRequest& request) {
     if (practice.noise > 0.0) request.samples = kMostForNoise;
     if (practice.seconds > 0.0) request.samples = kMostInTime;
   }
-  find_entry(image::tone_curves(), practice.tone, "--tone");
-  check_shown(practice.show);
   if (practice.checkpoint.empty()) {
     refuse(command, "--checkpoint-every", "no --checkpoint");
     if (practice.resume)

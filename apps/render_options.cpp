@@ -10,8 +10,8 @@
 
 #include "apps/list.h"
 #include "apps/numbers.h"
+#include "apps/scheme_option.h"
 #include "composite/codec.h"
-#include "composite/scheme.h"
 #include "image/io.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
@@ -51,12 +51,6 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
           "--build", "--isa", "--data", "--deal", "--cache"},
          "--engine raster");
   refuse_practice(command);
-  find_entry(raster::strategies(), request.strategy, "--strategy");
-  find_entry(loadbalance::partitioners(), request.partition, "--partition");
-  if (composite::find_scheme(request.scheme) == nullptr) {  // which knows radix-k:4,2 too
-    find_entry(composite::schemes(), request.scheme, "--compose");
-  }
-  find_entry(composite::codecs(), request.codec, "--codec");
   if (request.strategy == "sort-last") {
     refuse(command, {"--partition", "--travel", "--costs", "--regions", "--keep"},
            "--strategy sort-last");
@@ -65,7 +59,6 @@ void check_raster(const CLI::App& command, const RenderRequest& request) {
   }
   if (request.strategy == "sort-first") {
     if (!request.schedule.empty()) {
-      find_entry(loadbalance::schedules(), request.schedule, "--schedule");
       refuse(command, {"--travel"}, "--schedule: every rank has all primitives");
     } else {
       refuse(command, {"--block"}, "no --schedule");
@@ -98,16 +91,13 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
          {"--strategy", "--compose", "--codec", "--shading", "--shade", "--blend", "--samples",
           "--travel", "--groups", "--geometry-ranks", "--redistribute"},
          "--engine raytrace");
-  find_entry(raytrace::integrators(), request.integrator, "--integrator");
   if (request.integrator != "ao") refuse(command, {"--reach"}, "another --integrator than ao");
   if (request.integrator != "direct")
     refuse(command, {"--no-shadows"}, "another --integrator than direct");
   if (request.integrator != "path")
     refuse(command, {"--diffuse-depth"}, "another --integrator than path");
   check_practice(command, request);
-  find_entry(loadbalance::schedules(), request.schedule, "--schedule");
   check_master(command, request.schedule);
-  find_entry(raytrace::distributions(), request.data, "--data");
   if (request.data == "replicated") refuse(command, {"--deal", "--cache"}, "--data replicated");
   if (request.data == "ray" || request.data == "ring")
     refuse(command, {"--cache"}, "--data " + request.data + ": rays travel");
@@ -121,11 +111,22 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
     request.partition.clear();
     return;
   }
-  find_entry(loadbalance::partitioners(), request.partition, "--partition");
   if (request.schedule != "static" && !request.schedule.ends_with("stealing")) {
     refuse(command, {"--partition"},
            fmt::format("--schedule {}, which begins with no shares", request.schedule));
   }
+}
+
+void add_choices(CLI::App& command) {
+  choose_from(command, "--background", background_names(),
+              {"#rrggbb", [](const std::string& text) { return text.starts_with('#'); }});
+  choose_from(command, "--strategy", names_in(raster::strategies()));
+  choose_from(command, "--partition", names_in(loadbalance::partitioners()));
+  choose_scheme(command);
+  choose_from(command, "--codec", names_in(composite::codecs()));
+  choose_from(command, "--integrator", names_in(raytrace::integrators()));
+  choose_from(command, "--schedule", names_in(loadbalance::schedules()));
+  choose_from(command, "--data", names_in(raytrace::distributions()));
 }
 
 }  // namespace
@@ -198,7 +199,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--samples", request.supersampling,
                   "per pixel, in either direction: 1 (default), 2 or 4")
-      ->check(CLI::IsMember({1, 2, 4}))
+      ->check(one_of({"1", "2", "4"}))
       ->group(raster);
   command
       .add_option("--travel", request.travel,
@@ -305,6 +306,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command.add_option("--stats", request.statistics, "write statistics as JSON; - for stdout");
   command.add_flag("--list", request.list,
                    "list strategies, partitions, schemes, integrators, schedules");
+  add_choices(command);
 }
 
 void check(const CLI::App& command, RenderRequest& request) {

@@ -194,12 +194,12 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
                   "Draw points as a surface of heights over x and y, or as single points (default: "
                   "single points for scans, where many lie above each other; else a surface)")
       ->check(one_of({"surface", "points"}));
+  choose_from(command, "--color-by", names_in(colour_bys()));
   add_point_options(command, input.file);
   add_outside_option(command, input.file.limits);
 }
 
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
-  if (!input.colour_by.empty()) find_entry(colour_bys(), input.colour_by, "--color-by");
   const InputKind kind = input_kind(input.file.path, input.file.limits.budget());
   if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
     refuse_outside(input.file.path, input.file.limits);

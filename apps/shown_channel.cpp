@@ -71,14 +71,10 @@ float top_of(std::vector<float> values) {
 
 }  // namespace
 
-std::string shown_names() {
-  std::string names;
-  for (const Shown& shown : kShown) names += (names.empty() ? "" : ", ") + std::string(shown.name);
+std::vector<std::string> shown_names() {
+  std::vector<std::string> names = names_in(kShown);
+  names.insert(names.begin(), "colour");
   return names;
-}
-
-void check_shown(const std::string& name) {
-  if (name != "colour") find_entry(kShown, name, "--show");
 }
 
 bool shows_features(const std::string& name) {

@@ -9,11 +9,8 @@
 
 namespace delray::apps {
 
-// "normal, albedo, ..." for --help.
-std::string shown_names();
-
-// Throws UsageError for what is neither "colour" nor one of shown_names.
-void check_shown(const std::string& name);
+// What --show can be: "colour", which is the picture itself, "normal", "albedo", ...
+std::vector<std::string> shown_names();
 
 // Whether features are needed for it.
 bool shows_features(const std::string& name);

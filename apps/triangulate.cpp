@@ -112,18 +112,21 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
   };
 }
 
-// Throws UsageError unless `name` leaves the choice to the program or is in the table.
+// Names in a table, or that which leaves the choice to the program.
 template <class Table>
-void check_choice(const Table& table, const std::string& name, const char* option) {
-  if (name != "auto" && name != "none") find_entry(table, name, option);
+void choose(CLI::App& command, const char* option, const Table& table) {
+  std::vector<std::string> names = names_in(table);
+  names.insert(names.begin(), "auto");
+  choose_from(command, option, names,
+              {"", [](const std::string& name) { return name == "none"; }});  // as statistics say
 }
 
-void check_choices(const delaunay::Options& how) {
-  check_choice(delaunay::methods(), how.method, "--method");
-  check_choice(delaunay::locations(), how.location, "--location");
-  check_choice(delaunay::splits(), how.split, "--split");
-  check_choice(delaunay::orders(), how.order, "--order");
-  check_choice(delaunay::deadlock_strategies(), how.deadlocks, "--deadlocks");
+void add_choices(CLI::App& command) {
+  choose(command, "--method", delaunay::methods());
+  choose(command, "--location", delaunay::locations());
+  choose(command, "--split", delaunay::splits());
+  choose(command, "--order", delaunay::orders());
+  choose(command, "--deadlocks", delaunay::deadlock_strategies());
 }
 
 int run(Session& session, TriangulateOptions options) {
@@ -147,7 +150,6 @@ int run(Session& session, TriangulateOptions options) {
     require_plain(options);
     how.threads = 1;
   }
-  check_choices(how);
   try {
     how = resolve(how);
   } catch (const std::invalid_argument& error) {
@@ -219,7 +221,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   command->add_option("-o,--output", options->output,
                       "the mesh: .ply .obj .off .stl .vtu .node; - for PLY on standard output");
   command->add_option("--dim", options->how.dim, "2 (z is carried along) or 3; default 2")
-      ->check(CLI::IsMember({2, 3}));
+      ->check(one_of({"2", "3"}));
   command->add_option("--method", options->how.method, "how (--list names the methods)");
   command->add_option("--location", options->how.location, "how a point's simplex is found");
   command->add_option("--split", options->how.split, "which thread gets which points");
@@ -244,6 +246,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   command->add_flag("--makers", options->makers,
                     "tell of each simplex which thread made it, as \"thread\" in a .vtu");
   command->add_flag("--list", options->list, "list the methods");
+  add_choices(*command);
   add_point_options(*command, options->input);
   add_common_options(*command, session,
                      "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/commands.h"
+#include "apps/list.h"
 #include "apps/outputs.h"
 #include "apps/point_input.h"
 #include "apps/statistics.h"
@@ -166,7 +167,7 @@ void add_verify(CLI::App& program, Session& session) {
   const auto options = std::make_shared<VerifyOptions>();
   command->add_option("MESH", options->mesh, "the triangulation");
   command->add_option("--points", options->points.path, "the points that it should be of");
-  command->add_option("--dim", options->dim, "2 (default) or 3")->check(CLI::IsMember({2, 3}));
+  command->add_option("--dim", options->dim, "2 (default) or 3")->check(one_of({"2", "3"}));
   command->add_flag(
       "--canonical", options->canonical,
       "also demand the choice among cocircular or cospherical points that delray makes");

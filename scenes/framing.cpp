@@ -54,12 +54,9 @@ Stand stand_of(std::string_view name, const glm::dvec3& size, bool z_up) {
   }
   const auto* found = std::ranges::find(kStands, name, &Stand::name);
   if (found != kStands.end()) return *found;
-  std::string message = "no view is called '" + std::string(name) + "'; views: default";
-  std::vector<std::string> names = {"default"};
-  for (const Stand& s : kStands) {
-    message += ", " + std::string(s.name);
-    names.emplace_back(s.name);
-  }
+  std::string message = "no view is called '" + std::string(name) + "'; views:";
+  const std::vector<std::string> names = view_names();
+  for (const std::string& legal : names) message += (&legal == &names[0] ? " " : ", ") + legal;
   throw std::invalid_argument(message + files::did_you_mean(name, names));
 }
 
@@ -169,6 +166,12 @@ Camera fitted(const FarthestPoints& farthest, const geometry::Box3& box, const S
 }
 
 }  // namespace
+
+std::vector<std::string> view_names() {
+  std::vector<std::string> names = {"default"};
+  for (const Stand& stand : kStands) names.emplace_back(stand.name);
+  return names;
+}
 
 Camera camera_around(const FarthestPoints& farthest, const char* name, bool z_up, float aspect) {
   geometry::Box3 box = bounds(farthest);

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
+#include <regex>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include "loadbalance/partition.h"
 #include "tests/support/run_program.h"
@@ -40,6 +43,85 @@ TEST(Completion, BashOffersCommandsOptionsAndNames) {
     EXPECT_EQ(partitions.count(partitioner.name), 1U) << partitioner.name;
 }
 
+TEST(Completion, BashOffersFilesWithSpacesInTheirNames) {
+  const Folder folder;
+  for (const std::string name : {"my scene.obj", "my other scene.obj", "yours.obj"})
+    folder.write(name, "");
+  const std::set<std::string> mine = {"my scene.obj", "my other scene.obj"};
+  EXPECT_EQ(offered(folder, "delray render my", 3), mine);
+  EXPECT_EQ(offered(folder, "delray render -o my", 4), mine);
+}
+
+TEST(Completion, BashOffersWhatLeavesTheChoiceToTheProgram) {
+  const Folder folder;
+  for (const std::string words : {"render --background", "render --background au",
+                                  "triangulate --order", "triangulate --method a"}) {
+    const bool begun = words.back() == 'a' || words.back() == 'u';
+    EXPECT_EQ(offered(folder, "delray " + words + (begun ? "" : " \"\""), 4).count("auto"), 1U)
+        << words;
+  }
+  EXPECT_EQ(offered(folder, "delray generate points uni", 4), std::set<std::string>{"uniform"});
+}
+
+struct Completed {
+  std::string command, option;
+  std::set<std::string> names;
+};
+
+// The options that take values, and what the script for bash offers for them.
+std::vector<Completed> completed_options(const Folder& folder) {
+  const Ran ran = run("delray completion bash", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  const std::regex line(R"(^ *'([a-z ]*):(--[a-z-]+)'\) _delray_(files|words '([^']*)');.*)");
+  std::vector<Completed> result;
+  std::istringstream script(ran.out);
+  std::smatch match;
+  for (std::string text; std::getline(script, text);) {
+    if (!std::regex_match(text, match, line)) continue;
+    std::istringstream words(match[4].str());
+    Completed one{match[1].str(), match[2].str(), {}};
+    for (std::string word; words >> word;) one.names.insert(word);
+    result.push_back(one);
+  }
+  return result;
+}
+
+// An option that refuses a value because it is not among some names offers these, and no others.
+TEST(Completion, OffersWhatOptionsTakeAndNothingElse) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0 0\n1 0 1\n0 1 0\n");
+  const std::map<std::string, std::string> arguments = {
+      {"render", "gen:cornell:100 --size 8x8 -o a.png "},
+      {"triangulate", "p.xyz -o a.ply "},
+      {"verify", "a.ply --points p.xyz "},
+      {"compose", "p.exr -o a.png "},
+      {"generate points", "uniform -o a.ply "},
+      {"generate scene", "terrain -n 100 -o a.glb "},
+      {"compare compose", "gen:cornell:100 --quick --size 8x8 -o a.html "},
+      {"compare partition", "gen:cornell:100 --quick --size 8x8 -o a.html "},
+      {"compare schedule", "gen:cornell:100 --quick --size 8x8 -o a.html "},
+      {"compare triangulate", "p.xyz --quick -o a.html "}};
+  int choosing = 0;
+  for (const Completed& completed : completed_options(folder)) {
+    const auto found = arguments.find(completed.command);
+    const bool is_file = completed.option == "--output" || completed.option == "--stats";
+    if (found == arguments.end() || is_file) continue;
+    std::string command = "delray " + completed.command + " " + found->second;
+    if (completed.option == "--size") command = "delray " + completed.command + " gen:cornell ";
+    command += completed.option + " no-such-value";
+    SCOPED_TRACE(command);
+    const Ran ran = run(command, folder.path());
+    const bool told = ran.err.find(" is not one of ") != std::string::npos ||
+                      ran.err.find(" not in {") != std::string::npos;
+    EXPECT_EQ(told, !completed.names.empty()) << ran.err;
+    EXPECT_TRUE(!told || ran.exit_code == 2) << ran.exit_code;
+    for (const std::string& name : completed.names)
+      EXPECT_NE(ran.err.find(name), std::string::npos) << name << "\n" << ran.err;
+    choosing += told ? 1 : 0;
+  }
+  EXPECT_GE(choosing, 40);
+}
+
 TEST(Completion, OtherShellsCanReadTheirs) {
   const Folder folder;
   int read = 0;
@@ -58,6 +140,22 @@ TEST(Completion, OtherShellsCanReadTheirs) {
 TEST(Completion, RefusesOtherShells) {
   const Folder folder;
   EXPECT_EQ(run("delray completion csh", folder.path()).exit_code, 2);
+}
+
+TEST(Manual, TellsNamesOnce) {
+  const Folder folder;
+  const Ran ran = run("delray manual", folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  std::istringstream page(ran.out);
+  int entries = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with("\\fB\\-\\-engine")) continue;
+    ++entries;
+    std::getline(page, line);
+    EXPECT_EQ(line.find("raytrace"), line.rfind("raytrace")) << line;
+    EXPECT_NE(line.find("raytrace"), std::string::npos) << line;
+  }
+  EXPECT_GE(entries, 1);
 }
 
 TEST(Manual, TellsOfEveryCommandAndReadsWithoutComplaint) {

@@ -133,7 +133,7 @@ TEST(Practice, ACropIsAPartOfThePicture) {
 
 TEST(Practice, ChannelsAreInTheFile) {
   const Folder folder;
-  stats_of("--integrator path --spp 8 --aovs -o a.exr", folder);
+  stats_of("--integrator path --spp 8 --aovs --metadata -o a.exr", folder);
   const image::Picture picture = image::read_picture(folder / "a.exr");
   const auto values = [&](const std::string& name) {
     const auto found = std::find_if(picture.channels.begin(), picture.channels.end(),

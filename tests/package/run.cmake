@@ -9,5 +9,14 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR}/build -G Ninja -DCMAKE_CXX_
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
 run(${WORK_DIR}/prefix/bin/delray --version)
+set(share ${WORK_DIR}/prefix/share)
+run(${CMAKE_COMMAND} -E compare_files ${SOURCE_DIR}/../../LICENSE ${share}/doc/delray/LICENSE)
+foreach(page man/man1/delray.1 bash-completion/completions/delray zsh/site-functions/_delray
+             fish/vendor_completions.d/delray.fish)
+  file(SIZE ${share}/${page} size)
+  if(size EQUAL 0)
+    message(FATAL_ERROR "${page} is empty")
+  endif()
+endforeach()
 # With the library that it loads for pictures.
 run(${WORK_DIR}/prefix/bin/delray render gen:cornell:100 --size 16x16 -q -o ${WORK_DIR}/picture.png)
