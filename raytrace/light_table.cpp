@@ -248,6 +248,10 @@ void LightTable::weigh(const scenes::Scene& scene) {
                               : 0.0F);
   }
   emitters_ = AliasTable(weights);
+  const auto first = weights.begin() + static_cast<std::ptrdiff_t>(lights_.size()) + 1;
+  if (std::any_of(first, weights.end(), [](float weight) { return weight > 0.0F; })) {
+    glow_ = AliasTable(std::span(first, weights.end()));
+  }
 }
 
 LightTable::LightTable(const scenes::Scene& scene, const shading::Shader& shader)
@@ -311,6 +315,13 @@ LightSample LightTable::draw_glow(const shading::Shader& shader, const GlowingIn
   result.weight = radiance / pdf;
   result.pdf = pdf;
   return result;
+}
+
+LightSample LightTable::sample_glow(const shading::Shader& shader, const glm::vec3& from,
+                                    const glm::vec2& instance, const glm::vec2& element,
+                                    const glm::vec2& place) const {
+  const std::uint32_t number = glow_.pick(instance.x, instance.y);
+  return draw_glow(shader, instances_[number], from, glow_.probability(number), element, place);
 }
 
 void LightTable::sample(const shading::BatchShader& shader, const shading::Vectors16& from,

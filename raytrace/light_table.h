@@ -61,6 +61,20 @@ class LightTable {
               shading::LaneMask lanes, std::span<const Pairs16, kPairs> numbers,
               LightSamples& samples) const;
 
+  // One at a time, for renderers that ask them all. Nothing else has a chance: weights are what
+  // arrives over the density of the point. REQUIRES: the light is an area light; glows().
+  LightSample sample_area(std::uint32_t light, const glm::vec3& from,
+                          const glm::vec2& place) const {
+    return draw_light(light, from, 1.0F, place);
+  }
+  // Whether a lamp shows it, which rays meet.
+  bool has_lamp(std::uint32_t light) const { return has_lamp_[light]; }
+  // Of triangles that glow and are no lamp of an area light.
+  bool glows() const { return glow_.size() > 0; }
+  LightSample sample_glow(const shading::Shader& shader, const glm::vec3& from,
+                          const glm::vec2& instance, const glm::vec2& element,
+                          const glm::vec2& place) const;
+
   // The density with which `sample` would have drawn what a ray from `from` met: a point of a
   // triangle, or the environment. 0 for what does not glow.
   float pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, const glm::vec3& from,
@@ -108,6 +122,7 @@ class LightTable {
   SkyTable sky_;
   bool has_sky_ = false;
   AliasTable emitters_;  // lights, the sky, glowing instances
+  AliasTable glow_;      // glowing instances alone; empty where there is nothing to draw
 };
 
 }  // namespace delray::raytrace

@@ -179,6 +179,7 @@ void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
   ray.weight = weight;
   ray.pixel = lanes.pixel_of(i);
   ray.depth = depth_of(lanes, i);
+  ray.branch = branch_of(lanes, i, Bundle::straight);
   ray.layers = layers;
   ray.placement = hit.placement;
   ray.triangle = hit.triangle;
@@ -201,16 +202,24 @@ void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16
 }
 
 void LitWalk::ask_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                         const shading::Surfaces& surfaces) {
-  shading::Arriving& arriving = arriving_;
+                         const shading::Surfaces& surfaces, const Mirrored& mirrored) {
   for (std::size_t l = 0; l < setting_.shader.lights.size(); ++l) {
-    const LaneMask reached =
-        shading::reflect_light(setting_.shader, l, surfaces, group.view, mask, arriving);
-    if (reached == 0) continue;
-    for (int i = 0; i < kPacketRays; ++i) arriving.distance[i] *= kShadowReach;
-    ask_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
-                arriving.reflected, true);
+    if (setting_.shader.lights[l].kind == scenes::Light::Kind::area) continue;
+    ask_light(group, lanes, mask, l, surfaces);
   }
+  ask_sized_lights(group, lanes, mask, surfaces, mirrored);
+}
+
+void LitWalk::ask_light(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                        std::size_t light, const shading::Surfaces& surfaces) {
+  if (mask == 0) return;
+  shading::Arriving& arriving = arriving_;
+  const LaneMask reached =
+      shading::reflect_light(setting_.shader, light, surfaces, group.view, mask, arriving);
+  if (reached == 0) return;
+  for (int i = 0; i < kPacketRays; ++i) arriving.distance[i] *= kShadowReach;
+  ask_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
+              arriving.reflected, true);
 }
 
 void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
@@ -267,6 +276,7 @@ void LitWalk::ask(const NextRay& ray, Bundle bundle) {
   lanes.weight.set(i, ray.weight);
   lanes.pixel[i] = ray.pixel;
   lanes.depth[i] = ray.depth;
+  lanes.branch[i] = ray.branch;
   lanes.layers[i] = ray.layers;
   lanes.placement[i] = ray.placement;
   lanes.triangle[i] = ray.triangle;

@@ -30,10 +30,10 @@ class Whitted final : public LitWalk {
     copy_lanes(surfaces_.emission, seen, sum);
     shading::ambient_diffuse(setting_.shader, surfaces_, group.view, seen, colour);
     add_lanes(colour, seen, sum);
-    ask_lights(group, lanes, seen, surfaces_);
 
     // How much of the blurred reflection of the environment each lane shows.
     shading::Floats16 blurred;
+    Mirrored mirrored;
     LaneMask some = 0, ended = 0;
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -45,7 +45,10 @@ class Whitted final : public LitWalk {
         blurred[i] = ask_around(group, lanes, i);
       }
       some |= blurred[i] > 0.0F ? 1U << i : 0U;
+      mirrored.base[i] = 1.0F - blurred[i];
+      mirrored.coat[i] = 1.0F - blurred_coat_[i];
     }
+    ask_lights(group, lanes, seen, surfaces_, mirrored);
     if (some != 0) {
       shading::ambient_specular(setting_.shader, surfaces_, group.view, some, colour);
       for (int i = 0; i < kPacketRays; ++i) {
@@ -94,6 +97,7 @@ class Whitted final : public LitWalk {
     ray.width = group.width[i] + group.packet.far[i] * group.spread[i];
     ray.pixel = lanes.pixel_of(i);
     ray.depth = depth_of(lanes, i) - 1;
+    ray.branch = branch_of(lanes, i, Bundle::mirrored);
     const glm::vec3 weight = lanes.weight_of(i);
     float blurred = inside ? 0.0F : 1.0F;
     // One ray for surface and coat, whose normals hardly differ.
@@ -110,6 +114,7 @@ class Whitted final : public LitWalk {
     if (glass > 0.0F && refraction.reflected < 1.0F) {
       ray.weight = weight * s.base_colour * (glass * (1.0F - refraction.reflected) * layers.below);
       if (brightest(ray.weight) >= kLeastWeight) {
+        ray.branch = branch_of(lanes, i, Bundle::refracted);
         const bool thin = (surfaces_.thin >> i & 1) != 0;
         ray.origin = s.position - s.geometric_normal * group.offset[i];
         ray.direction = thin ? -view : kept_on_side(refraction.direction, -s.geometric_normal);

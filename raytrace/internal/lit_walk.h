@@ -25,6 +25,7 @@ struct RayLanes {
   shading::Vectors16 weight;                      // what the sample makes of radiance along the ray
   alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * block + lane in it
   alignas(64) std::int32_t depth[kPacketRays];    // how often it may be mirrored or refracted
+  alignas(64) std::uint32_t branch[kPacketRays];  // of the sample's tree of rays; 0: its root
   alignas(64) std::uint32_t layers[kPacketRays];  // passed before
   alignas(64) std::uint32_t placement[kPacketRays], triangle[kPacketRays];  // of the last layer
 
@@ -41,7 +42,13 @@ struct NextRay {
   glm::vec3 weight{1.0F};
   std::uint32_t pixel = 0;
   std::int32_t depth = 0;
+  std::uint32_t branch = 0;
   std::uint32_t layers = 0, placement = kMiss, triangle = kMiss;
+};
+
+// Parts of the lanes' specular lobes, from 0 to 1, that rays along the mirror direction stand for.
+struct Mirrored {
+  shading::Floats16 base{}, coat{};
 };
 
 class LitWalk : public Walk {
@@ -61,9 +68,10 @@ class LitWalk : public Walk {
   // notes depths. Returns the lanes that show anything.
   shading::LaneMask see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha);
 
-  // Asks for shadow rays to every light that matters, one group of rays for each.
+  // Asks for shadow rays to every light that matters, groups of rays for each: to points drawn from
+  // what has a size, lights and surfaces that glow. What mirrored rays meet does not count twice.
   void ask_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                  const shading::Surfaces& surfaces);
+                  const shading::Surfaces& surfaces, const Mirrored& mirrored = {});
 
   // The same for directions of the lanes' own, unit vectors, of which `reflected` will be added
   // where nothing is within a distance. `coherent`: they are like those of neighbours.
@@ -76,6 +84,12 @@ class LitWalk : public Walk {
 
   std::int32_t depth_of(const RayLanes& lanes, int i) const {
     return lanes.whole ? setting_.options.depth : lanes.depth[i];
+  }
+
+  // Of a ray that a lane's hit sends. Numbers wrap around, in very deep trees.
+  static std::uint32_t branch_of(const RayLanes& lanes, int i, Bundle bundle) {
+    const std::uint32_t own = lanes.whole ? 0 : lanes.branch[i];
+    return own * kBundles + static_cast<std::uint32_t>(bundle) + 1;
   }
 
  private:
@@ -96,12 +110,36 @@ class LitWalk : public Walk {
   shading::LaneMask look_through(const RayGroup& group, RayLanes& lanes, shading::LaneMask layered,
                                  const shading::Floats16& alpha);
   void ask_behind(const RayGroup& group, const RayLanes& lanes, int i, const glm::vec3& weight);
+  // A light as it acts from its place or, of an area light, from its centre.
+  void ask_light(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                 std::size_t light, const shading::Surfaces& surfaces);
+
+  // Lights with a size (sampled_lights.cpp).
+  void ask_sized_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                        const shading::Surfaces& surfaces, const Mirrored& mirrored);
+  // Of the surfaces' lobes those that samples of lights find, and the others. Returns the lanes
+  // that have others.
+  static shading::LaneMask split_lobes(const shading::Surfaces& surfaces, shading::LaneMask mask,
+                                       const Mirrored& mirrored, shading::Surfaces& wide,
+                                       shading::Surfaces& narrow);
+  int points_per_light() const;  // that each surface draws
+  // Numbers for one of them; what glows counts as the light after the last.
+  void draw_points(const RayLanes& lanes, shading::LaneMask mask, std::size_t light, int point,
+                   std::span<Pairs16> pairs);
+  void ask_points(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                  const shading::Surfaces& surfaces, LightSamples& points);
+  void ask_area_light(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                      std::size_t light);
+  void ask_glow(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask);
 
   Groups<RayLanes> asked_, answered_;  // of next_.rays and wave_.rays
   Groups<Light> asked_lights_, answered_lights_;
   shading::Vectors16 directions_, sum_;
   shading::Shaded shown_;
   shading::Arriving arriving_;
+  shading::Surfaces wide_, narrow_;
+  shading::Vectors16 reflected_;
+  LightSamples points_;
   std::size_t source_ = 0;  // the group that is looked at
   // The group of next_.rays that each bundle fills, and how many of its lanes are in use.
   struct Open {

@@ -207,6 +207,7 @@ TEST(Whitted, TotalInternalReflectionKeepsLightInside) {
   scenes::Material& inside = add(scene, wall(-50, 5000.0F));
   inside.base_colour = {0, 0, 0, 1};
   inside.emission = {0, 1, 0};
+  scene.materials[1].ior = inside.ior = 1.0F;  // what glows lights what else there is
   scenes::Camera camera;
   camera.eye = {0, 0, -5};  // the side that the normal points away from: inside
   camera.up = {0, 1, 0};
@@ -225,6 +226,7 @@ TEST(Whitted, CutOutsAndBlendsShowWhatIsBehind) {
   scenes::Scene scene;
   scenes::Material& back = add(scene, wall(-1));
   back.base_colour = {0, 0, 0, 1};
+  back.ior = 1.0F;
   back.emission = {0, 0, 1};
   scenes::Material& veil = add(scene, wall(0));
   veil.base_colour = {0, 0, 0, 0.25F};
@@ -271,6 +273,10 @@ TEST(Whitted, NearPlaneCutsAway) {
   scenes::Scene scene;
   add(scene, wall(2)).emission = {1, 0, 0};
   add(scene, wall(0)).emission = {0, 1, 0};
+  for (scenes::Material& material : scene.materials) {  // neither lights the other
+    material.base_colour = {0, 0, 0, 1};
+    material.ior = 1.0F;
+  }
   scenes::Camera camera = ahead();
   camera.near = 4;
   EXPECT_EQ(pixel(render_alone(scene, camera, small(4, 4)), 2, 2).r, 0.0F);
