@@ -8,6 +8,7 @@
 #include "apps/compare_compose.h"
 #include "apps/compose_figures.h"
 #include "apps/compose_report.h"
+#include "apps/families.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/scheme_option.h"
@@ -20,9 +21,9 @@ namespace delray::apps {
 namespace {
 
 int list() {
-  print_table(composite::schemes());
-  print_table(composite::codecs());
-  print_table(comm::networks());
+  list_schemes();
+  list_codecs();
+  list_networks();
   return kDone;
 }
 

@@ -3,6 +3,7 @@
 
 #include "apps/compare_commands.h"
 #include "apps/compare_partition.h"
+#include "apps/families.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/partition_figures.h"
@@ -14,9 +15,9 @@ namespace delray::apps {
 namespace {
 
 int list() {
-  print_table(loadbalance::partitioners());
-  print_table(raster::strategies());
-  print_table(comm::networks());
+  list_partitions();
+  list_strategies();
+  list_networks();
   return kDone;
 }
 

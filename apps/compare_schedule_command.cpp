@@ -3,6 +3,7 @@
 
 #include "apps/compare_commands.h"
 #include "apps/compare_schedule.h"
+#include "apps/families.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/schedule_figures.h"
@@ -14,9 +15,9 @@ namespace delray::apps {
 namespace {
 
 int list() {
-  print_table(loadbalance::schedules());
-  print_table(raytrace::integrators());
-  print_table(comm::networks());
+  list_schedules();
+  list_integrators();
+  list_networks();
   return kDone;
 }
 

@@ -4,6 +4,7 @@
 
 #include "apps/compare_commands.h"
 #include "apps/compare_triangulate.h"
+#include "apps/families.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/progress_bar.h"
@@ -43,7 +44,7 @@ void check_methods(const TriangulateRequest& request, int dim) {
 
 int run(Session& session, TriangulateRequest request) {
   if (request.list) {
-    print_table(delaunay::methods());
+    list_methods();
     return kDone;
   }
   if (request.input.path.empty()) throw UsageError("compare triangulate: POINTS is missing");
@@ -57,9 +58,10 @@ int run(Session& session, TriangulateRequest request) {
   int dim = request.dim;
   const delaunay::PointCloud points = load(request.input, dim);
   check_methods(request, dim);
-  const ProgressBar bar(session, "compare");
+  ProgressBar bar(session, "compare");
   const auto comparison = std::make_shared<const TriangulateComparison>(
       compare_triangulate(request, points, dim, session.progress));
+  bar.end();
   return tell(request, {triangulate_table(*comparison),
                         triangulate_statistics(request, *comparison), comparison->unfinished,
                         [&] { return triangulate_report(session, request, *comparison); }});

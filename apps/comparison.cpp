@@ -2,22 +2,15 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "apps/outputs.h"
+#include "apps/terminal.h"
 #include "files/atomic_file.h"
 
 namespace delray::apps {
-namespace {
-
-bool is_number(const std::string& text) {
-  return text.empty() || text == "-" || (text[0] >= '0' && text[0] <= '9');
-}
-
-}  // namespace
-
 void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
                             const std::string& listed) {
   command.add_option("-o,--output", options.output,
@@ -34,24 +27,6 @@ void check(const Session& session, const ComparisonOptions& options, const std::
   check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {input});
 }
 
-void print_aligned(const TextTable& table) {
-  const std::size_t columns = table[0].size();
-  std::vector<std::size_t> widths(columns);
-  std::vector<bool> numbers(columns, true);
-  for (std::size_t k = 0; k < table.size(); ++k)
-    for (std::size_t i = 0; i < columns; ++i) {
-      widths[i] = std::max(widths[i], table[k][i].size());
-      if (k > 0 && !is_number(table[k][i])) numbers[i] = false;
-    }
-  for (const std::vector<std::string>& line : table) {
-    for (std::size_t i = 0; i < columns; ++i)
-      fmt::print("{}{}", i > 0 ? "  " : "",
-                 numbers[i] ? fmt::format("{:>{}}", line[i], widths[i])
-                            : fmt::format("{:<{}}", line[i], widths[i]));
-    fmt::print("\n");
-  }
-}
-
 Json spread_json(const Spread& times) {
   return {{"least", times.least}, {"most", times.most}, {"runs", times.runs}};
 }
@@ -61,7 +36,7 @@ std::string range_text(const Spread& times) {
 }
 
 int tell(const ComparisonOptions& options, Found&& found) {
-  if (options.statistics != "-") print_aligned(found.table);
+  if (options.statistics != "-") fmt::print("{}", aligned(found.table, line_width(STDOUT_FILENO)));
   if (!options.output.empty()) files::write_file(options.output, found.page());
   write_statistics(options.statistics, found.statistics);
   if (!found.unfinished) return kDone;

@@ -8,6 +8,7 @@
 #include "apps/session.h"
 #include "apps/spread.h"
 #include "apps/statistics.h"
+#include "apps/text_table.h"
 #include "parallel/progress.h"
 
 namespace delray::apps {
@@ -24,11 +25,6 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
                             const std::string& listed);
 // Throws UsageError, FileError where nothing could be written in the end.
 void check(const Session& session, const ComparisonOptions& options, const std::string& input);
-
-// A heading, then lines of as many texts.
-using TextTable = std::vector<std::vector<std::string>>;
-// On stdout, numbers aligned to the right.
-void print_aligned(const TextTable& table);
 
 // Least, most and number of the runs; their median stands elsewhere.
 Json spread_json(const Spread& times);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/commands.h"
+#include "apps/families.h"
 #include "apps/input_limits.h"
 #include "apps/launch.h"
 #include "apps/list.h"
@@ -186,8 +187,8 @@ void check(const Session& session, const ComposeRequest& request) {
 int run(const Session& session, const ComposeRequest& request) {
   if (request.list) {
     if (session.first_process) {
-      print_table(composite::schemes());
-      print_table(composite::codecs());
+      list_schemes();
+      list_codecs();
     }
     return kDone;
   }

@@ -33,7 +33,7 @@ void require(const GenerateOptions& options) {
 
 int generate_points(const GenerateOptions& options) {
   if (options.list) {
-    print_table(delaunay::point_generators());
+    print_table("Kinds of points (KIND)", delaunay::point_generators());
     return kDone;
   }
   require(options);
@@ -46,7 +46,7 @@ int generate_points(const GenerateOptions& options) {
 
 int generate_scene(const GenerateOptions& options) {
   if (options.list) {
-    print_table(scenes::generators());
+    print_table("Kinds of scenes (KIND)", scenes::generators());
     return kDone;
   }
   require(options);

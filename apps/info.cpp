@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "apps/commands.h"
+#include "apps/formats.h"
 #include "apps/outputs.h"
 #include "apps/scene_input.h"
 #include "apps/statistics.h"
@@ -138,17 +139,23 @@ void add_info(CLI::App& program, Session& session) {
   struct Options {
     std::string path, statistics;
     InputLimits limits;
+    bool list = false;
   };
   CLI::App* command = program.add_subcommand("info", "say what is in a file");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "a scene, mesh, point or picture file");
+  command->add_option("FILE", options->path, "File to describe: " + format_names());
   command->add_option("--stats", options->statistics, "write it as JSON; - for stdout");
+  command->add_flag("--list", options->list,
+                    "List the formats that are read, as happens without FILE");
   add_memory_option(*command, options->limits);
   add_outside_option(*command, options->limits);
-  add_common_options(*command, session, "info model.glb\ninfo points.las --stats -");
+  add_common_options(*command, session, "info model.glb\ninfo points.las --stats -\ninfo --list");
   command->callback([&session, options] {
     session.run = [options] {
-      if (options->path.empty()) throw UsageError("info: FILE is missing");
+      if (options->list || options->path.empty()) {
+        list_formats();
+        return int{kDone};
+      }
       check_outputs({{"--stats", options->statistics}}, {options->path});
       const Json description = describe(options->path, options->limits);
       if (options->statistics != "-") print(description);

@@ -2,10 +2,12 @@
 #include "apps/list.h"
 
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <sstream>
 
+#include "apps/terminal.h"
 #include "files/similar_name.h"
 
 namespace delray::apps {
@@ -26,6 +28,33 @@ CLI::Validator choice(const std::vector<std::string>& names, const OtherValues& 
 }
 
 }  // namespace
+
+void print_list(const std::string& heading, const std::vector<NameAndDescription>& entries) {
+  const std::size_t width = line_width(STDOUT_FILENO);
+  if (width != kUnlimited) {
+    fmt::print("{}", list_text(heading, entries, width));
+    return;
+  }
+  for (const auto& [name, description] : entries) fmt::print("{}\t{}\n", name, description);
+}
+
+std::string list_text(const std::string& heading, const std::vector<NameAndDescription>& entries,
+                      std::size_t width) {
+  constexpr std::size_t kIndent = 2, kGap = 2, kNarrowest = 20;
+  std::size_t longest = 0;
+  for (const NameAndDescription& entry : entries) longest = std::max(longest, entry.name.size());
+  const std::size_t begin = kIndent + longest + kGap;
+  const std::size_t room = std::max(kNarrowest, width - std::min(width, begin));
+  std::string text = heading + ":\n";
+  for (const auto& [name, description] : entries) {
+    std::string before = fmt::format("{:{}}{:<{}}", "", kIndent, name, longest + kGap);
+    for (const std::string& line : wrapped(description, room)) {
+      text += before + line + "\n";
+      before = std::string(begin, ' ');
+    }
+  }
+  return text + "\n";
+}
 
 std::string is_not_one_of(std::string_view name, const std::vector<std::string>& names) {
   return fmt::format("'{}' is not one of {}{}", name, fmt::join(names, ", "),

@@ -12,10 +12,23 @@
 
 namespace delray::apps {
 
-// For --list: an entry a line, name, tab, description.
+struct NameAndDescription {
+  std::string name, description;
+};
+
+// For --list: an entry a line, name, tab, description; on a terminal columns under `heading`.
+void print_list(const std::string& heading, const std::vector<NameAndDescription>& entries);
+// The same as text, for a terminal of so many columns.
+std::string list_text(const std::string& heading, const std::vector<NameAndDescription>& entries,
+                      std::size_t width);
+
 template <class Table>
-void print_table(const Table& table) {
-  for (const auto& entry : table) fmt::print("{}\t{}\n", entry.name, entry.description);
+void print_table(const std::string& heading, const Table& table) {
+  std::vector<NameAndDescription> entries;
+  for (const auto& entry : table) {
+    entries.push_back({std::string(entry.name), std::string(entry.description)});
+  }
+  print_list(heading, entries);
 }
 
 template <class Table>

@@ -16,6 +16,7 @@
 
 #include "apps/commands.h"
 #include "apps/launch.h"
+#include "apps/progress_bar.h"
 #include "apps/usage.h"
 #include "files/printable.h"
 #include "parallel/stack.h"
@@ -38,13 +39,25 @@ class PrintableText final : public spdlog::custom_flag_formatter {
   }
 };
 
+// Takes the progress bar away before a line, which it would share otherwise.
+class OwnLine final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg&, const std::tm&, spdlog::memory_buf_t& to) override {
+    const std::string_view text = before_line();
+    to.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<OwnLine>();
+  }
+};
+
 // Progress, warnings and errors go to stderr: stdout is for results.
 void set_up_log() {
   const bool colour = std::getenv("NO_COLOR") == nullptr;
   auto log = spdlog::stderr_color_mt(
       "delray", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never);
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<PrintableText>('*').set_pattern("%^%l%$: %*");
+  formatter->add_flag<PrintableText>('*').add_flag<OwnLine>('~').set_pattern("%~%^%l%$: %*");
   log->set_formatter(std::move(formatter));
   spdlog::set_default_logger(std::move(log));
 }

@@ -1,11 +1,15 @@
+// The bar on a terminal: a thread draws it, ten times a second.
 #include "apps/progress_bar.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+
+#include "apps/progress_text.h"
+#include "apps/terminal.h"
 
 namespace delray::apps {
 namespace {
@@ -13,15 +17,32 @@ namespace {
 using std::chrono::duration;
 using std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kQuietTime{1000}, kRedraw{100};
-constexpr int kWidth = 30;
+constexpr std::string_view kClear = "\r\x1b[K";
 
-std::string bar(const std::string& what, std::uint64_t done, std::uint64_t total, double seconds) {
-  if (total == 0) return fmt::format("\r{}: {}  {:.0f} s ", what, done, seconds);
-  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
-  const int full = static_cast<int>(share * kWidth);
-  const double left = share > 0 ? seconds * (1 - share) / share : 0;
-  return fmt::format("\r{}: [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s left ", what, "", full, "",
-                     kWidth - full, 100 * share, left);
+std::atomic<bool> is_drawn{false};
+
+// Follows tasks that begin one after the other: each is timed by itself.
+class TaskWatch {
+ public:
+  explicit TaskWatch(parallel::Progress& progress) : progress_(progress) {}
+
+  TaskState look() {
+    const std::uint64_t done = progress_.done(), total = progress_.total();
+    if (done < last_done_) start_ = steady_clock::now();
+    last_done_ = done;
+    return {done, total, duration<double>(steady_clock::now() - start_).count()};
+  }
+
+ private:
+  parallel::Progress& progress_;
+  steady_clock::time_point start_ = steady_clock::now();
+  std::uint64_t last_done_ = 0;
+};
+
+// In one call, so that it does not mix with a line of text.
+void put(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
 }  // namespace
@@ -33,7 +54,7 @@ ProgressBar::ProgressBar(Session& session, std::string what)
   thread_ = std::thread([this] { draw_until_done(); });
 }
 
-ProgressBar::~ProgressBar() {
+void ProgressBar::end() {
   if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
@@ -41,19 +62,20 @@ ProgressBar::~ProgressBar() {
   }
   done_changed_.notify_one();
   thread_.join();
-  if (drawn_) std::fputs("\r\x1b[K", stderr);
+  if (is_drawn.exchange(false)) put(std::string(kClear));
 }
 
 void ProgressBar::draw_until_done() {
-  const auto start = steady_clock::now();
+  TaskWatch watch(progress_);
   std::unique_lock lock(mutex_);
   if (done_changed_.wait_for(lock, kQuietTime, [this] { return done_; })) return;
+  is_drawn = true;
   do {
-    const double seconds = duration<double>(steady_clock::now() - start).count();
-    std::fputs(bar(what_, progress_.done(), progress_.total(), seconds).c_str(), stderr);
-    std::fflush(stderr);
-    drawn_ = true;
+    const std::size_t width = line_width(STDERR_FILENO) - 1;  // the cursor is in the last column
+    put(std::string(kClear) + progress_text(what_, watch.look(), width));
   } while (!done_changed_.wait_for(lock, kRedraw, [this] { return done_; }));
 }
+
+std::string_view before_line() { return is_drawn ? kClear : std::string_view(); }
 
 }  // namespace delray::apps

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "apps/session.h"
@@ -11,13 +12,16 @@
 namespace delray::apps {
 
 // Shows session.progress on stderr while it lives, from the second second on; only on a terminal,
-// only by the first process, never when quiet.
+// only by the first process, never when quiet. One at a time.
 class ProgressBar {
  public:
   ProgressBar(Session& session, std::string what);
-  ~ProgressBar();
+  ~ProgressBar() { end(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
+
+  // Takes the bar away, so that results have lines of their own.
+  void end();
 
  private:
   void draw_until_done();
@@ -26,8 +30,11 @@ class ProgressBar {
   std::string what_;
   std::mutex mutex_;
   std::condition_variable done_changed_;
-  bool done_ = false, drawn_ = false;
+  bool done_ = false;
   std::thread thread_;
 };
+
+// What to write to stderr before a line of text: clears the bar if one is drawn, else nothing.
+std::string_view before_line();
 
 }  // namespace delray::apps

@@ -9,6 +9,7 @@
 
 #include "apps/animation.h"
 #include "apps/commands.h"
+#include "apps/families.h"
 #include "apps/interrupt.h"
 #include "apps/list.h"
 #include "apps/outputs.h"
@@ -34,13 +35,13 @@ namespace delray::apps {
 namespace {
 
 int print_lists() {
-  print_table(raster::strategies());
-  print_table(loadbalance::partitioners());
-  print_table(composite::schemes());
-  print_table(composite::codecs());
-  print_table(raytrace::integrators());
-  print_table(raytrace::distributions());
-  print_table(loadbalance::schedules());
+  list_strategies();
+  list_partitions();
+  list_schemes();
+  list_codecs();
+  list_integrators();
+  list_distributions();
+  list_schedules();
   return kDone;
 }
 
@@ -110,7 +111,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   check(command, request);
   refuse_overwriting(request);
   check(session, request.launch);
-  const ProgressBar bar(session, "render");
+  ProgressBar bar(session, "render");
   std::optional<StopOnTermination> stop;
   if (!request.practice.checkpoint.empty()) stop.emplace();
   parallel::Progress* const progress = &session.progress;
@@ -137,7 +138,9 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       const Animation animation =
           render_animation(communicator, *prepared, request, session, progress);
       comm::all_or_none(communicator, comm::Phase::other, [&] {
-        if (communicator.rank() == 0) finish(request, *prepared, animation);
+        if (communicator.rank() != 0) return;
+        bar.end();
+        finish(request, *prepared, animation);
       });
       return;
     }
@@ -147,7 +150,9 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
           write_picture(session, request.output, picture);
         });
     comm::all_or_none(communicator, comm::Phase::other, [&] {
-      if (communicator.rank() == 0) finish(request, session, *prepared, frames);
+      if (communicator.rank() != 0) return;
+      bar.end();
+      finish(request, session, *prepared, frames);
     });
   };
   run_ranks(session, request.launch, {request.scene.file.path, request.camera_path}, render,

@@ -42,12 +42,13 @@ int run_scene_comparison(
     Session& session, const CLI::App& command, SceneComparison& options,
     const std::function<Found(const Prepared& prepared, parallel::Progress& progress)>& compare) {
   check_scene(command, session, options);
-  const ProgressBar bar(session, "compare");
+  ProgressBar bar(session, "compare");
   const parallel::AllowThreads allowed(parallel::arena_threads());
   const auto prepared = parallel::Arena(parallel::arena_threads()).execute([&] {
     return prepare(options.render, &session.progress);
   });
   Found found = compare(*prepared, session.progress);
+  bar.end();
   return session.first_process ? tell(options, std::move(found)) : int{kDone};
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/families.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/outputs.h"
@@ -131,7 +132,7 @@ void add_choices(CLI::App& command) {
 
 int run(Session& session, TriangulateOptions options) {
   if (options.list) {
-    print_table(delaunay::methods());
+    list_methods();
     return kDone;
   }
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");

@@ -1,17 +1,16 @@
 #include "delaunay/read_mesh.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include "delaunay/internal/point_readers.h"
-#include "files/format.h"
 #include "files/read_file.h"
 
 namespace delray::delaunay {
 namespace {
 
 using files::Format;
-
-constexpr const char* kNoMesh = "not a mesh; known formats: PLY, OBJ, OFF, STL, VTU, NODE+ELE";
 
 // A file in memory that an Input refers to.
 struct Content {
@@ -33,29 +32,45 @@ PointMesh read_node_and_ele(const std::filesystem::path& path, const files::Memo
   return read_node_mesh(nodes.input, elements.input);
 }
 
-PointMesh read_any(const std::filesystem::path& path, const files::MemoryBudget& memory) {
-  if (files::format_of_suffix(path) == Format::node) return read_node_and_ele(path, memory);
-  const Format format = files::identify_format(path, memory);
-  // A stream of something else need not be read to its end, if it has one.
-  if (format == Format::unknown && files::is_stream(path)) fail({path.string(), ""}, "", kNoMesh);
+template <PointMesh (*read)(const Input&)>
+PointMesh read_file(const std::filesystem::path& path, const files::MemoryBudget& memory) {
   const Content file(path, memory);
-  switch (format) {
-    case Format::ply:
-      return read_ply_mesh(file.input);
-    case Format::obj:
-      return read_obj_mesh(file.input);
-    case Format::off:
-      return read_off_mesh(file.input);
-    case Format::vtu:
-      return read_vtu_mesh(file.input);
-    case Format::stl:
-      return read_stl_mesh(file.input);
-    default:
-      fail(file.input, "", kNoMesh);
+  return read(file.input);
+}
+
+constexpr std::array kReaders = {
+    MeshReader{Format::ply, "PLY", "triangles", &read_file<read_ply_mesh>},
+    MeshReader{Format::obj, "OBJ", "triangles", &read_file<read_obj_mesh>},
+    MeshReader{Format::off, "OFF", "triangles", &read_file<read_off_mesh>},
+    MeshReader{Format::stl, "STL", "triangles", &read_file<read_stl_mesh>},
+    MeshReader{Format::vtu, "VTU", "triangles or tetrahedra, as delray writes them",
+               &read_file<read_vtu_mesh>},
+    MeshReader{Format::node, "NODE+ELE",
+               "triangles or tetrahedra of Triangle and TetGen, two files", &read_node_and_ele},
+};
+
+std::string no_mesh() {
+  std::string names;
+  for (const MeshReader& reader : kReaders) {
+    names += (names.empty() ? "" : ", ") + std::string(reader.name);
   }
+  return "not a mesh; known formats: " + names;
+}
+
+PointMesh read_any(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  const bool is_node = files::format_of_suffix(path) == Format::node;
+  const Format format = is_node ? Format::node : files::identify_format(path, memory);
+  const auto reader = std::ranges::find(kReaders, format, &MeshReader::format);
+  if (reader != kReaders.end()) return reader->read(path, memory);
+  // A stream of something else need not be read to its end, if it has one.
+  if (files::is_stream(path)) fail({path.string(), ""}, "", no_mesh());
+  const Content file(path, memory);
+  fail(file.input, "", no_mesh());
 }
 
 }  // namespace
+
+std::span<const MeshReader> mesh_readers() { return kReaders; }
 
 PointMesh read_mesh(const std::filesystem::path& path, const files::MemoryBudget& memory) {
   PointMesh mesh = read_any(path, memory);

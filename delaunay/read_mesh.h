@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string_view>
 
 #include "delaunay/points.h"
 #include "delaunay/triangulation.h"
+#include "files/format.h"
 #include "files/memory_budget.h"
 
 namespace delray::delaunay {
@@ -17,9 +20,18 @@ struct PointMesh {
   bool has_float_coordinates = false;  // the file's are of 32 bits, as always in STL
 };
 
-// Reads PLY, OBJ, OFF and STL (triangles; corners of STL that are at one place are one vertex), VTU
-// (triangles or tetrahedra, as written by write_mesh) and .node with the .ele beside it (either may
-// be named). A mesh without simplices is legal.
+// A way to read meshes.
+struct MeshReader {
+  files::Format format;
+  std::string_view name;         // "PLY"
+  std::string_view description;  // one line
+  PointMesh (*read)(const std::filesystem::path& path, const files::MemoryBudget& memory);
+};
+
+std::span<const MeshReader> mesh_readers();
+
+// Reads what mesh_readers() lists; of .node and .ele, which lie beside each other, either may be
+// named. Corners of STL that are at one place are one vertex. A mesh without simplices is legal.
 //
 // Throws FileError (input) if the file cannot be read or is broken, and if a face is no triangle or
 // refers to a missing vertex; FileError (memory) if it takes more than `memory`. O(bytes).

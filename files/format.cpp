@@ -253,6 +253,14 @@ std::string_view name(Format format) {
   return "unknown";
 }
 
+std::string suffixes(Format format) {
+  std::string list;
+  for (const auto& [suffix, known] : kSuffixes) {
+    if (known == format) list += (list.empty() ? "" : " ") + std::string(suffix);
+  }
+  return list;
+}
+
 Format format_of_suffix(const std::filesystem::path& path) {
   const std::string suffix = lower(path.extension().string());
   for (const auto& [known, format] : kSuffixes) {

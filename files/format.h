@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "files/memory_budget.h"
@@ -47,6 +48,9 @@ FileKind identify(const std::filesystem::path& path, const MemoryBudget& memory 
 
 // The format alone: what identify(path) finds, without looking for faces.
 Format identify_format(const std::filesystem::path& path, const MemoryBudget& memory = {});
+
+// The suffixes of a format: ".las .laz".
+std::string suffixes(Format format);
 
 // The format that a suffix stands for, by itself; `unknown` for none that is known.
 Format format_of_suffix(const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 #include "scenes/load.h"
 
 #include <algorithm>
+#include <array>
 
 #include "files/format.h"
 #include "files/read_file.h"
@@ -19,8 +20,26 @@ using internal::Source;
 
 constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
 constexpr std::uint64_t kOrderingBytes = 48;          // that ordering takes for a triangle
-constexpr const char* kNoScene =
-    "this is not a scene that can be read; formats: OBJ, PLY, STL, glTF, GLB, OFF";
+
+constexpr std::array kReaders = {
+    SceneReader{Format::obj, "OBJ", "Wavefront model, with its materials (MTL) and textures",
+                &internal::read_obj},
+    SceneReader{Format::ply, "PLY", "triangles, polygons or strips, with colours and normals",
+                &internal::read_ply},
+    SceneReader{Format::stl, "STL", "triangles, text or binary", &internal::read_stl},
+    SceneReader{Format::gltf, "glTF", "scene with materials, lights and cameras, as JSON",
+                &internal::load_gltf},
+    SceneReader{Format::glb, "GLB", "the same as one binary file", &internal::load_gltf},
+    SceneReader{Format::off, "OFF", "polygons", &internal::read_off},
+};
+
+std::string no_scene() {
+  std::string names;
+  for (const SceneReader& reader : kReaders) {
+    names += (names.empty() ? "" : ", ") + std::string(reader.name);
+  }
+  return "this is not a scene that can be read; formats: " + names;
+}
 
 // A backslash at the end of a line continues it; blanks instead leave one long line.
 std::string join_continued_lines(std::string text) {
@@ -33,24 +52,14 @@ std::string join_continued_lines(std::string text) {
 }
 
 Scene read(Format format, const Source& source) {
-  switch (format) {
-    case Format::obj:
-      return internal::read_obj(source);
-    case Format::ply:
-      return internal::read_ply(source);
-    case Format::off:
-      return internal::read_off(source);
-    case Format::stl:
-      return internal::read_stl(source);
-    case Format::gltf:
-    case Format::glb:
-      return internal::load_gltf(source);
-    default:
-      source.fail("", kNoScene);
-  }
+  const auto reader = std::ranges::find(kReaders, format, &SceneReader::format);
+  if (reader == kReaders.end()) source.fail("", no_scene());
+  return reader->read(source);
 }
 
 }  // namespace
+
+std::span<const SceneReader> scene_readers() { return kReaders; }
 
 Scene internal::load_content(const std::filesystem::path& path, std::string content,
                              std::vector<std::string>& warnings, const LoadOptions& options) {
@@ -82,7 +91,7 @@ Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings
   if (files::is_stream(path)) {
     const bool empty = files::read_start(path, 1, options.memory).empty();
     if (!empty && files::identify_format(path, options.memory) == Format::unknown) {
-      Source{path, "", warnings}.fail("", kNoScene);
+      Source{path, "", warnings}.fail("", no_scene());
     }
   }
   std::string content = files::read_file(path, options.memory);

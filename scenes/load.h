@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "files/format.h"
 #include "files/memory_budget.h"
 #include "files/resolve.h"
 #include "parallel/progress.h"
@@ -19,7 +22,21 @@ struct LoadOptions {
   parallel::Progress* progress = nullptr;
 };
 
-// Loads OBJ+MTL, PLY, STL, glTF/GLB or OFF, from a file or stream. Bad geometry (indices out of
+namespace internal {
+struct Source;
+}
+
+// A way to read scenes.
+struct SceneReader {
+  files::Format format;
+  std::string_view name;         // "OBJ"
+  std::string_view description;  // one line
+  Scene (*read)(const internal::Source& source);
+};
+
+std::span<const SceneReader> scene_readers();
+
+// Loads what scene_readers() lists, from a file or stream. Bad geometry (indices out of
 // range, NaN or infinite vertices, degenerate triangles) never reaches the scene: an index or
 // coordinate that is wrong is bad input (files::FileError); triangles with two corners in one place
 // are dropped and told in `warnings`. A file whose content takes more than `memory` is FileError

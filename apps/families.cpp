@@ -1,0 +1,50 @@
+// The families of algorithms that options choose from: a heading for each, with its option.
+#include "apps/families.h"
+
+#include "apps/list.h"
+#include "comm/network.h"
+#include "composite/codec.h"
+#include "composite/scheme.h"
+#include "delaunay/methods.h"
+#include "loadbalance/partition.h"
+#include "loadbalance/schedule.h"
+#include "raster/strategies.h"
+#include "raytrace/distribution.h"
+#include "raytrace/integrator.h"
+
+namespace delray::apps {
+
+void list_strategies() {
+  print_table("Strategies: how ranks share the rasterizer's work (--strategy)",
+              raster::strategies());
+}
+
+void list_partitions() {
+  print_table("Partitions of the screen among ranks (--partition)", loadbalance::partitioners());
+}
+
+void list_schemes() {
+  print_table("Compositing schemes: how the images of all ranks become one (--compose)",
+              composite::schemes());
+}
+
+void list_codecs() { print_table("Pixel encodings between ranks (--codec)", composite::codecs()); }
+
+void list_integrators() {
+  print_table("Integrators: what the ray tracer computes (--integrator)", raytrace::integrators());
+}
+
+void list_distributions() {
+  print_table("Distributions of the scene among ranks (--data)", raytrace::distributions());
+}
+
+void list_schedules() {
+  print_table("Schedules: how ranks share the blocks of a picture (--schedule)",
+              loadbalance::schedules());
+}
+
+void list_methods() { print_table("Methods of triangulation (--method)", delaunay::methods()); }
+
+void list_networks() { print_table("Networks to predict times for", comm::networks()); }
+
+}  // namespace delray::apps
