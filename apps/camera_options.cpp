@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/session.h"
 #include "scenes/camera_path.h"
@@ -13,12 +14,18 @@
 namespace delray::apps {
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
-  CLI::Option* camera = command.add_option(
-      "--camera", options.camera,
-      "Name or number (from 1) of a camera of the scene, or eye,at,up,fov: ten numbers, in the "
-      "coordinates of the file, fov vertical in degrees");
+  CLI::Option* camera =
+      command
+          .add_option(
+              "--camera", options.camera,
+              "Camera: name or number (from 1) of one in the scene, or eye,at,up,fov, ten numbers "
+              "in the file's coordinates with the vertical field of view in degrees")
+          ->group(group::kCamera);
   command
-      .add_option("--view", options.view, "default, front, back, left, right, top, bottom or iso")
+      .add_option("--view", options.view,
+                  "Side from which all is shown: default (from the front, above and right), front, "
+                  "back, left, right, top, bottom or iso (isometric)")
+      ->group(group::kCamera)
       ->excludes(camera);
   choose_from(command, "--view", scenes::view_names());
 }

@@ -7,8 +7,8 @@
 namespace delray::apps {
 
 void add_compare(CLI::App& program, Session& session) {
-  CLI::App* command =
-      program.add_subcommand("compare", "variants of one thing, on an input of your own");
+  CLI::App* command = program.add_subcommand(
+      "compare", "Compare algorithms on an input of your own: counted, measured and predicted");
   command->require_subcommand(1);
   add_compare_compose(*command, session);
   add_compare_triangulate(*command, session);

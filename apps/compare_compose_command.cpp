@@ -9,6 +9,7 @@
 #include "apps/compose_figures.h"
 #include "apps/compose_report.h"
 #include "apps/families.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/scheme_option.h"
@@ -62,27 +63,35 @@ int run(Session& session, const CLI::App& command, CompareRequest request) {
 
 void add_compare_compose(CLI::App& compare, Session& session) {
   CLI::App* command =
-      compare.add_subcommand("compose", "every compositing scheme: counted, measured, predicted");
+      compare.add_subcommand("compose", "Compare compositing schemes: bytes, messages and times");
   const auto request = std::make_shared<CompareRequest>();
   request->ranks = {2, 3, 4, 8, 16, 64, 256, 1024, 4096};
-  add_scene_comparison_options(
-      *command, *request,
-      "(default 2,3,4,8,16,64, and 256,1024,4096 of schemes that are soon simulated); more than 64 "
-      "are simulated");
-  command->add_option("--threads", request->render.launch.threads, "workers per rank (default 1)")
+  add_scene_comparison_options(*command, *request,
+                               "(default: 2,3,4,8,16,64, and 256,1024,4096 for schemes that are "
+                               "fast to simulate); more than "
+                               "64 are simulated");
+  command->add_option("--threads", request->render.launch.threads, "Threads per rank (default: 1)")
+      ->group(group::kParallel)
       ->transform(count_between(1, 4096));
   add_timeout_option(*command, request->render.launch);
   command
       ->add_option("--codec", request->codecs,
-                   "how pixels travel, separated by commas (default active)")
+                   "Pixel encodings to compare, separated by commas (default: active)")
+      ->group(group::kSharing)
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_flag("--interlace", request->interlace,
-                    "deal pieces of the image out to the ranks in turn");
-  command->add_option("--compose", request->schemes, "schemes, separated by spaces (default all)");
+  command
+      ->add_flag("--interlace", request->interlace,
+                 "Deal out pixels in turn, so that ranks get equal shares of uneven pictures")
+      ->group(group::kSharing);
+  command
+      ->add_option("--compose", request->schemes,
+                   "Compositing schemes to compare, separated by blanks (default: all)")
+      ->group(group::kSharing);
   choose_scheme(*command);
   choose_from(*command, "--codec", names_in(composite::codecs()));
-  add_comparison_options(*command, *request, "measure less often", "schemes, codecs, networks");
+  add_comparison_options(*command, *request, "Measure less often",
+                         "compositing schemes, pixel encodings and networks");
   add_common_options(*command, session,
                      "compare compose model.glb --ranks 2,4,8,1024 --codec active,dense\n"
                      "compare compose gen:terrain:1000000 --size 1920x1080 --stats compose.json");

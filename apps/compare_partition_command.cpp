@@ -4,6 +4,7 @@
 #include "apps/compare_commands.h"
 #include "apps/compare_partition.h"
 #include "apps/families.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/partition_figures.h"
@@ -40,26 +41,28 @@ int run(Session& session, const CLI::App& command, PartitionRequest request) {
 
 void add_compare_partition(CLI::App& compare, Session& session) {
   CLI::App* command = compare.add_subcommand(
-      "partition", "every partition of the screen, and the strategies that use them");
+      "partition", "Compare partitions of the screen among ranks: balance, overlap and times");
   const auto request = std::make_shared<PartitionRequest>();
   request->ranks = {2, 4, 8, 16, 32, 64, 256};
   add_scene_comparison_options(*command, *request,
-                               "(default 2,4,8,16,32,64,256); more than 64 are predicted");
+                               "(default: 2,4,8,16,32,64,256); more than 64 are predicted");
   command
       ->add_option("--regions", request->regions,
-                   "regions for each rank, separated by commas (default 1,2,4); all but the first "
-                   "for the most ranks up to 16 alone")
+                   "Numbers of regions per rank to compare, separated by commas (default: 1,2,4); "
+                   "all but the first are compared only for the highest number of ranks up to 16")
+      ->group(group::kSharing)
       ->delimiter(',')
       ->allow_extra_args(false)
       ->transform(count_between(1, 64));
   command
       ->add_option("--partition", request->partitions,
-                   "partitions, separated by commas (default all)")
+                   "Partitions to compare, separated by commas (default: all)")
+      ->group(group::kSharing)
       ->delimiter(',')
       ->allow_extra_args(false);
   choose_from(*command, "--partition", names_in(loadbalance::partitioners()));
-  add_comparison_options(*command, *request, "three frames each",
-                         "partitions, strategies, networks");
+  add_comparison_options(*command, *request, "Measure three frames of each",
+                         "partitions, strategies and networks");
   add_common_options(*command, session,
                      "compare partition model.glb -o partition.html\n"
                      "compare partition gen:city --ranks 16,64,1024 --stats partition.json");

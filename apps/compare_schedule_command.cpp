@@ -4,6 +4,7 @@
 #include "apps/compare_commands.h"
 #include "apps/compare_schedule.h"
 #include "apps/families.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/schedule_figures.h"
@@ -43,31 +44,46 @@ int run(Session& session, const CLI::App& command, ScheduleRequest request) {
 }  // namespace
 
 void add_compare_schedule(CLI::App& compare, Session& session) {
-  CLI::App* command =
-      compare.add_subcommand("schedule", "every schedule handing out the ray tracer's tiles");
+  CLI::App* command = compare.add_subcommand(
+      "schedule", "Compare schedules of the ray tracer: balance, messages and times");
   const auto request = std::make_shared<ScheduleRequest>();
   request->ranks = {2, 4, 8, 16, 32, 64, 128, 256};
-  add_scene_comparison_options(
-      *command, *request,
-      "(default 2,4,8,16,32,64,128,256); all are simulated, as many as there are cores traced too");
-  command->add_option("--integrator", request->render.integrator, "(default whitted)");
-  command->add_option("--spp", request->render.samples, "rays per pixel (default 1)")
+  add_scene_comparison_options(*command, *request,
+                               "(default: 2,4,8,16,32,64,128,256); all are simulated, and those up "
+                               "to the number of cores also run");
+  command
+      ->add_option("--integrator", request->render.integrator,
+                   "What is computed along rays (default: whitted; --list describes them)")
+      ->group(group::kRaytracer);
+  command->add_option("--spp", request->render.samples, "Samples per pixel (default: 1)")
+      ->group(group::kRaytracer)
       ->transform(count_between(1, 65536));
-  command->add_option("--depth", request->render.depth, "reflections and refractions (default 8)")
+  command
+      ->add_option("--depth", request->render.depth,
+                   "Maximum reflections and refractions (default: 8)")
+      ->group(group::kRaytracer)
       ->transform(count_between(0, 64));
-  command->add_option("--tile", request->tile, "pixels, the side of a tile (default 16)")
+  command
+      ->add_option("--tile", request->tile,
+                   "Side in pixels of the tiles that ranks share, a multiple of 16 (default: 16)")
+      ->group(group::kSharing)
       ->transform(count_between(16, 4096));
   command
-      ->add_option("--schedule", request->schedules, "schedules, separated by commas (default all)")
+      ->add_option("--schedule", request->schedules,
+                   "Schedules to compare, separated by commas (default: all)")
+      ->group(group::kSharing)
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--network", request->network,
-                      "the one that is counted and shown (default 10-gigabit-ethernet)");
+  command
+      ->add_option(
+          "--network", request->network,
+          "Network that the counts are for and the report shows (default: 10-gigabit-ethernet)")
+      ->group(group::kSharing);
   choose_from(*command, "--integrator", names_in(raytrace::integrators()));
   choose_from(*command, "--schedule", names_in(loadbalance::schedules()));
   choose_from(*command, "--network", names_in(comm::networks()));
-  add_comparison_options(*command, *request, "three frames each",
-                         "schedules, integrators, networks");
+  add_comparison_options(*command, *request, "Measure three frames of each",
+                         "schedules, integrators and networks");
   add_common_options(
       *command, session,
       "compare schedule model.glb -o schedule.html --spp 4\n"

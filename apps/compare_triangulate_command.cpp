@@ -5,6 +5,7 @@
 #include "apps/compare_commands.h"
 #include "apps/compare_triangulate.h"
 #include "apps/families.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/progress_bar.h"
@@ -71,30 +72,35 @@ int run(Session& session, TriangulateRequest request) {
 
 void add_compare_triangulate(CLI::App& compare, Session& session) {
   CLI::App* command = compare.add_subcommand(
-      "triangulate", "every triangulation method: times, locks, who made what");
+      "triangulate", "Compare methods of triangulation: times, speed-up and synchronization");
   const auto request = std::make_shared<TriangulateRequest>();
-  command->add_option("POINTS", request->input.path, "a file of points, or - for standard input");
+  command
+      ->add_option("POINTS", request->input.path,
+                   "File of points (delray info --list names the formats); - for standard input")
+      ->group(group::kInput);
   command
       ->add_option("--dim", request->dim,
-                   "2 (z is carried along) or 3; default: 3 for points with a z, but 2 for LAS "
-                   "files and elevation pictures, which are terrain")
+                   "Dimension: 2, where z is carried along, or 3 (default: 3 for points with a z, "
+                   "but 2 for LAS files and elevation pictures, which are terrain)")
       ->check(one_of({"2", "3"}));
   command
       ->add_option("--threads", request->threads,
-                   "how many, separated by commas (default 1,2,4,8 as far as there are cores, and "
-                   "twice the cores if they are few)")
+                   "Numbers of threads to compare, separated by commas (default: 1,2,4,8 as far as "
+                   "there are cores, and twice the cores if they are few)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->transform(count_between(1, 4096));
-  command->add_option("--method", request->methods, "methods, separated by commas (default all)")
+  command
+      ->add_option("--method", request->methods,
+                   "Methods to compare, separated by commas (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--seed", request->seed, "seed of everything random (default 1)")
+  command->add_option("--seed", request->seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
   choose_from(*command, "--method", names_in(delaunay::methods()));
   add_point_options(*command, request->input);
-  add_comparison_options(*command, *request, "time each three times, the slow ones once",
-                         "the methods");
+  add_comparison_options(*command, *request, "Measure each method three times, slow ones once",
+                         "methods");
   add_common_options(*command, session,
                      "compare triangulate points.las -o report.html\n"
                      "compare triangulate model.obj --dim 3 --threads 1,2,4,8 --quick --stats -");

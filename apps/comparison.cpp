@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/help.h"
 #include "apps/outputs.h"
 #include "apps/terminal.h"
 #include "files/atomic_file.h"
@@ -13,11 +14,16 @@
 namespace delray::apps {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
                             const std::string& listed) {
-  command.add_option("-o,--output", options.output,
-                     "the report, a page that needs nothing else: .html");
-  command.add_flag("--quick", options.quick, quick);
-  command.add_option("--stats", options.statistics, "write figures as JSON; - for stdout");
-  command.add_flag("--list", options.list, "list " + listed);
+  command
+      .add_option("-o,--output", options.output,
+                  "Report to write: a web page that needs no other files (.html)")
+      ->group(group::kOutput);
+  command.add_flag("--quick", options.quick, quick)->group(group::kOutput);
+  command
+      .add_option("--stats", options.statistics,
+                  "Figures as JSON to this file; - for standard output")
+      ->group(group::kOutput);
+  command.add_flag("--list", options.list, "List the " + listed)->group(group::kOutput);
 }
 
 void check(const Session& session, const ComparisonOptions& options, const std::string& input) {

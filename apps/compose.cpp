@@ -8,6 +8,7 @@
 
 #include "apps/commands.h"
 #include "apps/families.h"
+#include "apps/help.h"
 #include "apps/input_limits.h"
 #include "apps/launch.h"
 #include "apps/list.h"
@@ -237,28 +238,43 @@ int run(const Session& session, const ComposeRequest& request) {
 }  // namespace
 
 void add_compose(CLI::App& program, Session& session) {
-  CLI::App* command = program.add_subcommand("compose", "merge images rendered elsewhere");
+  CLI::App* command =
+      program.add_subcommand("compose", "Merge pictures that were rendered elsewhere");
   const auto request = std::make_shared<ComposeRequest>();
-  command->add_option("PART", request->parts,
-                      "EXR with depth (a channel Z): at every pixel the nearest part is seen, the "
-                      "first of those at equal depth");
-  command->add_option("-o,--output", request->output, "the picture: .png .exr .tif .jpg");
+  command
+      ->add_option("PART", request->parts,
+                   "EXR pictures with depth (a channel Z): at every pixel the nearest is seen, the "
+                   "first of those at equal depth")
+      ->group(group::kInput);
+  command->add_option("-o,--output", request->output, "Picture to write: .png, .exr, .tif or .jpg")
+      ->group(group::kOutput);
   command->add_flag("--ordered", request->ordered,
-                    "the parts lie over each other, the first in front; no depth is needed");
-  command->add_option("--compose", request->scheme,
-                      "who sends which pixels to whom (default radix-k)");
-  command->add_option("--codec", request->codec, "how pixels travel (default active)");
-  command->add_flag("--interlace", request->interlace,
-                    "every piece that travels has something of everywhere");
-  command->add_flag(
-      "--in-pieces", request->in_pieces,
-      "every rank writes its own pixels into the EXR; nothing is gathered, and no hash "
-      "told");
+                    "Lay the parts over each other, the first in front; no depth is needed");
+  command
+      ->add_option("--compose", request->scheme,
+                   "Compositing scheme: which rank sends which pixels to which (default: radix-k; "
+                   "--list describes them)")
+      ->group(group::kSharing);
+  command->add_option("--codec", request->codec, "Pixel encoding between ranks (default: active)")
+      ->group(group::kSharing);
+  command
+      ->add_flag("--interlace", request->interlace,
+                 "Deal out pixels in turn, so that ranks get equal shares of uneven pictures")
+      ->group(group::kSharing);
+  command
+      ->add_flag("--in-pieces", request->in_pieces,
+                 "Let every rank write its own pixels into the EXR, instead of sending them to "
+                 "one; no hash is told")
+      ->group(group::kSharing);
   add_memory_option(*command, request->limits);
   add_launch_options(*command, request->launch);
   add_metadata_option(*command, session);
-  command->add_option("--stats", request->statistics, "write statistics as JSON; - for stdout");
-  command->add_flag("--list", request->list, "list schemes and codecs");
+  command
+      ->add_option("--stats", request->statistics,
+                   "Statistics as JSON to this file; - for standard output")
+      ->group(group::kOutput);
+  command->add_flag("--list", request->list, "List the compositing schemes and pixel encodings")
+      ->group(group::kOutput);
   choose_scheme(*command);
   choose_from(*command, "--codec", names_in(composite::codecs()));
   add_common_options(*command, session,

@@ -12,12 +12,14 @@
 namespace delray::apps {
 
 void add_completion(CLI::App& program, Session& session) {
-  CLI::App* command =
-      program.add_subcommand("completion", "print what a shell needs to complete command lines");
+  CLI::App* command = program.add_subcommand(
+      "completion", "Print a script that completes command lines in a shell");
   const auto name = std::make_shared<std::string>();
   std::vector<std::string> names;
   for (const Shell& shell : shells()) names.emplace_back(shell.name);
-  command->add_option("SHELL", *name, "which shell")->check(one_of(names))->required();
+  command->add_option("SHELL", *name, "Shell that the script is for")
+      ->check(one_of(names))
+      ->required();
   std::string footer = "Examples:\n";
   for (const Shell& shell : shells()) footer += fmt::format("  {}\n", shell.description);
   command->footer(footer);
@@ -30,7 +32,7 @@ void add_completion(CLI::App& program, Session& session) {
 }
 
 void add_manual(CLI::App& program, Session& session) {
-  CLI::App* command = program.add_subcommand("manual", "print the manual as a man page");
+  CLI::App* command = program.add_subcommand("manual", "Print the manual as a man page");
   command->footer("Examples:\n  delray manual | man -l -\n  delray manual > delray.1\n");
   command->callback([&session, &program] {
     session.run = [&program] {

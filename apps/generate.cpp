@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/outputs.h"
@@ -62,7 +63,7 @@ int generate_scene(const GenerateOptions& options) {
 }  // namespace
 
 void add_generate(CLI::App& program, Session& session) {
-  CLI::App* generate = program.add_subcommand("generate", "make points or a scene");
+  CLI::App* generate = program.add_subcommand("generate", "Generate points or a scene");
   generate->require_subcommand(1);
   const auto options = std::make_shared<GenerateOptions>();
   const auto add = [&](const char* name, const char* description, const char* kind,
@@ -71,22 +72,25 @@ void add_generate(CLI::App& program, Session& session) {
     CLI::App* command = generate->add_subcommand(name, description);
     command->add_option("KIND", options->kind, kind);
     command->add_option("-n", options->count, count)->transform(count_between(1, most));
-    command->add_option("--seed", options->seed, "seed of everything random (default 1)")
+    command->add_option("--seed", options->seed, "Seed of all random numbers (default: 1)")
         ->transform(any_count());
-    command->add_option("-o,--output", options->output, "the file to write");
-    command->add_flag("--list", options->list, "list the kinds");
+    command->add_option("-o,--output", options->output, "File to write")->group(group::kOutput);
+    command->add_flag("--list", options->list, "List the kinds")->group(group::kOutput);
     add_common_options(*command, session, examples);
     command->callback([&session, options, run] { session.run = [=] { return run(*options); }; });
     return command;
   };
-  CLI::App* points = add("points", "make points", "what they are like",
-                         "how many: 10000, 1e6, 10k (default 1000)", kMostPoints, generate_points,
+  CLI::App* points = add("points", "Generate points", "Kind of points (--list describes them)",
+                         "Number of points, such as 10000, 1e6 or 10k (default: 1000)", kMostPoints,
+                         generate_points,
                          "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
                          "generate points --list");
   choose_from(*points, "KIND", names_in(delaunay::point_generators()));
-  points->add_option("--dim", options->dim, "2 or 3 (default 2)")->check(one_of({"2", "3"}));
+  points->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
+      ->check(one_of({"2", "3"}));
   CLI::App* scene =
-      add("scene", "make a scene", "what it shows", "about how many triangles: 10000, 1e6, 10k",
+      add("scene", "Generate a scene", "Kind of scene (--list describes them)",
+          "Approximate number of triangles, such as 10000, 1e6 or 10k (default: by the kind)",
           scenes::kMostTriangles, generate_scene,
           "generate scene terrain -n 1000000 -o terrain.glb\n"
           "generate scene field -o field.glb");

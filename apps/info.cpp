@@ -6,6 +6,7 @@
 
 #include "apps/commands.h"
 #include "apps/formats.h"
+#include "apps/help.h"
 #include "apps/outputs.h"
 #include "apps/scene_input.h"
 #include "apps/statistics.h"
@@ -141,12 +142,18 @@ void add_info(CLI::App& program, Session& session) {
     InputLimits limits;
     bool list = false;
   };
-  CLI::App* command = program.add_subcommand("info", "say what is in a file");
+  CLI::App* command = program.add_subcommand(
+      "info", "Describe what is in a file, or list the formats that are read");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "File to describe: " + format_names());
-  command->add_option("--stats", options->statistics, "write it as JSON; - for stdout");
-  command->add_flag("--list", options->list,
-                    "List the formats that are read, as happens without FILE");
+  command->add_option("FILE", options->path, "File to describe: " + format_names())
+      ->group(group::kInput);
+  command
+      ->add_option("--stats", options->statistics,
+                   "Description as JSON to this file; - for standard output")
+      ->group(group::kOutput);
+  command
+      ->add_flag("--list", options->list, "List the formats that are read, as happens without FILE")
+      ->group(group::kOutput);
   add_memory_option(*command, options->limits);
   add_outside_option(*command, options->limits);
   add_common_options(*command, session, "info model.glb\ninfo points.las --stats -\ninfo --list");

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/help.h"
 #include "apps/launch.h"
 #include "apps/session.h"
 
@@ -28,15 +29,17 @@ void add_memory_option(CLI::App& command, InputLimits& limits) {
             throw CLI::ValidationError(
                 "--memory", fmt::format("'{}' is not a size such as 500MB or 2GiB", text));
           },
-          "Largest amount of memory that a process may use, such as 500MB or 2GiB; an input that "
-          "needs more is refused (default: half of the machine's memory, shared among its "
-          "processes)")
+          "Maximum memory of a process, such as 500MB or 2GiB; inputs that need more are refused "
+          "(default: half of the machine's memory, divided among its processes)")
+      ->group(group::kInput)
       ->type_name("SIZE");
 }
 
 void add_outside_option(CLI::App& command, InputLimits& limits) {
-  command.add_flag("--allow-outside", limits.allow_outside,
-                   "Let a scene use textures, buffers and materials outside of its own folder");
+  command
+      .add_flag("--allow-outside", limits.allow_outside,
+                "Let a scene use textures, buffers and materials outside of its own folder")
+      ->group(group::kInput);
 }
 
 void refuse_outside(const std::string& path, const InputLimits& limits) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "apps/build_id.h"
+#include "apps/help.h"
 #include "apps/numbers.h"
 #include "apps/usage.h"
 #include "comm/failure.h"
@@ -80,8 +81,9 @@ void note_options(const CLI::App& program, const std::vector<std::string>& argum
 void add_timeout_option(CLI::App& command, Launch& launch) {
   command
       .add_option("--timeout", launch.timeout,
-                  "Seconds after which a rank that others wait for counts as lost: exit code 5 "
-                  "(default: none)")
+                  "Seconds after which a rank that others wait for counts as lost, which ends the "
+                  "run with exit code 5 (default: none)")
+      ->group(group::kParallel)
       ->check(positive_number());
 }
 
@@ -91,11 +93,16 @@ void check(const Session& session, const Launch& launch) {
 }
 
 void add_launch_options(CLI::App& command, Launch& launch) {
-  command.add_option("--ranks", launch.ranks, "ranks, as threads of this process (default 1)")
+  command
+      .add_option("--ranks", launch.ranks,
+                  "Ranks to share the work, within this process (default: 1); under mpirun its "
+                  "processes are the ranks")
+      ->group(group::kParallel)
       ->transform(count_between(1, 4096));
   command
       .add_option("--threads", launch.threads,
-                  "workers per rank (default: cores / ranks, at least 1)")
+                  "Threads per rank (default: cores divided by ranks, at least 1)")
+      ->group(group::kParallel)
       ->transform(count_between(1, 4096));
   add_timeout_option(command, launch);
 }

@@ -15,6 +15,7 @@
 #include <memory>
 
 #include "apps/commands.h"
+#include "apps/help.h"
 #include "apps/launch.h"
 #include "apps/progress_bar.h"
 #include "apps/usage.h"
@@ -94,9 +95,10 @@ int run(int argc, char** argv) {
   session.command_line = joined(argc, argv);
   find_launcher(session);
 
-  CLI::App program("Delray renders scenes in parallel and triangulates points in parallel.",
-                   "delray");
-  program.set_version_flag("--version", "delray " DELRAY_VERSION);
+  CLI::App program("Delray renders scenes and triangulates points, in parallel.", "delray");
+  program.formatter(std::make_shared<HelpFormatter>());
+  program.set_help_flag("-h,--help", "Show this page");
+  program.set_version_flag("--version", "delray " DELRAY_VERSION, "Show the version");
   program.require_subcommand(1);
   add_info(program, session);
   add_generate(program, session);

@@ -25,17 +25,16 @@ CLI::Validator numbers(Fits&& fits, const std::string& range, const std::string&
 }  // namespace
 
 CLI::Validator positive_number() {
-  return numbers([](double value) { return value > 0.0; }, "above 0", "POSITIVE");
+  return numbers([](double value) { return value > 0.0; }, "above 0", "above 0");
 }
 
 CLI::Validator non_negative_number() {
-  return numbers([](double value) { return value >= 0.0; }, "from 0 on", "NONNEGATIVE");
+  return numbers([](double value) { return value >= 0.0; }, "from 0 on", "0 or more");
 }
 
 CLI::Validator number_between(double least, double most) {
   return numbers([least, most](double value) { return least <= value && value <= most; },
-                 fmt::format("from {} to {}", least, most),
-                 fmt::format("FLOAT in [{} - {}]", least, most));
+                 fmt::format("from {} to {}", least, most), fmt::format("{} to {}", least, most));
 }
 
 CLI::Validator count_between(std::uint64_t least, std::uint64_t most) {
@@ -50,12 +49,12 @@ CLI::Validator count_between(std::uint64_t least, std::uint64_t most) {
       return std::string(error.what());
     }
   };
-  return CLI::Validator(check, fmt::format("INT in [{} - {}]", least, most));
+  return CLI::Validator(check, fmt::format("{} to {}", least, most));
 }
 
 CLI::Validator any_count() {
   CLI::Validator count = count_between(0, std::numeric_limits<std::uint64_t>::max());
-  return count.description("INT");
+  return count.description("");
 }
 
 }  // namespace delray::apps

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/help.h"
 #include "apps/inliers.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
@@ -66,15 +67,21 @@ bool is_picture(const PointInput& input) {
 }
 
 void add_point_options(CLI::App& command, PointInput& input) {
-  command.add_flag("--terrain-rgb", input.terrain_rgb,
-                   "a picture's colours are Mapbox terrain-RGB heights");
+  command
+      .add_flag("--terrain-rgb", input.terrain_rgb,
+                "Decode heights from the colours of an elevation picture (Mapbox terrain-RGB)")
+      ->group(group::kInput);
   command
       .add_option("--cell-size", input.cell_size,
-                  "distance of the pixels of an elevation picture, in units of its heights "
-                  "(default: as a GeoTIFF says, else such that the relief shows)")
+                  "Distance between the pixels of an elevation picture, in units of its heights "
+                  "(default: from the GeoTIFF, else such that the relief shows)")
+      ->group(group::kInput)
       ->check(positive_number());
-  command.add_option("--duplicates", input.duplicates,
-                     "height of places that have several: first (default), min, max, mean");
+  command
+      .add_option("--duplicates", input.duplicates,
+                  "Height to take where several points have the same x and y: first (default), "
+                  "min, max or mean")
+      ->group(group::kInput);
   choose_from(command, "--duplicates", names_in(delaunay::duplicates_policies()));
   add_memory_option(command, input.limits);
 }

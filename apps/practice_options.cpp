@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/render_options.h"
@@ -55,74 +56,82 @@ void refuse(const CLI::App& command, const char* option, const char* with) {
 }  // namespace
 
 void add_practice_options(CLI::App& command, Practice& practice) {
-  const std::string group = "Ray tracer";
   command
       .add_option("--time", practice.seconds,
-                  "seconds that sampling may take; then the picture is done, however noisy")
-      ->check(positive_number())
-      ->group(group);
+                  "Seconds to sample for, however noisy the picture is then (default: no limit)")
+      ->group(group::kRaytracer)
+      ->check(positive_number());
   command
-      .add_option("--noise", practice.noise,
-                  "Stop sampling where the standard deviation of values on the screen (0 to 1) is "
-                  "below this, such as 0.01; --spp is the maximum then (default 256, or none with "
-                  "--time)")
-      ->check(positive_number())
-      ->group(group);
+      .add_option(
+          "--noise", practice.noise,
+          "Stop below this noise: the standard deviation of values on the screen, which are 0 to "
+          "1, such as 0.01; --spp is the maximum then (default: 256, or none with --time)")
+      ->group(group::kRaytracer)
+      ->check(positive_number());
   command
       .add_option("--preview-every", practice.preview_every,
-                  "seconds: write the picture so far to the output file so often")
-      ->check(positive_number())
-      ->group(group);
+                  "Seconds between previews: the picture so far, written to the output file "
+                  "(default: none)")
+      ->group(group::kRaytracer)
+      ->check(positive_number());
   command
-      .add_option("--checkpoint", practice.checkpoint,
-                  "keep all samples so far in this file, now and then and when interrupted")
-      ->group(group);
+      .add_option(
+          "--checkpoint", practice.checkpoint,
+          "File that keeps all samples so far, now and then and when interrupted, for --resume")
+      ->group(group::kRaytracer);
   command
       .add_option("--checkpoint-every", practice.checkpoint_every,
-                  "seconds from one checkpoint to the next (default 60)")
-      ->check(non_negative_number())
-      ->group(group);
+                  "Seconds between checkpoints (default: 60)")
+      ->group(group::kRaytracer)
+      ->check(non_negative_number());
   command
-      .add_flag("--resume", practice.resume,
-                "go on from the file of --checkpoint, to the same picture as without interruption")
-      ->group(group);
+      .add_flag(
+          "--resume", practice.resume,
+          "Continue from the file of --checkpoint, to the same picture as without interruption")
+      ->group(group::kRaytracer);
   command
-      .add_option("--crop", practice.crop,
-                  "x,y,width,height in pixels: only this part of the picture")
-      ->group(group);
+      .add_option(
+          "--crop", practice.crop,
+          "Render only x,y,width,height of the picture, in pixels from its upper left corner")
+      ->group(group::kRaytracer);
   command
-      .add_flag("--aovs", practice.channels,
-                "EXR: with channels for normal, albedo, ids, variance, samples and costs")
-      ->group(group);
+      .add_flag(
+          "--aovs", practice.channels,
+          "Write channels of normals, albedo, ids, variance, samples and costs into the EXR too")
+      ->group(group::kRaytracer);
   command
       .add_flag("--denoise", practice.denoise,
-                "smooth noise, led by normals, albedo, depth and variance")
-      ->group(group);
+                "Remove noise, guided by normals, albedo, depth and variance")
+      ->group(group::kRaytracer);
   command
       .add_option("--show", practice.show,
-                  fmt::format("what the picture shows: {}", fmt::join(shown_names(), ", ")))
-      ->group(group);
+                  fmt::format("Show this instead of colour: {}", fmt::join(shown_names(), ", ")))
+      ->group(group::kRaytracer);
   command
       .add_option("--exposure", practice.exposure,
-                  "stops: light is multiplied by 2 to the power of this; not in EXR")
-      ->check(number_between(-30.0, 30.0))
-      ->group(group);
+                  "Exposure in stops: light is multiplied by 2 to the power of this (default: 0; "
+                  "not in EXR)")
+      ->group(group::kRaytracer)
+      ->check(number_between(-30.0, 30.0));
   command
-      .add_option("--tone", practice.tone, "from light to the screen: linear (default) or filmic")
-      ->group(group);
+      .add_option("--tone", practice.tone,
+                  "Tone curve from light to the screen: linear (default) or filmic (not in EXR)")
+      ->group(group::kRaytracer);
   command
-      .add_option("--aperture", practice.aperture,
-                  "diameter of the lens, in units of the scene (default 0: all is sharp)")
-      ->check(non_negative_number())
-      ->group(group);
+      .add_option(
+          "--aperture", practice.aperture,
+          "Diameter of the lens in units of the scene, for depth of field (default: 0, all sharp)")
+      ->group(group::kRaytracer)
+      ->check(non_negative_number());
   command
       .add_option("--focus", practice.focus,
-                  "distance of what is sharp, along the view (default: that of what is looked at)")
-      ->check(positive_number())
-      ->group(group);
-  command.add_option("--seed", practice.seed, "of all random numbers (default 0)")
-      ->transform(any_count())
-      ->group(group);
+                  "Distance of what is sharp, along the view, in units of the scene (default: that "
+                  "of the point looked at)")
+      ->group(group::kRaytracer)
+      ->check(positive_number());
+  command.add_option("--seed", practice.seed, "Seed of all random numbers (default: 0)")
+      ->group(group::kRaytracer)
+      ->transform(any_count());
   choose_from(command, "--tone", names_in(image::tone_curves()));
   choose_from(command, "--show", shown_names());
 }

@@ -163,7 +163,8 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
 }  // namespace
 
 void add_render(CLI::App& program, Session& session) {
-  CLI::App* command = program.add_subcommand("render", "make a picture of a scene, mesh or points");
+  CLI::App* command =
+      program.add_subcommand("render", "Render a picture of a scene, mesh or points");
   const auto request = std::make_shared<RenderRequest>();
   add_render_options(*command, *request);
   add_metadata_option(*command, session);

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <initializer_list>
 
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/scheme_option.h"
@@ -145,167 +146,211 @@ void parse_size(RenderRequest& request) {
 
 void add_render_options(CLI::App& command, RenderRequest& request) {
   add_scene_options(command, request.scene);
-  command.add_option("-o,--output", request.output, "the picture: .png .exr .tif .jpg");
-  command.add_option("--size", request.size, "WIDTHxHEIGHT (default 1280x720)");
-  command.add_option("--engine", request.engine, "raster (default) or raytrace")
+  command.add_option("-o,--output", request.output, "Picture to write: .png, .exr, .tif or .jpg")
+      ->group(group::kOutput);
+  command
+      .add_option("--size", request.size,
+                  "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
+      ->group(group::kPicture);
+  command
+      .add_option("--engine", request.engine,
+                  "Renderer: raster, the rasterizer (default), or raytrace, the ray tracer")
+      ->group(group::kPicture)
       ->check(one_of({"raster", "raytrace"}));
   command
       .add_option("--frames", request.frames,
-                  "render so often and report the median time (default 1)")
+                  "Render the picture this many times and report the median time (default: 1)")
+      ->group(group::kOutput)
       ->transform(count_between(1, 100000));
-  command.add_option("--background", request.background,
-                     "auto (default), environment, studio, transparent or #rrggbb");
+  command
+      .add_option("--background", request.background,
+                  "What is behind the scene: environment, studio (grey, brighter above), "
+                  "transparent, a colour as #rrggbb, or auto (default), which suits the scene")
+      ->group(group::kPicture);
   add_camera_options(command, request.camera);
   command
       .add_option("--turntable", request.turntable,
-                  "an animation once around the scene: so many frames, IMAGE-0000 and on")
+                  "Animation of so many frames once around the scene: IMAGE-0000 and on")
+      ->group(group::kCamera)
       ->transform(count_between(1, 1000000))
       ->excludes("--frames");
   command
       .add_option("--camera-path", request.camera_path,
-                  "an animation along cameras in a file, a line each: [FRAME:] eye,at,up,fov")
+                  "Animation along the cameras in this file, one a line: [FRAME:] eye,at,up,fov")
+      ->group(group::kCamera)
       ->excludes("--frames")
       ->excludes("--turntable")
       ->excludes("--camera")
       ->excludes("--view");
   command
-      .add_option("--frames-at-once", request.frames_at_once,
-                  "of an animation that are in the making at the same time (default: threads + 2, "
-                  "from 4 to 8); 1: one after the other")
+      .add_option(
+          "--frames-at-once", request.frames_at_once,
+          "Frames of an animation to work on at the same time (default: threads + 2, but 4 to 8)")
+      ->group(group::kCamera)
       ->transform(count_between(1, 64));
   add_launch_options(command, request.launch);
-  const std::string raster = "Rasterizer";
-  command.add_option("--strategy", request.strategy, "how ranks share the work")->group(raster);
+  command
+      .add_option("--strategy", request.strategy,
+                  "Rasterizer: when primitives, triangles or pixels go to other ranks: sort-first, "
+                  "sort-middle, sort-last (default) or hybrid")
+      ->group(group::kSharing);
   command
       .add_option("--partition", request.partition,
-                  "of the screen: sort-first, sort-middle; what ray tracing ranks begin with")
-      ->group(raster);
-  command.add_option("--compose", request.scheme, "compositing scheme, sort-last")->group(raster);
-  command.add_option("--shading", request.lighting, "phong (default) or gouraud")
-      ->check(one_of({"phong", "gouraud"}))
-      ->group(raster);
-  command.add_option("--codec", request.codec, "how pixels travel, sort-last")->group(raster);
+                  "How the screen is divided among ranks, with sort-first, sort-middle and hybrid "
+                  "(default: mahd); ray tracer: what ranks begin with, if the schedule lets them "
+                  "(default: none)")
+      ->group(group::kSharing);
+  command
+      .add_option("--compose", request.scheme,
+                  "Compositing scheme, which merges the images of all ranks, with sort-last "
+                  "(default: binary-swap)")
+      ->group(group::kSharing);
+  command
+      .add_option("--shading", request.lighting,
+                  "Lighting of surfaces: phong, at every pixel (default), or gouraud, at vertices")
+      ->group(group::kRasterizer)
+      ->check(one_of({"phong", "gouraud"}));
+  command
+      .add_option("--codec", request.codec,
+                  "Pixel encoding between ranks, with sort-last (default: dense)")
+      ->group(group::kSharing);
   command
       .add_option("--blend", request.blend,
-                  "transparent surfaces: by-owner (of the pixel, exactly; default), or by-cell: "
-                  "each rank those in its cell of space, then front to back; sort-last")
-      ->check(one_of({"by-owner", "by-cell"}))
-      ->group(raster);
-  command
-      .add_option("--shade", request.shade,
-                  "pixels: deferred (default), immediate, or composited (once ranks are)")
-      ->check(one_of({"deferred", "immediate", "composited"}))
-      ->group(raster);
-  command
-      .add_option("--samples", request.supersampling,
-                  "per pixel, in either direction: 1 (default), 2 or 4")
-      ->check(one_of({"1", "2", "4"}))
-      ->group(raster);
-  command
-      .add_option("--travel", request.travel,
-                  "primitives as geometry (default) or numbers, where they change rank")
-      ->check(one_of({"geometry", "numbers"}))
-      ->group(raster);
-  command
-      .add_option("--costs", request.costs,
-                  "what partitions go by: model (default; rays counted in the last frame), or "
-                  "measured in the last frame")
-      ->check(one_of({"model", "measured"}))
-      ->group(raster);
-  command
-      .add_option("--regions", request.regions_per_rank, "of the screen, for each rank (default 1)")
-      ->transform(count_between(1, 64))
-      ->group(raster);
-  command
-      .add_option("--keep", request.keep_factor,
-                  "keep the last frame's partition while no rank does more than so many times an "
-                  "equal share (default 1.2)")
-      ->check(number_between(1.0, 1000.0))
-      ->group(raster);
-  command
-      .add_option("--block", request.block,
-                  "pixels, the side of a block that --schedule hands out (default 64; with rays a "
-                  "multiple of 16, by default 32 of path, else 16)")
-      ->transform(count_between(1, 4096))
-      ->group(raster);
-  command
-      .add_option("--groups", request.groups,
-                  "sort-middle: ranks do both halves (one, default), or some geometry and the "
-                  "others pixels (two)")
-      ->check(one_of({"one", "two"}))
-      ->group(raster);
-  command
-      .add_option("--geometry-ranks", request.geometry_ranks,
-                  "sort-middle, two groups: how many ranks do geometry (default half)")
-      ->transform(count_between(1, 1000000))
-      ->group(raster);
+                  "Transparent surfaces, with sort-last: by-owner, all fragments of a pixel are "
+                  "sorted by the rank that owns it (default, exact), or by-cell, each rank blends "
+                  "those in its cell of space and cells are merged front to back")
+      ->group(group::kSharing)
+      ->check(one_of({"by-owner", "by-cell"}));
   command
       .add_option(
-          "--redistribute", request.redistribution,
-          "sort-middle: triangles are sent in batches at once (immediate, default) or at-end")
-      ->check(one_of({"immediate", "at-end"}))
-      ->group(raster);
-  const std::string raytrace = "Ray tracer";
-  command.add_option("--integrator", request.integrator, "what rays do")->group(raytrace);
-  command.add_option("--spp", request.samples, "samples per pixel (default 1)")
-      ->transform(count_between(1, 65536))
-      ->group(raytrace);
-  command.add_option("--depth", request.depth, "maximum reflections and refractions (default 8)")
-      ->transform(count_between(0, 64))
-      ->group(raytrace);
+          "--shade", request.shade,
+          "When pixels are shaded: immediate, as they are drawn; deferred, once all is drawn "
+          "(default); composited, once the images of all ranks are merged (sort-last)")
+      ->group(group::kRasterizer)
+      ->check(one_of({"deferred", "immediate", "composited"}));
+  command
+      .add_option("--samples", request.supersampling,
+                  "Samples per pixel in each direction: 1 (default), 2 or 4, which is 16 per pixel")
+      ->group(group::kRasterizer)
+      ->check(one_of({"1", "2", "4"}));
+  command
+      .add_option("--travel", request.travel,
+                  "How a rank sends primitives to others: their geometry (default), or numbers, by "
+                  "which others look them up in the scene")
+      ->group(group::kSharing)
+      ->check(one_of({"geometry", "numbers"}));
+  command
+      .add_option("--costs", request.costs,
+                  "Costs that partitions balance: model, an estimate (default), or measured, times "
+                  "of the last frame")
+      ->group(group::kSharing)
+      ->check(one_of({"model", "measured"}));
+  command
+      .add_option("--regions", request.regions_per_rank,
+                  "Regions of the screen per rank (default: 1)")
+      ->group(group::kSharing)
+      ->transform(count_between(1, 64));
+  command
+      .add_option("--keep", request.keep_factor,
+                  "Repartition when a rank exceeds this multiple of the mean load (default: 1.2)")
+      ->group(group::kSharing)
+      ->check(number_between(1.0, 1000.0));
+  command
+      .add_option("--block", request.block,
+                  "Side in pixels of the blocks that --schedule hands out (default: 64; ray "
+                  "tracer: a multiple of 16, by default 16, or 32 with path)")
+      ->group(group::kSharing)
+      ->transform(count_between(1, 4096));
+  command
+      .add_option(
+          "--groups", request.groups,
+          "Sort-middle: one group of ranks for geometry and pixels (default), or two, one for each")
+      ->group(group::kSharing)
+      ->check(one_of({"one", "two"}));
+  command
+      .add_option("--geometry-ranks", request.geometry_ranks,
+                  "Sort-middle in two groups: number of ranks for geometry (default: half of all)")
+      ->group(group::kSharing)
+      ->transform(count_between(1, 1000000));
+  command
+      .add_option("--redistribute", request.redistribution,
+                  "Sort-middle: send triangles in batches as they are transformed (immediate, "
+                  "default), or all at-end")
+      ->group(group::kSharing)
+      ->check(one_of({"immediate", "at-end"}));
+  command
+      .add_option("--integrator", request.integrator,
+                  "What is computed along rays (default: whitted; --list describes them)")
+      ->group(group::kRaytracer);
+  command.add_option("--spp", request.samples, "Samples per pixel (default: 1)")
+      ->group(group::kRaytracer)
+      ->transform(count_between(1, 65536));
+  command.add_option("--depth", request.depth, "Maximum reflections and refractions (default: 8)")
+      ->group(group::kRaytracer)
+      ->transform(count_between(0, 64));
   command
       .add_option("--diffuse-depth", request.diffuse_depth,
-                  "path: maximum diffuse scatterings (default 64, more than most paths last)")
-      ->transform(count_between(0, 1024))
-      ->group(raytrace);
+                  "Maximum diffuse bounces, with path (default: 64, more than most paths last)")
+      ->group(group::kRaytracer)
+      ->transform(count_between(0, 1024));
   command
       .add_option("--reach", request.reach,
-                  "ao: what is further away hides nothing (default: everything hides)")
-      ->check(positive_number())
-      ->group(raytrace);
-  command.add_flag("--no-shadows", request.no_shadows, "direct: nothing hides lights")
-      ->group(raytrace);
+                  "Ambient occlusion radius in units of the scene, with ao (default: unlimited)")
+      ->group(group::kRaytracer)
+      ->check(positive_number());
+  command
+      .add_flag("--no-shadows", request.no_shadows,
+                "Let light pass through everything, with direct")
+      ->group(group::kRaytracer);
   command
       .add_option("--build", request.build,
-                  "Embree's structures: low (quick to build), medium (default) or high (quick to "
-                  "trace, splits triangles)")
-      ->check(one_of({"low", "medium", "high"}))
-      ->group(raytrace);
+                  "Quality of Embree's bounding volume hierarchies: low (fast to build), medium "
+                  "(default) or high (fast to trace, splits triangles)")
+      ->group(group::kRaytracer)
+      ->check(one_of({"low", "medium", "high"}));
   command
       .add_option("--isa", request.isa,
-                  "instructions for Embree: best (default); avx2 may be quicker than avx512 where "
-                  "rays go everywhere")
-      ->check(one_of({"best", "sse2", "sse4.2", "avx", "avx2", "avx512"}))
-      ->group(raytrace);
+                  "Instruction set for Embree: sse2, sse4.2, avx, avx2, avx512 or best, of this "
+                  "processor (default); avx2 may be faster than avx512 for incoherent rays")
+      ->group(group::kRaytracer)
+      ->check(one_of({"best", "sse2", "sse4.2", "avx", "avx2", "avx512"}));
   command
       .add_option("--schedule", request.schedule,
-                  "how ranks share blocks of the picture; sort-first: blocks that change rank "
-                  "meanwhile")
-      ->group(raytrace);
+                  "How ranks share the blocks of the picture (ray tracer, default: interlaced); "
+                  "rasterizer: lets blocks change rank, with sort-first (default: none)")
+      ->group(group::kSharing);
   command
       .add_option("--master", request.master,
-                  "ranks that hand out blocks (demand, guided, hierarchical): works (on some "
-                  "itself, default) or serves (the others only)")
-      ->check(one_of({"works", "serves"}))
-      ->group(raytrace);
+                  "Ranks that hand out blocks (demand, guided, hierarchical) render some "
+                  "themselves (works, default), or do not (serves)")
+      ->group(group::kSharing)
+      ->check(one_of({"works", "serves"}));
   command
       .add_option("--data", request.data,
-                  "how ranks share the scene: replicated (default), object, ray, ring or hybrid")
-      ->group(raytrace);
+                  "Ray tracer: distribution of the scene: replicated, all of it on every rank "
+                  "(default), object, ray, ring or hybrid")
+      ->group(group::kSharing);
   command
       .add_option("--deal", request.deal,
-                  "clusters of a shared scene: neighbours to one rank (default), or at random")
-      ->check(one_of({"neighbours", "random"}))
-      ->group(raytrace);
+                  "Which rank gets which parts of a distributed scene: neighbours stay together "
+                  "(default), or random")
+      ->group(group::kSharing)
+      ->check(one_of({"neighbours", "random"}));
   command
       .add_option("--cache", request.cache_mebibytes,
-                  "MiB of other ranks' clusters that a rank keeps (default a tenth of the scene)")
-      ->check(number_between(1e-3, 1e9))
-      ->group(raytrace);
+                  "MiB of other ranks' parts of a distributed scene that a rank keeps (default: a "
+                  "tenth of the scene)")
+      ->group(group::kSharing)
+      ->check(number_between(1e-3, 1e9));
   add_practice_options(command, request.practice);
-  command.add_option("--stats", request.statistics, "write statistics as JSON; - for stdout");
-  command.add_flag("--list", request.list,
-                   "list strategies, partitions, schemes, integrators, schedules");
+  command
+      .add_option("--stats", request.statistics,
+                  "Statistics as JSON to this file; - for standard output")
+      ->group(group::kOutput);
+  command
+      .add_flag("--list", request.list,
+                "List the names that options choose from, and what they mean")
+      ->group(group::kOutput);
   add_choices(command);
 }
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apps/help.h"
 #include "apps/numbers.h"
 #include "apps/progress_bar.h"
 #include "comm/network.h"
@@ -30,9 +31,15 @@ void check_scene(const CLI::App& command, const Session& session, SceneCompariso
 void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
                                   const std::string& ranks) {
   add_scene_options(command, options.render.scene);
-  command.add_option("--size", options.render.size, "WIDTHxHEIGHT (default 1280x720)");
+  command
+      .add_option("--size", options.render.size,
+                  "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
+      ->group(group::kPicture);
   add_camera_options(command, options.render.camera);
-  command.add_option("--ranks", options.ranks, "how many, separated by commas " + ranks)
+  command
+      .add_option("--ranks", options.ranks,
+                  "Numbers of ranks to compare, separated by commas " + ranks)
+      ->group(group::kParallel)
       ->delimiter(',')
       ->allow_extra_args(false)
       ->transform(count_between(1, 4096));

@@ -9,6 +9,7 @@
 #include "apps/colour_by.h"
 #include "apps/dots.h"
 #include "apps/geographic.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/point_shape.h"
@@ -180,19 +181,26 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory)
 }
 
 void add_scene_options(CLI::App& command, SceneInput& input) {
-  command.add_option(
-      "SCENE", input.file.path,
-      "a scene, mesh or point file, an elevation picture, or gen:KIND[:TRIANGLES[:SEED]]");
-  command.add_option("--color-by", input.colour_by,
-                     "material, z, simplex; of points also rgb, intensity, classification");
+  command
+      .add_option("SCENE", input.file.path,
+                  "Scene, mesh or points (delray info --list names the formats), elevation "
+                  "picture, or generated scene gen:KIND[:TRIANGLES[:SEED]], such as gen:city:1e6")
+      ->group(group::kInput);
+  command
+      .add_option("--color-by", input.colour_by,
+                  "Colours: material, z (height) or simplex (each triangle another); of points "
+                  "also rgb, intensity or classification (default: what the file has)")
+      ->group(group::kInput);
   command
       .add_option("--exaggeration", input.exaggeration,
-                  "stretches the heights of points (default 1)")
+                  "Factor that stretches the heights of points (default: 1)")
+      ->group(group::kInput)
       ->check(positive_number());
   command
       .add_option("--draw", input.draw,
                   "Draw points as a surface of heights over x and y, or as single points (default: "
-                  "single points for scans, where many lie above each other; else a surface)")
+                  "points for scans, where many lie above each other; else surface)")
+      ->group(group::kInput)
       ->check(one_of({"surface", "points"}));
   choose_from(command, "--color-by", names_in(colour_bys()));
   add_point_options(command, input.file);

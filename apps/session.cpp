@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <new>
 
+#include "apps/help.h"
 #include "apps/interrupt.h"
 #include "apps/launch.h"
 #include "comm/failure.h"
@@ -53,8 +54,9 @@ std::string text_of_failure() {
 }  // namespace
 
 void add_common_options(CLI::App& command, Session& session, const std::string& examples) {
-  command.add_flag("-q,--quiet", session.quiet, "say nothing but errors");
-  command.add_flag("-v,--verbose", session.verbose, "say more");
+  command.add_flag("-q,--quiet", session.quiet, "Print errors only")->group(group::kGeneral);
+  command.add_flag("-v,--verbose", session.verbose, "Print more about what is done")
+      ->group(group::kGeneral);
   std::string footer = "Examples:\n";
   for (std::size_t start = 0; start < examples.size();) {
     const std::size_t end = std::min(examples.find('\n', start), examples.size());

@@ -8,6 +8,7 @@
 
 #include "apps/commands.h"
 #include "apps/families.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/outputs.h"
@@ -216,37 +217,58 @@ int run(Session& session, TriangulateOptions options) {
 
 void add_triangulate(CLI::App& program, Session& session) {
   CLI::App* command =
-      program.add_subcommand("triangulate", "compute the Delaunay triangulation of points");
+      program.add_subcommand("triangulate", "Compute the Delaunay triangulation of points");
   const auto options = std::make_shared<TriangulateOptions>();
-  command->add_option("POINTS", options->input.path, "a file of points, or - for standard input");
-  command->add_option("-o,--output", options->output,
-                      "the mesh: .ply .obj .off .stl .vtu .node; - for PLY on standard output");
-  command->add_option("--dim", options->how.dim, "2 (z is carried along) or 3; default 2")
-      ->check(one_of({"2", "3"}));
-  command->add_option("--method", options->how.method, "how (--list names the methods)");
-  command->add_option("--location", options->how.location, "how a point's simplex is found");
-  command->add_option("--split", options->how.split, "which thread gets which points");
-  command->add_option("--order", options->how.order,
-                      "order of insertion: auto, random, brio, hilbert");
-  command->add_option("--deadlocks", options->how.deadlocks,
-                      "of the optimistic method: detection, priorities");
   command
-      ->add_option("--queue", options->how.queue,
-                   "places in the queue of the batch method (default: by the number of points)")
+      ->add_option("POINTS", options->input.path,
+                   "File of points (delray info --list names the formats); - for standard input")
+      ->group(group::kInput);
+  command
+      ->add_option(
+          "-o,--output", options->output,
+          "Mesh to write: .ply, .obj, .off, .stl, .vtu or .node; - for PLY on standard output")
+      ->group(group::kOutput);
+  command
+      ->add_option("--dim", options->how.dim,
+                   "Dimension: 2, where z is carried along (default), or 3")
+      ->check(one_of({"2", "3"}));
+  command->add_option(
+      "--method", options->how.method,
+      "Method (--list describes them; default: auto, the fastest of the dimension)");
+  command->add_option(
+      "--location", options->how.location,
+      "How the simplex that a new point lies in is found: dag, hierarchy, walk or auto (default)");
+  command->add_option(
+      "--split", options->how.split,
+      "Which thread inserts which points: random, slabs, distance, curve or auto (default)");
+  command->add_option("--order", options->how.order,
+                      "Order of insertion: brio, hilbert, random or auto (default)");
+  command->add_option(
+      "--deadlocks", options->how.deadlocks,
+      "How the optimistic method ends deadlocks: detection, priorities or auto (default)");
+  command
+      ->add_option(
+          "--queue", options->how.queue,
+          "Capacity of the batch method's queue in points (default: by the number of points)")
       ->transform(any_count());
   command
       ->add_option("--max-error", options->max_error,
-                   "keep only points of a terrain such that no other is farther than this above or "
-                   "below it, in units of z; the mesh has the points that are kept")
+                   "Simplify a terrain: keep so many points that no other is farther than this "
+                   "above or below the mesh, in units of z")
       ->check(non_negative_number());
-  command->add_option("--threads", options->threads, "workers (default: cores)")
+  command->add_option("--threads", options->threads, "Threads (default: one per core)")
       ->transform(count_between(1, 4096));
-  command->add_option("--seed", options->how.seed, "seed of everything random (default 1)")
+  command->add_option("--seed", options->how.seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
-  command->add_option("--stats", options->statistics, "write statistics as JSON; - for stdout");
-  command->add_flag("--makers", options->makers,
-                    "tell of each simplex which thread made it, as \"thread\" in a .vtu");
-  command->add_flag("--list", options->list, "list the methods");
+  command
+      ->add_option("--stats", options->statistics,
+                   "Statistics as JSON to this file; - for standard output")
+      ->group(group::kOutput);
+  command
+      ->add_flag("--makers", options->makers,
+                 "Tell which thread made each simplex, as \"thread\" in a .vtu")
+      ->group(group::kOutput);
+  command->add_flag("--list", options->list, "List the methods")->group(group::kOutput);
   add_choices(*command);
   add_point_options(*command, options->input);
   add_common_options(*command, session,

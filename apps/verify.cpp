@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/commands.h"
+#include "apps/help.h"
 #include "apps/list.h"
 #include "apps/outputs.h"
 #include "apps/point_input.h"
@@ -162,19 +163,26 @@ int run(const VerifyOptions& options) {
 }  // namespace
 
 void add_verify(CLI::App& program, Session& session) {
-  CLI::App* command =
-      program.add_subcommand("verify", "check a triangulation against its points, exactly");
+  CLI::App* command = program.add_subcommand(
+      "verify", "Check a triangulation against its points, with exact arithmetic");
   const auto options = std::make_shared<VerifyOptions>();
-  command->add_option("MESH", options->mesh, "the triangulation");
-  command->add_option("--points", options->points.path, "the points that it should be of");
-  command->add_option("--dim", options->dim, "2 (default) or 3")->check(one_of({"2", "3"}));
+  command->add_option("MESH", options->mesh, "Triangulation to check")->group(group::kInput);
+  command
+      ->add_option("--points", options->points.path,
+                   "Points that it should be the triangulation of")
+      ->group(group::kInput);
+  command->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
+      ->check(one_of({"2", "3"}));
   command->add_flag(
       "--canonical", options->canonical,
-      "also demand the choice among cocircular or cospherical points that delray makes");
+      "Also demand the choice that delray makes among cocircular or cospherical points");
   command->add_flag(
       "--complete", options->complete,
-      "also demand that every point is a vertex (a simplified terrain leaves out some)");
-  command->add_option("--stats", options->statistics, "write the verdict as JSON; - for stdout");
+      "Also demand that every point is a vertex (simplified terrains leave some out)");
+  command
+      ->add_option("--stats", options->statistics,
+                   "Verdict as JSON to this file; - for standard output")
+      ->group(group::kOutput);
   add_point_options(*command, options->points);
   add_common_options(*command, session,
                      "verify mesh.ply --points points.las\n"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <initializer_list>
 
+#include "apps/help.h"
 #include "image/hash.h"
 #include "image/io.h"
 #include "image/srgb.h"
@@ -45,9 +46,11 @@ std::vector<image::Attribute> attributes_of(const Session& session, const std::s
 }  // namespace
 
 void add_metadata_option(CLI::App& command, Session& session) {
-  command.add_flag("--metadata", session.metadata,
-                   "Write the command line, with its paths, and the number of samples into the "
-                   "picture (default: only what equal pictures have in common)");
+  command
+      .add_flag("--metadata", session.metadata,
+                "Write the command line, with its paths, and the number of samples into the "
+                "picture (default: only what equal pictures have in common)")
+      ->group(group::kOutput);
 }
 
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,

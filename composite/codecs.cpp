@@ -11,12 +11,12 @@ namespace delray::composite {
 namespace {
 
 constexpr std::array kCodecs = {
-    Codec{"active", "covered pixels, and a bit mask in two levels that tells which", &make_active,
-          &make_active},
-    Codec{"bounds", "every pixel of the rectangle around those covered", &make_bounds,
+    Codec{"active", "covered pixels, with a bit mask in two levels that tells which they are",
+          &make_active, &make_active},
+    Codec{"bounds", "all pixels of the rectangle around those that are covered", &make_bounds,
           &make_bounds},
-    Codec{"lz4", "active, compressed by LZ4: for slow networks", &make_lz4, &make_lz4},
-    Codec{"dense", "every pixel, covered or not", &make_dense, &make_dense},
+    Codec{"lz4", "as active, compressed by LZ4; for slow networks", &make_lz4, &make_lz4},
+    Codec{"dense", "all pixels, covered or not", &make_dense, &make_dense},
 };
 
 }  // namespace

@@ -276,16 +276,20 @@ glm::dvec3 large(Row& row) { return uniform(row) * 1e9; }
 glm::dvec3 small(Row& row) { return uniform(row) * 1e-9; }
 
 constexpr std::array kGenerators = {
-    PointGenerator{"uniform", "every place alike", &generate<uniform>},
-    PointGenerator{"gauss", "normal distribution about the centre", &generate<gauss>},
-    PointGenerator{"cluster", "sixteen dense normally distributed groups", &generate<cluster>},
+    PointGenerator{"uniform", "uniformly distributed", &generate<uniform>},
+    PointGenerator{"gauss", "normally distributed about the centre", &generate<gauss>},
+    PointGenerator{"cluster", "sixteen dense groups, each normally distributed",
+                   &generate<cluster>},
     PointGenerator{"grid", "exact lattice, row by row", &generate<grid>},
     PointGenerator{"arc", "converging to a half circle or hemisphere", &generate<arc>},
     PointGenerator{"sphere", "on a circle or sphere, rounded", &generate<sphere>},
-    PointGenerator{"jitter", "lattice moved by up to a quarter of its spacing", &generate<jitter>},
-    PointGenerator{"ulp", "lattice moved by at most one unit in the last place", &generate<ulp>},
-    PointGenerator{"duplicates", "about eight rows to a point, 0 and -0", &generate<duplicates>},
-    PointGenerator{"equal", "one point, n times", &generate<equal>},
+    PointGenerator{"jitter", "lattice whose points are moved by up to a quarter of its spacing",
+                   &generate<jitter>},
+    PointGenerator{"ulp", "lattice whose points are moved by at most one unit in the last place",
+                   &generate<ulp>},
+    PointGenerator{"duplicates", "about eight equal points at each place, with 0 and -0",
+                   &generate<duplicates>},
+    PointGenerator{"equal", "the same point n times", &generate<equal>},
     PointGenerator{"collinear", "exactly on a line", &generate<collinear>},
     PointGenerator{"coplanar", "exactly in a plane", &generate<coplanar>},
     PointGenerator{"cocircular", "exactly on a circle or sphere, many equal",
@@ -296,8 +300,8 @@ constexpr std::array kGenerators = {
     PointGenerator{"terrain", "fractal heights over the unit square (dimension 3)",
                    &generate<terrain>},
     PointGenerator{"far", "uniform, 1e9 away from the origin", &generate<far>},
-    PointGenerator{"large", "uniform, a thousand million times larger", &generate<large>},
-    PointGenerator{"small", "uniform, a thousand million times smaller", &generate<small>},
+    PointGenerator{"large", "uniform, scaled by 1e9", &generate<large>},
+    PointGenerator{"small", "uniform, scaled by 1e-9", &generate<small>},
 };
 
 }  // namespace

@@ -72,8 +72,8 @@ std::span<const Method> methods() {
   static const std::vector<std::string_view> curve_first = {"curve", "random", "slabs", "distance"};
   static const std::vector<Method> table = {
       {.name = "divide-and-conquer",
-       .description =
-           "halves of the points on either side of a line, knitted together; the fastest",
+       .description = "triangulates the points on either side of a line and merges the halves; the "
+                      "fastest in 2D",
        .group = "parts",
        .dims = {2},
        .locations = {},
@@ -81,8 +81,8 @@ std::span<const Method> methods() {
        .orders = {},
        .triangulate = internal::divide_and_conquer},
       {.name = "cavity",
-       .description = "random rounds of points along a curve, each joined to the boundary of its "
-                      "cavity; the fastest in 3D",
+       .description = "inserts random rounds of points along a curve, each into the cavity of "
+                      "simplices that it replaces; the fastest in 3D",
        .group = "parts",
        .dims = {3},
        .locations = {},
@@ -90,7 +90,8 @@ std::span<const Method> methods() {
        .orders = {},
        .triangulate = internal::insert_by_cavities},
       {.name = "insertion",
-       .description = "one point after the other, made Delaunay again by flips",
+       .description =
+           "inserts one point after the other and restores the Delaunay property by flips",
        .group = "one thread",
        .dims = {2, 3},
        .locations = {"walk", "hierarchy", "dag"},
@@ -99,7 +100,7 @@ std::span<const Method> methods() {
        .alone = true,
        .triangulate = internal::insert_all},
       {.name = "batch",
-       .description = "threads that locate, and one that inserts what a queue brings it",
+       .description = "threads locate points, and one thread inserts them from a queue",
        .group = "one inserts",
        .dims = {2},
        .locations = {"dag"},
@@ -107,7 +108,8 @@ std::span<const Method> methods() {
        .orders = {"brio", "random"},
        .triangulate = internal::insert_in_batches},
       {.name = "pessimistic",
-       .description = "threads locate together and insert in a critical section",
+       .description =
+           "threads locate points together, and insert them one at a time in a critical section",
        .group = "one inserts",
        .dims = {2, 3},
        .locations = {"dag"},
@@ -115,7 +117,8 @@ std::span<const Method> methods() {
        .orders = {"brio", "random"},
        .triangulate = internal::insert_pessimistically},
       {.name = "optimistic",
-       .description = "threads lock the simplices that they need and undo what cannot go on",
+       .description =
+           "threads lock the simplices that they need, and roll back insertions that cannot go on",
        .group = "locks",
        .dims = {2, 3},
        .locations = {"walk", "dag"},
@@ -124,7 +127,7 @@ std::span<const Method> methods() {
        .deadlocks = {"detection", "priorities"},
        .triangulate = internal::insert_optimistically},
       {.name = "burglary",
-       .description = "as optimistic, but instead of undoing its work a thread uses what a waiting "
+       .description = "as optimistic, but instead of rolling back a thread uses what a waiting "
                       "thread has locked",
        .group = "locks",
        .dims = {2, 3},
@@ -133,7 +136,8 @@ std::span<const Method> methods() {
        .orders = {"brio", "random"},
        .triangulate = internal::insert_by_burglary},
       {.name = "circumcircle",
-       .description = "threads wait for simplices in whose circumcircles another's point lies",
+       .description =
+           "threads wait for simplices whose circumcircles contain another thread's point",
        .group = "locks",
        .dims = {2},
        .locations = {"dag"},
@@ -146,8 +150,10 @@ std::span<const Method> methods() {
 
 std::span<const Choice> locations() {
   static constexpr std::array<Choice, 3> table = {{
-      {"dag", "down the history of the triangulation; not along a curve, which makes it deep"},
-      {"hierarchy", "walks through coarser triangulations first; in 2D"},
+      {"dag",
+       "down the history of the triangulation, a directed acyclic graph; slow for points along a "
+       "curve, which make it deep"},
+      {"hierarchy", "walks through coarser triangulations first; in 2D only"},
       {"walk", "from the last simplex towards the point, by edges in random order"},
   }};
   return table;
@@ -165,8 +171,9 @@ std::span<const Choice> splits() {
 
 std::span<const Choice> deadlock_strategies() {
   static constexpr std::array<Choice, 2> table = {{
-      {"detection", "a thread whose waiting would close a circle undoes its insertion"},
-      {"priorities", "a thread waits only for threads of lower priority, or undoes its insertion"},
+      {"detection", "a thread whose waiting would close a cycle rolls back its insertion"},
+      {"priorities",
+       "a thread waits only for threads of lower priority, or else rolls back its insertion"},
   }};
   return table;
 }

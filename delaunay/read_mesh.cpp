@@ -39,14 +39,15 @@ PointMesh read_file(const std::filesystem::path& path, const files::MemoryBudget
 }
 
 constexpr std::array kReaders = {
-    MeshReader{Format::ply, "PLY", "triangles", &read_file<read_ply_mesh>},
-    MeshReader{Format::obj, "OBJ", "triangles", &read_file<read_obj_mesh>},
-    MeshReader{Format::off, "OFF", "triangles", &read_file<read_off_mesh>},
-    MeshReader{Format::stl, "STL", "triangles", &read_file<read_stl_mesh>},
-    MeshReader{Format::vtu, "VTU", "triangles or tetrahedra, as delray writes them",
+    MeshReader{Format::ply, "PLY", "mesh of triangles", &read_file<read_ply_mesh>},
+    MeshReader{Format::obj, "OBJ", "mesh of triangles", &read_file<read_obj_mesh>},
+    MeshReader{Format::off, "OFF", "mesh of triangles", &read_file<read_off_mesh>},
+    MeshReader{Format::stl, "STL", "mesh of triangles", &read_file<read_stl_mesh>},
+    MeshReader{Format::vtu, "VTU", "mesh of triangles or tetrahedra, as delray writes them",
                &read_file<read_vtu_mesh>},
     MeshReader{Format::node, "NODE+ELE",
-               "triangles or tetrahedra of Triangle and TetGen, two files", &read_node_and_ele},
+               "mesh of triangles or tetrahedra of Triangle and TetGen, two files",
+               &read_node_and_ele},
 };
 
 std::string no_mesh() {

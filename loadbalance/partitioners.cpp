@@ -10,18 +10,21 @@ namespace delray::loadbalance {
 namespace {
 
 constexpr std::array kPartitioners = {
-    Partitioner{"mahd", "rectangles of equal cost from a summed-area table (Mueller)",
+    Partitioner{"mahd", "rectangles of equal cost, from a summed-area table (Mueller)",
                 &internal::mahd, "bisection"},
     Partitioner{"kd-split",
-                "rectangles cut where the costs of both sides of a sweep line cross (Samanta)",
+                "rectangles, cut where a sweep line has equal costs on both sides (Samanta)",
                 &internal::kd_split, "bisection"},
-    Partitioner{"graph", "regions of any shape that few primitives cross, grown on the grid (Kurc)",
+    Partitioner{"graph",
+                "regions of any shape whose borders few primitives cross, grown on a grid (Kurc)",
                 &internal::graph, "graph"},
-    Partitioner{"whitman", "ten leaves of a quadtree each, the fullest first (Whitman)",
+    Partitioner{"whitman", "ten quadtree leaves per rank, the fullest dealt out first (Whitman)",
                 &internal::whitman, "grid"},
-    Partitioner{"whelan", "rectangles with equally many centroids, by median cut (Whelan)",
-                &internal::whelan, "bisection"},
-    Partitioner{"roble", "a grid whose full regions are halved and empty ones merged (Roble)",
+    Partitioner{
+        "whelan",
+        "rectangles with equally many primitives, by median cut of their centroids (Whelan)",
+        &internal::whelan, "bisection"},
+    Partitioner{"roble", "grid cells, of which full ones are halved and empty ones merged (Roble)",
                 &internal::roble, "grid"},
     Partitioner{"interlaced", "many square blocks dealt out in turn, whatever they cost",
                 &internal::interlaced, "fixed"},

@@ -9,20 +9,22 @@ namespace delray::loadbalance {
 namespace {
 
 constexpr std::array kSchedules = {
-    Schedule{"static", "consecutive tasks, as many for each rank", &internal::static_schedule,
+    Schedule{"static", "each rank has as many consecutive tasks", &internal::static_schedule,
              "fixed"},
-    Schedule{"interlaced", "tasks dealt out in turn, each row shifted",
+    Schedule{"interlaced", "tasks are dealt out in turn, each row shifted",
              &internal::interlaced_schedule, "fixed"},
-    Schedule{"random", "tasks dealt out in random order", &internal::random_schedule, "fixed"},
+    Schedule{"random", "tasks are dealt out in random order", &internal::random_schedule, "fixed"},
     Schedule{"demand", "a master hands out a few tasks whenever a rank asks (Badouel)",
              &internal::demand, "master"},
-    Schedule{"guided", "a master hands out ever fewer lines of tasks (Pandzic)", &internal::guided,
-             "master"},
-    Schedule{"hierarchical", "masters that ask masters (Green)", &internal::hierarchical, "master"},
-    Schedule{"stealing", "idle ranks take from all that have more than the mean",
+    Schedule{"guided", "a master hands out ever fewer rows of tasks at a time (Pandzic)",
+             &internal::guided, "master"},
+    Schedule{"hierarchical",
+             "a tree of masters: ranks ask theirs for tasks, and they ask those above (Green)",
+             &internal::hierarchical, "master"},
+    Schedule{"stealing", "idle ranks take tasks from ranks that have more than the mean",
              &internal::stealing, "stealing"},
     Schedule{"neighbour-stealing",
-             "ranks ask their hypercube neighbours before they run dry (Heirich)",
+             "ranks ask their neighbours in a hypercube for tasks before they run out (Heirich)",
              &internal::neighbour_stealing, "stealing"},
 };
 

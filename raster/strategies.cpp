@@ -9,14 +9,17 @@ namespace delray::raster {
 namespace {
 
 constexpr std::array kStrategies = {
-    Strategy{"sort-last", "each rank draws its primitives; the images are composited", sort_last,
-             sort_last_steps},
-    Strategy{"sort-first", "primitives go to the ranks whose regions of the screen they touch",
-             sort_first},
-    Strategy{"sort-middle", "transformed triangles go to the ranks whose regions they touch",
+    Strategy{"sort-last",
+             "each rank draws its own primitives; the images of all ranks are composited",
+             sort_last, sort_last_steps},
+    Strategy{
+        "sort-first",
+        "primitives go to the ranks whose regions of the screen they touch, before they are drawn",
+        sort_first},
+    Strategy{"sort-middle",
+             "triangles go to the ranks whose regions of the screen they touch, once transformed",
              sort_middle},
-    Strategy{"hybrid",
-             "each primitive goes to one rank; pixels go from where they are drawn to their owners",
+    Strategy{"hybrid", "each primitive is drawn by one rank; pixels go to the ranks that own them",
              hybrid},
 };
 

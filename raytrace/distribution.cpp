@@ -9,11 +9,15 @@ namespace {
 
 constexpr Distribution kDistributions[] = {
     {"replicated", "every rank has the whole scene", nullptr, true},
-    {"object", "clusters are fetched on demand and kept while there is room (Badouel, Wald)",
+    {"object", "ranks fetch the parts of the scene that they need, and cache them (Badouel, Wald)",
      meet_by_object},
-    {"ray", "rays travel to the ranks that have what they may meet (Caspary, Jevans)", meet_by_ray},
-    {"ring", "rays go round all ranks; clusters move to less loaded neighbours (Kim)", nullptr},
-    {"hybrid", "rays or clusters, whichever the waiting lists favour (Nebel)", meet_by_either},
+    {"ray",
+     "rays go to the ranks that have the parts of the scene that they may hit (Caspary, Jevans)",
+     meet_by_ray},
+    {"ring", "rays go around all ranks; parts of the scene move to less loaded neighbours (Kim)",
+     nullptr},
+    {"hybrid", "rays or parts of the scene are sent, whichever the queues favour (Nebel)",
+     meet_by_either},
 };
 
 }  // namespace

@@ -15,11 +15,12 @@ namespace {
 constexpr Integrator kIntegrators[] = {
     {"albedo", "base colours, without light", make_albedo},
     {"ao", "ambient occlusion: how much of the sky each surface sees", make_ao},
-    {"direct", "lights with their shadows, and the environment", make_direct},
+    {"direct", "light of light sources and of the environment, with shadows", make_direct},
     {"identity", "numbers of instances, materials and triangles, from 1 on", make_identity},
-    {"normal", "unit normals of the shading, x, y, z as red, green, blue", make_normal},
-    {"path", "light on all ways, by chance (Kajiya 1986)", make_path, 2 * kTaskSide},
-    {"whitted", "shadows, mirror reflection and refraction (Whitted 1980)", make_whitted},
+    {"normal", "shading normals: x, y, z as red, green, blue", make_normal},
+    {"path", "path tracing: light on all ways, by random sampling (Kajiya 1986)", make_path,
+     2 * kTaskSide},
+    {"whitted", "shadows, mirror reflections and refractions (Whitted 1980)", make_whitted},
 };
 
 }  // namespace

@@ -24,13 +24,14 @@ constexpr std::uint64_t kOrderingBytes = 48;          // that ordering takes for
 constexpr std::array kReaders = {
     SceneReader{Format::obj, "OBJ", "Wavefront model, with its materials (MTL) and textures",
                 &internal::read_obj},
-    SceneReader{Format::ply, "PLY", "triangles, polygons or strips, with colours and normals",
+    SceneReader{Format::ply, "PLY",
+                "surface of triangles, polygons or strips, with colours and normals",
                 &internal::read_ply},
-    SceneReader{Format::stl, "STL", "triangles, text or binary", &internal::read_stl},
+    SceneReader{Format::stl, "STL", "surface of triangles, text or binary", &internal::read_stl},
     SceneReader{Format::gltf, "glTF", "scene with materials, lights and cameras, as JSON",
                 &internal::load_gltf},
-    SceneReader{Format::glb, "GLB", "the same as one binary file", &internal::load_gltf},
-    SceneReader{Format::off, "OFF", "polygons", &internal::read_off},
+    SceneReader{Format::glb, "GLB", "glTF as one binary file", &internal::load_gltf},
+    SceneReader{Format::off, "OFF", "surface of polygons", &internal::read_off},
 };
 
 std::string no_scene() {
