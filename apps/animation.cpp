@@ -104,7 +104,7 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
   add("encode", false, [&](std::size_t i, Slot& slot) {
     animation.frames.seconds[i] = slot.seconds;
     if (!first_rank) return;
-    std::string hash = write_picture(session, frame_path(request.output, i), slot.picture);
+    std::string hash = write_picture(session, frame_path(request.frames_output, i), slot.picture);
     if (i + 1 == cameras.size()) animation.hash = std::move(hash);
   });
   for (const parallel::PipelineStage& stage : stages) animation.stages.push_back(stage.name);

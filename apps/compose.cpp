@@ -176,6 +176,7 @@ void check(const Session& session, const ComposeRequest& request) {
   if (!image::is_picture_suffix(request.output)) {
     throw UsageError(fmt::format("-o: '{}' is not a picture", request.output));
   }
+  if (!session.under_mpi) refuse_terminal(request.output);
   if (request.in_pieces && !request.output.ends_with(".exr")) {
     throw UsageError("--in-pieces: only .exr files have a place for every pixel beforehand");
   }
@@ -246,7 +247,9 @@ void add_compose(CLI::App& program, Session& session) {
                    "EXR pictures with depth (a channel Z): at every pixel the nearest is seen, the "
                    "first of those at equal depth")
       ->group(group::kInput);
-  command->add_option("-o,--output", request->output, "Picture to write: .png, .exr, .tif or .jpg")
+  command
+      ->add_option("-o,--output", request->output,
+                   "Picture to write: .png, .exr, .tif or .jpg; - for PNG on standard output")
       ->group(group::kOutput);
   command->add_flag("--ordered", request->ordered,
                     "Lay the parts over each other, the first in front; no depth is needed");

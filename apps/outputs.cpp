@@ -2,6 +2,7 @@
 #include "apps/outputs.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -31,6 +32,15 @@ fs::path resolved(const fs::path& path) {
   }
 }
 
+// "-", /dev/stdout and links to it.
+bool is_standard_output(const fs::path& path) {
+  try {
+    return files::output_path(path).descriptor == STDOUT_FILENO;
+  } catch (const files::FileError&) {
+    return false;
+  }
+}
+
 bool overlap(const std::string& output, const std::string& other, int stream) {
   for (const fs::path& a : with_companion(output)) {
     for (const fs::path& b : with_companion(other)) {
@@ -56,11 +66,18 @@ void refuse_overwriting(const std::vector<OutputFile>& outputs,
     for (std::size_t k = 0; k < i; ++k) {
       const OutputFile& other = outputs[k];
       if (other.path.empty()) continue;
-      if ((output.path == "-" && other.path == "-") || overlap(output.path, other.path, 1)) {
+      const bool mixed = is_standard_output(output.path) && is_standard_output(other.path);
+      if (mixed || overlap(output.path, other.path, 1)) {
         throw UsageError(
             fmt::format("{}: '{}' is where {} goes too", output.option, output.path, other.option));
       }
     }
+  }
+}
+
+void refuse_terminal(const std::string& picture) {
+  if (picture == "-" && ::isatty(STDOUT_FILENO) != 0) {
+    throw UsageError("-o -: standard output is a terminal, which shows no pictures");
   }
 }
 

@@ -27,8 +27,6 @@ constexpr const char* kOptions[] = {
 // of 256 samples is a sixteenth of that of one; a tenth of it would take 25 600.
 constexpr int kMostInTime = 65536, kMostForNoise = 256;
 
-bool is_exr(const std::string& path) { return path.ends_with(".exr") || path.ends_with(".EXR"); }
-
 geometry::Rect parse_crop(const std::string& text, int width, int height) {
   std::array<int, 4> n{};
   const char* at = text.data();
@@ -156,13 +154,12 @@ void check_practice(const CLI::App& command, RenderRequest& request) {
       throw UsageError("--resume: from which file? --checkpoint FILE is missing");
   }
   if (practice.aperture == 0.0) refuse(command, "--focus", "no --aperture");
-  const bool animated = request.turntable > 0 || !request.camera_path.empty();
-  if (animated || request.frames > 1) {
+  if (request.is_animation() || request.frames > 1) {
     for (const char* option : {"--preview-every", "--checkpoint", "--aovs"}) {
       refuse(command, option, "more than one frame");
     }
   }
-  if (is_exr(request.output)) {
+  if (image::picture_suffix(request.output) == ".exr") {
     if (practice.show == "colour") {
       refuse(command, "--exposure", "EXR, which keeps the light itself");
       refuse(command, "--tone", "EXR, which keeps the light itself");

@@ -18,6 +18,7 @@
 #include "apps/render_options.h"
 #include "apps/render_statistics.h"
 #include "apps/scene_facts.h"
+#include "apps/video.h"
 #include "apps/write_picture.h"
 #include "comm/agree_on_failure.h"
 #include "comm/handshake.h"
@@ -53,7 +54,8 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
   const std::string hash = write_picture(session, request.output, frames.picture, frames.extras);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
-  spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", request.output, request.width,
+  spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame",
+               request.output == "-" ? "standard output" : request.output, request.width,
                request.height, prepared.triangles, statistics["seconds"]["frame"].get<double>());
 }
 
@@ -64,8 +66,11 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
                                       animation.all.stages.back());
   statistics["animation"] = animation_statistics(animation);
   write_statistics(request.statistics, statistics);
-  spdlog::info("{} .. {}: {} frames, {:.3f} s a frame", frame_path(request.output, 0),
-               frame_path(request.output, frames - 1), frames,
+  const std::string files = is_video(request.output)
+                                ? request.output
+                                : fmt::format("{} .. {}", frame_path(request.output, 0),
+                                              frame_path(request.output, frames - 1));
+  spdlog::info("{}: {} frames, {:.3f} s a frame", files, frames,
                animation.all.seconds / static_cast<double>(frames));
   std::string stages;
   for (std::size_t i = 0; i < animation.stages.size(); ++i)
@@ -81,18 +86,21 @@ std::vector<std::string> inputs_of(const RenderRequest& request) {
 }
 
 // Nobody wants to know of these after an hour.
-void check_folders(const RenderRequest& request) {
+void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) {
   for (const std::string& path :
        {request.output, request.statistics, request.practice.checkpoint}) {
     files::check_writable(path);
   }
+  if (!is_video(request.output)) return;
+  video.emplace(request.output);
+  request.frames_output = video->frames();
 }
 
 void refuse_overwriting(const RenderRequest& request) {
   std::vector<OutputFile> outputs = {{"--stats", request.statistics},
                                      {"--checkpoint", request.practice.checkpoint}};
   const std::vector<std::string> inputs = inputs_of(request);
-  if (request.turntable == 0 && request.camera_path.empty()) {
+  if (!request.is_animation() || is_video(request.output)) {
     outputs.push_back({"-o", request.output});
   } else {
     std::vector<std::string> others = inputs;
@@ -110,14 +118,16 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   if (request.list) return print_lists();
   check(command, request);
   refuse_overwriting(request);
+  if (!session.under_mpi) refuse_terminal(request.output);
   check(session, request.launch);
   ProgressBar bar(session, "render");
   std::optional<StopOnTermination> stop;
   if (!request.practice.checkpoint.empty()) stop.emplace();
   parallel::Progress* const progress = &session.progress;
+  std::optional<VideoFrames> video;        // of rank 0
   std::shared_ptr<const Prepared> shared;  // by the ranks of this process
   if (!session.under_mpi) {
-    check_folders(request);
+    prepare_outputs(request, video);
     const int ranks = std::max(1, request.launch.ranks);
     const int threads = threads_per_rank(request.launch, ranks) * ranks;
     const parallel::AllowThreads allowed(threads);
@@ -129,7 +139,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     if (!prepared) {
       communicator.mark(comm::Phase::load, 0);
       comm::all_or_none(communicator, comm::Phase::load, [&] {
-        if (communicator.rank() == 0) check_folders(request);
+        if (communicator.rank() == 0) prepare_outputs(request, video);
       });
       prepared = prepare(communicator, request, progress);
       comm::handshake(communicator, scene_facts(*prepared));
@@ -139,6 +149,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
           render_animation(communicator, *prepared, request, session, progress);
       comm::all_or_none(communicator, comm::Phase::other, [&] {
         if (communicator.rank() != 0) return;
+        if (video) video->encode(session);
         bar.end();
         finish(request, *prepared, animation);
       });

@@ -16,7 +16,7 @@ namespace delray::apps {
 namespace {
 
 bool wants_floats(const RenderRequest& request) {
-  return request.output.ends_with(".exr") || request.output.ends_with(".EXR");
+  return image::picture_suffix(request.output) == ".exr";
 }
 
 // Whether the scene itself says what is to be seen around it.

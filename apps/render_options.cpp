@@ -12,6 +12,7 @@
 #include "apps/list.h"
 #include "apps/numbers.h"
 #include "apps/scheme_option.h"
+#include "apps/video.h"
 #include "composite/codec.h"
 #include "image/io.h"
 #include "loadbalance/partition.h"
@@ -35,9 +36,30 @@ void refuse(const CLI::App& command, std::initializer_list<const char*> options,
   }
 }
 
-bool is_jpeg(std::string path) {
-  std::ranges::transform(path, path.begin(), [](unsigned char c) { return std::tolower(c); });
-  return path.ends_with(".jpg") || path.ends_with(".jpeg");
+bool is_jpeg(const std::string& path) {
+  const std::string suffix = image::picture_suffix(path);
+  return suffix == ".jpg" || suffix == ".jpeg";
+}
+
+// That the output is a picture, or of an animation a video.
+void check_output(const CLI::App& command, RenderRequest& request) {
+  request.frames_output = request.output;
+  if (is_video(request.output)) {
+    if (request.is_animation()) return;
+    throw UsageError(
+        fmt::format("-o: '{}' is a video, for --turntable or --camera-path", request.output));
+  }
+  if (!image::is_picture_suffix(request.output)) {
+    std::string legal;
+    for (const char* suffix : image::picture_suffixes()) legal += std::string(" ") + suffix;
+    if (request.is_animation()) legal += " .mp4";
+    throw UsageError(fmt::format("-o: '{}' does not end in one of{}", request.output, legal));
+  }
+  if (request.output != "-") return;
+  if (request.is_animation()) {
+    throw UsageError("-o -: standard output takes one picture, an animation is many");
+  }
+  refuse(command, {"--preview-every"}, "-o -, which takes one picture");
 }
 
 // Throws UsageError if --master was given and no rank is one.
@@ -146,7 +168,10 @@ void parse_size(RenderRequest& request) {
 
 void add_render_options(CLI::App& command, RenderRequest& request) {
   add_scene_options(command, request.scene);
-  command.add_option("-o,--output", request.output, "Picture to write: .png, .exr, .tif or .jpg")
+  command
+      .add_option("-o,--output", request.output,
+                  "Picture to write: .png, .exr, .tif or .jpg; - for PNG on standard output; of an "
+                  "animation .mp4 too, where ffmpeg is installed")
       ->group(group::kOutput);
   command
       .add_option("--size", request.size,
@@ -357,20 +382,17 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
 void check(const CLI::App& command, RenderRequest& request) {
   if (request.scene.file.path.empty()) throw UsageError("render: SCENE is missing");
   if (request.output.empty()) throw UsageError("render: -o IMAGE is missing");
-  if (!image::is_picture_suffix(request.output)) {
-    std::string legal;
-    for (const char* suffix : image::picture_suffixes()) legal += std::string(" ") + suffix;
-    throw UsageError(fmt::format("-o: '{}' does not end in one of{}", request.output, legal));
-  }
+  check_output(command, request);
   parse_size(request);
   request.behind = parse_background(request.background);
-  if (request.behind.kind == Background::Kind::transparent && is_jpeg(request.output)) {
+  const bool is_opaque = is_jpeg(request.output) || is_video(request.output);
+  if (request.behind.kind == Background::Kind::transparent && is_opaque) {
     throw UsageError(
-        "--background transparent: JPEG has no transparency; .png, .tif and .exr have");
+        fmt::format("--background transparent: {} has no transparency; .png, .tif and .exr have",
+                    is_video(request.output) ? "a video" : "JPEG"));
   }
   request.kind = request.engine == "raster" ? Engine::raster : Engine::raytrace;
-  if (request.turntable == 0 && request.camera_path.empty())
-    refuse(command, {"--frames-at-once"}, "a single picture");
+  if (!request.is_animation()) refuse(command, {"--frames-at-once"}, "a single picture");
   if (request.kind == Engine::raster) {
     check_raster(command, request);
   } else {

@@ -41,7 +41,10 @@ struct RenderRequest {
   std::string build = "medium", isa = "best";
   Practice practice;
 
+  bool is_animation() const { return turntable > 0 || !camera_path.empty(); }
+
   // Set by check:
+  std::string frames_output;  // of which frame_path makes the names of an animation's frames
   int width = 0, height = 0;
   Engine kind = Engine::raster;
   Background behind;

@@ -2,10 +2,6 @@
 #include "apps/write_picture.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
-#include <initializer_list>
 
 #include "apps/help.h"
 #include "image/hash.h"
@@ -23,18 +19,13 @@ const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& conver
   return converted;
 }
 
-bool has_suffix(const std::string& path, std::initializer_list<const char*> suffixes) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::ranges::find(suffixes, suffix) != suffixes.end();
-}
-
 // A file must not tell where it was made, or how, unless its maker wants it.
 std::vector<image::Attribute> attributes_of(const Session& session, const std::string& path,
                                             const Extras& extras) {
   std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION}};
   if (!session.metadata) return attributes;
-  const bool has_free_names = has_suffix(path, {".png", ".exr"});
+  const std::string suffix = image::picture_suffix(path);
+  const bool has_free_names = suffix == ".png" || suffix == ".exr";
   attributes.push_back({has_free_names ? "CommandLine" : "ImageDescription", session.command_line});
   if (extras.passes > 0) {
     attributes.push_back({"delray:samples", extras.samples});
@@ -80,7 +71,7 @@ std::string write_picture(const Session& session, const std::string& path, const
       [&](const auto& pixels) {
         image::Image8 converted;
         const image::Image8& codes = as_8bit(pixels, converted);
-        if (has_suffix(path, {".exr"})) {
+        if (image::picture_suffix(path) == ".exr") {
           write_image(path, pixels, options);
         } else {
           write_image(path, codes, options);

@@ -72,12 +72,6 @@ class Content {
   Encoded encoded_;
 };
 
-std::string lower_suffix(const std::filesystem::path& path) {
-  std::string suffix = path.extension().string();
-  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return suffix;
-}
-
 void check_suffix(const std::filesystem::path& path) {
   if (is_picture_suffix(path)) return;
   std::string known;
@@ -142,8 +136,15 @@ RawChannels read_float_channels(const std::filesystem::path& path,
 
 std::span<const char* const> picture_suffixes() { return kSuffixes; }
 
+std::string picture_suffix(const std::filesystem::path& path) {
+  if (path == "-") return ".png";
+  std::string suffix = path.extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return suffix;
+}
+
 bool is_picture_suffix(const std::filesystem::path& path) {
-  const std::string suffix = lower_suffix(path);
+  const std::string suffix = picture_suffix(path);
   return std::find(kSuffixes.begin(), kSuffixes.end(), suffix) != kSuffixes.end();
 }
 
@@ -151,7 +152,7 @@ void write_image(const std::filesystem::path& path, const Image8& image,
                  const WriteOptions& options) {
   assert(image.width >= 1 && image.height >= 1);
   check_suffix(path);
-  const std::string suffix = lower_suffix(path);
+  const std::string suffix = picture_suffix(path);
   if (suffix == ".exr") return write_image(path, to_float(image), options);
   if (suffix == ".png") {
     return write_bytes(path,
@@ -170,7 +171,7 @@ void write_image(const std::filesystem::path& path, const ImageF& image,
                  const WriteOptions& options) {
   assert(image.width >= 1 && image.height >= 1);
   check_suffix(path);
-  if (lower_suffix(path) != ".exr") return write_image(path, to_8bit(image), options);
+  if (picture_suffix(path) != ".exr") return write_image(path, to_8bit(image), options);
   for ([[maybe_unused]] const Channel& channel : options.channels) {
     assert(channel.values.size() == image.pixels());
   }

@@ -95,10 +95,12 @@ struct WriteOptions {
 // Suffixes that write_image knows, lower case, with the dot.
 std::span<const char* const> picture_suffixes();
 bool is_picture_suffix(const std::filesystem::path& path);  // of the path; in any case
+// That of the path, lower case; ".png" for "-".
+std::string picture_suffix(const std::filesystem::path& path);
 
 // EXR holds linear premultiplied colour, depth and channels. PNG and TIFF hold 8-bit sRGB with
 // straight alpha (colour is lost where alpha is 0), JPEG the picture over black. A suffix that is
-// not known is an error that lists those that are.
+// not known is an error that lists those that are. "-" is a PNG on standard output.
 //
 // REQUIRES: width, height >= 1; each channel has as many values as there are pixels.
 void write_image(const std::filesystem::path& path, const Image8& image,

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
+
 #include "tests/support/run_program.h"
 
 namespace delray::tests {
@@ -84,6 +86,37 @@ TEST(Outputs, AreWrittenIntoPipesDevicesAndWhatLinksLeadTo) {
   EXPECT_EQ(run(kPicture + "-o a.png", folder.path()).exit_code, 0);
   EXPECT_TRUE(fs::is_symlink(folder / "a.png"));
   EXPECT_EQ(run("delray info results/a.png", folder.path()).exit_code, 0);
+}
+
+TEST(Outputs, PicturesGoToStandardOutputAsPng) {
+  const Folder folder;
+  for (const std::string& command :
+       {kPicture, kPicture + "--engine raytrace ", std::string("delray compose p.exr ")}) {
+    ASSERT_EQ(run(kPicture + "-o p.exr", folder.path()).exit_code, 0);
+    const Ran ran =
+        run(command + "-o - --stats s.json > a.png && " + command + "-o b.png && cmp a.png b.png",
+            folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << command << "\n" << ran.err;
+  }
+  for (const std::string options :
+       {"-o - --stats -", "-o - --stats /dev/fd/1", "-o - --turntable 2",
+        "-o - --engine raytrace --preview-every 1 --spp 64"}) {
+    EXPECT_EQ(run(kPicture + options + " > got", folder.path()).exit_code, 2) << options;
+    EXPECT_EQ(folder.read("got"), "") << options;
+  }
+  EXPECT_EQ(run(kPicture + "-o - > /dev/full", folder.path()).exit_code, 1);
+}
+
+TEST(Outputs, PicturesDoNotGoToTerminals) {
+  if (std::system("command -v script > /dev/null") != 0) {
+    GTEST_SKIP() << "script (bsdutils) is not installed: it makes terminals";
+  }
+  const Folder folder;
+  for (const std::string& command : {kPicture, std::string("delray compose p.exr ")}) {
+    ASSERT_EQ(run(kPicture + "-o p.exr", folder.path()).exit_code, 0);
+    const Ran ran = run("script -qec \" " + command + "-o -\" log", folder.path());
+    EXPECT_EQ(ran.exit_code, 2) << command << ran.out << ran.err;
+  }
 }
 
 TEST(Outputs, KeepPermissions) {
