@@ -12,6 +12,7 @@
 #include "apps/scene_facts.h"
 #include "apps/share_layers.h"
 #include "apps/shown_scheme.h"
+#include "apps/verdict.h"
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "comm/handshake.h"
@@ -27,7 +28,6 @@ namespace {
 using composite::HollowImages;
 using composite::MachineModel;
 
-constexpr const char* kThisMachine = "this-machine";
 // Of this many ranks at most samples are taken for the model of this machine.
 constexpr int kMostFittedRanks = 16;
 // Pictures of more ranks would not fit a page.
@@ -55,6 +55,14 @@ comm::Network network_here(int ranks) {
   network.seconds_per_byte = 0;
   network.shared_cores = cores_here();
   return network;
+}
+
+// Of each run.
+std::vector<double> totals(const MeasuredScheme& measured) {
+  std::vector<double> result = measured.compose_seconds;
+  for (std::size_t i = 0; i < std::min(result.size(), measured.gather_seconds.size()); ++i)
+    result[i] += measured.gather_seconds[i];
+  return result;
 }
 
 class Comparison {
@@ -89,6 +97,7 @@ class Comparison {
     std::stable_sort(rows_.begin(), rows_.end(),
                      [](const auto& a, const auto& b) { return a.ranks < b.ranks; });
     result_.rows = std::move(rows_);
+    result_.cores = cores_here();
     return std::move(result_);
   }
 
@@ -119,6 +128,7 @@ class Comparison {
                        measured.gather,
                        spread_of(measured.compose_seconds),
                        spread_of(measured.gather_seconds),
+                       spread_of(totals(measured)),
                        measured.hash,
                        {}});
     }
@@ -160,9 +170,11 @@ class Comparison {
   }
 
   void show_fastest(comm::Communicator& communicator, const raster::Share& share) {
-    const ComparedScheme* best =
-        communicator.rank() == 0 ? fastest(rows_, communicator.size()) : nullptr;
-    const std::string name = best != nullptr ? best->scheme + '\n' + best->codec : std::string();
+    std::string name;
+    if (communicator.rank() == 0) {
+      const ComparedScheme& best = *fastest(rows_, communicator.size()).front();
+      name = best.scheme + '\n' + best.codec;
+    }
     const comm::Buffer told =
         comm::broadcast(communicator, 0, comm::Buffer::of(std::span<const char>(name)));
     const std::span<const char> letters = told.as<char>();
@@ -366,16 +378,57 @@ ComposeComparison compare_compose(const Session& session, const CompareRequest& 
   return Comparison(session, request, prepared, progress).run();
 }
 
-const ComparedScheme* fastest(const std::vector<ComparedScheme>& rows, int ranks) {
-  const ComparedScheme* best = nullptr;
-  const auto seconds = [](const ComparedScheme& row) {
-    return row.compose_seconds->median + row.gather_seconds->median;
-  };
+namespace {
+
+template <class Wanted>
+std::vector<const ComparedScheme*> rows_of(const std::vector<ComparedScheme>& rows, int ranks,
+                                           Wanted&& wanted) {
+  std::vector<const ComparedScheme*> result;
+  for (const ComparedScheme& row : rows)
+    if (row.ranks == ranks && wanted(row)) result.push_back(&row);
+  return result;
+}
+
+}  // namespace
+
+std::vector<const ComparedScheme*> fastest(const std::vector<ComparedScheme>& rows, int ranks) {
+  const auto measured =
+      rows_of(rows, ranks, [](const ComparedScheme& row) { return row.total_seconds.has_value(); });
+  return winners<ComparedScheme>(measured,
+                                 [](const ComparedScheme& row) { return *row.total_seconds; });
+}
+
+std::vector<const ComparedScheme*> fastest_over(const std::vector<ComparedScheme>& rows, int ranks,
+                                                std::string_view network, double factor) {
+  const auto predicted = rows_of(
+      rows, ranks, [&](const ComparedScheme& row) { return prediction(row, network) != nullptr; });
+  return winners<ComparedScheme>(predicted, [&](const ComparedScheme& row) {
+    const Predicted* p = prediction(row, network);
+    return known_within(p->seconds + p->gather_seconds, factor);
+  });
+}
+
+const Predicted* prediction(const ComparedScheme& row, std::string_view network) {
+  const auto at = std::find_if(row.predicted.begin(), row.predicted.end(),
+                               [&](const Predicted& p) { return p.network == network; });
+  return at == row.predicted.end() ? nullptr : &*at;
+}
+
+double prediction_factor(const std::vector<ComparedScheme>& rows) {
+  std::map<int, std::vector<double>> ratios;  // of predicted to measured times, by ranks
   for (const ComparedScheme& row : rows) {
-    if (row.ranks != ranks || !row.compose_seconds) continue;
-    if (best == nullptr || seconds(row) < seconds(*best)) best = &row;
+    const Predicted* p = prediction(row, kThisMachine);
+    if (p == nullptr || !row.total_seconds || !(row.total_seconds->median > 0)) continue;
+    const double seconds = p->seconds + p->gather_seconds;
+    if (seconds > 0) ratios[row.ranks].push_back(seconds / row.total_seconds->median);
   }
-  return best;
+  std::vector<double> factors;
+  for (const auto& [ranks, of_ranks] : ratios) {
+    if (of_ranks.size() < 2) continue;
+    const double usual = spread_of(of_ranks).median;
+    for (const double ratio : of_ranks) factors.push_back(std::max(ratio / usual, usual / ratio));
+  }
+  return factors.empty() ? kUnknownFactor : spread_of(factors).median;
 }
 
 }  // namespace delray::apps

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/scene_comparison.h"
@@ -12,6 +13,9 @@
 #include "composite/simulate.h"
 
 namespace delray::apps {
+
+// The network of predictions for threads of this machine.
+inline constexpr const char* kThisMachine = "this-machine";
 
 struct CompareRequest : SceneComparison {
   std::vector<std::string> codecs = {"active"};
@@ -34,6 +38,7 @@ struct ComparedScheme {
   int ranks = 0;
   composite::Counts counts, gather;
   std::optional<Spread> compose_seconds, gather_seconds;  // measured
+  std::optional<Spread> total_seconds;                    // of both, run by run
   std::string hash;                                       // of the picture; empty: not composited
   std::vector<Predicted> predicted;
 };
@@ -50,6 +55,7 @@ struct ComposeComparison {
   std::vector<ComparedScheme> rows;          // by number of ranks
   std::vector<LeftOut> left_out;             // by number of ranks
   std::shared_ptr<const ShownScheme> shown;  // of the fastest one, if a page is asked for
+  int cores = 1;                             // hardware threads; more ranks share them
   bool unfinished = false;                   // told to stop before the end
 };
 
@@ -58,7 +64,18 @@ struct ComposeComparison {
 ComposeComparison compare_compose(const Session& session, const CompareRequest& request,
                                   const Prepared& prepared, parallel::Progress& progress);
 
-// The row that took least, compositing and gather, with so many ranks; null if none was measured.
-const ComparedScheme* fastest(const std::vector<ComparedScheme>& rows, int ranks);
+// With so many ranks, the row that took least, compositing and gather, and those that cannot be
+// told from it (winners() in verdict.h); empty if none was measured.
+std::vector<const ComparedScheme*> fastest(const std::vector<ComparedScheme>& rows, int ranks);
+// The same by what is predicted over a network; `factor` as in known_within().
+std::vector<const ComparedScheme*> fastest_over(const std::vector<ComparedScheme>& rows, int ranks,
+                                                std::string_view network, double factor);
+// Null if nothing is predicted of it over the network.
+const Predicted* prediction(const ComparedScheme& row, std::string_view network);
+
+// By which factor two predictions are off each other's proportion, in the median: of each row that
+// was measured, and predicted on this machine, from what is usual with as many ranks. Of other
+// networks nothing is known but this. kUnknownFactor where nothing can be checked.
+double prediction_factor(const std::vector<ComparedScheme>& rows);
 
 }  // namespace delray::apps

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "apps/simulated_frames.h"
+#include "apps/verdict.h"
 #include "comm/network.h"
 #include "image/hash.h"
 #include "loadbalance/balance.h"
@@ -54,9 +55,11 @@ DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::stri
   result.imbalance = spread_of(std::move(imbalance));
   for (std::vector<double>& seconds : by_rank)
     result.busy.push_back(spread_of(std::move(seconds)).median);
-  for (const comm::NamedNetwork& named : comm::networks())
-    result.predicted.push_back({named.name, seconds_over(frames.next, named.network).median,
-                                seconds_over(frames.first, named.network)});
+  for (const comm::NamedNetwork& named : comm::networks()) {
+    const Spread next = seconds_over(frames.next, named.network);
+    result.predicted.push_back(
+        {named.name, next.median, next, seconds_over(frames.first, named.network)});
+  }
   result.hash = std::move(hash);
   return result;
 }
@@ -145,6 +148,7 @@ class Comparison {
     SimulatedFrames frames = draw("sort-first", loadbalance::partitioners()[0].name, 1, 1);
     const DrawnFrames alone = drawn_of(frames, 0, {});
     result_.alone_seconds = alone.busiest.median;
+    result_.alone = alone.busiest;
     result_.alone_work = alone.work[0];
     hash_of(frames.picture);
     result_.picture = std::move(frames.picture);
@@ -247,19 +251,32 @@ double over_share(const ComparedPartition& row) {
   return row.drawn ? row.drawn->work_over_share : row.predicted_over_share;
 }
 
-const ComparedPartition* best_partition(const std::vector<ComparedPartition>& rows, int ranks) {
-  const auto is_asked_for = [&](const ComparedPartition& row) {
-    return row.ranks == ranks && row.regions_per_rank == rows.front().regions_per_rank;
-  };
+PartitionChoice choose_partition(const std::vector<ComparedPartition>& rows, int ranks) {
+  using Rows = std::vector<const ComparedPartition*>;
+  Rows all, drawn;
   double least = std::numeric_limits<double>::infinity();
-  for (const ComparedPartition& row : rows)
-    if (is_asked_for(row)) least = std::min(least, over_share(row));
-  const ComparedPartition* best = nullptr;
-  for (const ComparedPartition& row : rows)
-    if (is_asked_for(row) && over_share(row) <= least * kAsEven &&
-        (best == nullptr || row.cut_seconds.median < best->cut_seconds.median))
-      best = &row;
-  return best;
+  for (const ComparedPartition& row : rows) {
+    if (row.ranks != ranks || row.regions_per_rank != rows.front().regions_per_rank) continue;
+    all.push_back(&row);
+    if (row.drawn) drawn.push_back(&row);
+    least = std::min(least, over_share(row));
+  }
+  PartitionChoice choice;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(choice.even),
+               [&](const ComparedPartition* row) { return over_share(*row) <= least * kAsEven; });
+  choice.quick = winners<ComparedPartition>(
+      drawn, [](const ComparedPartition& row) { return row.drawn->busiest; });
+  Rows both;
+  std::copy_if(choice.even.begin(), choice.even.end(), std::back_inserter(both),
+               [&](const ComparedPartition* row) {
+                 return std::find(choice.quick.begin(), choice.quick.end(), row) !=
+                        choice.quick.end();
+               });
+  choice.agree = drawn.empty() || !both.empty();
+  choice.best =
+      winners<ComparedPartition>(both.empty() ? choice.even : both,
+                                 [](const ComparedPartition& row) { return row.cut_seconds; });
+  return choice;
 }
 
 }  // namespace delray::apps

@@ -23,6 +23,7 @@ struct PartitionRequest : SceneComparison {
 struct PredictedFrame {
   std::string network;
   double seconds = 0;        // the median of frames after the first
+  Spread spread;             // of these
   double first_seconds = 0;  // when the screen is cut and primitives travel
 };
 
@@ -73,6 +74,7 @@ struct ShownPartition {
 struct PartitionComparison {
   // What one rank does alone: processor time of a frame; as DrawnFrames::work.
   double alone_seconds = 0, alone_work = 0;
+  Spread alone;                              // of alone_seconds
   std::vector<ComparedPartition> rows;       // by ranks and regions
   std::vector<ComparedStrategy> strategies;  // with the first partition of the table
   std::vector<ShownPartition> shown;         // of shown_ranks(request)
@@ -88,13 +90,28 @@ int shown_ranks(const PartitionRequest& request);
 PartitionComparison compare_partition(const PartitionRequest& request, const Prepared& prepared,
                                       parallel::Progress& progress);
 
-// Shares that are so little less even are as good: another scene would turn them round.
+// Shares that are so little less even are as good: on another scene the order would change.
 inline constexpr double kAsEven = 1.05;
 
-// Of so many ranks with as many regions each as in the first row the partition that is cut soonest
-// among those whose work_over_share is the least or within kAsEven of it; of more ranks than are
-// drawn, by what the costs foretell. Null if there is none.
+// The most work that a rank does over an equal share of what one does alone: counted, or of more
+// ranks than are drawn as the costs foretell it.
 double over_share(const ComparedPartition& row);
-const ComparedPartition* best_partition(const std::vector<ComparedPartition>& rows, int ranks);
+
+// Which partition to take, by what is counted and by processor time.
+struct PartitionChoice {
+  // Those whose over_share is the least or within kAsEven of it.
+  std::vector<const ComparedPartition*> even;
+  // Those whose busiest rank takes least processor time and those that cannot be told from it
+  // (winners() in verdict.h); empty of ranks that are not drawn.
+  std::vector<const ComparedPartition*> quick;
+  // Those that are both, or `even` where none is, that are cut soonest or cannot be told from it.
+  std::vector<const ComparedPartition*> best;
+  // Whether `best` are among `quick`; true where nothing was drawn.
+  bool agree = true;
+};
+
+// Among rows of so many ranks with as many regions each as in the first row; all members are empty
+// if there is none.
+PartitionChoice choose_partition(const std::vector<ComparedPartition>& rows, int ranks);
 
 }  // namespace delray::apps

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <thread>
 
+#include "apps/verdict.h"
 #include "comm/collectives.h"
 #include "image/hash.h"
 #include "image/srgb.h"
@@ -18,6 +19,8 @@ namespace delray::apps {
 namespace {
 
 constexpr int kMostShownRanks = 16;
+// Single frames that are handed out beside the medians of their tiles, for the spread.
+constexpr std::size_t kSampleFrames = 3;
 
 ScheduleOver summary_of(const std::string& network, const loadbalance::SimulatedSchedule& run,
                         const std::vector<Tile>& tiles) {
@@ -134,6 +137,7 @@ class Comparison {
       });
       steps_.done();
     }
+    sample_frames(seconds);
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       Tile& tile = result_.tiles[i];
       tile.pixels = blocks_.block(static_cast<std::uint32_t>(i));
@@ -142,15 +146,56 @@ class Comparison {
       result_.rays += tile.rays;
       result_.seconds += tile.seconds.median;
     }
+    scale_samples();
+  }
+
+  // Keeps what the tiles took in frames from the fastest to the slowest, evenly chosen, and how
+  // long all frames took. `seconds` are of tile i in each frame.
+  void sample_frames(const std::vector<std::vector<double>>& seconds) {
+    const std::size_t frames = seconds.front().size();
+    std::vector<double> totals(frames);
+    for (const std::vector<double>& tile : seconds)
+      for (std::size_t f = 0; f < frames; ++f) totals[f] += tile[f];
+    result_.frame = spread_of(totals);
+    std::vector<std::size_t> order(frames);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return totals[a] < totals[b]; });
+    const std::size_t count = std::min(kSampleFrames, frames);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t f = order[count > 1 ? k * (frames - 1) / (count - 1) : 0];
+      std::vector<double>& sample = samples_.emplace_back();
+      for (const std::vector<double>& tile : seconds) sample.push_back(tile[f]);
+    }
+  }
+
+  // The same time for all tiles as their medians take.
+  void scale_samples() {
+    for (std::vector<double>& sample : samples_) {
+      const double total = std::accumulate(sample.begin(), sample.end(), 0.0);
+      if (total > 0)
+        for (double& tile : sample) tile *= result_.seconds / total;
+    }
+  }
+
+  loadbalance::SimulatedSchedule simulated(const loadbalance::Schedule& schedule, int ranks,
+                                           const comm::NamedNetwork& named,
+                                           const std::vector<double>& seconds) const {
+    return loadbalance::simulate(schedule, blocks_.grid(), seconds, ranks, named.network,
+                                 raytrace::tile_schedule(blocks_.grid().count(), ranks, 1));
   }
 
   void simulate(const loadbalance::Schedule& schedule, int ranks) {
     ComparedSchedule row{schedule.name, ranks, {}, {}};
     for (const comm::NamedNetwork* named : networks()) {
-      loadbalance::SimulatedSchedule run =
-          loadbalance::simulate(schedule, blocks_.grid(), seconds_, ranks, named->network,
-                                raytrace::tile_schedule(blocks_.grid().count(), ranks, 1));
-      row.over.push_back(summary_of(named->name, run, result_.tiles));
+      loadbalance::SimulatedSchedule run = simulated(schedule, ranks, *named, seconds_);
+      ScheduleOver over = summary_of(named->name, run, result_.tiles);
+      std::vector<double> times = {over.seconds};
+      for (const std::vector<double>& sample : samples_)
+        times.push_back(simulated(schedule, ranks, *named, sample).seconds);
+      over.spread = spread_of(std::move(times));
+      over.spread.median = over.seconds;
+      row.over.push_back(std::move(over));
       if (row.over.size() == 1 && ranks == shown_ranks(request_))
         result_.shown.push_back({schedule.name, std::move(run.owners), std::move(run.ranks)});
     }
@@ -195,7 +240,8 @@ class Comparison {
   Steps steps_;
   raytrace::RenderOptions options_;
   loadbalance::Blocks blocks_;
-  std::vector<double> seconds_;  // of tiles
+  std::vector<double> seconds_;               // of tiles
+  std::vector<std::vector<double>> samples_;  // of tiles in single frames
   ScheduleComparison result_;
 };
 
@@ -213,14 +259,22 @@ ScheduleComparison compare_schedule(const Session& session, const ScheduleReques
   return Comparison(session, request, prepared, progress).run();
 }
 
-const ComparedSchedule* best_schedule(const std::vector<ComparedSchedule>& rows, int ranks,
-                                      std::size_t network) {
-  const ComparedSchedule* best = nullptr;
+std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,
+                                                    int ranks, std::size_t network) {
+  std::vector<const ComparedSchedule*> all;
   for (const ComparedSchedule& row : rows)
-    if (row.ranks == ranks &&
-        (best == nullptr || row.over[network].seconds < best->over[network].seconds))
-      best = &row;
-  return best;
+    if (row.ranks == ranks) all.push_back(&row);
+  return winners<ComparedSchedule>(
+      all, [&](const ComparedSchedule& row) { return row.over[network].spread; });
+}
+
+std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,
+                                                 int ranks) {
+  std::vector<const ComparedSchedule*> traced;
+  for (const ComparedSchedule& row : rows)
+    if (row.ranks == ranks && row.traced) traced.push_back(&row);
+  return winners<ComparedSchedule>(traced,
+                                   [](const ComparedSchedule& row) { return row.traced->seconds; });
 }
 
 }  // namespace delray::apps

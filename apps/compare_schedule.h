@@ -27,6 +27,9 @@ struct ScheduleOver {
   double ray_imbalance = 1;   // rays of the rank that sends most over the mean
   double time_imbalance = 1;  // the same of the time at tiles
   double seconds = 0;         // until the last tile is done
+  // Of `seconds`, over what tiles took in single frames, brought to the same time for all of them:
+  // that of schedules differs where one is better in every frame.
+  Spread spread;
   double idle = 0;  // of the ranks' time until then, the part spent waiting or at messages
 };
 
@@ -63,6 +66,7 @@ struct ScheduleComparison {
   std::vector<Tile> tiles;
   std::uint64_t rays = 0;
   double seconds = 0;                  // processor time for all tiles
+  Spread frame;                        // that of single frames
   std::vector<ComparedSchedule> rows;  // by ranks
   std::vector<ShownSchedule> shown;
   image::Image8 picture;
@@ -75,8 +79,12 @@ int shown_ranks(const ScheduleRequest& request);
 ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,
                                     const Prepared& prepared, parallel::Progress& progress);
 
-// Of so many ranks over the i-th network of the rows, the schedule that is done first.
-const ComparedSchedule* best_schedule(const std::vector<ComparedSchedule>& rows, int ranks,
-                                      std::size_t network = 0);
+// Of so many ranks over the i-th network of the rows, the schedule that is done first and those
+// that cannot be told from it (winners() in verdict.h). REQUIRES: there are such rows.
+std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,
+                                                    int ranks, std::size_t network = 0);
+// The same by frames that were traced; empty if none were with so many ranks.
+std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,
+                                                 int ranks);
 
 }  // namespace delray::apps

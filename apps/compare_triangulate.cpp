@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/makers_picture.h"
+#include "apps/verdict.h"
 #include "delaunay/fragments.h"
 #include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
@@ -237,14 +238,14 @@ double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTr
   return 0;
 }
 
-const ComparedTriangulation* fastest(const std::vector<ComparedTriangulation>& rows,
-                                     std::size_t points, int threads) {
-  const ComparedTriangulation* best = nullptr;
-  for (const ComparedTriangulation& row : rows) {
-    if (row.points != points || (threads > 0 && row.how.threads != threads)) continue;
-    if (best == nullptr || row.seconds.median < best->seconds.median) best = &row;
-  }
-  return best;
+std::vector<const ComparedTriangulation*> fastest(const std::vector<ComparedTriangulation>& rows,
+                                                  std::size_t points, int threads) {
+  std::vector<const ComparedTriangulation*> wanted;
+  for (const ComparedTriangulation& row : rows)
+    if (row.points == points && (threads == 0 || row.how.threads == threads))
+      wanted.push_back(&row);
+  return winners<ComparedTriangulation>(
+      wanted, [](const ComparedTriangulation& row) { return row.seconds; });
 }
 
 TriangulateComparison compare_triangulate(const TriangulateRequest& request,

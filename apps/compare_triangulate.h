@@ -68,10 +68,10 @@ std::string name_of(const delaunay::Options& how);
 // Its time with one thread over its time; 0 where that was not measured.
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row);
 
-// The row that took least with so many points, and with so many threads (0: with any number); null
-// if there is none.
-const ComparedTriangulation* fastest(const std::vector<ComparedTriangulation>& rows,
-                                     std::size_t points, int threads);
+// With so many points and threads (0: any number), the row that took least and those that cannot be
+// told from it (winners() in verdict.h); empty if there is none.
+std::vector<const ComparedTriangulation*> fastest(const std::vector<ComparedTriangulation>& rows,
+                                                  std::size_t points, int threads);
 
 // Compares. Told to stop, gives what is finished; throws parallel::Interrupted where nothing is,
 // and what triangulate() throws. `points` as load_points() gives them for this dimension.

@@ -34,7 +34,11 @@ void check(const Session& session, const ComparisonOptions& options, const std::
 }
 
 Json spread_json(const Spread& times) {
-  return {{"least", times.least}, {"most", times.most}, {"runs", times.runs}};
+  return {{"least", times.least},
+          {"most", times.most},
+          {"low", times.low},
+          {"high", times.high},
+          {"runs", times.runs}};
 }
 
 std::string range_text(const Spread& times) {

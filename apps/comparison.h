@@ -26,7 +26,7 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
 // Throws UsageError, FileError where nothing could be written in the end.
 void check(const Session& session, const ComparisonOptions& options, const std::string& input);
 
-// Least, most and number of the runs; their median stands elsewhere.
+// Least, most and number of the runs, and the interval of their median, which stands elsewhere.
 Json spread_json(const Spread& times);
 // Of so many milliseconds, for tables.
 std::string range_text(const Spread& times);

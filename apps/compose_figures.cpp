@@ -47,9 +47,11 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
     Json one = counts_of(row);
     one["gather"] = {{"bytes_total", row.gather.bytes_total}, {"messages", row.gather.messages}};
     one["seconds"] = {{"compose", median_of(row.compose_seconds)},
-                      {"gather", median_of(row.gather_seconds)}};
+                      {"gather", median_of(row.gather_seconds)},
+                      {"total", median_of(row.total_seconds)}};
     one["spread"] = {{"compose", spread_of(row.compose_seconds)},
-                     {"gather", spread_of(row.gather_seconds)}};
+                     {"gather", spread_of(row.gather_seconds)},
+                     {"total", spread_of(row.total_seconds)}};
     one["predicted"] = Json::array();
     for (const Predicted& predicted : row.predicted) {
       one["predicted"].push_back({{"network", predicted.network},

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "apps/compose_answer.h"
 #include "apps/compose_figures.h"
 #include "apps/provenance.h"
 #include "apps/report/chart.h"
@@ -25,25 +26,9 @@ namespace {
 
 using namespace report;
 
-double total(const ComparedScheme& row) {
-  return row.compose_seconds->median + row.gather_seconds->median;
-}
-// Of compositing and gather, at least and at most.
-ChartPoint measured_point(const ComparedScheme& row) {
-  return {static_cast<double>(row.ranks), total(row) * 1e3,
-          (row.compose_seconds->least + row.gather_seconds->least) * 1e3,
-          (row.compose_seconds->most + row.gather_seconds->most) * 1e3};
-}
-
-std::string name_of(const ComparedScheme& row, bool with_codec) {
-  return with_codec ? row.scheme + ", " + row.codec : row.scheme;
-}
-
-std::vector<std::string> codecs_of(const std::vector<ComparedScheme>& rows) {
-  return unique_of(rows, [](const ComparedScheme& row) { return row.codec; });
-}
-std::vector<int> ranks_of(const std::vector<ComparedScheme>& rows) {
-  return unique_of(rows, [](const ComparedScheme& row) { return row.ranks; });
+ChartPoint point_of(const ComparedScheme& row, const Spread& seconds) {
+  return {static_cast<double>(row.ranks), seconds.median * 1e3, seconds.low * 1e3,
+          seconds.high * 1e3};
 }
 
 using PointOf = std::function<std::optional<ChartPoint>(const ComparedScheme&)>;
@@ -72,164 +57,26 @@ Html chart_over_ranks(const std::vector<ComparedScheme>& rows, const std::string
   return chart.series.empty() ? Html() : line_chart(chart);
 }
 
-std::string in_milliseconds(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
-std::string in_bytes(std::uint64_t bytes) {
-  const auto amount = static_cast<double>(bytes);
-  if (bytes < 1000) return fmt::format("{} bytes", bytes);
-  return bytes < 1'000'000 ? fmt::format("{:.3g} kB", amount / 1e3)
-                           : fmt::format("{:.3g} MB", amount / 1e6);
-}
-
-const Predicted* prediction(const ComparedScheme& row, const std::string& network) {
-  const auto at = std::find_if(row.predicted.begin(), row.predicted.end(),
-                               [&](const Predicted& p) { return p.network == network; });
-  return at == row.predicted.end() ? nullptr : &*at;
-}
-
-std::vector<std::string> networks_of(const std::vector<ComparedScheme>& rows) {
-  std::vector<std::string> result;
-  for (const ComparedScheme& row : rows)
-    for (const Predicted& p : row.predicted)
-      if (std::find(result.begin(), result.end(), p.network) == result.end())
-        result.push_back(p.network);
-  return result;
-}
-
-// With the same number of ranks, the one that took least after `best`.
-const ComparedScheme* runner_up(const std::vector<ComparedScheme>& rows,
-                                const ComparedScheme& best) {
-  const ComparedScheme* next = nullptr;
-  for (const ComparedScheme& row : rows)
-    if (&row != &best && row.ranks == best.ranks && row.compose_seconds &&
-        (next == nullptr || total(row) < total(*next)))
-      next = &row;
-  return next;
-}
-
-// Of so many ranks over the network, the one that is predicted to take least, with the gather.
-const ComparedScheme* fastest_over(const std::vector<ComparedScheme>& rows, int ranks,
-                                   const std::string& network) {
-  const ComparedScheme* best = nullptr;
-  const auto seconds = [&](const ComparedScheme& row) {
-    const Predicted* p = prediction(row, network);
-    return p->seconds + p->gather_seconds;
-  };
-  for (const ComparedScheme& row : rows)
-    if (row.ranks == ranks && prediction(row, network) != nullptr &&
-        (best == nullptr || seconds(row) < seconds(*best)))
-      best = &row;
-  return best;
-}
-
-// What to use on this machine, and what comes close.
-Html sentence(const std::vector<ComparedScheme>& rows, const ComparedScheme& best, bool codecs) {
-  Html text = fmt::format("<p>On {} ranks of this machine use {}: {} with the gather", best.ranks,
-                          strong(name_of(best, codecs)), in_milliseconds(total(best)));
-  const ChartPoint spread = measured_point(best);
-  text += best.compose_seconds->runs > 1
-              ? fmt::format(" (measured, median of {} runs, {} to {})", best.compose_seconds->runs,
-                            in_milliseconds(spread.low / 1e3), in_milliseconds(spread.high / 1e3))
-              : " (measured once)";
-  text += fmt::format(", {} sent in {} messages (counted).", in_bytes(best.counts.bytes_total),
-                      best.counts.messages);
-  const ComparedScheme* next = runner_up(rows, best);
-  if (next == nullptr) return text + "</p>\n";
-  text += fmt::format(" {} takes {:.0f} % more", escaped(name_of(*next, codecs)),
-                      (total(*next) / total(best) - 1) * 100);
-  const bool certain = best.compose_seconds->runs > 1 && measured_point(*next).low > spread.high;
-  return text + (certain ? ".</p>\n" : ", which other runs may turn round.</p>\n");
-}
-
-// What takes least over a network, where nothing was measured.
-Html predicted_sentence(const std::vector<ComparedScheme>& rows, const std::string& network,
-                        bool codecs) {
-  const int ranks = rows.back().ranks;
-  const ComparedScheme* best = fastest_over(rows, ranks, network);
-  if (best == nullptr) return "";
-  const Predicted& p = *prediction(*best, network);
-  return fmt::format(
-      "<p>On {} ranks over {} use {}: {} with the gather (predicted), {} sent in {} messages "
-      "(counted). So many ranks are simulated, not measured.</p>\n",
-      ranks, escaped(network), strong(name_of(*best, codecs)),
-      in_milliseconds(p.seconds + p.gather_seconds), in_bytes(best->counts.bytes_total),
-      best->counts.messages);
-}
-
-// Which schemes are not among the many ranks, and why.
-Html omissions(const std::vector<LeftOut>& left_out) {
-  if (left_out.empty()) return "";
-  std::string text;
-  for (const int ranks : unique_of(left_out, [](const LeftOut& one) { return one.ranks; })) {
-    std::vector<std::string> names;
-    for (const LeftOut& one : left_out)
-      if (one.ranks == ranks && std::find(names.begin(), names.end(), one.scheme) == names.end())
-        names.push_back(one.scheme);
-    text += fmt::format("{}{} ranks without {}", text.empty() ? "" : "; ", ranks,
-                        fmt::join(names, ", "));
-  }
-  return paragraph(text +
-                   ": their many messages take long to simulate, which --ranks asks for all the "
-                   "same.");
-}
-
-Html answer(const ComposeComparison& comparison) {
-  const std::vector<ComparedScheme>& rows = comparison.rows;
-  const bool codecs = codecs_of(rows).size() > 1;
-  Html result;
-  std::vector<std::string> networks = networks_of(rows);
-  std::erase(networks, "this-machine");
-  Table best_of;
-  best_of.columns = {
-      {"ranks", true, false, {}}, {"here", false, true, Source::measured}, {"ms", true, false, {}}};
-  for (const std::string& network : networks) {
-    best_of.columns.push_back({network, false, true, Source::predicted});
-    best_of.columns.push_back({"ms", true, false, {}});
-  }
-  const ComparedScheme* last = nullptr;
-  for (const int ranks : ranks_of(rows)) {
-    const ComparedScheme* best = fastest(rows, ranks);
-    if (best != nullptr) last = best;
-    std::vector<std::string> line = {std::to_string(ranks),
-                                     best != nullptr ? name_of(*best, codecs) : "-",
-                                     best != nullptr ? short_number(total(*best) * 1e3) : "-"};
-    for (const std::string& network : networks) {
-      const ComparedScheme* over = fastest_over(rows, ranks, network);
-      line.push_back(over != nullptr ? name_of(*over, codecs) : "-");
-      const Predicted* p = over != nullptr ? prediction(*over, network) : nullptr;
-      line.push_back(p != nullptr ? short_number((p->seconds + p->gather_seconds) * 1e3) : "-");
-    }
-    best_of.rows.push_back(std::move(line));
-  }
-  if (last != nullptr)
-    result += sentence(rows, *last, codecs);
-  else if (!networks.empty())
-    result += predicted_sentence(rows, networks.front(), codecs);
-  return advice_beside(result, paragraph("Fastest with so many ranks, gather included:") +
-                                   table(best_of) + omissions(comparison.left_out));
-}
-
 Html times(const std::vector<ComparedScheme>& rows) {
   std::vector<Html> charts;
+  const auto add = [&](const std::string& codec, const std::string& title,
+                       std::optional<Spread> ComparedScheme::*seconds) {
+    charts.push_back(
+        chart_over_ranks(rows, codec, title, "time, ms", Source::measured,
+                         [seconds](const ComparedScheme& row) -> std::optional<ChartPoint> {
+                           if (!(row.*seconds)) return std::nullopt;
+                           return point_of(row, *(row.*seconds));
+                         }));
+  };
   for (const std::string& codec : codecs_of(rows)) {
-    charts.push_back(chart_over_ranks(rows, codec, "Compositing and gather on this machine",
-                                      "time, ms", Source::measured,
-                                      [](const ComparedScheme& row) -> std::optional<ChartPoint> {
-                                        if (!row.compose_seconds) return std::nullopt;
-                                        return measured_point(row);
-                                      }));
-    charts.push_back(chart_over_ranks(
-        rows, codec, "Compositing alone on this machine", "time, ms", Source::measured,
-        [](const ComparedScheme& row) -> std::optional<ChartPoint> {
-          if (!row.compose_seconds) return std::nullopt;
-          const Spread& s = *row.compose_seconds;
-          return ChartPoint{static_cast<double>(row.ranks), s.median * 1e3, s.least * 1e3,
-                            s.most * 1e3};
-        }));
+    add(codec, "Compositing and gather on this machine", &ComparedScheme::total_seconds);
+    add(codec, "Compositing alone on this machine", &ComparedScheme::compose_seconds);
   }
   return in_columns(charts) +
          paragraph(
-             "Medians; the upright lines are the spread of the repetitions. Times end when "
-             "the last rank is done. More ranks than cores share the cores.");
+             "Medians; the upright lines are the intervals in which they lie with 95 %, of fewer "
+             "than six runs all of their spread. Times end when the last rank is done. More ranks "
+             "than cores share the cores.");
 }
 
 Html bytes(const std::vector<ComparedScheme>& rows) {
@@ -388,7 +235,7 @@ std::string compose_report(const Session& session, const CompareRequest& request
   result.title = fmt::format("Compositing {}, {}", file.filename().string(), request.render.size);
   result.unfinished = comparison.unfinished;
   result.machine = machine_and_compiler();
-  result.answer = answer(comparison);
+  result.answer = compose_answer(comparison);
   result.tabs.push_back({"Times", times(rows)});
   result.tabs.push_back({"Bytes", bytes(rows)});
   result.tabs.push_back({"Predictions", predictions(comparison)});

@@ -13,6 +13,7 @@ Json frames_of(const DrawnFrames& drawn, int ranks) {
     result.push_back({{"network", one.network},
                       {"ranks", ranks},
                       {"seconds", one.seconds},
+                      {"spread", spread_json(one.spread)},
                       {"first_seconds", one.first_seconds}});
   return result;
 }

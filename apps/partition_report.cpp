@@ -7,6 +7,7 @@
 #include <functional>
 #include <numeric>
 
+#include "apps/partition_answer.h"
 #include "apps/partition_figures.h"
 #include "apps/provenance.h"
 #include "apps/report/bar_chart.h"
@@ -16,6 +17,7 @@
 #include "apps/report/series.h"
 #include "apps/report/table.h"
 #include "apps/variant_looks.h"
+#include "apps/verdict.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -26,139 +28,9 @@ using Rows = std::vector<ComparedPartition>;
 
 constexpr const char* kPicture = "picture";
 
-std::string time_of(double seconds) {
-  return seconds < 1 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
-}
-
 ChartPoint point(double x, double y) { return {x, y, y, y}; }
 ChartPoint point(double x, const Spread& spread, double unit) {
-  return {x, spread.median * unit, spread.least * unit, spread.most * unit};
-}
-
-Rows with_regions(const Rows& rows, int regions) {
-  Rows result;
-  std::copy_if(rows.begin(), rows.end(), std::back_inserter(result),
-               [&](const ComparedPartition& row) { return row.regions_per_rank == regions; });
-  return result;
-}
-
-std::vector<int> drawn_ranks(const Rows& rows) {
-  std::vector<int> result;
-  for (const ComparedPartition& row : rows)
-    if (row.drawn && (result.empty() || result.back() != row.ranks)) result.push_back(row.ranks);
-  return result;
-}
-
-const PredictedFrame* over(const DrawnFrames& drawn, std::string_view network) {
-  const auto at = std::find_if(drawn.predicted.begin(), drawn.predicted.end(),
-                               [&](const PredictedFrame& one) { return one.network == network; });
-  return at == drawn.predicted.end() ? nullptr : &*at;
-}
-
-// The strategy that is predicted to take least for a frame after the first.
-const ComparedStrategy* best_strategy(const std::vector<ComparedStrategy>& strategies, int ranks,
-                                      std::string_view network) {
-  const ComparedStrategy* best = nullptr;
-  for (const ComparedStrategy& one : strategies)
-    if (one.ranks == ranks && (best == nullptr || over(one.drawn, network)->seconds <
-                                                      over(best->drawn, network)->seconds))
-      best = &one;
-  return best;
-}
-
-std::string runs_of(const Spread& seconds) {
-  return fmt::format("{} (measured, median of {} runs, {} to {})", time_of(seconds.median),
-                     seconds.runs, time_of(seconds.least), time_of(seconds.most));
-}
-
-Html sentence(const PartitionComparison& comparison, const ComparedPartition& best) {
-  Html text = fmt::format(
-      "<p>For {} ranks cut the screen by {}: the busiest rank does {:.3g} times an equal share of "
-      "the work of one alone ({}), cutting takes {}, and a primitive goes to {:.3g} ranks on "
-      "average (counted). One rank alone takes {} for a frame (measured, median).",
-      best.ranks, strong(best.partition), over_share(best), best.drawn ? "counted" : "predicted",
-      runs_of(best.cut_seconds), best.overlap, time_of(comparison.alone_seconds));
-  const ComparedPartition *anew = &best, *evenest = &best, *next = nullptr;
-  for (const ComparedPartition& row : comparison.rows) {
-    if (row.ranks != best.ranks || row.regions_per_rank != best.regions_per_rank || &row == &best)
-      continue;
-    if (row.drawn && row.finish_seconds < anew->finish_seconds) anew = &row;
-    if (over_share(row) < over_share(*evenest)) evenest = &row;
-    if (next == nullptr || over_share(row) < over_share(*next)) next = &row;
-  }
-  if (evenest != &best)
-    text += fmt::format(" {} shares out more evenly, {:.3g}, but cutting takes {}.",
-                        escaped(evenest->partition), over_share(*evenest),
-                        time_of(evenest->cut_seconds.median));
-  else if (next != nullptr)
-    text += fmt::format(" Next comes {} with {:.3g}.", escaped(next->partition), over_share(*next));
-  if (anew != &best)
-    text += fmt::format(
-        " Where the screen is cut anew for every frame {} is done first, {} instead of {} "
-        "(predicted).",
-        escaped(anew->partition), time_of(anew->finish_seconds), time_of(best.finish_seconds));
-  return text + "</p>\n";
-}
-
-// Over each network, what takes least of all.
-Html fastest_frames(const std::vector<ComparedStrategy>& strategies) {
-  std::vector<std::string> parts;
-  for (const comm::NamedNetwork& named : comm::networks()) {
-    const ComparedStrategy* best = nullptr;
-    for (const ComparedStrategy& one : strategies)
-      if (best == nullptr ||
-          over(one.drawn, named.name)->seconds < over(best->drawn, named.name)->seconds)
-        best = &one;
-    if (best == nullptr) return "";
-    parts.push_back(fmt::format("over {} with {} on {} ranks, {}", named.name,
-                                strong(best->strategy), best->ranks,
-                                time_of(over(best->drawn, named.name)->seconds)));
-  }
-  Html text = "<p>Frames take least ";
-  for (std::size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? "; " : "") + parts[i];
-  return text + " (predicted).</p>\n";
-}
-
-Html answer(const PartitionComparison& comparison) {
-  const Rows rows = with_regions(comparison.rows, comparison.rows.front().regions_per_rank);
-  Table best_of;
-  best_of.columns = {{"ranks", true, false, {}},
-                     {"partition", false, true, Source::counted},
-                     {"work over share", true, true, Source::counted},
-                     {"cut ms", true, true, Source::measured}};
-  for (const comm::NamedNetwork& named : comm::networks())
-    best_of.columns.push_back({named.name, false, true, Source::predicted});
-  const ComparedPartition* last = nullptr;
-  for (const int ranks : drawn_ranks(rows)) {
-    const ComparedPartition* best = best_partition(comparison.rows, ranks);
-    last = best;
-    std::vector<std::string> line = {std::to_string(ranks), best->partition,
-                                     fmt::format("{:.3f}", best->drawn->work_over_share),
-                                     short_number(best->cut_seconds.median * 1e3)};
-    for (const comm::NamedNetwork& named : comm::networks()) {
-      const ComparedStrategy* strategy = best_strategy(comparison.strategies, ranks, named.name);
-      line.push_back(strategy != nullptr
-                         ? fmt::format("{} {}", strategy->strategy,
-                                       time_of(over(strategy->drawn, named.name)->seconds))
-                         : "-");
-    }
-    best_of.rows.push_back(std::move(line));
-  }
-  Html result;
-  if (best_of.rows.empty())
-    return advice_beside(
-        sentence(comparison, *best_partition(comparison.rows, comparison.rows.back().ranks)) +
-            paragraph("Frames are drawn by fewer ranks: of so many the balance is foretold."),
-        "");
-  result += sentence(comparison, *last) + fastest_frames(comparison.strategies);
-  return advice_beside(
-      result,
-      paragraph(fmt::format(
-          "By number of ranks, the partition that is cut soonest of those within {:.0f} % of "
-          "the most even shares, and over each network the strategy whose frames take "
-          "least:",
-          (kAsEven - 1) * 100)) +
-          table(best_of));
+  return {x, spread.median * unit, spread.low * unit, spread.high * unit};
 }
 
 using PointOf = std::function<std::optional<ChartPoint>(const ComparedPartition&)>;
@@ -212,6 +84,12 @@ Html balance(const PartitionRequest& request, const PartitionComparison& compari
              Source::predicted, Scale::logarithmic, predicted_imbalance(x_ranks)),
        chart(rows, "The same in processor time", "ranks", "busiest rank over mean",
              Source::measured, Scale::logarithmic, time_imbalance(x_ranks)),
+       chart(rows, "Processor time of the busiest rank", "ranks", "time, ms", Source::measured,
+             Scale::logarithmic,
+             [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+               if (!row.drawn) return std::nullopt;
+               return point(ranks_of(row), row.drawn->busiest, 1e3);
+             }),
        chart(rows, "What is lost: unevenness and work that several ranks do", "ranks",
              "most work over an equal share of one alone", Source::counted, Scale::logarithmic,
              [](const ComparedPartition& row) -> std::optional<ChartPoint> {
@@ -248,8 +126,9 @@ Html balance(const PartitionRequest& request, const PartitionComparison& compari
              "Counted: a rank's work is the triangles that it rasterizes and the samples that it "
              "shades, a triangle at the price of two samples. Measured: processor time of "
              "sort-first's ranks, which take turns on one core and its caches; medians, the "
-             "upright "
-             "lines are the spread of the frames; where a frame takes a rank less than a "
+             "upright lines are the intervals in which they lie with 95 %, of fewer than six "
+             "frames all of their spread; "
+             "where a frame takes a rank less than a "
              "millisecond, what each rank does once weighs more than its share. Predicted: from "
              "the "
              "boxes of groups of primitives and the pixels that they cover, before anything is "
@@ -263,9 +142,9 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   const double mean = mean_of(shown.work), predicted_mean = mean_of(shown.predicted);
   const auto over_mean = [](double value, double of) { return of > 0 ? value / of : 1.0; };
   const auto told = [&](std::size_t rank) {
-    return fmt::format("{:.2f} of the mean, predicted {:.2f}; measured {}",
-                       over_mean(shown.work[rank], mean),
-                       over_mean(shown.predicted[rank], predicted_mean), time_of(shown.busy[rank]));
+    return fmt::format(
+        "{:.2f} of the mean, predicted {:.2f}; measured {}", over_mean(shown.work[rank], mean),
+        over_mean(shown.predicted[rank], predicted_mean), time_text(shown.busy[rank]));
   };
   Overlay drawn;
   drawn.title = shown.name;
@@ -354,15 +233,15 @@ Html strategies(const PartitionComparison& comparison) {
                   comparison.rows.front().partition));
   for (const comm::NamedNetwork& named : comm::networks()) {
     result += heading(fmt::format("Over {}: {}", named.name, named.description));
-    result +=
-        in_columns({lines("A frame after the first", "time, ms", Source::predicted,
-                          [&](const ComparedStrategy& row) {
-                            return point(x(row), over(row.drawn, named.name)->seconds * 1e3);
-                          }),
-                    lines("The first frame: primitives travel", "time, ms", Source::predicted,
-                          [&](const ComparedStrategy& row) {
-                            return point(x(row), over(row.drawn, named.name)->first_seconds * 1e3);
-                          })});
+    result += in_columns(
+        {lines("A frame after the first", "time, ms", Source::predicted,
+               [&](const ComparedStrategy& row) {
+                 return point(x(row), prediction(row.drawn, named.name)->spread, 1e3);
+               }),
+         lines("The first frame: primitives travel", "time, ms", Source::predicted,
+               [&](const ComparedStrategy& row) {
+                 return point(x(row), prediction(row.drawn, named.name)->first_seconds * 1e3);
+               })});
   }
   result += heading("What goes into it");
   result += in_columns(
@@ -411,7 +290,7 @@ std::string partition_report(const Session& session, const PartitionRequest& req
                              request.render.size);
   result.unfinished = comparison.unfinished;
   result.machine = machine_and_compiler();
-  result.answer = backdrop(comparison.picture, kPicture) + answer(comparison);
+  result.answer = backdrop(comparison.picture, kPicture) + partition_answer(comparison);
   result.tabs.push_back({"Balance", balance(request, comparison)});
   if (!comparison.shown.empty()) result.tabs.push_back({"Regions", regions(request, comparison)});
   result.tabs.push_back({"Overlap and cutting", price(request, comparison)});

@@ -27,6 +27,7 @@ Json row_of(const ComparedSchedule& row) {
     one["predicted"].push_back({{"network", over.network},
                                 {"ranks", row.ranks},
                                 {"seconds", over.seconds},
+                                {"spread", spread_json(over.spread)},
                                 {"imbalance", over.time_imbalance},
                                 {"idle", over.idle},
                                 {"imbalance_rays", over.ray_imbalance},

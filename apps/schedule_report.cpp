@@ -15,6 +15,7 @@
 #include "apps/report/timeline.h"
 #include "apps/schedule_figures.h"
 #include "apps/variant_looks.h"
+#include "apps/verdict.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -25,10 +26,6 @@ using namespace report;
 constexpr const char* kFrame = "frame";
 // Shorter than this part of a timeline nothing can be seen.
 constexpr double kSeen = 1.0 / 1500;
-
-std::string time_of(double seconds) {
-  return seconds < 1 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
-}
 
 double costliest(const ScheduleComparison& comparison) {
   double most = 0;
@@ -56,23 +53,56 @@ const ComparedSchedule* row_of(const ScheduleComparison& comparison, const std::
   return nullptr;
 }
 
+std::vector<std::string> names_of(const std::vector<const ComparedSchedule*>& rows) {
+  std::vector<std::string> names;
+  for (const ComparedSchedule* row : rows) names.push_back(row->schedule);
+  return names;
+}
+
+// Of whole frames of ranks that had a core each.
+Html traced_sentence(const ScheduleComparison& comparison) {
+  std::vector<const ComparedSchedule*> best;
+  for (const int ranks : rank_counts(comparison)) {
+    const auto traced = best_traced(comparison.rows, ranks);
+    if (!traced.empty()) best = traced;
+  }
+  if (best.empty()) return "";
+  const std::vector<std::string> names = names_of(best);
+  Html text = fmt::format("<p>On {} ranks of this machine ", best.front()->ranks);
+  text += best.size() == 1
+              ? fmt::format("use {}: a frame takes ", strong(names[0]))
+              : fmt::format("there is no difference between {}: with {} a frame takes ",
+                            strong(listed(names)), escaped(names[0]));
+  return text + measured_text(best.front()->traced->seconds) + ".</p>\n";
+}
+
 Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison) {
   const std::vector<int> counts = rank_counts(comparison);
   const int ranks = std::find(counts.begin(), counts.end(), shown_ranks(request)) != counts.end()
                         ? shown_ranks(request)
                         : counts.back();
-  const ComparedSchedule& best = *best_schedule(comparison.rows, ranks);
+  const auto winners = best_schedules(comparison.rows, ranks);
+  const ComparedSchedule& best = *winners.front();
   const ScheduleOver& over = best.over.front();
-  Html text = fmt::format(
-      "<p>For {} ranks hand out tiles by {}: the last one is done after {} over {} (predicted), "
-      "{:.3g} times an equal share of the {} that all take (measured, medians of {} frames); the "
-      "rank with most rays sends {:.3g} times the mean (counted).",
-      ranks, strong(best.schedule), time_of(over.seconds), escaped(over.network),
+  const std::vector<std::string> names = names_of(winners);
+  Html text = fmt::format("<p>For {} ranks over {} ", ranks, escaped(over.network));
+  text += winners.size() == 1 ? fmt::format("hand out tiles by {}: ", strong(names[0]))
+                              : fmt::format("no difference is predicted between {}: by {} ",
+                                            strong(listed(names)), escaped(names[0]));
+  text += fmt::format(
+      "the last tile is done after {} (predicted, {} to {} with the tiles of single frames), "
+      "{:.3g} "
+      "times an equal share of what all take: {}; the rank with most rays sends {:.3g} times the "
+      "mean (counted).",
+      time_text(over.seconds), time_text(over.spread.low), time_text(over.spread.high),
       comparison.seconds > 0 ? over.seconds * ranks / comparison.seconds : 1.0,
-      time_of(comparison.seconds), frames_of(comparison), over.ray_imbalance);
+      measured_text(comparison.frame), over.ray_imbalance);
+  const auto is_winner = [&](const ComparedSchedule& row) {
+    return std::find(winners.begin(), winners.end(), &row) != winners.end();
+  };
   const ComparedSchedule* next = nullptr;
   for (const ComparedSchedule& row : comparison.rows)
-    if (&row != &best && row.ranks == ranks &&
+    if (!is_winner(row) && row.ranks == ranks &&
         (next == nullptr || row.over.front().seconds < next->over.front().seconds))
       next = &row;
   const auto more = [&](const ComparedSchedule& row) {
@@ -81,29 +111,38 @@ Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison
   if (next != nullptr && over.seconds > 0)
     text += fmt::format(" {} takes {:.1f} % more", escaped(next->schedule), more(*next));
   const ComparedSchedule* fixed = row_of(comparison, "static", ranks);
-  if (fixed != nullptr && fixed != &best && fixed != next && over.seconds > 0)
+  if (next != nullptr && fixed != nullptr && !is_winner(*fixed) && fixed != next &&
+      over.seconds > 0)
     text += fmt::format(", static, which never adapts, {:.0f} %", more(*fixed));
-  text += ".</p>\n";
-  return text +
+  text += next != nullptr ? " (predicted).</p>\n" : "</p>\n";
+  return traced_sentence(comparison) + text +
          fmt::format(
              "<p>The costliest tile alone takes {} (measured): with tiles of {} pixels no schedule "
              "is done sooner. An equal share of the work is as short with {:.0f} ranks.</p>\n",
-             time_of(costliest(comparison)), request.tile,
+             time_text(costliest(comparison)), request.tile,
              costliest(comparison) > 0 ? comparison.seconds / costliest(comparison) : 1.0);
 }
 
 Html first_screen(const ScheduleRequest& request, const ScheduleComparison& comparison) {
   Table best_of;
-  best_of.columns = {{"ranks", true, false, {}}, {"at least, ms", true, true, Source::predicted}};
+  best_of.columns = {{"ranks", true, false, {}},
+                     {"here", false, true, Source::measured},
+                     {"at least, ms", true, true, Source::predicted}};
   const std::vector<ScheduleOver>& over = comparison.rows.front().over;
   for (const ScheduleOver& one : over)
     best_of.columns.push_back({one.network, false, true, Source::predicted});
   for (const int ranks : rank_counts(comparison)) {
-    std::vector<std::string> line = {std::to_string(ranks),
-                                     short_number(least_seconds(comparison, ranks) * 1e3)};
+    const auto traced = best_traced(comparison.rows, ranks);
+    std::vector<std::string> line = {
+        std::to_string(ranks),
+        traced.empty() ? "-"
+                       : fmt::format("{}, {} ms", winners_cell(names_of(traced)),
+                                     milliseconds_cell(traced.front()->traced->seconds)),
+        short_number(least_seconds(comparison, ranks) * 1e3)};
     for (std::size_t i = 0; i < over.size(); ++i) {
-      const ComparedSchedule* best = best_schedule(comparison.rows, ranks, i);
-      line.push_back(fmt::format("{} {}", best->schedule, time_of(best->over[i].seconds)));
+      const auto best = best_schedules(comparison.rows, ranks, i);
+      line.push_back(fmt::format("{}, {}", winners_cell(names_of(best)),
+                                 time_text(best.front()->over[i].seconds)));
     }
     best_of.rows.push_back(std::move(line));
   }
@@ -111,7 +150,9 @@ Html first_screen(const ScheduleRequest& request, const ScheduleComparison& comp
       advice(request, comparison),
       paragraph(
           "By number of ranks, the schedule whose last tile is done first over each network; no "
-          "schedule could take less than what stands left of it:") +
+          "schedule could take less than what stands left of it. \u2248: no difference, the "
+          "intervals of "
+          "times with the tiles of single frames overlap, or here those of the frames' medians.") +
           table(best_of));
 }
 
@@ -203,10 +244,14 @@ Html times(const ScheduleComparison& comparison) {
   std::vector<Html> charts;
   const std::vector<ScheduleOver>& over = comparison.rows.front().over;
   for (std::size_t i = 0; i < over.size(); ++i)
-    charts.push_back(
-        chart_by_ranks(comparison, "Until the last tile is done, over " + over[i].network,
-                       "time, ms", Source::predicted, Scale::logarithmic,
-                       value_of([](const ScheduleOver& one) { return one.seconds * 1e3; }, i)));
+    charts.push_back(chart_by_ranks(comparison,
+                                    "Until the last tile is done, over " + over[i].network,
+                                    "time, ms", Source::predicted, Scale::logarithmic,
+                                    [i](const ComparedSchedule& row) -> std::optional<ChartPoint> {
+                                      const Spread& s = row.over[i].spread;
+                                      return ChartPoint{static_cast<double>(row.ranks),
+                                                        s.median * 1e3, s.low * 1e3, s.high * 1e3};
+                                    }));
   return in_columns(charts) + traced_here(comparison);
 }
 
@@ -228,14 +273,14 @@ Html tile_costs(const ScheduleRequest& request, const ScheduleComparison& compar
     const auto count = static_cast<double>(tile.rays);
     rays.areas.push_back(
         {tile.pixels, 0, most_rays > 0 ? count / most_rays : 0, fmt::format("{} rays", tile.rays)});
-    seconds.areas.push_back({tile.pixels, 0,
-                             most_seconds > 0 ? tile.seconds.median / most_seconds : 0,
-                             fmt::format("{}, {} to {}", time_of(tile.seconds.median),
-                                         time_of(tile.seconds.least), time_of(tile.seconds.most))});
+    seconds.areas.push_back(
+        {tile.pixels, 0, most_seconds > 0 ? tile.seconds.median / most_seconds : 0,
+         fmt::format("{}, {} to {}", time_text(tile.seconds.median), time_text(tile.seconds.least),
+                     time_text(tile.seconds.most))});
   }
   return in_columns({overlay(rays, kFrame), overlay(seconds, kFrame)}) +
          paragraph(fmt::format("The darker, the more: up to {} rays and {}.",
-                               short_number(most_rays), time_of(most_seconds)));
+                               short_number(most_rays), time_text(most_seconds)));
 }
 
 Html tile_owners(const ScheduleRequest& request, const ScheduleComparison& comparison) {

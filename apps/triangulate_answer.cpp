@@ -8,6 +8,7 @@
 #include "apps/report/series.h"
 #include "apps/report/table.h"
 #include "apps/triangulate_rows.h"
+#include "apps/verdict.h"
 #include "delaunay/methods.h"
 
 namespace delray::apps {
@@ -17,25 +18,33 @@ using namespace report;
 using Row = ComparedTriangulation;
 using Rows = ComparedTriangulations;
 
-// What else is as good, and whether that is certain.
-std::string next_sentence(const Rows& rows, const Row& best) {
+using Winners = std::vector<const Row*>;
+
+std::string way_text(const Row& row) {
+  return name_of(row.how) + " with " + threads_text(row.how.threads);
+}
+
+// What is as fast, and what the next method takes. REQUIRES: !best.empty().
+std::string others_sentence(const Rows& rows, const Winners& best) {
+  const Row& first = *best.front();
+  std::vector<std::string> equals;
+  for (std::size_t i = 1; i < best.size(); ++i) equals.push_back(way_text(*best[i]));
+  std::string text;
+  if (!equals.empty())
+    text += fmt::format(" There is no difference to {}.", escaped(listed(equals)));
   const Row* next = nullptr;
   for (const Row& row : rows)
-    if (row.points == best.points && row.how.method != best.how.method &&
+    if (row.points == first.points &&
+        std::ranges::none_of(best,
+                             [&](const Row* one) { return one->how.method == row.how.method; }) &&
         (next == nullptr || row.seconds.median < next->seconds.median))
       next = &row;
-  if (next == nullptr) return "";
-  const double times = next->seconds.median / best.seconds.median;
-  const bool apart = next->seconds.least > best.seconds.most;
-  const char* doubt = apart && times > 1.5     ? ""
-                      : best.seconds.runs == 1 ? " once"
-                      : apart                  ? ""
-                                               : ", which other runs may turn round";
-  return fmt::format(" {} with {}, the next method, takes {} (measured{}).",
-                     escaped(name_of(next->how)), threads_text(next->how.threads),
-                     times < 2 ? fmt::format("{:.0f} % more", (times - 1) * 100)
-                               : fmt::format("{:.1f} times as long", times),
-                     doubt);
+  if (next == nullptr) return text;
+  const double times = next->seconds.median / first.seconds.median;
+  return text + fmt::format(" {}, the next method, takes {}{}.", escaped(way_text(*next)),
+                            measured_text(next->seconds),
+                            times < 2 ? fmt::format(", {:.0f} % more", (times - 1) * 100)
+                                      : fmt::format(", {:.1f} times as long", times));
 }
 
 // What the others do that it does not.
@@ -81,11 +90,14 @@ std::string scaling(const TriangulateComparison& comparison, const Row& best) {
           (more == nullptr || row.seconds.median < more->seconds.median))
         more = &row;
     if (more == nullptr) return "";
-    return fmt::format(" More threads did not help: {} with {} (measured).",
-                       milliseconds_text(more->seconds.median), threads_text(more->how.threads));
+    return fmt::format(" {}: {} with {}.",
+                       differ(more->seconds, best.seconds) ? "More threads did not help"
+                                                           : "More threads make no difference",
+                       measured_text(more->seconds), threads_text(more->how.threads));
   }
-  return fmt::format(" One thread takes {}: that is a speed-up of {:.2f} (measured).",
-                     milliseconds_text(base->seconds.median),
+  const std::string alone = fmt::format(" One thread takes {}", measured_text(base->seconds));
+  if (!differ(base->seconds, best.seconds)) return alone + ": no difference.";
+  return fmt::format("{}: that is a speed-up of {:.2f}.", alone,
                      base->seconds.median / best.seconds.median);
 }
 
@@ -129,20 +141,19 @@ Html triangulate_answer(const TriangulateComparison& comparison) {
   // More threads than cores may win by chance, where there is little to do.
   const Rows uncrowded =
       rows_of(rows, [&](const Row& row) { return row.how.threads <= comparison.cores; });
-  const Row* own_cores = fastest(uncrowded, points, 0);
-  const Row& best = own_cores != nullptr ? *own_cores : *fastest(rows, points, 0);
-  std::string text = fmt::format(
-      "<p>Use {} with {}: {} points in {}D take {} (measured, {}).", strong(name_of(best.how)),
-      strong(threads_text(best.how.threads)), points, comparison.dim,
-      strong(milliseconds_text(best.seconds.median)),
-      best.seconds.runs > 1
-          ? fmt::format("median of {} runs, {} to {}", best.seconds.runs,
-                        milliseconds_text(best.seconds.least), milliseconds_text(best.seconds.most))
-          : "once");
+  const Winners own_cores = fastest(uncrowded, points, 0);
+  const Winners winners = own_cores.empty() ? fastest(rows, points, 0) : own_cores;
+  const Row& best = *winners.front();
+  std::string text = fmt::format("<p>Use {} with {}: {} points in {}D take {}.",
+                                 strong(name_of(best.how)), strong(threads_text(best.how.threads)),
+                                 points, comparison.dim, measured_text(best.seconds));
   text += fmt::format(" That is <code>{}</code>.", command_of(best, comparison.cores));
-  text += next_sentence(own_cores != nullptr ? uncrowded : rows, best) + "</p>\n<p>" +
-          reason(rows, best) + scaling(comparison, best) + "</p>\n<p>" +
-          agreement(comparison, best) + crowded_text(comparison) + "</p>\n";
+  text +=
+      others_sentence(own_cores.empty() ? rows : uncrowded, winners) + "</p>\n<p>" +
+      reason(rows, best) + scaling(comparison, best) + "</p>\n<p>" + agreement(comparison, best) +
+      crowded_text(comparison) + "</p>\n" +
+      paragraph(
+          "No difference (\u2248 in the table): the intervals in which the medians lie overlap.");
   Table best_of;
   best_of.columns = {{"points", true, false, {}}};
   for (const int threads : comparison.threads) {
@@ -152,9 +163,11 @@ Html triangulate_answer(const TriangulateComparison& comparison) {
   for (const std::size_t size : sizes_of(rows)) {
     std::vector<std::string> line = {std::to_string(size)};
     for (const int threads : comparison.threads) {
-      const Row* row = fastest(rows, size, threads);
-      line.push_back(row != nullptr ? name_of(row->how) : "-");
-      line.push_back(row != nullptr ? short_number(row->seconds.median * 1e3) : "-");
+      const Winners of_size = fastest(rows, size, threads);
+      std::vector<std::string> names;
+      for (const Row* row : of_size) names.push_back(name_of(row->how));
+      line.push_back(winners_cell(names));
+      line.push_back(of_size.empty() ? "-" : milliseconds_cell(of_size.front()->seconds));
     }
     best_of.rows.push_back(std::move(line));
   }

@@ -49,12 +49,12 @@ bool has_own_split(const Row& row) {
 using PointOf = std::function<std::optional<ChartPoint>(const Row&)>;
 
 ChartPoint time_at(double x, const Row& row) {
-  return {x, row.seconds.median * 1e3, row.seconds.least * 1e3, row.seconds.most * 1e3};
+  return {x, row.seconds.median * 1e3, row.seconds.low * 1e3, row.seconds.high * 1e3};
 }
 // How many times as long `base` takes, over `divisor`.
 ChartPoint ratio_at(double x, const Spread& base, const Spread& seconds, double divisor) {
   const double scale = base.median / divisor;
-  return {x, scale / seconds.median, scale / seconds.most, scale / seconds.least};
+  return {x, scale / seconds.median, scale / seconds.high, scale / seconds.low};
 }
 
 // What a chart shows upwards.
@@ -110,8 +110,10 @@ Html times(const TriangulateComparison& comparison) {
                   {"Time with " + threads_text(threads), "time, ms"},
                   [](const Row& row) { return time_at(static_cast<double>(row.points), row); })}) +
          paragraph(
-             "Medians; the upright lines are the spread of the repetitions. Times are from "
-             "points in memory to simplices in memory, sorting and extraction included. "
+             "Medians; the upright lines are the intervals in which they lie with 95 %, of fewer "
+             "than "
+             "six runs all of their spread. Times are from points in memory to simplices in "
+             "memory, sorting and extraction included. "
              "insertion always works with one thread.");
 }
 

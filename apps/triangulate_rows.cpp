@@ -47,7 +47,6 @@ bool is_alone(const Row& row) {
 std::string threads_text(int count) {
   return fmt::format("{} {}", count, count == 1 ? "thread" : "threads");
 }
-std::string milliseconds_text(double seconds) { return fmt::format("{:.3g} ms", seconds * 1e3); }
 const char* simplices_text(int dim) { return dim == 2 ? "triangles" : "tetrahedra"; }
 
 std::string crowded_text(const TriangulateComparison& comparison) {

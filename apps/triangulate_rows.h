@@ -24,9 +24,8 @@ const ComparedTriangulation* base_of(const ComparedTriangulations& rows,
 // Whether its method has one thread whatever it is told.
 bool is_alone(const ComparedTriangulation& row);
 
-// As texts: "2 threads", "3.1 ms", "triangles".
+// As texts: "2 threads", "triangles".
 std::string threads_text(int count);
-std::string milliseconds_text(double seconds);
 const char* simplices_text(int dim);
 // A sentence on threads that share cores; empty where none do.
 std::string crowded_text(const TriangulateComparison& comparison);

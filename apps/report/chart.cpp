@@ -22,13 +22,13 @@ Look look_of(const LineChart& chart, std::size_t i) {
   Look look = chart.series[i].look;
   if (look.colour < 0) {
     look.colour = static_cast<int>(i);
-    look.mark = static_cast<int>(i) / kColours;
+    look.mark = static_cast<int>(i) / kLookColours;
   }
   return look;
 }
 std::string classes_of(const Look& look) {
-  return fmt::format("c{} d{}", look.colour % kColours,
-                     look.dash == 0 ? 0 : 1 + (look.dash - 1) % kDashes);
+  return fmt::format("c{} d{}", look.colour % kLookColours,
+                     look.dash == 0 ? 0 : 1 + (look.dash - 1) % kLookDashes);
 }
 // Series of the same group have the same.
 std::string group_of(const LineChart& chart, std::size_t i) {
@@ -158,9 +158,9 @@ class LinePlot {
     return fmt::format(
         "<use class=\"point\" href=\"#m{}\" x=\"{:.2f}%\" y=\"{:.1f}\"{}><title>{}: {} {}, {} {} "
         "({}{})</title></use>",
-        mark % kMarks, at_x(p.x), at_y(p.y), strong ? " tabindex=\"0\"" : "", escaped(series.name),
-        escaped(chart_.x_label), short_number(p.x), escaped(chart_.y_label), short_number(p.y),
-        name_of(series.source), spread);
+        mark % kLookMarks, at_x(p.x), at_y(p.y), strong ? " tabindex=\"0\"" : "",
+        escaped(series.name), escaped(chart_.x_label), short_number(p.x), escaped(chart_.y_label),
+        short_number(p.y), name_of(series.source), spread);
   }
 
   Html line(std::size_t i, double name_position) const {
@@ -200,7 +200,7 @@ class LinePlot {
         "5H24\"/><use class=\"point\" href=\"#m{4}\" x=\"12\" y=\"5\"/></svg>{3}{5}</button>",
         classes_of(look), strong_[i] ? "" : " weak",
         series.source == Source::predicted ? " predicted" : "", escaped(series.name),
-        look.mark % kMarks,
+        look.mark % kLookMarks,
         with_source ? fmt::format(" <span class=\"source\">{}</span>", name_of(series.source))
                     : "");
   }

@@ -5,14 +5,14 @@
 
 namespace delray::apps::report {
 
-inline constexpr int kColours = 8, kMarks = 6, kDashes = 3;
+inline constexpr int kLookColours = 8, kLookMarks = 6, kLookDashes = 3;
 
 // Variants of a group share a colour and differ by the marks at their points; what is derived from
 // a variant by a parameter differs from it by the dashes of its line.
 struct Look {
-  int colour = -1;    // from 0, taken modulo kColours; -1: by the place among a chart's series
-  int mark = 0;       // from 0, taken modulo kMarks
-  int dash = 0;       // 0: a whole line; others are taken modulo kDashes
+  int colour = -1;    // from 0, taken modulo kLookColours; -1: by the place among a chart's series
+  int mark = 0;       // from 0, taken modulo kLookMarks
+  int dash = 0;       // 0: a whole line; others are taken modulo kLookDashes
   std::string group;  // empty: a group of its own
 };
 

@@ -27,6 +27,7 @@ p{max-width:46rem}
 .answer .table{max-height:none}
 .answer th{background:var(--panel)}
 .answer th,.answer td{padding:.2rem .5rem}
+.answer td:not(.number){white-space:normal;min-width:8.5rem}
 .answer strong{font-weight:650}
 .machine{color:var(--soft);font-size:.88rem;margin:-.5rem 0 .7rem;max-width:none}
 .unfinished{color:var(--warn);font-weight:600}
@@ -134,7 +135,7 @@ table{font-size:.65rem}th,td{padding:.1rem .25rem}th{white-space:normal}
 .table .source{font-size:.55rem;padding:0 .1rem}}
 )css";
 
-// As many as report::kMarks: disc, square, diamond, triangles, cross.
+// As many as report::kLookMarks: disc, square, diamond, triangles, cross.
 const char* const kMarks = R"svg(<svg class="backdrop" width="0" height="0"><defs>
 <circle id="m0" r="3.5"/><path id="m1" d="M-3-3H3V3H-3Z"/><path id="m2" d="M0-4.5L4.5 0L0 4.5L-4.5 0Z"/>
 <path id="m3" d="M0-4L4 3H-4Z"/><path id="m4" d="M0 4L4-3H-4Z"/>

@@ -1,11 +1,13 @@
 // delray compare: the built program, and the JSON that scripts rely on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "composite/codec.h"
@@ -146,6 +148,47 @@ TEST(CompareCompose, ForetellsManyRanksUnaskedOfSchemesThatAreSoonSimulated) {
   ASSERT_EQ(asked.exit_code, 0) << asked.err;
   EXPECT_EQ(Json::parse(asked.out)["rows"].size(), 2U);
   EXPECT_NE(folder.read("report.html").find("On 256 ranks over "), std::string::npos);
+}
+
+// Of the text between `before` and the next paragraph's end.
+std::string sentence_after(const std::string& page, const std::string& before) {
+  const std::size_t at = page.find(before);
+  return at == std::string::npos ? "" : page.substr(at, page.find("</p>", at) - at);
+}
+
+TEST(CompareCompose, NamesAllThatMayBeFirstAndSaysWhatIsPredicted) {
+  const Folder folder;
+  const Ran ran =
+      run("delray compare compose gen:city:3000 --size 150x101 --ranks 1,64 --quick "
+          "--compose tree bus centralized direct-send --stats - -o report.html",
+          folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  std::vector<Json> rows;
+  const Json json = Json::parse(ran.out);
+  for (const Json& row : json["rows"])
+    if (row["ranks"] == 1) rows.push_back(row);
+  const auto total = [](const Json& row) { return row["seconds"]["total"].get<double>(); };
+  const Json least = *std::min_element(
+      rows.begin(), rows.end(), [&](const Json& a, const Json& b) { return total(a) < total(b); });
+  const std::string page = folder.read("report.html");
+  // One rank has a core anywhere; for 64 there would have to be as many cores.
+  const std::string here = sentence_after(page, "On 1 rank of this machine ");
+  std::size_t equal = 0;
+  for (const Json& row : rows) {
+    SCOPED_TRACE(row.dump());
+    const Json &a = row["spread"]["total"], &b = least["spread"]["total"];
+    const std::string scheme = row["scheme"];
+    if (a["high"] < b["low"] || b["high"] < a["low"]) continue;
+    ++equal;
+    EXPECT_NE(here.find(scheme), std::string::npos) << here;
+  }
+  EXPECT_EQ(equal > 1, here.find("there is no difference between") != std::string::npos) << here;
+  EXPECT_NE(here.find(" (measured, median of 3 runs, "), std::string::npos) << here;
+  if (std::thread::hardware_concurrency() >= 64) GTEST_SKIP() << "a core for each of 64 ranks";
+  EXPECT_EQ(page.find("On 64 ranks of this machine"), std::string::npos);
+  const std::string many = sentence_after(page, "On 64 ranks over ");
+  EXPECT_NE(many.find("(predicted)"), std::string::npos) << many;
+  EXPECT_NE(many.find("simulated, not measured"), std::string::npos) << many;
 }
 
 TEST(CompareCompose, RefusesWhatItCannotDo) {

@@ -21,8 +21,8 @@ void check_family(Family family, const Table& table) {
   for (const auto& entry : table) {
     const report::Look look = look_of(family, entry.name);
     EXPECT_GE(look.colour, 0) << entry.name;
-    EXPECT_LT(look.colour, report::kColours) << entry.name;
-    EXPECT_LT(look.mark, report::kMarks) << entry.name;
+    EXPECT_LT(look.colour, report::kLookColours) << entry.name;
+    EXPECT_LT(look.mark, report::kLookMarks) << entry.name;
     EXPECT_EQ(look.dash, 0) << entry.name;
     EXPECT_FALSE(look.group.empty()) << entry.name;
     EXPECT_TRUE(looks.insert({look.colour, look.mark}).second) << entry.name;
