@@ -20,10 +20,11 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
               "--camera", options.camera,
               "Camera: name or number (from 1) of one in the scene, or eye,at,up,fov, ten numbers "
               "in the file's coordinates with the vertical field of view in degrees")
+          ->type_name("CAMERA")
           ->group(group::kCamera);
   command
       .add_option("--view", options.view,
-                  "Side from which all is shown: default (from the front, above and right), front, "
+                  "View that shows everything: default (from the front, right and above), front, "
                   "back, left, right, top, bottom or iso (isometric)")
       ->group(group::kCamera)
       ->excludes(camera);

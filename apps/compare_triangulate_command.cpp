@@ -79,9 +79,10 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
                    "File of points (delray info --list names the formats); - for standard input")
       ->group(group::kInput);
   command
-      ->add_option("--dim", request->dim,
-                   "Dimension: 2, where z is carried along, or 3 (default: 3 for points with a z, "
-                   "but 2 for LAS files and elevation pictures, which are terrain)")
+      ->add_option(
+          "--dim", request->dim,
+          "Dimension: 2, over x and y, where z is kept as height, or 3 (default: 3 for points with "
+          "a z, but 2 for LAS files and elevation pictures, which are terrain)")
       ->check(one_of({"2", "3"}));
   command
       ->add_option("--threads", request->threads,

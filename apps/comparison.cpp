@@ -17,11 +17,13 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
   command
       .add_option("-o,--output", options.output,
                   "Report to write: a web page that needs no other files (.html)")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command.add_flag("--quick", options.quick, quick)->group(group::kOutput);
   command
       .add_option("--stats", options.statistics,
                   "Figures as JSON to this file; - for standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command.add_flag("--list", options.list, "List the " + listed)->group(group::kOutput);
 }

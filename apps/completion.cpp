@@ -175,7 +175,7 @@ std::string fish(const CommandText& program) {
 
 constexpr Shell kShells[] = {
     {"bash", "source <(delray completion bash)", bash},
-    {"zsh", "delray completion zsh > a file _delray in a folder of $fpath", zsh},
+    {"zsh", "delray completion zsh > ~/.zfunc/_delray  # in a folder of $fpath", zsh},
     {"fish", "delray completion fish > ~/.config/fish/completions/delray.fish", fish},
 };
 

@@ -250,6 +250,7 @@ void add_compose(CLI::App& program, Session& session) {
   command
       ->add_option("-o,--output", request->output,
                    "Picture to write: .png, .exr, .tif or .jpg; - for PNG on standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command->add_flag("--ordered", request->ordered,
                     "Lay the parts over each other, the first in front; no depth is needed");
@@ -275,6 +276,7 @@ void add_compose(CLI::App& program, Session& session) {
   command
       ->add_option("--stats", request->statistics,
                    "Statistics as JSON to this file; - for standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command->add_flag("--list", request->list, "List the compositing schemes and pixel encodings")
       ->group(group::kOutput);

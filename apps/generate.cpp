@@ -74,7 +74,9 @@ void add_generate(CLI::App& program, Session& session) {
     command->add_option("-n", options->count, count)->transform(count_between(1, most));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 1)")
         ->transform(any_count());
-    command->add_option("-o,--output", options->output, "File to write")->group(group::kOutput);
+    command->add_option("-o,--output", options->output, "File to write")
+        ->type_name("FILE")
+        ->group(group::kOutput);
     command->add_flag("--list", options->list, "List the kinds")->group(group::kOutput);
     add_common_options(*command, session, examples);
     command->callback([&session, options, run] { session.run = [=] { return run(*options); }; });

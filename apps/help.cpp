@@ -2,11 +2,11 @@
 #include "apps/help.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 
+#include "apps/command_text.h"
 #include "apps/terminal.h"
 
 namespace delray::apps {
@@ -35,100 +35,44 @@ std::string entry(const std::string& name, const std::string& description) {
   return text;
 }
 
-bool takes_value(const CLI::Option& option) {
-  return option.get_items_expected_max() > 0 && option.get_type_size() > 0;
-}
-
-// Of "TEXT:{raster,raytrace}" or "INT:1 to 64": what comes before and after the colon.
-struct TypeName {
-  std::string base, legal;
-};
-TypeName type_name(const CLI::Option& option) {
-  const std::string whole = option.get_type_name();
-  const std::size_t colon = std::min(whole.find(':'), whole.size());
-  return {whole.substr(0, colon), whole.substr(std::min(colon + 1, whole.size()))};
-}
-
-// What stands for the value: "N", "FILE", "N,...".
-std::string placeholder(const CLI::Option& option) {
-  std::string value = type_name(option).base;
-  if (value == "INT" || value == "UINT") value = "N";
-  if (value == "FLOAT") value = "X";
-  if (value == "TEXT") value = "NAME";
-  const bool several = option.get_items_expected_max() > 1;
-  if (several) value += option.get_delimiter() != '\0' ? ",..." : " ...";
-  return value;
-}
-
 // "-o, --output FILE"
-std::string names_of(const CLI::Option& option) {
-  if (option.get_positional()) {
-    const bool several = option.get_items_expected_max() > 1;
-    return option.get_name(true) + (several ? " ..." : "");
-  }
-  std::vector<std::string> names;
-  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-  const std::string value = takes_value(option) ? " " + placeholder(option) : "";
-  return fmt::format("{}{}", fmt::join(names, ", "), value);
-}
-
-// Choices and ranges that the description does not name itself.
-std::string legal_values(const CLI::Option& option) {
-  std::string legal = type_name(option).legal;
-  if (!takes_value(option) || legal.empty()) return "";
-  if (!legal.starts_with('{')) return fmt::format(" [{}]", legal);
-  legal = legal.substr(1, legal.find('}') - 1);
-  const std::vector<std::string> choices = CLI::detail::split(legal, ',');
-  const std::string description = option.get_description();
-  const bool all_named = std::ranges::all_of(choices, [&](const std::string& choice) {
-    return description.find(choice) != std::string::npos;
-  });
-  return all_named ? "" : fmt::format(": {}", fmt::join(choices, ", "));
-}
-
-std::string heading_of(const CLI::App& command, const CLI::Option& option) {
-  const bool general = &option == command.get_help_ptr() || option.check_lname("version");
-  return general ? group::kGeneral : option.get_group();
+std::string entry_name(const OptionText& option) {
+  if (option.positional) return option.names[0] + (option.takes_several ? " ..." : "");
+  return names_text(option) + (option.takes_value ? " " + option.placeholder : "");
 }
 
 // In order of appearance, but the general one last.
-std::vector<std::string> headings_of(const CLI::App& command) {
+std::vector<std::string> headings_of(const CommandText& command) {
   std::vector<std::string> headings;
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string heading = heading_of(command, *option);
-    const bool known = std::ranges::find(headings, heading) != headings.end();
-    if (!known && heading != group::kGeneral && !heading.empty()) headings.push_back(heading);
+  for (const OptionText& option : command.options) {
+    const bool known = std::ranges::find(headings, option.heading) != headings.end();
+    if (!known && option.heading != group::kGeneral) headings.push_back(option.heading);
   }
   headings.emplace_back(group::kGeneral);
   return headings;
 }
 
-std::string usage(const CLI::App& command, const std::string& name) {
+std::string usage(const CommandText& command, const std::string& name) {
   std::string text = "Usage: " + name;
-  for (const CLI::Option* option : command.get_options())
-    if (option->get_positional()) text += " " + names_of(*option);
-  const bool has_commands = !command.get_subcommands([](const CLI::App*) { return true; }).empty();
-  return text + (has_commands ? " COMMAND" : "") + " [OPTION]...\n";
+  for (const OptionText& option : command.options)
+    if (option.positional) text += " " + entry_name(option);
+  return text + (command.commands.empty() ? "" : " COMMAND") + " [OPTION]...\n";
 }
 
-std::string option_groups(const CLI::App& command) {
-  std::string text;
-  for (const std::string& heading : headings_of(command)) {
-    text += "\n" + heading + ":\n";
-    for (const CLI::Option* option : command.get_options()) {
-      if (heading_of(command, *option) != heading) continue;
-      text += entry(names_of(*option), option->get_description() + legal_values(*option));
-    }
-  }
+std::string commands(const CommandText& command) {
+  if (command.commands.empty()) return "";
+  std::string text = "\nCommands:\n";
+  for (const CommandText& below : command.commands) text += entry(below.name, below.description);
   return text;
 }
 
-std::string commands(const CLI::App& command) {
-  const auto below = command.get_subcommands([](const CLI::App*) { return true; });
-  if (below.empty()) return "";
-  std::string text = "\nCommands:\n";
-  for (const CLI::App* one : below) text += entry(one->get_name(), one->get_description());
+std::string option_groups(const CommandText& command) {
+  std::string text;
+  for (const std::string& heading : headings_of(command)) {
+    text += "\n" + heading + ":\n";
+    for (const OptionText& option : command.options)
+      if (option.heading == heading) text += entry(entry_name(option), full_description(option));
+  }
   return text;
 }
 
@@ -136,10 +80,10 @@ std::string commands(const CLI::App& command) {
 
 std::string HelpFormatter::make_help(const CLI::App* command, std::string name,
                                      CLI::AppFormatMode) const {
+  const CommandText told = command_text(*command);
   std::string text;
-  for (const std::string& line : wrapped(command->get_description(), page_width()))
-    text += line + "\n";
-  text += "\n" + usage(*command, name) + commands(*command) + option_groups(*command);
+  for (const std::string& line : wrapped(told.description, page_width())) text += line + "\n";
+  text += "\n" + usage(told, name) + commands(told) + option_groups(told);
   if (!command->get_footer().empty()) text += "\n" + command->get_footer();
   return text;
 }

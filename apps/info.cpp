@@ -150,6 +150,7 @@ void add_info(CLI::App& program, Session& session) {
   command
       ->add_option("--stats", options->statistics,
                    "Description as JSON to this file; - for standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command
       ->add_flag("--list", options->list, "List the formats that are read, as happens without FILE")

@@ -70,7 +70,8 @@ void choose_from(CLI::App& command, const std::string& option,
   command.get_option(option)->check(choice(names, others));
 }
 
-std::vector<std::string> choices(CLI::Option& option) {
+std::vector<std::string> choices(const CLI::Option& given) {
+  auto& option = const_cast<CLI::Option&>(given);  // only asked, by what CLI11 has not made const
   std::vector<std::string> names;
   try {
     for (int i = 0;; ++i) {

@@ -50,7 +50,7 @@ const auto& find_entry(const Table& table, std::string_view name, std::string_vi
   throw UsageError(fmt::format("{}: {}", option, is_not_one_of(name, names_in(table))));
 }
 
-// Checks that an option's value is one of `names`, which --help tells.
+// Checks that an option's value is one of `names`.
 CLI::Validator one_of(const std::vector<std::string>& names);
 
 // What an option takes besides names.
@@ -59,12 +59,11 @@ struct OtherValues {
   bool (*fit)(const std::string& value) = nullptr;
 };
 
-// Checks that the values of an option of the command are names or others. --help tells neither:
-// they are many, and --list or the option's description does.
+// Checks that the values of an option of the command, which has been added, are names or others.
 void choose_from(CLI::App& command, const std::string& option,
                  const std::vector<std::string>& names, const OtherValues& others = {});
 
 // The names that one_of or choose_from lets the option's values be; empty where anything goes.
-std::vector<std::string> choices(CLI::Option& option);
+std::vector<std::string> choices(const CLI::Option& option);
 
 }  // namespace delray::apps

@@ -109,6 +109,11 @@ int run(int argc, char** argv) {
   add_compare(program, session);
   add_completion(program, session);
   add_manual(program, session);
+  program.footer(
+      "Examples:\n"
+      "  delray render gen:spheres -o spheres.png --engine raytrace\n"
+      "  delray triangulate points.las -o mesh.ply\n"
+      "\ndelray COMMAND --help tells more about a command.\n");
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
     program.parse(argc, argv);

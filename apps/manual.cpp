@@ -23,34 +23,13 @@ std::string plain(const std::string& text) {
   return result;
 }
 
-// Whether all names stand in the text already, as words.
-bool tells_all(const std::string& text, const std::vector<std::string>& names) {
-  constexpr const char* kLetters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-.";
-  std::vector<std::string> words;
-  for (std::size_t begin = text.find_first_of(kLetters); begin != std::string::npos;) {
-    const std::size_t end = std::min(text.find_first_not_of(kLetters, begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    if (words.back().ends_with('.')) words.back().pop_back();
-    begin = text.find_first_of(kLetters, end);
-  }
-  return std::ranges::all_of(names, [&](const std::string& name) {
-    return std::ranges::find(words, name) != words.end();
-  });
-}
-
 std::string option_entry(const OptionText& option) {
   std::string names;
   for (const std::string& name : option.names)
     names += (names.empty() ? "" : ", ") + fmt::format("\\fB{}\\fR", plain(name));
-  if (!option.positional && option.takes_value) names += " \\fIVALUE\\fR";
-  std::string text = plain(option.description);
-  if (!tells_all(option.description, option.values)) {
-    text += text.empty() ? "one of " : "; one of ";
-    for (std::size_t i = 0; i < option.values.size(); ++i)
-      text += (i > 0 ? ", " : "") + plain(option.values[i]);
-  }
-  return fmt::format(".TP\n{}\n{}\n", names, text);
+  if (!option.positional && option.takes_value)
+    names += fmt::format(" \\fI{}\\fR", plain(option.placeholder));
+  return fmt::format(".TP\n{}\n{}\n", names, plain(full_description(option)));
 }
 
 std::string section(const CommandText& command, const std::string& path) {

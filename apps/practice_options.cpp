@@ -76,6 +76,7 @@ void add_practice_options(CLI::App& command, Practice& practice) {
       .add_option(
           "--checkpoint", practice.checkpoint,
           "File that keeps all samples so far, now and then and when interrupted, for --resume")
+      ->type_name("FILE")
       ->group(group::kRaytracer);
   command
       .add_option("--checkpoint-every", practice.checkpoint_every,
@@ -88,14 +89,15 @@ void add_practice_options(CLI::App& command, Practice& practice) {
           "Continue from the file of --checkpoint, to the same picture as without interruption")
       ->group(group::kRaytracer);
   command
-      .add_option(
-          "--crop", practice.crop,
-          "Render only x,y,width,height of the picture, in pixels from its upper left corner")
+      .add_option("--crop", practice.crop,
+                  "Render only a part of the picture: x,y,width,height in pixels, from its upper "
+                  "left corner")
+      ->type_name("RECT")
       ->group(group::kRaytracer);
   command
       .add_flag(
           "--aovs", practice.channels,
-          "Write channels of normals, albedo, ids, variance, samples and costs into the EXR too")
+          "Also write channels of normals, albedo, ids, variance, samples and costs (.exr only)")
       ->group(group::kRaytracer);
   command
       .add_flag("--denoise", practice.denoise,
@@ -108,12 +110,12 @@ void add_practice_options(CLI::App& command, Practice& practice) {
   command
       .add_option("--exposure", practice.exposure,
                   "Exposure in stops: light is multiplied by 2 to the power of this (default: 0; "
-                  "not in EXR)")
+                  "not for .exr)")
       ->group(group::kRaytracer)
       ->check(number_between(-30.0, 30.0));
   command
       .add_option("--tone", practice.tone,
-                  "Tone curve from light to the screen: linear (default) or filmic (not in EXR)")
+                  "Tone curve from light to the screen: linear (default) or filmic (not for .exr)")
       ->group(group::kRaytracer);
   command
       .add_option(

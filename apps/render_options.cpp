@@ -172,10 +172,12 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("-o,--output", request.output,
                   "Picture to write: .png, .exr, .tif or .jpg; - for PNG on standard output; of an "
                   "animation .mp4 too, where ffmpeg is installed")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command
       .add_option("--size", request.size,
                   "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
+      ->type_name("WxH")
       ->group(group::kPicture);
   command
       .add_option("--engine", request.engine,
@@ -191,6 +193,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       .add_option("--background", request.background,
                   "What is behind the scene: environment, studio (grey, brighter above), "
                   "transparent, a colour as #rrggbb, or auto (default), which suits the scene")
+      ->type_name("WHAT")
       ->group(group::kPicture);
   add_camera_options(command, request.camera);
   command
@@ -202,6 +205,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--camera-path", request.camera_path,
                   "Animation along the cameras in this file, one a line: [FRAME:] eye,at,up,fov")
+      ->type_name("FILE")
       ->group(group::kCamera)
       ->excludes("--frames")
       ->excludes("--turntable")
@@ -216,19 +220,19 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   add_launch_options(command, request.launch);
   command
       .add_option("--strategy", request.strategy,
-                  "Rasterizer: when primitives, triangles or pixels go to other ranks: sort-first, "
-                  "sort-middle, sort-last (default) or hybrid")
+                  "Rasterizer: whether primitives, triangles or pixels go to other ranks: "
+                  "sort-first, sort-middle, sort-last (default) or hybrid")
       ->group(group::kSharing);
   command
       .add_option("--partition", request.partition,
-                  "How the screen is divided among ranks, with sort-first, sort-middle and hybrid "
-                  "(default: mahd); ray tracer: what ranks begin with, if the schedule lets them "
-                  "(default: none)")
+                  "How the screen is divided among ranks, for all strategies but sort-last "
+                  "(default: mahd); ray tracer: the blocks that ranks begin with, for the "
+                  "schedules static and stealing (default: none)")
       ->group(group::kSharing);
   command
       .add_option("--compose", request.scheme,
-                  "Compositing scheme, which merges the images of all ranks, with sort-last "
-                  "(default: binary-swap)")
+                  "Compositing scheme, which merges the images of all ranks, for --strategy "
+                  "sort-last (default: binary-swap)")
       ->group(group::kSharing);
   command
       .add_option("--shading", request.lighting,
@@ -237,13 +241,13 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->check(one_of({"phong", "gouraud"}));
   command
       .add_option("--codec", request.codec,
-                  "Pixel encoding between ranks, with sort-last (default: dense)")
+                  "Pixel encoding between ranks, for --strategy sort-last (default: dense)")
       ->group(group::kSharing);
   command
       .add_option("--blend", request.blend,
-                  "Transparent surfaces, with sort-last: by-owner, all fragments of a pixel are "
-                  "sorted by the rank that owns it (default, exact), or by-cell, each rank blends "
-                  "those in its cell of space and cells are merged front to back")
+                  "Transparent surfaces, for --strategy sort-last: by-owner, the rank that owns a "
+                  "pixel sorts all its fragments (default, exact), or by-cell, each rank blends "
+                  "those in its cell of space, and cells are merged front to back")
       ->group(group::kSharing)
       ->check(one_of({"by-owner", "by-cell"}));
   command
@@ -260,8 +264,8 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->check(one_of({"1", "2", "4"}));
   command
       .add_option("--travel", request.travel,
-                  "How a rank sends primitives to others: their geometry (default), or numbers, by "
-                  "which others look them up in the scene")
+                  "How primitives are sent to other ranks, for --strategy sort-first and hybrid: "
+                  "as geometry (default), or as numbers, by which they are looked up in the scene")
       ->group(group::kSharing)
       ->check(one_of({"geometry", "numbers"}));
   command
@@ -287,20 +291,20 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(group::kSharing)
       ->transform(count_between(1, 4096));
   command
-      .add_option(
-          "--groups", request.groups,
-          "Sort-middle: one group of ranks for geometry and pixels (default), or two, one for each")
+      .add_option("--groups", request.groups,
+                  "For --strategy sort-middle: one group of ranks, each for geometry and pixels "
+                  "(default), or two groups, one for geometry and one for pixels")
       ->group(group::kSharing)
       ->check(one_of({"one", "two"}));
   command
       .add_option("--geometry-ranks", request.geometry_ranks,
-                  "Sort-middle in two groups: number of ranks for geometry (default: half of all)")
+                  "Number of ranks for geometry, for --groups two (default: half of all)")
       ->group(group::kSharing)
       ->transform(count_between(1, 1000000));
   command
       .add_option("--redistribute", request.redistribution,
-                  "Sort-middle: send triangles in batches as they are transformed (immediate, "
-                  "default), or all at-end")
+                  "For --strategy sort-middle: send triangles in batches as they are transformed "
+                  "(immediate, default), or all at-end")
       ->group(group::kSharing)
       ->check(one_of({"immediate", "at-end"}));
   command
@@ -314,18 +318,20 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(group::kRaytracer)
       ->transform(count_between(0, 64));
   command
-      .add_option("--diffuse-depth", request.diffuse_depth,
-                  "Maximum diffuse bounces, with path (default: 64, more than most paths last)")
+      .add_option(
+          "--diffuse-depth", request.diffuse_depth,
+          "Maximum diffuse bounces, for --integrator path (default: 64, more than most paths last)")
       ->group(group::kRaytracer)
       ->transform(count_between(0, 1024));
   command
       .add_option("--reach", request.reach,
-                  "Ambient occlusion radius in units of the scene, with ao (default: unlimited)")
+                  "Ambient occlusion radius in units of the scene, for --integrator ao (default: "
+                  "unlimited)")
       ->group(group::kRaytracer)
       ->check(positive_number());
   command
       .add_flag("--no-shadows", request.no_shadows,
-                "Let light pass through everything, with direct")
+                "Trace no shadow rays, for --integrator direct: light passes through everything")
       ->group(group::kRaytracer);
   command
       .add_option("--build", request.build,
@@ -342,12 +348,13 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   command
       .add_option("--schedule", request.schedule,
                   "How ranks share the blocks of the picture (ray tracer, default: interlaced); "
-                  "rasterizer: lets blocks change rank, with sort-first (default: none)")
+                  "rasterizer: the same for --strategy sort-first (default: none, each rank keeps "
+                  "its regions)")
       ->group(group::kSharing);
   command
       .add_option("--master", request.master,
-                  "Ranks that hand out blocks (demand, guided, hierarchical) render some "
-                  "themselves (works, default), or do not (serves)")
+                  "Whether ranks that hand out blocks (schedules demand, guided and hierarchical) "
+                  "render some too: works, they do (default), or serves, they do not")
       ->group(group::kSharing)
       ->check(one_of({"works", "serves"}));
   command
@@ -357,20 +364,21 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
       ->group(group::kSharing);
   command
       .add_option("--deal", request.deal,
-                  "Which rank gets which parts of a distributed scene: neighbours stay together "
-                  "(default), or random")
+                  "Which rank gets which parts of a scene that --data distributes: neighbours stay "
+                  "together (default), or random")
       ->group(group::kSharing)
       ->check(one_of({"neighbours", "random"}));
   command
       .add_option("--cache", request.cache_mebibytes,
-                  "MiB of other ranks' parts of a distributed scene that a rank keeps (default: a "
-                  "tenth of the scene)")
+                  "MiB of other ranks' parts of the scene that a rank keeps, for --data object and "
+                  "hybrid (default: a tenth of the scene)")
       ->group(group::kSharing)
       ->check(number_between(1e-3, 1e9));
   add_practice_options(command, request.practice);
   command
       .add_option("--stats", request.statistics,
                   "Statistics as JSON to this file; - for standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command
       .add_flag("--list", request.list,

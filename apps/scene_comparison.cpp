@@ -34,6 +34,7 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
   command
       .add_option("--size", options.render.size,
                   "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
+      ->type_name("WxH")
       ->group(group::kPicture);
   add_camera_options(command, options.render.camera);
   command

@@ -187,9 +187,10 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
                   "picture, or generated scene gen:KIND[:TRIANGLES[:SEED]], such as gen:city:1e6")
       ->group(group::kInput);
   command
-      .add_option("--color-by", input.colour_by,
-                  "Colours: material, z (height) or simplex (each triangle another); of points "
-                  "also rgb, intensity or classification (default: what the file has)")
+      .add_option(
+          "--color-by", input.colour_by,
+          "What colours show: material, z (height) or simplex (a colour for each triangle); of "
+          "points also rgb, intensity or classification (default: what the file has)")
       ->group(group::kInput);
   command
       .add_option("--exaggeration", input.exaggeration,

@@ -55,8 +55,7 @@ std::string text_of_failure() {
 
 void add_common_options(CLI::App& command, Session& session, const std::string& examples) {
   command.add_flag("-q,--quiet", session.quiet, "Print errors only")->group(group::kGeneral);
-  command.add_flag("-v,--verbose", session.verbose, "Print more about what is done")
-      ->group(group::kGeneral);
+  command.add_flag("-v,--verbose", session.verbose, "Print more details")->group(group::kGeneral);
   std::string footer = "Examples:\n";
   for (std::size_t start = 0; start < examples.size();) {
     const std::size_t end = std::min(examples.find('\n', start), examples.size());

@@ -227,10 +227,11 @@ void add_triangulate(CLI::App& program, Session& session) {
       ->add_option(
           "-o,--output", options->output,
           "Mesh to write: .ply, .obj, .off, .stl, .vtu or .node; - for PLY on standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command
       ->add_option("--dim", options->how.dim,
-                   "Dimension: 2, where z is carried along (default), or 3")
+                   "Dimension: 2, over x and y, where z is kept as height (default), or 3")
       ->check(one_of({"2", "3"}));
   command->add_option(
       "--method", options->how.method,
@@ -253,7 +254,7 @@ void add_triangulate(CLI::App& program, Session& session) {
       ->transform(any_count());
   command
       ->add_option("--max-error", options->max_error,
-                   "Simplify a terrain: keep so many points that no other is farther than this "
+                   "Simplify a terrain: keep just enough points for all others to be within this "
                    "above or below the mesh, in units of z")
       ->check(non_negative_number());
   command->add_option("--threads", options->threads, "Threads (default: one per core)")
@@ -263,6 +264,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   command
       ->add_option("--stats", options->statistics,
                    "Statistics as JSON to this file; - for standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   command
       ->add_flag("--makers", options->makers,

@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "files/similar_name.h"
 
@@ -83,6 +85,28 @@ bool has_value_next(const CLI::Option& option, const std::string& argument) {
                                     : argument.size() == 2;
 }
 
+// What CLI11 says, in the words of all other messages.
+std::string plain_text(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const auto around = [&text](const std::string& middle) {
+    const std::size_t at = text.find(middle);
+    const bool found = at != std::string::npos;
+    return found ? std::optional(std::pair(text.substr(0, at), text.substr(at + middle.size())))
+                 : std::nullopt;
+  };
+  if (around(" not expected: "))
+    return fmt::format("unexpected arguments: {}", fmt::join(command.remaining(), " "));
+  if (const auto parts = around(" excludes ")) {
+    return parts->first + " has no effect with " + parts->second;
+  }
+  if (const auto parts = around("Could not convert: ")) {
+    return "not a value of this option: " + parts->second;
+  }
+  if (const auto parts = around(": At Most 1 ")) return parts->first + ": given more than once";
+  if (text.ends_with(" missing")) return text.substr(0, text.find(": ")) + ": a value is missing";
+  return text;
+}
+
 }  // namespace
 
 std::string unknown_name(const CLI::App& program, const std::vector<std::string>& arguments) {
@@ -108,9 +132,10 @@ std::string unknown_name(const CLI::App& program, const std::vector<std::string>
 
 std::string usage_message(const CLI::App& program, const std::vector<std::string>& arguments,
                           const CLI::ParseError& error) {
+  const CLI::App& command = command_of(program, arguments);
   std::string what = unknown_name(program, arguments);
-  if (what.empty()) what = error.what();
-  return fmt::format("{} ({} --help tells more)", what, full_name(command_of(program, arguments)));
+  if (what.empty()) what = plain_text(command, error);
+  return fmt::format("{} ({} --help tells more)", what, full_name(command));
 }
 
 const CLI::App& command_of(const CLI::App& program, const std::vector<std::string>& arguments) {

@@ -169,7 +169,8 @@ void add_verify(CLI::App& program, Session& session) {
   command->add_option("MESH", options->mesh, "Triangulation to check")->group(group::kInput);
   command
       ->add_option("--points", options->points.path,
-                   "Points that it should be the triangulation of")
+                   "Points that MESH should be the triangulation of")
+      ->type_name("FILE")
       ->group(group::kInput);
   command->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
       ->check(one_of({"2", "3"}));
@@ -182,6 +183,7 @@ void add_verify(CLI::App& program, Session& session) {
   command
       ->add_option("--stats", options->statistics,
                    "Verdict as JSON to this file; - for standard output")
+      ->type_name("FILE")
       ->group(group::kOutput);
   add_point_options(*command, options->points);
   add_common_options(*command, session,

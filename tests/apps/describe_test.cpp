@@ -162,8 +162,9 @@ TEST(Manual, TellsOfEveryCommandAndReadsWithoutComplaint) {
   const Folder folder;
   const Ran ran = run("delray manual", folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  for (const char* part : {".TH DELRAY 1", ".SS delray compare compose", "\\-\\-partition",
-                           "sort\\-first", ".SH EXIT STATUS", "delray render"})
+  for (const char* part :
+       {".TH DELRAY 1", ".SS delray compare compose", "\\-\\-partition", "sort\\-first",
+        ".SH EXIT STATUS", "\\fIFILE\\fR", "[1 to 64]", "delray render"})
     EXPECT_NE(ran.out.find(part), std::string::npos) << part;
   if (!is_installed("groff")) GTEST_SKIP() << "groff is not installed: not read by it";
   const Ran read = run("delray manual | groff -man -Tutf8 -ww -z", folder.path());

@@ -112,11 +112,18 @@ TEST(Help, NamesWhatIsLegal) {
     if (entry.name == "--spp N") {
       EXPECT_EQ(entry.description, "Samples per pixel (default: 1) [1 to 65536]");
     }
+    if (entry.name == "--codec NAME") {
+      EXPECT_NE(entry.description.find("; one of active, bounds, lz4, dense"), std::string::npos)
+          << entry.description;
+    }
     if (entry.name == "--exaggeration X") {
       EXPECT_NE(entry.description.find("[above 0]"), std::string::npos) << entry.description;
     }
   }
+  EXPECT_NE(ran.out.find("\n  --codec NAME "), std::string::npos);
   EXPECT_NE(ran.out.find("\n  --engine NAME "), std::string::npos);
+  EXPECT_NE(ran.out.find("\n  -o, --output FILE "), std::string::npos);
+  EXPECT_NE(ran.out.find("\n  --size WxH "), std::string::npos);
   EXPECT_NE(ran.out.find("\n  --spp N "), std::string::npos);
   EXPECT_NE(ran.out.find("\n  --exaggeration X "), std::string::npos);
 }

@@ -116,10 +116,11 @@ TEST(Usage, CountsThatAreNoneAreRefused) {
 TEST(Usage, EveryKindOfMistakeIsTheSameKindOfLine) {
   const Folder folder;
   const std::string gen = "delray render gen:cornell -o a.png --size 8x8 ";
-  expect_told(gen + "b.glb", "b.glb", folder);
+  expect_told(gen + "b.glb c.glb", "unexpected arguments: b.glb c.glb (", folder);
+  expect_told(gen + "--depth 1 --depth 2", "--depth: given more than once", folder);
   expect_told(gen + "--frames 0", "--frames: ", folder);
-  expect_told(gen + "--camera", "--camera: ", folder);
-  expect_told(gen + "--turntable 3 --frames 2", "--turntable", folder);
+  expect_told(gen + "--camera", "--camera: a value is missing", folder);
+  expect_told(gen + "--turntable 3 --frames 2", " has no effect with --", folder);
   expect_told("delray completion", "SHELL", folder);
   expect_told("delray completion bash zsh", "zsh", folder);
   expect_told("delray render", "SCENE", folder);
