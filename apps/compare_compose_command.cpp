@@ -29,7 +29,7 @@ int list() {
 }
 
 // What is simulated without being asked for.
-constexpr std::uint64_t kMostMessages = 4'000'000, kMostMessagesQuick = 600'000;
+constexpr std::uint64_t kMostMessages = 4'000'000, kMostMessagesQuick = 450'000;
 
 void check_codecs(const CompareRequest& request, bool asked) {
   const bool simulates = asked && std::any_of(request.ranks.begin(), request.ranks.end(),

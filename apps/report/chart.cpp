@@ -133,21 +133,20 @@ class LinePlot {
 
   // Where the names of strong series stand, in pixels from the top; of the others where they end.
   std::vector<double> name_positions() const {
-    std::vector<double> result(chart_.series.size()), moved;
-    std::vector<std::size_t> at_end;
-    double end = 0;
-    for (const Series& series : chart_.series)
-      if (const auto last = last_shown(series)) end = std::max(end, at_x(last->x));
+    std::vector<double> result(chart_.series.size());
+    std::map<double, std::vector<std::size_t>> strong_at;  // by where they end
     for (std::size_t i = 0; i < result.size(); ++i) {
       const auto last = last_shown(chart_.series[i]);
       if (!last) continue;
       result[i] = at_y(last->y);
-      if (!strong_[i] || at_x(last->x) < end - 1e-6) continue;
-      at_end.push_back(i);
-      moved.push_back(result[i]);
+      if (strong_[i]) strong_at[last->x].push_back(i);
     }
-    internal::move_apart(moved, kBetweenNames, 0, kHeight);
-    for (std::size_t k = 0; k < at_end.size(); ++k) result[at_end[k]] = moved[k];
+    for (const auto& [x, series] : strong_at) {
+      std::vector<double> positions;
+      for (const std::size_t i : series) positions.push_back(result[i]);
+      internal::move_apart(positions, kBetweenNames, 0, kHeight);
+      for (std::size_t k = 0; k < series.size(); ++k) result[series[k]] = positions[k];
+    }
     return result;
   }
 

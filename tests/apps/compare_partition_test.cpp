@@ -60,9 +60,14 @@ std::vector<Json> least_of(const std::vector<Json>& rows, const char* time) {
   return result;
 }
 
-// Those of the rows that the page may name: about as even as can be by what is counted, of these
-// those whose busiest rank takes least processor time if there are any, of these those cut soonest.
-std::vector<std::string> best_of(const Json& rows, int ranks, const char* over_share) {
+// Those of the rows that the page may name, and whether processor time contradicts them: about as
+// even as can be by what is counted, of these those whose busiest rank takes least processor time
+// if there are any, of these those cut soonest.
+struct Best {
+  std::vector<std::string> names;
+  bool contradicted = false;
+};
+Best best_of(const Json& rows, int ranks, const char* over_share) {
   std::vector<Json> all, even, both;
   for (const Json& row : rows)
     if (row["ranks"] == ranks && row["regions_per_rank"] == 1) all.push_back(row);
@@ -70,13 +75,15 @@ std::vector<std::string> best_of(const Json& rows, int ranks, const char* over_s
   for (const Json& row : all) least = std::min(least, row[over_share].get<double>());
   for (const Json& row : all)
     if (row[over_share] <= least * 1.05) even.push_back(row);
-  if (all[0]["seconds"]["busiest"].is_number())
+  const bool drawn = all[0]["seconds"]["busiest"].is_number();
+  if (drawn)
     for (const Json& row : least_of(all, "busiest"))
       if (row[over_share] <= least * 1.05) both.push_back(row);
-  std::vector<std::string> names;
+  Best best;
+  best.contradicted = drawn && both.empty();
   for (const Json& row : least_of(both.empty() ? even : both, "cut"))
-    names.push_back(row["partition"]);
-  return names;
+    best.names.push_back(row["partition"]);
+  return best;
 }
 
 // Which partition the page says to take for so many ranks.
@@ -139,10 +146,11 @@ TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
   const std::string page = folder.read("report.html");
   for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
     EXPECT_NE(page.find(std::string(partitioner.name) + ", by rank"), std::string::npos);
-  const std::vector<std::string> best = best_of(json["rows"], 17, "work_over_share");
-  EXPECT_NE(std::find(best.begin(), best.end(), advised(page, 17)), best.end());
+  const Best best = best_of(json["rows"], 17, "work_over_share");
+  EXPECT_NE(std::find(best.names.begin(), best.names.end(), advised(page, 17)), best.names.end());
+  EXPECT_EQ(best.contradicted, page.find("That contradicts what is counted") != std::string::npos);
   // What is equal is named beside it.
-  EXPECT_EQ(best.size() > 1, page.find("</strong> (no difference to ") != std::string::npos);
+  EXPECT_EQ(best.names.size() > 1, page.find("</strong> (no difference to ") != std::string::npos);
 }
 
 TEST(ComparePartition, AnswersByWhatIsForetoldOfMoreRanksThanAreDrawn) {
@@ -153,7 +161,7 @@ TEST(ComparePartition, AnswersByWhatIsForetoldOfMoreRanksThanAreDrawn) {
           folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const std::vector<std::string> best =
-      best_of(Json::parse(ran.out)["rows"], 80, "predicted_over_share");
+      best_of(Json::parse(ran.out)["rows"], 80, "predicted_over_share").names;
   const std::string page = folder.read("report.html");
   EXPECT_NE(std::find(best.begin(), best.end(), advised(page, 80)), best.end());
   EXPECT_NE(page.find("So many ranks are not drawn: their shares are predicted."),

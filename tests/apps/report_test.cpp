@@ -170,6 +170,21 @@ TEST(ReportCharts, OfManyLinesDrawTheBestOfEachGroupInColour) {
   EXPECT_EQ(strong_series(chart), std::vector<bool>(kMostStrong, true));
 }
 
+TEST(ReportCharts, NamesOfLinesThatEndTogetherDoNotTouch) {
+  LineChart chart;
+  chart.series = {{"one", Source::measured, {{1, 5}, {2, 5}}},
+                  {"two", Source::measured, {{2, 5}}},
+                  {"three", Source::measured, {{2, 5.1}, {4, 5}}},
+                  {"four", Source::measured, {{4, 0}}}};
+  const Html html = line_chart(chart);
+  const auto position = [&](const std::string& name) {
+    const std::size_t at = html.rfind(" y=\"", html.find(">" + name + "</text>"));
+    return std::stod(html.substr(at + 4));
+  };
+  EXPECT_GE(std::abs(position("one") - position("two")), 15);
+  EXPECT_EQ(position("four"), 280);  // at the bottom, where its line ends
+}
+
 TEST(ReportCharts, MoveNamesApartWithinTheChart) {
   std::vector<double> names = {10, 12, 11, 95, 99};
   internal::move_apart(names, 10, 0, 100);
