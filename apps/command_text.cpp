@@ -63,6 +63,7 @@ OptionText option_text(const CLI::App& command, const CLI::Option& option) {
   }
   if (!result.takes_value) return result;
   result.values = choices(option);
+  result.files = takes_files(option);
   result.placeholder = placeholder_of(option);
   if (result.values.empty()) result.range = type_parts(option).second;
   return result;

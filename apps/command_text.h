@@ -19,6 +19,7 @@ struct OptionText {
   bool takes_value = false;
   bool takes_several = false;
   std::vector<std::string> values;  // names to choose from; empty where anything goes
+  bool files = false;               // or, besides, any file
 };
 
 // "-o, --output"

@@ -48,7 +48,9 @@ std::string bash(const CommandText& program) {
       options.insert(options.end(), option.names.begin(), option.names.end());
       if (!option.takes_value) continue;
       const std::string offer =
-          option.values.empty() ? "_files" : "_words " + quoted(joined(option.values));
+          option.values.empty()
+              ? "_files"
+              : (option.files ? "_words_or_files " : "_words ") + quoted(joined(option.values));
       for (const std::string& name : option.names)
         values += fmt::format("    {}) _delray{}; return ;;\n",
                               quoted(fmt::format("{}:{}", path, name)), offer);
@@ -63,6 +65,10 @@ _delray_words() {{ mapfile -t COMPREPLY < <(compgen -W "$1" -- "$current"); }}
 _delray_files() {{
   compopt -o filenames 2> /dev/null
   mapfile -t COMPREPLY < <(compgen -f -- "$current")
+}}
+_delray_words_or_files() {{
+  compopt -o filenames 2> /dev/null
+  mapfile -t COMPREPLY < <(compgen -W "$1" -- "$current"; compgen -f -- "$current")
 }}
 _delray() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}
@@ -106,9 +112,11 @@ std::string zsh(const CommandText& program) {
     std::string arguments;
     for (const OptionText& option : command.options) {
       if (option.positional) continue;
+      const std::string names = joined(option.values);
       const std::string value = !option.takes_value     ? ""
                                 : option.values.empty() ? ":value:_files"
-                                                        : ":value:(" + joined(option.values) + ")";
+                                : option.files ? ":value:{compadd -- " + names + "; _files}"
+                                               : ":value:(" + names + ")";
       for (const std::string& one : option.names)
         arguments += fmt::format(
             " \\\n    {}", quoted(fmt::format("{}[{}]{}", one, plain(option.description), value)));
@@ -166,7 +174,8 @@ std::string fish(const CommandText& program) {
       for (const std::string& name : option.names)
         line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       if (option.takes_value && option.values.empty()) line += " -r";
-      if (!option.values.empty()) line += " -x -a " + quoted(joined(option.values));
+      if (!option.values.empty())
+        line += (option.files ? " -r -F -a " : " -x -a ") + quoted(joined(option.values));
       result += line + " -d " + quoted(option.description) + "\n";
     }
   });

@@ -14,7 +14,7 @@ namespace delray::apps {
 namespace {
 
 // A validator has a name for who looks for it: here, which values it lets pass.
-const std::string kNamed = "choices ";
+const std::string kNamed = "choices: ", kNamedOrFile = "choices or file: ";
 
 CLI::Validator choice(const std::vector<std::string>& names, const OtherValues& others) {
   const auto check = [names, others](const std::string& text) -> std::string {
@@ -24,7 +24,21 @@ CLI::Validator choice(const std::vector<std::string>& names, const OtherValues& 
     if (!others.shape.empty()) legal.push_back(others.shape);
     return is_not_one_of(text, legal);
   };
-  return {check, "", kNamed + fmt::format("{}", fmt::join(names, " "))};
+  const std::string& kind = others.shape == OtherValues::kFile ? kNamedOrFile : kNamed;
+  return {check, "", kind + fmt::format("{}", fmt::join(names, " "))};
+}
+
+// Calls f(name) with what follows the kind in the names of the option's validators.
+template <class F>
+void for_each_choice(const CLI::Option& given, const std::string& kind, F&& f) {
+  auto& option = const_cast<CLI::Option&>(given);  // only asked, by what CLI11 has not made const
+  try {
+    for (int i = 0;; ++i) {
+      const std::string& name = option.get_validator(i)->get_name();
+      if (name.starts_with(kind)) f(name.substr(kind.size()));
+    }
+  } catch (const CLI::OptionNotFound&) {  // no more validators
+  }
 }
 
 }  // namespace
@@ -70,19 +84,23 @@ void choose_from(CLI::App& command, const std::string& option,
   command.get_option(option)->check(choice(names, others));
 }
 
-std::vector<std::string> choices(const CLI::Option& given) {
-  auto& option = const_cast<CLI::Option&>(given);  // only asked, by what CLI11 has not made const
+std::vector<std::string> choices(const CLI::Option& option) {
   std::vector<std::string> names;
-  try {
-    for (int i = 0;; ++i) {
-      const std::string& name = option.get_validator(i)->get_name();
-      if (!name.starts_with(kNamed)) continue;
-      std::istringstream text(name.substr(kNamed.size()));
-      for (std::string one; text >> one;) names.push_back(one);
-    }
-  } catch (const CLI::OptionNotFound&) {  // no more validators
+  for (const std::string& kind : {kNamed, kNamedOrFile}) {
+    for_each_choice(option, kind, [&](const std::string& text) {
+      std::istringstream words(text);
+      for (std::string one; words >> one;) {
+        if (std::ranges::find(names, one) == names.end()) names.push_back(one);
+      }
+    });
   }
   return names;
+}
+
+bool takes_files(const CLI::Option& option) {
+  bool files = false;
+  for_each_choice(option, kNamedOrFile, [&](const std::string&) { files = true; });
+  return files;
 }
 
 }  // namespace delray::apps

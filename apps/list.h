@@ -55,7 +55,8 @@ CLI::Validator one_of(const std::vector<std::string>& names);
 
 // What an option takes besides names.
 struct OtherValues {
-  std::string shape;  // for messages: "#rrggbb"
+  static constexpr const char* kFile = "FILE";  // the shape of names of files
+  std::string shape;                            // for messages: "#rrggbb"
   bool (*fit)(const std::string& value) = nullptr;
 };
 
@@ -65,5 +66,7 @@ void choose_from(CLI::App& command, const std::string& option,
 
 // The names that one_of or choose_from lets the option's values be; empty where anything goes.
 std::vector<std::string> choices(const CLI::Option& option);
+// Whether they may be files as well.
+bool takes_files(const CLI::Option& option);
 
 }  // namespace delray::apps

@@ -82,7 +82,8 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
 
 // Whose names are known before anything is read.
 std::vector<std::string> inputs_of(const RenderRequest& request) {
-  return {request.scene.file.path, request.camera_path};
+  return {request.scene.file.path, request.camera_path,
+          request.light.is_picture() ? request.light.light : ""};
 }
 
 // Nobody wants to know of these after an hour.
@@ -166,8 +167,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       finish(request, session, *prepared, frames);
     });
   };
-  run_ranks(session, request.launch, {request.scene.file.path, request.camera_path}, render,
-            Waiting::stops);
+  run_ranks(session, request.launch, inputs_of(request), render, Waiting::stops);
   return kDone;
 }
 

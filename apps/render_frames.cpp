@@ -1,5 +1,7 @@
 #include "apps/render_frames.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 
 #include "apps/animation.h"
@@ -171,14 +173,29 @@ void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& 
   if (!prepared.cameras.empty()) prepared.camera = prepared.cameras.front();
 }
 
+// Says so where nothing but what glows lights a scene, which rasterizers do not see.
+void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
+  if (request.kind != Engine::raster || !scene.lights.empty() || has_sky(scene.environment) ||
+      !scenes::glow_lights(scene)) {
+    return;
+  }
+  spdlog::warn(
+      "{}: lit by nothing but surfaces that glow, which light others only with --engine raytrace; "
+      "--light default adds a key light and a sky",
+      request.scene.file.path);
+}
+
 // Completes the scene and builds what the engine needs. `watch` has run since loading began.
 void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
+  load_light(request.light, request.scene.file.limits.budget(), prepared.scene);
   prepared.background = request.behind;
   if (prepared.background.kind == Background::Kind::automatic) {
     prepared.background.kind = has_sky(prepared.scene.environment) ? Background::Kind::environment
                                                                    : Background::Kind::studio;
   }
-  complete(prepared.scene, prepared.camera);
+  complete_surfaces(prepared.scene);
+  complete_light(request.light, prepared.camera, prepared.scene);
+  warn_of_glow(request, prepared.scene);
   prepared.load_seconds = watch.lap();
   require_memory_for_textures(request, prepared.scene);
   if (request.kind == Engine::raster) {
@@ -260,6 +277,9 @@ FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& p
   if (prepared.in_parts) {
     scenes::ScenePart part =
         scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
+    part.scene.lights = prepared.scene.lights;
+    part.scene.environment = prepared.scene.environment;
+    part.scene.textures = prepared.scene.textures;
     load_seconds_ = watch.lap();
     shared_.emplace(raytrace::SharedScene::make(communicator, std::move(part), options));
   } else {

@@ -114,6 +114,8 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
          {"--strategy", "--compose", "--codec", "--shading", "--shade", "--blend", "--samples",
           "--travel", "--groups", "--geometry-ranks", "--redistribute"},
          "--engine raytrace");
+  if (!raytrace::integrator(request.integrator).lit)
+    refuse(command, {"--light"}, "--integrator " + request.integrator + ", which shows no light");
   if (request.integrator != "ao") refuse(command, {"--reach"}, "another --integrator than ao");
   if (request.integrator != "direct")
     refuse(command, {"--no-shadows"}, "another --integrator than direct");
@@ -195,6 +197,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
                   "transparent, a colour as #rrggbb, or auto (default), which suits the scene")
       ->type_name("WHAT")
       ->group(group::kPicture);
+  add_light_options(command, request.light);
   add_camera_options(command, request.camera);
   command
       .add_option("--turntable", request.turntable,
@@ -392,6 +395,7 @@ void check(const CLI::App& command, RenderRequest& request) {
   if (request.output.empty()) throw UsageError("render: -o IMAGE is missing");
   check_output(command, request);
   parse_size(request);
+  check_light(command, request.light);
   request.behind = parse_background(request.background);
   const bool is_opaque = is_jpeg(request.output) || is_video(request.output);
   if (request.behind.kind == Background::Kind::transparent && is_opaque) {

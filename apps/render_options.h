@@ -6,6 +6,7 @@
 #include "apps/background.h"
 #include "apps/camera_options.h"
 #include "apps/launch.h"
+#include "apps/light_options.h"
 #include "apps/practice_options.h"
 #include "apps/scene_input.h"
 #include "raster/render.h"
@@ -18,6 +19,7 @@ enum class Engine { raster, raytrace };
 struct RenderRequest {
   SceneInput scene;
   CameraOptions camera;
+  LightOptions light;
   Launch launch;
   std::string output, statistics;
   std::string size = "1280x720", engine = "raster", background = "auto";

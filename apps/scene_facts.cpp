@@ -60,6 +60,7 @@ std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
                              scene.environment.ground, scene.environment.up})
     sky.add_value(v);
   sky.add_value(scene.environment.texture);
+  sky.add_value(scene.environment.rotation);
   return {
       {"the scene's triangles", fmt::format("{}", prepared.triangles)},
       {"the scene's vertices", fmt::format("{}", prepared.vertices)},
@@ -94,6 +95,7 @@ std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
              hasher.add_value(texture.width);
              hasher.add_value(texture.height);
              hasher.add(texture.texels);
+             hasher.add(texture.radiance);
            }),
       fact("lights", scene.lights,
            [](Hasher& hasher, const scenes::Light& light) {

@@ -124,6 +124,7 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
   for (const scenes::Material& material : scene.materials) add_material(material, hasher);
   for (const scenes::Texture& texture : scene.textures) {
     hasher.add(texture.texels);
+    hasher.add(texture.radiance);
     hasher.add_numbers(texture.width, texture.height, texture.srgb, texture.wrap_u, texture.wrap_v);
   }
   for (const scenes::Light& light : scene.lights) {
@@ -131,7 +132,7 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
                        light.edge_v);
   }
   const scenes::Environment& sky = scene.environment;
-  hasher.add_numbers(sky.texture, sky.up, sky.zenith, sky.horizon, sky.ground);
+  hasher.add_numbers(sky.texture, sky.rotation, sky.up, sky.zenith, sky.horizon, sky.ground);
   return hasher.digits();
 }
 

@@ -13,11 +13,12 @@ namespace delray::raytrace {
 namespace {
 
 constexpr Integrator kIntegrators[] = {
-    {"albedo", "base colours, without light", make_albedo},
-    {"ao", "ambient occlusion: how much of the sky each surface sees", make_ao},
+    {"albedo", "base colours, without light", make_albedo, kTaskSide, false},
+    {"ao", "ambient occlusion: how much of the sky each surface sees", make_ao, kTaskSide, false},
     {"direct", "light of light sources and of the environment, with shadows", make_direct},
-    {"identity", "numbers of instances, materials and triangles, from 1 on", make_identity},
-    {"normal", "shading normals: x, y, z as red, green, blue", make_normal},
+    {"identity", "numbers of instances, materials and triangles, from 1 on", make_identity,
+     kTaskSide, false},
+    {"normal", "shading normals: x, y, z as red, green, blue", make_normal, kTaskSide, false},
     {"path", "path tracing: light on all ways, by random sampling (Kajiya 1986)", make_path,
      2 * kTaskSide},
     {"whitted", "shadows, mirror reflections and refractions (Whitted 1980)", make_whitted},

@@ -17,6 +17,7 @@ struct Integrator {
   // Pixels of this rank's scene are walked through in squares of this side, a multiple of
   // kTaskSide, where tiles allow.
   int side = kTaskSide;
+  bool lit = true;  // what it shows depends on light
 };
 
 std::span<const Integrator> integrators();

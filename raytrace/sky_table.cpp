@@ -90,7 +90,7 @@ HWY_EXPORT(sky_densities);
 
 using shading::kPi;
 
-constexpr int kMostColumns = 256;
+constexpr int kMostColumns = 1024;  // a third of a degree, less than the sun
 constexpr int kGradientRows = 64;
 
 // Of the mean, which every cell gets besides its own light: bilinear filtering and blurred levels

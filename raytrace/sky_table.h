@@ -24,7 +24,7 @@ struct SkyCells {
 class SkyTable {
  public:
   SkyTable() = default;
-  // O(cells): at most 256 x 128.
+  // O(cells): at most 1024 columns of a texture. REQUIRES: no more than 2^21 cells.
   SkyTable(const shading::Environment& environment, std::span<const shading::Texture> textures);
 
   // Sixteen lanes by vectors, all of them written. Numbers from [0, 1): two to choose the cell, two

@@ -20,26 +20,29 @@ constexpr glm::vec3 kGround{0.13F, 0.12F, 0.11F};
 // away sideways or down is shaded.
 constexpr float kKeyRight = -0.45F, kKeyUp = 0.65F;
 
-bool has_light(const Scene& scene) {
-  const Environment& sky = scene.environment;
-  const auto shines = [](const glm::vec3& radiance) {
-    return glm::any(glm::greaterThan(radiance, glm::vec3(0)));
-  };
-  return !scene.lights.empty() || sky.texture != kNone || shines(sky.zenith) ||
-         shines(sky.horizon) || shines(sky.ground);
+// Light on a white surface that it sends back as code 8 of 255 in sRGB.
+constexpr double kDarkest = 0.0025 * std::numbers::pi;
+
+bool shines(const glm::vec3& radiance) {
+  return glm::any(glm::greaterThan(radiance, glm::vec3(0)));
 }
 
-void add_light(Scene& scene, const Camera& camera) {
-  const View view = make_view(camera, 1, 1);
-  Light key;
-  key.kind = Light::Kind::directional;
-  key.colour = glm::vec3(1.0F, 0.985F, 0.95F) * kKey;
-  key.direction = glm::normalize(view.forward - view.right * kKeyRight - view.up * kKeyUp);
-  scene.lights.push_back(key);
-  scene.environment.up = scene.z_up ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-  scene.environment.zenith = kZenith;
-  scene.environment.horizon = kHorizon;
-  scene.environment.ground = kGround;
+bool lights_others(const Material& material) {
+  if (material.unlit || !shines(material.emission)) return false;
+  return material.emission_texture == kNone ||
+         glm::any(glm::greaterThan(material.emission, glm::vec3(1)));
+}
+
+double area(const Mesh& mesh, const glm::mat4x3& transform) {
+  const glm::dmat3 linear{glm::dvec3(transform[0]), glm::dvec3(transform[1]),
+                          glm::dvec3(transform[2])};
+  double sum = 0.0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::dvec3 a(mesh.positions[t.x]);
+    sum += 0.5 * glm::length(glm::cross(linear * (glm::dvec3(mesh.positions[t.y]) - a),
+                                        linear * (glm::dvec3(mesh.positions[t.z]) - a)));
+  }
+  return sum;
 }
 
 bool needs_tangents(const Scene& scene, const Mesh& mesh) {
@@ -49,7 +52,43 @@ bool needs_tangents(const Scene& scene, const Mesh& mesh) {
 
 }  // namespace
 
-void complete(Scene& scene, const Camera& camera, float crease_degrees) {
+bool glow_lights(const Scene& scene) {
+  double power = 0.0;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.material >= scene.materials.size()) continue;
+    const Material& material = scene.materials[mesh.material];
+    if (!lights_others(material)) continue;
+    const glm::dvec3 radiance(material.emission);
+    const double mean = (radiance.x + radiance.y + radiance.z) / 3.0;
+    power += 2.0 * std::numbers::pi * mean * area(mesh, instance.transform);  // on both sides
+  }
+  if (!(power > 0.0)) return false;
+  const glm::dvec3 size(bounds(scene).size());
+  return power >= kDarkest * 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+}
+
+bool has_light(const Scene& scene) {
+  const Environment& sky = scene.environment;
+  return !scene.lights.empty() || sky.texture != kNone || shines(sky.zenith) ||
+         shines(sky.horizon) || shines(sky.ground) || glow_lights(scene);
+}
+
+void add_default_light(Scene& scene, const Camera& camera, float strength) {
+  const View view = make_view(camera, 1, 1);
+  Light key;
+  key.kind = Light::Kind::directional;
+  key.colour = glm::vec3(1.0F, 0.985F, 0.95F) * (kKey * strength);
+  key.direction = glm::normalize(view.forward - view.right * kKeyRight - view.up * kKeyUp);
+  scene.lights.push_back(key);
+  scene.environment = {};
+  scene.environment.up = scene.z_up ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  scene.environment.zenith = kZenith * strength;
+  scene.environment.horizon = kHorizon * strength;
+  scene.environment.ground = kGround * strength;
+}
+
+void complete_surfaces(Scene& scene, float crease_degrees) {
   if (scene.materials.empty()) scene.materials.emplace_back();
   const float crease_cosine = std::cos(crease_degrees * std::numbers::pi_v<float> / 180.0F);
   parallel::parallel_for(0, scene.meshes.size(), 1, [&](std::size_t i) {
@@ -57,7 +96,11 @@ void complete(Scene& scene, const Camera& camera, float crease_degrees) {
     if (mesh.normals.empty()) internal::compute_normals(mesh, crease_cosine);
     if (needs_tangents(scene, mesh)) internal::compute_tangents(mesh);
   });
-  if (!has_light(scene)) add_light(scene, camera);
+}
+
+void complete(Scene& scene, const Camera& camera, float crease_degrees) {
+  complete_surfaces(scene, crease_degrees);
+  if (!has_light(scene)) add_default_light(scene, camera);
 }
 
 }  // namespace delray::scenes

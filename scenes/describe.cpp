@@ -40,7 +40,7 @@ Description describe(const Scene& scene) {
   for (const Material& material : scene.materials) d.materials.push_back(material.name);
   for (const Texture& texture : scene.textures) {
     d.textures.push_back({texture.name, texture.width, texture.height, texture.srgb});
-    d.bytes += bytes_of(texture.texels);
+    d.bytes += bytes_of(texture.texels) + bytes_of(texture.radiance);
   }
   return d;
 }

@@ -87,6 +87,8 @@ struct Texture {
   bool srgb = true;                  // colours; false: data such as normals, used as they are
   enum class Wrap : std::uint8_t { repeat, mirror, clamp } wrap_u = Wrap::repeat,
                                                            wrap_v = Wrap::repeat;
+  // In place of texels: linear light without an upper limit, opaque. Of environments only.
+  std::vector<glm::vec3> radiance{};
 };
 
 struct Light {
@@ -101,9 +103,11 @@ struct Light {
 };
 
 // Light from everywhere: a latitude-longitude texture (`up` is its top) or, without one, a gradient
-// from `horizon` to `zenith` above and to `ground` below.
+// from `horizon` to `zenith` above and to `ground` below. The texture is turned around `up` by
+// `rotation` degrees, counter-clockwise for who looks down.
 struct Environment {
   std::uint32_t texture = kNone;
+  float rotation = 0.0F;
   glm::vec3 up{0, 1, 0};
   glm::vec3 zenith{0.0F}, horizon{0.0F}, ground{0.0F};  // radiance
 };
@@ -132,11 +136,26 @@ geometry::Box3 bounds(const Scene& scene);
 // than instances: the last is the count.
 std::vector<std::uint64_t> first_primitives(const Scene& scene);
 
+// Whether anything lights the scene: a light, an environment, or surfaces that glow (glow_lights).
+// O(triangles that glow).
+bool has_light(const Scene& scene);
+
+// Whether what glows lights the scene: white surfaces around it would on average be no darker than
+// code 8 of 255 for it. Textures that are nowhere brighter than 1 are screens and signs, which
+// light nothing. O(triangles that glow); parallel.
+bool glow_lights(const Scene& scene);
+
+// Adds a key light over the shoulder of who looks through `camera`, and a sky in place of the
+// environment. A diffuse surface of albedo 0.8 that faces the key light then has a radiance of
+// about 0.75 times `strength`.
+void add_default_light(Scene& scene, const Camera& camera, float strength = 1.0F);
+
 // Adds what a picture needs and the file does not have: a material, normals (area-weighted, not
-// over creases sharper than `crease_degrees`), tangents where a normal texture needs them, a key
-// light and a sky where there is no light at all, seen from `camera`. A diffuse surface of albedo
-// 0.8 that faces the key light then has a radiance of about 0.75. Vertices on creases are split,
-// triangles keep their numbers. Idempotent.
+// over creases sharper than `crease_degrees`) and tangents where a normal texture needs them.
+// Vertices on creases are split, triangles keep their numbers. Idempotent.
+void complete_surfaces(Scene& scene, float crease_degrees = 60.0F);
+
+// That, and the default light where nothing lights the scene. Idempotent.
 void complete(Scene& scene, const Camera& camera, float crease_degrees = 60.0F);
 
 }  // namespace delray::scenes

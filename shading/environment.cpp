@@ -1,6 +1,7 @@
 #include "shading/environment.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shading/arithmetic.h"
 #include "shading/internal/gradient.h"
@@ -74,8 +75,12 @@ Environment make_environment(const scenes::Environment& environment,
   const float length = glm::length(environment.up);
   if (length > 0.0F) result.up = environment.up / length;
   const glm::vec3 ahead = std::abs(result.up.z) < 0.9F ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
-  result.right = glm::normalize(glm::cross(ahead, result.up));
-  result.front = glm::cross(result.up, result.right);
+  const glm::vec3 right = glm::normalize(glm::cross(ahead, result.up));
+  const glm::vec3 front = glm::cross(result.up, right);
+  const float turns = environment.rotation * (1.0F / 360.0F);
+  const SinCos turn = sin_cos(2.0F * kPi * (turns - std::floor(turns)));
+  result.right = right * turn.cos + front * turn.sin;
+  result.front = front * turn.cos - right * turn.sin;
   result.zenith = environment.zenith;
   result.horizon = environment.horizon;
   result.ground = environment.ground;

@@ -25,8 +25,10 @@ Shader shader_of(const scenes::Scene& scene, TextureOf&& texture_of) {
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     shader.textures.push_back(texture_of(i));
   }
+  // Radiance is of environments only.
   const auto check = [&](std::uint32_t& texture) {
-    if (texture >= shader.textures.size()) texture = scenes::kNone;
+    if (texture >= shader.textures.size() || !shader.textures[texture].radiance.empty())
+      texture = scenes::kNone;
   };
   for (scenes::Material& m : shader.materials) {
     for (std::uint32_t* const texture : m.textures()) check(*texture);

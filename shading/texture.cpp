@@ -119,10 +119,11 @@ Pair pair(float folded, int size, Wrap wrap) {
 }
 
 // Of what `value` makes of texels: a number, or one for each channel.
-template <class Value>
-auto bilinear(const Texture& texture, float u, float v, int level, const Value& value) {
+template <class Texel, class Value>
+auto bilinear(const Texture& texture, const Texel* all, float u, float v, int level,
+              const Value& value) {
   const Texture::Level& at = texture.levels[level];
-  const image::Rgba8* texels = texture.texels.data() + at.first;
+  const Texel* texels = all + at.first;
   const Pair x = pair(u, at.width, texture.wrap_u);
   const Pair y = pair(v, at.height, texture.wrap_v);
   const auto texel = [&](int i, int j) {
@@ -135,25 +136,42 @@ auto bilinear(const Texture& texture, float u, float v, int level, const Value& 
   return top + (bottom - top) * y.weight;
 }
 
-template <class Value>
-auto filtered(const Texture& texture, const glm::vec2& uv, float level, const Value& value) {
+template <class Texel, class Value>
+auto filtered(const Texture& texture, const std::vector<Texel>& texels, const glm::vec2& uv,
+              float level, const Value& value) {
   const float u = fold(uv.x, texture.wrap_u), v = fold(uv.y, texture.wrap_v);
   const auto base = static_cast<int>(level);
   const float weight = level - static_cast<float>(base);
-  const auto sharp = bilinear(texture, u, v, base, value);
+  const auto sharp = bilinear(texture, texels.data(), u, v, base, value);
   if (weight == 0.0F) return sharp;
-  return sharp + (bilinear(texture, u, v, base + 1, value) - sharp) * weight;
+  return sharp + (bilinear(texture, texels.data(), u, v, base + 1, value) - sharp) * weight;
 }
 
-// Texels become those of level 0.
-Texture with_levels(const scenes::Texture& texture, std::vector<image::Rgba8>&& texels) {
+void reduce(const glm::vec4* from, const Texture::Level& source, glm::vec4* to,
+            const Texture::Level& target) {
+  for (int y = 0; y < target.height; ++y) {
+    const Taps rows = taps(y, source.height, target.height);
+    for (int x = 0; x < target.width; ++x) {
+      const Taps columns = taps(x, source.width, target.width);
+      glm::vec3 sum(0.0F);
+      for (int j = 0; j < 3; ++j) {
+        const glm::vec4* row = from + static_cast<std::size_t>(rows.at[j]) * source.width;
+        for (int i = 0; i < 3; ++i) {
+          sum += glm::vec3(row[columns.at[i]]) * (rows.weight[j] * columns.weight[i]);
+        }
+      }
+      to[static_cast<std::size_t>(y) * target.width + x] = glm::vec4(sum, 1.0F);
+    }
+  }
+}
+
+// What all textures of the size have, without texels. `total` counts those of all levels.
+Texture without_texels(const scenes::Texture& texture, int width, int height, std::size_t& total) {
   Texture result;
   result.srgb = texture.srgb;
   result.wrap_u = texture.wrap_u;
   result.wrap_v = texture.wrap_v;
-  const bool empty = texture.width < 1 || texture.height < 1 || texels.empty();
-  int width = empty ? 1 : texture.width, height = empty ? 1 : texture.height;
-  std::size_t total = 0;
+  total = 0;
   for (;;) {
     result.levels.push_back({total, width, height});
     total += static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -161,6 +179,28 @@ Texture with_levels(const scenes::Texture& texture, std::vector<image::Rgba8>&& 
     width = std::max(1, width / 2);
     height = std::max(1, height / 2);
   }
+  return result;
+}
+
+Texture with_radiance(const scenes::Texture& texture) {
+  std::size_t total = 0;
+  Texture result = without_texels(texture, texture.width, texture.height, total);
+  result.radiance.reserve(total);
+  for (const glm::vec3& light : texture.radiance) result.radiance.emplace_back(light, 1.0F);
+  result.radiance.resize(total);
+  for (std::size_t i = 1; i < result.levels.size(); ++i) {
+    reduce(result.radiance.data() + result.levels[i - 1].first, result.levels[i - 1],
+           result.radiance.data() + result.levels[i].first, result.levels[i]);
+  }
+  return result;
+}
+
+// Texels become those of level 0.
+Texture with_levels(const scenes::Texture& texture, std::vector<image::Rgba8>&& texels) {
+  const bool empty = texture.width < 1 || texture.height < 1 || texels.empty();
+  std::size_t total = 0;
+  Texture result =
+      without_texels(texture, empty ? 1 : texture.width, empty ? 1 : texture.height, total);
   result.texels = std::move(texels);
   if (empty) {
     result.texels.assign(1, {255, 255, 255, 255});
@@ -183,6 +223,7 @@ Texture with_levels(const scenes::Texture& texture, std::vector<image::Rgba8>&& 
 const float* texel_values(bool srgb) { return srgb ? kSrgb.decode.data() : kCodes.data(); }
 
 Texture make_texture(const scenes::Texture& texture) {
+  if (!texture.radiance.empty()) return with_radiance(texture);
   std::vector<image::Rgba8> texels;
   texels.reserve(texture.texels.size() + texture.texels.size() / 3 + 1);
   texels = texture.texels;
@@ -190,6 +231,11 @@ Texture make_texture(const scenes::Texture& texture) {
 }
 
 Texture take_texture(scenes::Texture& texture) {
+  if (!texture.radiance.empty()) {
+    Texture result = with_radiance(texture);
+    texture.radiance = {};
+    return result;
+  }
   Texture result = with_levels(texture, std::move(texture.texels));
   texture.texels = {};
   return result;
@@ -207,18 +253,23 @@ float mip_level(const Texture& texture, const Footprint& footprint) {
 }
 
 glm::vec4 sample(const Texture& texture, const glm::vec2& uv, float level) {
+  if (!texture.radiance.empty()) {
+    return filtered(texture, texture.radiance, uv, level,
+                    [](const glm::vec4& light) { return light; });
+  }
   // Filtered are the linear light of sRGB colours, and codes of 0 to 255 of all else.
   const float* colours = texel_values(texture.srgb);
   const float* codes = texel_values(false);
-  const glm::vec4 value = filtered(texture, uv, level, [&](const image::Rgba8& t) {
+  const glm::vec4 value = filtered(texture, texture.texels, uv, level, [&](const image::Rgba8& t) {
     return glm::vec4(colours[t.r], colours[t.g], colours[t.b], codes[t.a]);
   });
   return texture.srgb ? glm::vec4(glm::vec3(value), value.w / 255.0F) : value / 255.0F;
 }
 
 float sample_alpha(const Texture& texture, const glm::vec2& uv, float level) {
+  if (!texture.radiance.empty()) return 1.0F;
   const auto code = [](const image::Rgba8& t) { return static_cast<float>(t.a); };
-  return filtered(texture, uv, level, code) / 255.0F;
+  return filtered(texture, texture.texels, uv, level, code) / 255.0F;
 }
 
 }  // namespace delray::shading

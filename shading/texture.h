@@ -19,6 +19,7 @@ struct Texture {
     int width = 0, height = 0;
   };
   std::vector<image::Rgba8> texels;  // of all levels, one after the other
+  std::vector<glm::vec4> radiance;   // in place of texels where the scene has it; w is 1
   std::vector<Level> levels;         // at least one
   bool srgb = true;
   bool opaque = true;  // no texel has an alpha below 255
@@ -26,7 +27,8 @@ struct Texture {
   scenes::Texture::Wrap wrap_v = scenes::Texture::Wrap::repeat;
 };
 
-// A texture without texels becomes one white texel. O(texels).
+// A texture without texels becomes one white texel. O(texels). REQUIRES: there is radiance for
+// width * height texels, or none.
 Texture make_texture(const scenes::Texture& texture);
 
 // How uv changes from one pixel to the next; zero asks for the sharpest level.

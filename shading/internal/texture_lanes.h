@@ -102,6 +102,7 @@ using Texel = glm::vec4;
 HWY_INLINE Texel set_texel(float x) { return Texel(x); }
 HWY_INLINE Texel make_texel(float r, float g, float b, float a) { return {r, g, b, a}; }
 HWY_INLINE Texel codes_of(const image::Rgba8& t) { return {t.r, t.g, t.b, t.a}; }
+HWY_INLINE Texel load_texel(const glm::vec4& t) { return t; }
 HWY_INLINE void store(const Texel& texel, float* to) {
   for (int k = 0; k < 4; ++k) to[k] = texel[k];
 }
@@ -121,30 +122,44 @@ HWY_INLINE Texel codes_of(const image::Rgba8& t) {
   const hn::FixedTag<std::int32_t, 4> integers;
   return hn::ConvertTo(TexelTag(), hn::PromoteTo(integers, hn::LoadU(bytes, &t.r)));
 }
+HWY_INLINE Texel load_texel(const glm::vec4& t) { return hn::LoadU(TexelTag(), &t.x); }
 HWY_INLINE void store(Texel texel, float* to) { hn::Store(texel, TexelTag(), to); }
 #endif
 
-struct TexelValues {
-  const float *colours, *codes;  // texel_values
+// How texels are read; each has `value`, the numbers that are filtered, and of these `most` stands
+// for 1 in colours and alpha.
+struct SrgbTexels {
+  const image::Rgba8* texels;
+  const float* colours = texel_values(true);
+  const float* codes = texel_values(false);
+  static constexpr float kMostColour = 1.0F, kMostAlpha = 255.0F;
+
+  HWY_INLINE Texel value(std::size_t i) const {
+    const image::Rgba8& t = texels[i];
+    return make_texel(colours[t.r], colours[t.g], colours[t.b], codes[t.a]);
+  }
 };
 
-template <bool srgb>
-HWY_INLINE Texel value(const image::Rgba8& t, const TexelValues& values) {
-  if constexpr (srgb) {
-    return make_texel(values.colours[t.r], values.colours[t.g], values.colours[t.b],
-                      values.codes[t.a]);
-  } else {
-    return codes_of(t);
-  }
-}
+struct DataTexels {
+  const image::Rgba8* texels;
+  static constexpr float kMostColour = 255.0F, kMostAlpha = 255.0F;
 
-template <bool srgb>
-HWY_INLINE Texel bilinear(const image::Rgba8* texels, const Corners& at, int k,
-                          const TexelValues& values) {
-  const Texel a = value<srgb>(texels[at.top_left[k]], values);
-  const Texel b = value<srgb>(texels[at.top_right[k]], values);
-  const Texel c = value<srgb>(texels[at.bottom_left[k]], values);
-  const Texel d = value<srgb>(texels[at.bottom_right[k]], values);
+  HWY_INLINE Texel value(std::size_t i) const { return codes_of(texels[i]); }
+};
+
+struct RadianceTexels {
+  const glm::vec4* texels;
+  static constexpr float kMostColour = 1.0F, kMostAlpha = 1.0F;
+
+  HWY_INLINE Texel value(std::size_t i) const { return load_texel(texels[i]); }
+};
+
+template <class Texels>
+HWY_INLINE Texel bilinear(const Texels& texels, std::size_t first, const Corners& at, int k) {
+  const Texel a = texels.value(first + at.top_left[k]);
+  const Texel b = texels.value(first + at.top_right[k]);
+  const Texel c = texels.value(first + at.bottom_left[k]);
+  const Texel d = texels.value(first + at.bottom_right[k]);
   const Texel x = set_texel(at.x[k]), y = set_texel(at.y[k]);
   const Texel upper = a + (b - a) * x;
   const Texel lower = c + (d - c) * x;
@@ -153,8 +168,9 @@ HWY_INLINE Texel bilinear(const image::Rgba8* texels, const Corners& at, int k,
 
 // One point after the other: four channels fill a vector of their own, and a gather would take as
 // long. Lanes that are not active cost nothing and get zeros.
-template <bool srgb>
-inline HWY_NOINLINE TexelLanes sample_coded(const Texture& texture, F u, F v, F level, M active) {
+template <class Texels>
+inline HWY_NOINLINE TexelLanes sample_texels(const Texture& texture, const Texels& texels, F u, F v,
+                                             F level, M active) {
   const FloatTag d;
   u = fold(u, texture.wrap_u);
   v = fold(v, texture.wrap_v);
@@ -167,24 +183,22 @@ inline HWY_NOINLINE TexelLanes sample_coded(const Texture& texture, F u, F v, F 
   find_corners(texture, u, v, base, sharp);
   find_corners(texture, u, v, base + set(1), blurred);
 
-  const TexelValues values{texel_values(true), texel_values(false)};
-  const image::Rgba8* texels = texture.texels.data();
   alignas(64) float out[4 * kBlockPoints] = {};
   for (LaneMask rest = bits_of(active, 0); rest != 0; rest &= rest - 1) {
     const int k = std::countr_zero(rest);
     const Texture::Level* at = texture.levels.data() + bases[k];
-    Texel colour = bilinear<srgb>(texels + at->first, sharp, k, values);
+    Texel colour = bilinear(texels, at->first, sharp, k);
     if (weights[k] != 0.0F) {
-      const Texel other = bilinear<srgb>(texels + at[1].first, blurred, k, values);
+      const Texel other = bilinear(texels, at[1].first, blurred, k);
       colour = colour + (other - colour) * set_texel(weights[k]);
     }
     store(colour, out + 4 * k);
   }
   TexelLanes result;
   hn::LoadInterleaved4(d, out, result.colour.x, result.colour.y, result.colour.z, result.alpha);
-  const F most = set(255.0F);
-  result.alpha = result.alpha / most;
-  if constexpr (!srgb) {
+  if constexpr (Texels::kMostAlpha != 1.0F) result.alpha = result.alpha / set(Texels::kMostAlpha);
+  if constexpr (Texels::kMostColour != 1.0F) {
+    const F most = set(Texels::kMostColour);
     result.colour = {result.colour.x / most, result.colour.y / most, result.colour.z / most};
   }
   return result;
@@ -214,6 +228,7 @@ HWY_INLINE F bilinear(const AlphaCorners& corners, const Corners& at) {
 
 // The alpha of `sample` alone.
 inline HWY_NOINLINE F sample_alpha(const Texture& texture, F u, F v, F level, M active) {
+  if (!texture.radiance.empty()) return set(1.0F);
   u = fold(u, texture.wrap_u);
   v = fold(v, texture.wrap_v);
   const I base = truncated(level);
@@ -244,8 +259,12 @@ inline HWY_NOINLINE F sample_alpha(const Texture& texture, F u, F v, F level, M 
 
 // REQUIRES: level 0 has fewer than 2^32 texels.
 HWY_INLINE TexelLanes sample(const Texture& texture, F u, F v, F level, M active) {
-  return texture.srgb ? sample_coded<true>(texture, u, v, level, active)
-                      : sample_coded<false>(texture, u, v, level, active);
+  if (!texture.radiance.empty()) {
+    return sample_texels(texture, RadianceTexels{texture.radiance.data()}, u, v, level, active);
+  }
+  const image::Rgba8* const texels = texture.texels.data();
+  return texture.srgb ? sample_texels(texture, SrgbTexels{texels}, u, v, level, active)
+                      : sample_texels(texture, DataTexels{texels}, u, v, level, active);
 }
 
 }  // namespace HWY_NAMESPACE

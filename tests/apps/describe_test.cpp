@@ -52,6 +52,13 @@ TEST(Completion, BashOffersFilesWithSpacesInTheirNames) {
   EXPECT_EQ(offered(folder, "delray render -o my", 4), mine);
 }
 
+TEST(Completion, BashOffersNamesAndFilesWhereAnOptionTakesBoth) {
+  const Folder folder;
+  folder.write("dusk.exr", "");
+  EXPECT_EQ(offered(folder, "delray render --light d", 4),
+            (std::set<std::string>{"default", "dusk.exr"}));
+}
+
 TEST(Completion, BashOffersWhatLeavesTheChoiceToTheProgram) {
   const Folder folder;
   for (const std::string words : {"render --background", "render --background au",

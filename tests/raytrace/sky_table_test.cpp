@@ -46,6 +46,24 @@ Sky gradient() {
   return sky;
 }
 
+// A sun of many times the light of all else, turned away from where the texture has it.
+Sky sunny() {
+  scenes::Texture texture;
+  texture.width = 256;
+  texture.height = 128;
+  texture.radiance.assign(256 * 128, glm::vec3(0.3F, 0.5F, 1.0F));
+  for (const int y : {30, 31, 32}) {
+    for (const int x : {200, 201, 202}) texture.radiance[y * 256 + x] = glm::vec3(5000.0F);
+  }
+  scenes::Environment environment;
+  environment.texture = 0;
+  environment.rotation = 100.0F;
+  Sky sky;
+  sky.textures.push_back(shading::make_texture(texture));
+  sky.environment = shading::make_environment(environment, sky.textures);
+  return sky;
+}
+
 template <class G>
 double over_sphere(G g) {
   constexpr int kRows = 512, kColumns = 1024;
@@ -113,10 +131,12 @@ void check(const Sky& sky, double tolerance) {
 
 TEST(SkyTable, DrawsTexturesByTheirLight) { check(textured(), 0.01); }
 
+TEST(SkyTable, DrawsASunByItsLight) { check(sunny(), 0.01); }
+
 TEST(SkyTable, DrawsGradientsByTheirLight) { check(gradient(), 0.01); }
 
 TEST(SkyTable, IsTheSameOnEveryInstructionSet) {
-  for (const Sky& sky : {textured(), gradient()}) {
+  for (const Sky& sky : {textured(), sunny(), gradient()}) {
     const SkyTable table(sky.environment, sky.textures);
     SampleLanes lanes{};
     for (int i = 0; i < shading::kBlockPoints; ++i) lanes.set(i, pixel_key(4, i, 0), 7, 0);

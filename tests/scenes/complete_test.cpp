@@ -127,6 +127,56 @@ TEST(Complete, IsIdempotent) {
   EXPECT_EQ(twice.materials.size(), once.materials.size());
 }
 
+// A floor of 10 x 10 and a square of 1 x 1 above it that glows.
+Scene lit_by_glow(float radiance) {
+  Mesh floor;
+  floor.positions = {{-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Mesh lamp = floor;
+  for (glm::vec3& p : lamp.positions) p = p * 0.1F + glm::vec3(0, 2, 0);
+  lamp.material = 1;
+  Scene scene;
+  scene.meshes = {floor, lamp};
+  scene.instances = {{0, glm::mat4x3(1.0F)}, {1, glm::mat4x3(1.0F)}};
+  scene.materials.resize(2);
+  scene.materials[1].emission = glm::vec3(radiance);
+  return scene;
+}
+
+TEST(Complete, AddsNoLightToWhatGlowLights) {
+  for (const float radiance : {1.0F, 20.0F}) {
+    Scene scene = lit_by_glow(radiance);
+    complete(scene, Camera{});
+    EXPECT_TRUE(scene.lights.empty()) << radiance;
+    EXPECT_EQ(scene.environment.zenith, glm::vec3(0.0F)) << radiance;
+  }
+}
+
+TEST(Complete, GlowThatLightsNothingVisiblyIsNoLight) {
+  Scene faint = lit_by_glow(0.01F);
+  EXPECT_FALSE(glow_lights(faint));
+  complete(faint, Camera{});
+  EXPECT_EQ(faint.lights.size(), 1U);
+  // A screen; brighter than white it is a lamp.
+  Scene screen = lit_by_glow(1.0F);
+  screen.textures.push_back({"screen", 1, 1, {{255, 255, 255, 255}}});
+  screen.materials[1].emission_texture = 0;
+  EXPECT_FALSE(glow_lights(screen));
+  screen.materials[1].emission = glm::vec3(4.0F);
+  EXPECT_TRUE(glow_lights(screen));
+  Scene unlit = lit_by_glow(1.0F);
+  unlit.materials[1].unlit = true;
+  EXPECT_FALSE(glow_lights(unlit));
+}
+
+TEST(Complete, DefaultLightHasAStrength) {
+  Scene one = with_mesh(cube()), half = one;
+  add_default_light(one, Camera{});
+  add_default_light(half, Camera{}, 0.5F);
+  EXPECT_EQ(half.lights[0].colour, one.lights[0].colour * 0.5F);
+  EXPECT_EQ(half.environment.horizon, one.environment.horizon * 0.5F);
+}
+
 // What a diffuse surface of albedo 0.8 with normal n sends back under the key light and a sky whose
 // radiance is linear in height: half of the upper and lower hemisphere at right angles to up.
 TEST(Complete, LightsAGreySurfaceThatFacesTheKeyLightToThreeQuarters) {

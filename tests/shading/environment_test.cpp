@@ -91,6 +91,30 @@ TEST(Environment, TextureIsOriented) {
   EXPECT_NEAR(left.y, 1.0F, 1e-4);
 }
 
+TEST(Environment, RotationTurnsTheTextureCounterClockwise) {
+  scenes::Texture picture;
+  picture.width = 8;
+  picture.height = 4;
+  picture.radiance.assign(32, glm::vec3(0.0F));
+  picture.radiance[8 + 4] = glm::vec3(1000.0F);  // ahead and a little right and up
+  const std::vector<Texture> textures{make_texture(picture)};
+  scenes::Environment environment;
+  environment.texture = 0;
+  const auto seen = [&](const glm::vec3& direction) {
+    return radiance(make_environment(environment, textures), textures, direction).x;
+  };
+  const float up = std::cos(67.5F * kPi / 180), out = std::sin(67.5F * kPi / 180);
+  const auto around = [&](float degrees) {  // from -z towards +x
+    const float angle = degrees * kPi / 180;
+    return glm::vec3(out * std::sin(angle), up, -out * std::cos(angle));
+  };
+  for (const float rotation : {0.0F, 90.0F, -45.0F, 725.0F}) {
+    environment.rotation = rotation;
+    EXPECT_NEAR(seen(around(22.5F - rotation)), 1000.0F, 1.0F) << rotation;
+    EXPECT_NEAR(seen(around(22.5F + 90 - rotation)), 0.0F, 1.0F) << rotation;
+  }
+}
+
 TEST(Environment, HarmonicsOfASmoothTextureAreItsIntegral) {
   scenes::Texture picture;
   picture.width = 64;

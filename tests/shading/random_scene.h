@@ -46,6 +46,14 @@ class RandomScene {
       scene.environment.ground = {unit(), unit(), unit()};
       if (one_in(2)) scene.environment.up = direction();
       if (textures > 0 && one_in(3)) scene.environment.texture = 0;
+      if (one_in(4)) {
+        scene.environment.texture = static_cast<std::uint32_t>(scene.textures.size());
+        scene.environment.rotation = between(-400.0F, 400.0F);
+        scene.textures.push_back(texture());
+        scenes::Texture& light = scene.textures.back();
+        for (std::size_t i = 0; i < light.texels.size(); ++i)
+          light.radiance.push_back(glm::abs(vector(1000.0F)));
+      }
     }
     return scene;
   }

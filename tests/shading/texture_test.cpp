@@ -148,6 +148,29 @@ TEST(Texture, SurvivesOddCoordinates) {
   }
 }
 
+TEST(Texture, RadianceHasNoUpperLimit) {
+  scenes::Texture picture;
+  picture.width = 4;
+  picture.height = 2;
+  picture.radiance.assign(8, glm::vec3(0.0F));
+  picture.radiance[5] = {8000.0F, 80.0F, 0.8F};
+  scenes::Scene scene;
+  scene.textures.push_back(picture);
+  scene.materials.resize(1);
+  scene.materials[0].base_colour_texture = scene.materials[0].normal_texture = 0;
+  const Texture copied = make_texture(picture), taken = take_texture(picture);
+  EXPECT_TRUE(picture.radiance.empty());
+  for (const Texture& texture : {copied, taken}) {
+    EXPECT_EQ(texture.levels.size(), 3U);
+    EXPECT_EQ(sample(texture, {0.375F, 0.75F}, 0.0F), glm::vec4(8000.0F, 80.0F, 0.8F, 1.0F));
+    EXPECT_NEAR(sample(texture, {0.1F, 0.1F}, 2.0F).x, 1000.0F, 0.01F);
+    EXPECT_EQ(sample_alpha(texture, {0.1F, 0.1F}, 1.0F), 1.0F);
+  }
+  // Not for surfaces, whose textures are of 8 bits.
+  EXPECT_EQ(make_shader(scene).materials[0].base_colour_texture, scenes::kNone);
+  EXPECT_EQ(make_shader(scene).materials[0].normal_texture, scenes::kNone);
+}
+
 TEST(Texture, TakenTexelsAreThoseOfACopy) {
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{7, 5}, std::pair{64, 64}}) {
     scenes::Texture source = noise(width, height, 4);
