@@ -99,7 +99,7 @@ class Comparison {
   }
 
  private:
-  int repeats(int ranks = 1) const { return request_.quick ? (ranks > 16 ? 2 : 3) : 9; }
+  int repeats() const { return request_.quick ? 3 : 9; }
 
   std::vector<const loadbalance::Partitioner*> partitions() const {
     std::vector<const loadbalance::Partitioner*> result;
@@ -134,7 +134,7 @@ class Comparison {
     options.codec = "active";
     // Batches that come by chance would be recorded as if they always came so.
     options.redistribution = raster::Redistribution::at_end;
-    return simulate_frames(prepared_, options, ranks, repeats(ranks), steps_.inside());
+    return simulate_frames(prepared_, options, ranks, repeats(), steps_.inside());
   }
 
   // As `delray render` would tell it.
@@ -251,6 +251,10 @@ double over_share(const ComparedPartition& row) {
   return row.drawn ? row.drawn->work_over_share : row.predicted_over_share;
 }
 
+bool takes_longer(const Spread& seconds, const Spread& least) {
+  return seconds.median > least.median * kAsEven && differ(seconds, least);
+}
+
 PartitionChoice choose_partition(const std::vector<ComparedPartition>& rows, int ranks) {
   using Rows = std::vector<const ComparedPartition*>;
   Rows all, drawn;
@@ -264,8 +268,12 @@ PartitionChoice choose_partition(const std::vector<ComparedPartition>& rows, int
   PartitionChoice choice;
   std::copy_if(all.begin(), all.end(), std::back_inserter(choice.even),
                [&](const ComparedPartition* row) { return over_share(*row) <= least * kAsEven; });
-  choice.quick = winners<ComparedPartition>(
-      drawn, [](const ComparedPartition& row) { return row.drawn->busiest; });
+  std::stable_sort(drawn.begin(), drawn.end(), [](const auto* a, const auto* b) {
+    return a->drawn->busiest.median < b->drawn->busiest.median;
+  });
+  for (const ComparedPartition* row : drawn)
+    if (!takes_longer(row->drawn->busiest, drawn.front()->drawn->busiest))
+      choice.quick.push_back(row);
   Rows both;
   std::copy_if(choice.even.begin(), choice.even.end(), std::back_inserter(both),
                [&](const ComparedPartition* row) {

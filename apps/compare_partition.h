@@ -97,12 +97,15 @@ inline constexpr double kAsEven = 1.05;
 // ranks than are drawn as the costs foretell it.
 double over_share(const ComparedPartition& row);
 
+// Whether the busiest rank takes longer by more than kAsEven, and that can be told (differ()).
+bool takes_longer(const Spread& seconds, const Spread& least);
+
 // Which partition to take, by what is counted and by processor time.
 struct PartitionChoice {
   // Those whose over_share is the least or within kAsEven of it.
   std::vector<const ComparedPartition*> even;
-  // Those whose busiest rank takes least processor time and those that cannot be told from it
-  // (winners() in verdict.h); empty of ranks that are not drawn.
+  // Those whose busiest rank takes least processor time, or not takes_longer() than that, by
+  // ascending medians; empty of ranks that are not drawn.
   std::vector<const ComparedPartition*> quick;
   // Those that are both, or `even` where none is, that are cut soonest or cannot be told from it.
   std::vector<const ComparedPartition*> best;

@@ -51,20 +51,21 @@ Strategies best_strategies(const std::vector<ComparedStrategy>& strategies, int 
 std::string processor_time(const PartitionChoice& choice, const ComparedPartition& best) {
   if (choice.quick.empty()) return "";
   const ComparedPartition& quickest = *choice.quick.front();
-  std::string text = fmt::format(" Its busiest rank takes {} of processor time for a frame",
-                                 measured_text(best.drawn->busiest));
+  std::string text = fmt::format(" With {} the busiest rank takes {} of processor time for a frame",
+                                 escaped(best.partition), measured_text(best.drawn->busiest));
   if (!choice.agree)
     return text + fmt::format(
                       ". That contradicts what is counted: with {} it takes {}. Try both: ranks "
                       "that take turns share a core's caches.",
                       strong(listed(names_of(choice.quick))),
                       measured_text(quickest.drawn->busiest));
-  text += choice.quick.size() > 1 ? ", with no partition measurably less."
-                                  : ", less than with any other.";
+  text += choice.quick.size() > 1
+              ? fmt::format(", and with no partition measurably less by more than {:.0f} %.",
+                            (kAsEven - 1) * 100)
+              : ", measurably less than with any other.";
   std::vector<std::string> slower;
   for (const ComparedPartition* row : choice.even)
-    if (std::find(choice.quick.begin(), choice.quick.end(), row) == choice.quick.end())
-      slower.push_back(row->partition);
+    if (takes_longer(row->drawn->busiest, best.drawn->busiest)) slower.push_back(row->partition);
   if (!slower.empty())
     text += fmt::format(" By what is counted {} {} as even, but the busiest rank takes longer.",
                         escaped(listed(slower)), slower.size() == 1 ? "is" : "are");
@@ -72,7 +73,7 @@ std::string processor_time(const PartitionChoice& choice, const ComparedPartitio
 }
 
 // Where processor time is shared out more evenly than by the best, and what that is worth.
-std::string evener(const Rows& rows, const PartitionChoice& choice, const ComparedPartition& best) {
+std::string evener(const Rows& rows, const ComparedPartition& best) {
   if (!best.drawn) return "";
   const ComparedPartition* evenest = &best;
   for (const ComparedPartition& row : rows)
@@ -80,14 +81,17 @@ std::string evener(const Rows& rows, const PartitionChoice& choice, const Compar
         row.drawn->imbalance.median < evenest->drawn->imbalance.median)
       evenest = &row;
   if (!differ(evenest->drawn->imbalance, best.drawn->imbalance)) return "";
-  const bool is_quick =
-      std::find(choice.quick.begin(), choice.quick.end(), evenest) != choice.quick.end();
+  const Spread &own = best.drawn->busiest, &other = evenest->drawn->busiest;
+  const char* worth = !takes_longer(own, other) && !takes_longer(other, own)
+                          ? "which makes no difference to what that rank takes"
+                      : other.median < own.median
+                          ? "and that rank takes less"
+                          : "but all have more to do, and that rank takes longer";
   return fmt::format(
       " {} shares processor time out more evenly, {:.3g} instead of {:.3g} times the mean for the "
       "busiest rank (measured), {}.",
       escaped(evenest->partition), evenest->drawn->imbalance.median, best.drawn->imbalance.median,
-      is_quick ? "which makes no difference to what that rank takes"
-               : "but all have more to do, and that rank takes longer");
+      worth);
 }
 
 // Cutting, and the busiest rank by what is counted.
@@ -138,8 +142,8 @@ Html sentence(const PartitionComparison& comparison, int ranks) {
     text += fmt::format(" {} shares out more evenly, {:.3g} ({}), and is cut in {}.",
                         escaped(evenest->partition), over_share(*evenest), source,
                         measured_text(evenest->cut_seconds));
-  text += processor_time(choice, best) + evener(comparison.rows, choice, best) +
-          anew(comparison, best) + "</p>\n";
+  text += processor_time(choice, best) + evener(comparison.rows, best) + anew(comparison, best) +
+          "</p>\n";
   return text + fmt::format("<p>One rank alone takes {} for a frame. {}</p>\n",
                             measured_text(comparison.alone),
                             best.drawn
