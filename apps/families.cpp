@@ -1,11 +1,13 @@
 // The families of algorithms that options choose from: a heading for each, with its option.
 #include "apps/families.h"
 
+#include "apps/colour_by.h"
 #include "apps/list.h"
 #include "comm/network.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "delaunay/methods.h"
+#include "image/tone.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
 #include "raster/strategies.h"
@@ -43,7 +45,21 @@ void list_schedules() {
               loadbalance::schedules());
 }
 
+void list_method_options() {
+  print_table("Locations: how the simplex of a new point is found (--location)",
+              delaunay::locations());
+  print_table("Splits: which thread inserts which points (--split)", delaunay::splits());
+  print_table("Orders of insertion (--order)", delaunay::orders());
+  print_table("Deadlock strategies of the optimistic method (--deadlocks)",
+              delaunay::deadlock_strategies());
+}
+
 void list_methods() { print_table("Methods of triangulation (--method)", delaunay::methods()); }
+
+void list_colours() {
+  print_table("Colours: what they show (--color-by)", colour_bys());
+  print_table("Tone curves from light to the screen (--tone)", image::tone_curves());
+}
 
 void list_networks() { print_table("Networks to predict times for", comm::networks()); }
 

@@ -59,7 +59,8 @@ std::string list_text(const std::string& heading, const std::vector<NameAndDescr
   for (const NameAndDescription& entry : entries) longest = std::max(longest, entry.name.size());
   const std::size_t begin = kIndent + longest + kGap;
   const std::size_t room = std::max(kNarrowest, width - std::min(width, begin));
-  std::string text = heading + ":\n";
+  std::string text;
+  for (const std::string& line : wrapped(heading + ":", width)) text += line + "\n";
   for (const auto& [name, description] : entries) {
     std::string before = fmt::format("{:{}}{:<{}}", "", kIndent, name, longest + kGap);
     for (const std::string& line : wrapped(description, room)) {

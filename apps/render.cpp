@@ -36,6 +36,7 @@ namespace delray::apps {
 namespace {
 
 int print_lists() {
+  list_colours();
   list_strategies();
   list_partitions();
   list_schemes();

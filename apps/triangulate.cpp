@@ -134,6 +134,7 @@ void add_choices(CLI::App& command) {
 int run(Session& session, TriangulateOptions options) {
   if (options.list) {
     list_methods();
+    list_method_options();
     return kDone;
   }
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
@@ -270,7 +271,8 @@ void add_triangulate(CLI::App& program, Session& session) {
       ->add_flag("--makers", options->makers,
                  "Tell which thread made each simplex, as \"thread\" in a .vtu")
       ->group(group::kOutput);
-  command->add_flag("--list", options->list, "List the methods")->group(group::kOutput);
+  command->add_flag("--list", options->list, "List the methods, and what their options choose from")
+      ->group(group::kOutput);
   add_choices(*command);
   add_point_options(*command, options->input);
   add_common_options(*command, session,

@@ -60,9 +60,14 @@ TEST(Terminal, ListsHaveHeadingsThereAlone) {
               std::count(plain.out.begin(), plain.out.end(), '\t'));
   }
   const Ran render = run_on_terminal("render --list", 72, folder);
-  for (const std::string option : {"--strategy", "--partition", "--compose", "--codec",
-                                   "--integrator", "--data", "--schedule"}) {
+  for (const std::string option :
+       {"--strategy", "--partition", "--compose", "--codec", "--integrator", "--data", "--schedule",
+        "--color-by", "--tone"}) {
     EXPECT_NE(render.out.find("(" + option + "):"), std::string::npos) << option;
+  }
+  const Ran triangulate = run_on_terminal("triangulate --list", 72, folder);
+  for (const std::string option : {"--method", "--location", "--split", "--order", "--deadlocks"}) {
+    EXPECT_NE(triangulate.out.find("(" + option + "):"), std::string::npos) << option;
   }
 }
 
