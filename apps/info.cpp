@@ -64,6 +64,7 @@ Json describe_scene(const scenes::Scene& scene) {
       {"up", d.z_up ? "z" : "y"},
       {"normals", d.has_normals},
       {"texture_coordinates", d.has_uvs},
+      {"second_texture_coordinates", d.has_second_uvs},
       {"vertex_colours", d.has_colours},
       {"lights",
        {{"point", d.point_lights}, {"directional", d.directional_lights}, {"area", d.area_lights}}},

@@ -69,6 +69,7 @@ std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
              hasher.add(mesh.positions);
              hasher.add(mesh.normals);
              hasher.add(mesh.uvs);
+             hasher.add(mesh.uvs2);
              hasher.add(mesh.colours);
              hasher.add(mesh.triangles);
              hasher.add_value(mesh.material);
@@ -94,6 +95,7 @@ std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
            [](Hasher& hasher, const scenes::Texture& texture) {
              hasher.add_value(texture.width);
              hasher.add_value(texture.height);
+             hasher.add_value(texture.set);
              hasher.add(texture.texels);
              hasher.add(texture.radiance);
            }),

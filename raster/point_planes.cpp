@@ -160,15 +160,13 @@ class LanePoints {
   bool all_same_ = true;
 };
 
-// The arithmetic of texture_point.
-HWY_INLINE void set_texture_points(const LanePoints& lanes, const ValuePlanes* uvs,
+// The arithmetic of texture_point, for sets from 0 on.
+HWY_INLINE void set_texture_points(const LanePoints& lanes, const UvPlanes& uv_planes,
                                    const PixelTriangle* ones, F share, std::size_t to,
                                    shading::Points& points) {
+  const ValuePlanes* const uvs = uv_planes.planes.data();
   const Floats d;
   const FourVectors<F> uv = lanes.sums(uvs);
-  const F u = hn::Mul(uv.v[0], share), v = hn::Mul(uv.v[1], share);
-  hn::Store(u, d, points.u.lane + to);
-  hn::Store(v, d, points.v.lane + to);
   const auto change = [&](F slope, F value, F slope_of_one) HWY_ATTR {
     return hn::Mul(hn::Sub(slope, hn::Mul(value, slope_of_one)), share);
   };
@@ -176,10 +174,19 @@ HWY_INLINE void set_texture_points(const LanePoints& lanes, const ValuePlanes* u
   const FourVectors<F> b = lanes.rows([&](std::uint16_t t) HWY_ATTR { return uvs[t].b; });
   const F a1 = lanes.rows([&](std::uint16_t t) HWY_ATTR { return ones[t].a; }).v[3];
   const F b1 = lanes.rows([&](std::uint16_t t) HWY_ATTR { return ones[t].b; }).v[3];
-  hn::Store(change(a.v[0], u, a1), d, points.footprint_dx_u.lane + to);
-  hn::Store(change(a.v[1], v, a1), d, points.footprint_dx_v.lane + to);
-  hn::Store(change(b.v[0], u, b1), d, points.footprint_dy_u.lane + to);
-  hn::Store(change(b.v[1], v, b1), d, points.footprint_dy_v.lane + to);
+  const auto store_set = [&](int set) HWY_ATTR {
+    shading::TexturePoints& result = points.uvs[set];
+    const int k = 2 * set;
+    const F u = hn::Mul(uv.v[k], share), v = hn::Mul(uv.v[k + 1], share);
+    hn::Store(u, d, result.u.lane + to);
+    hn::Store(v, d, result.v.lane + to);
+    hn::Store(change(a.v[k], u, a1), d, result.dx_u.lane + to);
+    hn::Store(change(a.v[k + 1], v, a1), d, result.dx_v.lane + to);
+    hn::Store(change(b.v[k], u, b1), d, result.dy_u.lane + to);
+    hn::Store(change(b.v[k + 1], v, b1), d, result.dy_v.lane + to);
+  };
+  store_set(0);
+  if (uv_planes.sets > 1) store_set(1);
 }
 
 HWY_INLINE void set_some(const PointPlanes& planes, const PixelBlock& block, std::size_t to,
@@ -200,7 +207,8 @@ HWY_INLINE void set_some(const PointPlanes& planes, const PixelBlock& block, std
     hn::Store(hn::Mul(colour.v[3], share), d, points.colour_alpha.lane + to);
   }
   if (!planes.uv.empty())
-    set_texture_points(lanes, planes.uv.data(), planes.position.data(), share, to, points);
+    set_texture_points(lanes, {planes.uv, planes.texture_sets}, planes.position.data(), share, to,
+                       points);
   if (!planes.tangent.empty()) {
     const Vector tangent = times(of(lanes.sums(planes.tangent.data())), share);
     const Vector nothing = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -217,7 +225,7 @@ void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Poi
     set_some(planes, block, i, points);
 }
 
-void set_values(const PixelTriangle* values, const ValuePlanes* uvs, const PixelBlock& block,
+void set_values(const PixelTriangle* values, const UvPlanes& uvs, const PixelBlock& block,
                 shading::Vectors16& results, shading::Points& points) {
   const Floats d;
   for (std::size_t i = 0; i < shading::kBlockPoints; i += hn::Lanes(d)) {
@@ -225,7 +233,7 @@ void set_values(const PixelTriangle* values, const ValuePlanes* uvs, const Pixel
     const FourVectors<F> sums = lanes.sums(values);
     const F share = hn::Div(hn::Set(d, 1.0F), sums.v[3]);
     store(times(of(sums), share), results, i);
-    if (uvs != nullptr) set_texture_points(lanes, uvs, values, share, i, points);
+    if (!uvs.planes.empty()) set_texture_points(lanes, uvs, values, share, i, points);
   }
 }
 
@@ -255,10 +263,9 @@ void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Poi
   HWY_DYNAMIC_DISPATCH(set_points)(planes, block, points);
 }
 
-void set_values(std::span<const PixelTriangle> values, std::span<const ValuePlanes> uvs,
-                const PixelBlock& block, shading::Vectors16& results, shading::Points& points) {
-  HWY_DYNAMIC_DISPATCH(set_values)
-  (values.data(), uvs.empty() ? nullptr : uvs.data(), block, results, points);
+void set_values(std::span<const PixelTriangle> values, const UvPlanes& uvs, const PixelBlock& block,
+                shading::Vectors16& results, shading::Points& points) {
+  HWY_DYNAMIC_DISPATCH(set_values)(values.data(), uvs, block, results, points);
 }
 
 }  // namespace delray::raster

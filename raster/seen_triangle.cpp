@@ -30,10 +30,16 @@ void make_planes(SeenTriangle& triangle) {
   }
   if (triangle.has_colour)
     triangle.colour_planes = planes(triangle.colour[0], triangle.colour[1], triangle.colour[2]);
-  if (triangle.has_uv) {
+  if (triangle.has_uv || triangle.has_uv2) {
     const auto& uv = triangle.uv;
-    triangle.uv_planes = planes({uv[0], 0, 0}, {uv[1], 0, 0}, {uv[2], 0, 0});
+    const auto& uv2 = triangle.uv2;
+    triangle.uv_planes = planes({uv[0], uv2[0]}, {uv[1], uv2[1]}, {uv[2], uv2[2]});
   }
+}
+
+void set_first(const shading::TexturePoint& at, shading::Point& point) {
+  point.uv = at.uv;
+  point.footprint = at.footprint;
 }
 
 // Of a triangle whose shares have to be bounded.
@@ -43,11 +49,8 @@ shading::Point bounded_point_at(const SeenTriangle& triangle, int x, int y) {
   point.position = interpolate(w, triangle.position);
   point.normal = interpolate(w, triangle.normal);
   if (triangle.has_colour) point.colour = interpolate(w, triangle.colour);
-  if (triangle.has_uv) {
-    point.uv = interpolate(w, triangle.uv);
-    point.footprint.dx = derivative(w, triangle.barycentrics.a, triangle.uv, point.uv);
-    point.footprint.dy = derivative(w, triangle.barycentrics.b, triangle.uv, point.uv);
-  }
+  if (triangle.has_uv) set_first(bounded_texture_point(triangle, 0, w), point);
+  if (triangle.has_uv2) point.second = bounded_texture_point(triangle, 1, w);
   if (triangle.has_tangent) point.tangent = interpolate(w, triangle.tangent);
   return point;
 }
@@ -63,11 +66,9 @@ shading::Point plain_point_at(const SeenTriangle& triangle, int x, int y) {
   point.position = glm::vec3(position) * share;
   point.normal = glm::vec3(sums_at(triangle.normal_planes, dx, dy)) * share;
   if (triangle.has_colour) point.colour = sums_at(triangle.colour_planes, dx, dy) * share;
-  if (triangle.has_uv) {
-    const TexturePoint at = texture_point(triangle.uv_planes, positions, dx, dy, share);
-    point.uv = at.uv;
-    point.footprint = at.footprint;
-  }
+  const PixelShare at{dx, dy, share};
+  if (triangle.has_uv) set_first(texture_point(triangle.uv_planes, 0, positions, at), point);
+  if (triangle.has_uv2) point.second = texture_point(triangle.uv_planes, 1, positions, at);
   if (triangle.has_tangent)
     point.tangent = glm::vec4(glm::vec3(sums_at(triangle.tangent_planes, dx, dy)) * share, 0);
   return point;
@@ -134,6 +135,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   SeenTriangle result;
   result.material = &shading::material(shader, mesh.material);
   result.has_uv = !mesh.uvs.empty();
+  result.has_uv2 = !mesh.uvs2.empty();
   result.has_tangent = !mesh.tangents.empty();
   result.blended = shaded.blended;
   result.has_colour = !mesh.colours.empty();
@@ -161,6 +163,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
       result.agrees[k] = normal_agrees(mesh, i, edges);
     }
     result.uv[k] = result.has_uv ? mesh.uvs[i] : glm::vec2(0.0F);
+    result.uv2[k] = result.has_uv2 ? mesh.uvs2[i] : glm::vec2(0.0F);
     result.colour[k] = mesh.colours.empty() ? glm::vec4(1.0F) : mesh.colours[i];
     result.tangent[k] = glm::vec4(0.0F);
     if (result.has_tangent)
@@ -171,15 +174,25 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   return result;
 }
 
-TexturePoint texture_point(const ValuePlanes& uvs, const ValuePlanes& ones, float dx, float dy,
-                           float share) {
-  TexturePoint point;
-  point.uv = glm::vec2(sums_at(uvs, dx, dy)) * share;
+shading::TexturePoint texture_point(const ValuePlanes& uvs, int set, const ValuePlanes& ones,
+                                    const PixelShare& at) {
+  const glm::vec4 sums = sums_at(uvs, at.dx, at.dy);
+  shading::TexturePoint point;
   for (int k = 0; k < 2; ++k) {
-    point.footprint.dx[k] = (uvs.a[k] - point.uv[k] * ones.a[3]) * share;
-    point.footprint.dy[k] = (uvs.b[k] - point.uv[k] * ones.b[3]) * share;
+    const int from = 2 * set + k;
+    point.uv[k] = sums[from] * at.share;
+    point.footprint.dx[k] = (uvs.a[from] - point.uv[k] * ones.a[3]) * at.share;
+    point.footprint.dy[k] = (uvs.b[from] - point.uv[k] * ones.b[3]) * at.share;
   }
   return point;
+}
+
+shading::TexturePoint bounded_texture_point(const SeenTriangle& triangle, int set,
+                                            const Weights& weights) {
+  const auto& corners = set == 0 ? triangle.uv : triangle.uv2;
+  const Barycentrics& t = triangle.barycentrics;
+  const glm::vec2 uv = interpolate(weights, corners);
+  return {uv, {derivative(weights, t.a, corners, uv), derivative(weights, t.b, corners, uv)}};
 }
 
 shading::Point point_at(const SeenTriangle& triangle, int x, int y) {
@@ -203,6 +216,7 @@ shading::Point corner(const SeenTriangle& triangle, int k) {
   point.normal = triangle.normal[k];
   point.colour = triangle.colour[k];
   point.uv = triangle.uv[k];
+  point.second.uv = triangle.uv2[k];
   point.tangent = triangle.tangent[k];
   return point;
 }

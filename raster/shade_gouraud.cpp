@@ -131,7 +131,7 @@ void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMember
   const scenes::Material& material = shading::material(frame.shader, mesh.material);
   const bool blended = frame.draws[draw].blended;
   any_special_ |= blended || material.base_colour_texture != scenes::kNone;
-  if (frame.any_textures || frame.any_blended)
+  if (frame.texture_sets > 0 || frame.any_blended)
     std::fill_n(surfaces_.begin() + group.first, group.count,
                 Surface{static_cast<std::uint32_t>(&material - frame.shader.materials.data()),
                         material.base_colour_texture, blended});
@@ -140,8 +140,8 @@ void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMember
   }
   if (material.base_colour_texture == scenes::kNone) return;
   for (std::size_t i = 0; i < members.vertices.size(); ++i) {
-    const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(0.0F) : mesh.uvs[members.vertices[i]];
-    std::copy_n(&uv.x, 2, uv_rows_.row[i]);
+    const glm::vec4 row = uv_row(mesh, members.vertices[i]);
+    std::copy_n(&row.x, 4, uv_rows_.row[i]);
   }
   set_up_values(uv_rows_, members.corners, group.count, triangles_.planes(), group.first,
                 uvs_.data());
@@ -149,7 +149,7 @@ void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMember
 
 // Into block_colours_ and block_alpha_.
 void GouraudTile::shade_special(const FrameShading& frame, shading::LaneMask lanes) {
-  set_values(colours_, uvs_, block_, block_colours_, points_);
+  set_values(colours_, {uvs_, frame.texture_sets}, block_, block_colours_, points_);
   std::fill_n(block_alpha_.lane, kBlockSize, 1.0F);
   const std::uint16_t* const triangle = block_.triangle;
   for (shading::LaneMask rest = lanes; rest != 0;) {
@@ -180,7 +180,7 @@ void GouraudTile::leave_triangles_without_normals() {
 void GouraudTile::set_up_triangles(const FrameShading& frame) {
   const std::size_t room = triangles_.size() + kBlockSize;
   if (colours_.size() < room) colours_.resize(room);
-  uvs_.resize(frame.any_textures ? std::max(uvs_.size(), room) : 0);
+  uvs_.resize(frame.texture_sets > 0 ? std::max(uvs_.size(), room) : 0);
   if (surfaces_.size() < room) surfaces_.resize(room);
   any_special_ = false;
   all_have_normals_ = true;

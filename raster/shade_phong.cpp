@@ -21,7 +21,8 @@ void PhongTile::make_room(const FrameShading& frame) {
   make(planes_.geometric, true);
   make(kinds_, true);
   make(planes_.colour, frame.any_colours);
-  make(planes_.uv, frame.any_textures);
+  make(planes_.uv, frame.texture_sets > 0);
+  planes_.texture_sets = frame.texture_sets;
   make(planes_.tangent, frame.any_normal_maps);
 }
 
@@ -73,9 +74,7 @@ void PhongTile::set_up_group(const FrameShading& frame, const ClusterMembers& me
   if (!planes_.colour.empty() && !mesh.colours.empty())
     set_up_values(members, planes_.colour, [&](std::uint32_t v) { return mesh.colours[v]; });
   if (!planes_.uv.empty())
-    set_up_values(members, planes_.uv, [&](std::uint32_t v) {
-      return mesh.uvs.empty() ? glm::vec4(0.0F) : glm::vec4(mesh.uvs[v], 0, 0);
-    });
+    set_up_values(members, planes_.uv, [&](std::uint32_t v) { return uv_row(mesh, v); });
   if (!planes_.tangent.empty()) {
     const auto tangent_of = [&](std::uint32_t v) {
       if (mesh.tangents.empty()) return glm::vec4(0.0F);

@@ -34,20 +34,20 @@ glm::vec3 radiance(const FrameShading& frame, const scenes::Material& material,
 glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x, int y) {
   const Barycentrics& t = triangle.barycentrics;
   const std::uint32_t texture = triangle.material->base_colour_texture;
+  const int set = texture == scenes::kNone ? 0 : frame.shader.textures[texture].set;
   glm::vec3 lit;
-  TexturePoint at;
+  shading::TexturePoint at;
   if (t.proper) {
     const auto dx = static_cast<float>(x - t.x), dy = static_cast<float>(y - t.y);
     const glm::vec4 sums = sums_at(triangle.radiance_planes, dx, dy);
     const float share = 1 / sums.w;
     lit = glm::vec3(sums) * share;
-    if (texture != scenes::kNone && triangle.has_uv)
-      at = texture_point(triangle.uv_planes, triangle.radiance_planes, dx, dy, share);
+    if (texture != scenes::kNone && (set == 0 ? triangle.has_uv : triangle.has_uv2))
+      at = texture_point(triangle.uv_planes, set, triangle.radiance_planes, {dx, dy, share});
   } else {
     const Weights w = weights_at(t, x, y);
     lit = interpolate(w, triangle.radiance);
-    at.uv = interpolate(w, triangle.uv);
-    at.footprint = {derivative(w, t.a, triangle.uv, at.uv), derivative(w, t.b, triangle.uv, at.uv)};
+    at = bounded_texture_point(triangle, set, w);
   }
   if (texture == scenes::kNone) return lit;
   return lit * glm::vec3(shading::sample(frame.shader.textures[texture], at.uv, at.footprint));
@@ -56,16 +56,15 @@ glm::vec3 gouraud(const FrameShading& frame, const SeenTriangle& triangle, int x
 float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
   return seen.blended == 0
              ? 1.0F
-             : shading::coverage(frame.shader, frame.shader.materials[seen.material], seen.point.uv,
-                                 seen.point.footprint, seen.point.colour.w);
+             : shading::coverage(frame.shader, frame.shader.materials[seen.material], seen.point);
 }
 
 }  // namespace
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances) {
-  FrameShading frame{screen, shader, list,  {},    {},       {},       {},
-                     false,  false,  false, false, lighting, distances};
+  FrameShading frame{screen, shader, list,  {}, {},       {},       {},
+                     false,  false,  false, 0,  lighting, distances};
   add_draws(frame);
   frame.batch = shading::make_batch_shader(shader);
   if (lighting == Lighting::gouraud) {
@@ -87,7 +86,8 @@ void add_draws(FrameShading& frame) {
     frame.any_blended |= frame.draws.back().blended;
     frame.any_colours |= !draw.mesh->colours.empty();
     frame.any_normal_maps |= material.normal_texture != scenes::kNone;
-    frame.any_textures |= material.textured();
+    frame.texture_sets =
+        std::max(frame.texture_sets, shading::texture_sets(frame.shader, material));
   }
 }
 
@@ -148,16 +148,14 @@ void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw
 bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y) {
   const SeenTriangle& triangle = seen.get(frame, number);
   const shading::Point point = point_at(triangle, x, y);
-  return shading::coverage(frame.shader, *triangle.material, point.uv, point.footprint,
-                           point.colour.w) > 0;
+  return shading::coverage(frame.shader, *triangle.material, point) > 0;
 }
 
 SeenPoint point_seen(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
                      int y) {
   const SeenTriangle& triangle = seen.get(frame, number);
-  return {point_at(triangle, x, y),
-          static_cast<std::uint32_t>(triangle.material - frame.shader.materials.data()),
-          triangle.blended ? 1U : 0U};
+  return {static_cast<std::uint32_t>(triangle.material - frame.shader.materials.data()),
+          triangle.blended ? 1U : 0U, point_at(triangle, x, y)};
 }
 
 image::RgbaF shade(const FrameShading& frame, const SeenPoint& seen) {

@@ -1,7 +1,10 @@
 // Sort-last: every rank draws an equal, ascending part of the primitives over the whole frame, and
 // a compositing scheme merges the images. On equal depths the lower rank wins, which has the lower
 // primitive numbers.
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "composite/codec.h"
@@ -115,30 +118,47 @@ composite::Part stored(composite::Part&& part) {
   }
 }
 
+// A point as it travels where no texture is of set 1: without what comes last in it.
+struct PlainSeenPoint {
+  static constexpr std::size_t kBytes =
+      offsetof(SeenPoint, point) + offsetof(shading::Point, second);
+  alignas(SeenPoint) std::byte bytes[kBytes] = {};
+
+  PlainSeenPoint() = default;
+  explicit PlainSeenPoint(const SeenPoint& point) { std::memcpy(bytes, &point, kBytes); }
+  explicit operator SeenPoint() const {
+    SeenPoint point;
+    std::memcpy(static_cast<void*>(&point), bytes, kBytes);
+    return point;
+  }
+};
+bool is_opaque(const PlainSeenPoint& point) { return is_opaque(SeenPoint(point)); }
+
+template <class Payload>
 std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
                                               RegionDrawing& drawing) {
-  return composite::make_deep(end_deep<SeenPoint>(
+  return composite::make_deep(end_deep<Payload>(
       rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
         tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
           for (const std::int64_t key : keys) {
             const SeenPoint point = point_seen(tile.frame(), tile.seen(), number_of(key), x, y);
-            add(x, y, key, point);
+            add(x, y, key, Payload(point));
             if (is_opaque(point)) break;
           }
         });
       }));
 }
 
-template <class Colour>
+template <class Colour, class Payload>
 composite::Part shade_points(Rank& rank, composite::Part&& part) {
   const DrawList nothing;
   const FrameShading frame =
       make_frame_shading(rank.screen, rank.shader, nothing, rank.options.lighting, false);
   std::atomic<std::uint64_t> shaded{0};
   composite::Part result =
-      flatten<Colour, SeenPoint>(rank, std::move(part), [&](const SeenPoint& point) {
+      flatten<Colour, Payload>(rank, std::move(part), [&](const Payload& point) {
         shaded.fetch_add(1, std::memory_order_relaxed);
-        return shade(frame, point);
+        return shade(frame, SeenPoint(point));
       });
   rank.counts.shaded += shaded;
   return result;
@@ -163,7 +183,8 @@ class Steps final : public FrameSteps {
       image_ = rank_.take_image<Colour>(rank_.options.width, rank_.options.height);
       rank_.end_pixels(*drawing_, image_);
     } else if (shades_last()) {
-      layer_ = draw_points(rank_, list_, *drawing_);
+      layer_ = two_sets() ? draw_points<SeenPoint>(rank_, list_, *drawing_)
+                          : draw_points<PlainSeenPoint>(rank_, list_, *drawing_);
     } else if (has_cells()) {
       layer_ = draw_cell(rank_, list_, *drawing_, cell_);
     } else if (rank_.transparent) {
@@ -184,7 +205,8 @@ class Steps final : public FrameSteps {
           {.samples_per_pixel = rank_.samples_per_pixel(), .order = std::move(order_)});
     });
     if (shades_last())
-      part = shade_points<Colour>(rank_, std::move(part));
+      part = two_sets() ? shade_points<Colour, SeenPoint>(rank_, std::move(part))
+                        : shade_points<Colour, PlainSeenPoint>(rank_, std::move(part));
     else if (has_cells())
       part = stored<Colour>(std::move(part));
     else if (rank_.transparent)
@@ -202,6 +224,13 @@ class Steps final : public FrameSteps {
 
  private:
   bool shades_last() const { return rank_.options.shade == Shade::composited; }
+  // Whether any material looks at both sets of texture coordinates; all ranks say the same.
+  bool two_sets() const {
+    const auto& materials = rank_.shader.materials;
+    return std::any_of(materials.begin(), materials.end(), [&](const scenes::Material& material) {
+      return shading::texture_sets(rank_.shader, material) > 1;
+    });
+  }
   bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }
 
   std::vector<Piece> pieces() {

@@ -20,6 +20,7 @@ enum Attribute : std::uint8_t {
   kColours = 8,
   kWorld = 16,
   kRadiances = 32,
+  kUvs2 = 64,
 };
 
 // Followed by first corners, second corners and third corners, a byte each and all filled up to
@@ -49,6 +50,7 @@ void for_each_attribute(ArrivedMesh& arrived, std::uint8_t attributes, F&& f) {
   if ((attributes & kColours) != 0) f(arrived.mesh.colours);
   if ((attributes & kWorld) != 0) f(arrived.vertices.world);
   if ((attributes & kRadiances) != 0) f(arrived.vertices.radiances);
+  if ((attributes & kUvs2) != 0) f(arrived.mesh.uvs2);
 }
 
 std::size_t vertex_bytes(std::uint8_t attributes) {
@@ -57,7 +59,8 @@ std::size_t vertex_bytes(std::uint8_t attributes) {
     if ((attributes & bit) != 0) bytes += sizeof(glm::vec3);
   for (const std::uint8_t bit : {kTangents, kColours})
     if ((attributes & bit) != 0) bytes += sizeof(glm::vec4);
-  if ((attributes & kUvs) != 0) bytes += sizeof(glm::vec2);
+  for (const std::uint8_t bit : {kUvs, kUvs2})
+    if ((attributes & bit) != 0) bytes += sizeof(glm::vec2);
   return bytes;
 }
 
@@ -65,18 +68,21 @@ std::uint8_t attributes_of(const FrameShading& frame, const PreparedDraw& prepar
   const scenes::Mesh& mesh = *prepared.draw->mesh;
   const scenes::Material& material = shading::material(frame.shader, mesh.material);
   const bool coloured = !mesh.colours.empty();
-  const bool base_texture = material.base_colour_texture != scenes::kNone;
   const auto bits = [](bool have, Attribute bit) { return have ? int{bit} : 0; };
-  if (frame.lighting == Lighting::gouraud)
+  if (frame.lighting == Lighting::gouraud) {
+    const std::uint32_t texture = material.base_colour_texture;
+    const int set = texture == scenes::kNone ? 0 : frame.shader.textures[texture].set;
+    const bool mapped = texture != scenes::kNone && !mesh.uvs_of(set).empty();
     return static_cast<std::uint8_t>(
-        kRadiances | bits(base_texture && !mesh.uvs.empty(), kUvs) |
+        kRadiances | bits(mapped, set == 0 ? kUvs : kUvs2) |
         bits((prepared.masked || prepared.blended) && coloured, kColours));
+  }
   const bool normal_texture = material.normal_texture != scenes::kNone;
-  const bool any_texture = material.textured();
-  return static_cast<std::uint8_t>(kWorld | bits(!mesh.normals.empty(), kNormals) |
-                                   bits(any_texture && !mesh.uvs.empty(), kUvs) |
-                                   bits(normal_texture && !mesh.tangents.empty(), kTangents) |
-                                   bits(coloured, kColours));
+  const int sets = shading::texture_sets(frame.shader, material);
+  return static_cast<std::uint8_t>(
+      kWorld | bits(!mesh.normals.empty(), kNormals) | bits(sets > 0 && !mesh.uvs.empty(), kUvs) |
+      bits(sets > 1 && !mesh.uvs2.empty(), kUvs2) |
+      bits(normal_texture && !mesh.tangents.empty(), kTangents) | bits(coloured, kColours));
 }
 
 geometry::Box3 box_around(std::span<const glm::vec3> positions) {
@@ -273,6 +279,7 @@ void ClusterPacker::append_section(std::uint32_t number, std::vector<std::byte>&
   append_each(kColours, [&](const Vertex& v) { return mesh.colours[v.of_mesh]; });
   append_each(kWorld, [&](const Vertex& v) { return position_in_world(*draw_, v.of_mesh); });
   append_each(kRadiances, [&](const Vertex& v) { return lit_.radiances[v.radiance]; });
+  append_each(kUvs2, [&](const Vertex& v) { return mesh.uvs2[v.of_mesh]; });
 }
 
 void unpack_clusters(std::span<const std::byte> bytes, std::deque<ArrivedMesh>& meshes,

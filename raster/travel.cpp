@@ -6,8 +6,8 @@
 namespace delray::raster {
 namespace {
 
-// Followed by triangles, then positions, then the attributes that `attributes` names, in the order
-// of Mesh: all in units of four bytes.
+// Followed by triangles, then positions, then the attributes that `attributes` names, in ascending
+// order of their bits: all in units of four bytes.
 struct Header {
   std::uint64_t primitive;
   std::uint32_t vertices, triangles, material, attributes;
@@ -22,6 +22,7 @@ void for_each_attribute(Mesh& mesh, F&& f) {
   f(mesh.uvs, 2U);
   f(mesh.tangents, 4U);
   f(mesh.colours, 8U);
+  f(mesh.uvs2, 16U);
 }
 
 class Writer {

@@ -89,7 +89,9 @@ Layer layer_of(std::span<const Placement> placements, const shading::Shader& sha
   const Placement& placement = placements[hit.placement];
   const scenes::Material& material = shader.materials[placement.material];
   if (!through_glass || !(material.transmission > 0.0F)) {
-    const CoveragePoint at = coverage_point(placement, hit);
+    const std::uint32_t texture = material.base_colour_texture;
+    const int set = texture == scenes::kNone ? 0 : shader.textures[texture].set;
+    const CoveragePoint at = coverage_point(placement, hit, set);
     const float alpha = shading::coverage(shader, material, at.uv, {}, at.alpha);
     return {hit.distance, hit.placement, hit.triangle, glm::vec3(1.0F - alpha)};
   }

@@ -115,6 +115,7 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
     hasher.add(mesh.positions);
     hasher.add(mesh.normals);
     hasher.add(mesh.uvs);
+    hasher.add(mesh.uvs2);
     hasher.add(mesh.tangents);
     hasher.add(mesh.colours);
     hasher.add(mesh.triangles);
@@ -125,7 +126,8 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
   for (const scenes::Texture& texture : scene.textures) {
     hasher.add(texture.texels);
     hasher.add(texture.radiance);
-    hasher.add_numbers(texture.width, texture.height, texture.srgb, texture.wrap_u, texture.wrap_v);
+    hasher.add_numbers(texture.width, texture.height, texture.srgb, texture.wrap_u, texture.wrap_v,
+                       texture.set);
   }
   for (const scenes::Light& light : scene.lights) {
     hasher.add_numbers(light.kind, light.colour, light.position, light.direction, light.edge_u,

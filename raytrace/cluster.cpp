@@ -77,16 +77,25 @@ class Reader {
 // A placement without its pointers.
 struct PlacementValues {
   std::uint32_t piece, material;
-  std::uint8_t instanced, identity, see_through, layered, textured, unused[3];
+  std::uint8_t instanced, identity, see_through, layered, texture_sets, unused[3];
   float orientation, transform_scale;
   glm::mat4x3 to_world;
   glm::mat3 normal_to_world;
 };
 
 PlacementValues values_of(const Placement& p) {
-  return {p.mesh_number, p.material,        p.instanced, p.identity,
-          p.see_through, p.layered,         p.textured,  {},
-          p.orientation, p.transform_scale, p.to_world,  p.normal_to_world};
+  return {p.mesh_number,
+          p.material,
+          p.instanced,
+          p.identity,
+          p.see_through,
+          p.layered,
+          static_cast<std::uint8_t>(p.texture_sets),
+          {},
+          p.orientation,
+          p.transform_scale,
+          p.to_world,
+          p.normal_to_world};
 }
 
 Placement placement_of(const PlacementValues& v) {
@@ -97,7 +106,7 @@ Placement placement_of(const PlacementValues& v) {
   p.identity = v.identity != 0;
   p.see_through = v.see_through != 0;
   p.layered = v.layered != 0;
-  p.textured = v.textured != 0;
+  p.texture_sets = std::min<int>(v.texture_sets, 2);
   p.orientation = v.orientation;
   p.transform_scale = v.transform_scale;
   p.to_world = v.to_world;
@@ -128,8 +137,8 @@ std::uint64_t ClusterData::bytes() const {
   for (const Piece& piece : pieces) {
     const scenes::Mesh& mesh = piece.mesh;
     sum += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.uvs) +
-           bytes_of(mesh.tangents) + bytes_of(mesh.colours) + bytes_of(mesh.triangles) +
-           bytes_of(piece.triangles) + bytes_of(piece.placements);
+           bytes_of(mesh.uvs2) + bytes_of(mesh.tangents) + bytes_of(mesh.colours) +
+           bytes_of(mesh.triangles) + bytes_of(piece.triangles) + bytes_of(piece.placements);
   }
   return sum;
 }
@@ -165,6 +174,7 @@ comm::Buffer pack(const ClusterData& cluster) {
     out.array(piece.mesh.positions);
     out.array(piece.mesh.normals);
     out.array(piece.mesh.uvs);
+    out.array(piece.mesh.uvs2);
     out.array(piece.mesh.tangents);
     out.array(piece.mesh.colours);
     out.array(piece.mesh.triangles);
@@ -188,6 +198,7 @@ ClusterData unpack_cluster(std::span<const std::byte> message) {
     piece.mesh.positions = in.array<glm::vec3>(1);  // Embree loads past the last one
     piece.mesh.normals = in.array<glm::vec3>();
     piece.mesh.uvs = in.array<glm::vec2>();
+    piece.mesh.uvs2 = in.array<glm::vec2>();
     piece.mesh.tangents = in.array<glm::vec4>();
     piece.mesh.colours = in.array<glm::vec4>();
     piece.mesh.triangles = in.array<glm::uvec3>();

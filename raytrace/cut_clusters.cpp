@@ -67,6 +67,7 @@ Piece piece_of(const Placement& placement, std::span<const Item> items,
   for (const std::uint32_t v : vertices) piece.mesh.positions.push_back(placement.positions[v]);
   take(mesh.normals, vertices, piece.mesh.normals);
   take(mesh.uvs, vertices, piece.mesh.uvs);
+  take(mesh.uvs2, vertices, piece.mesh.uvs2);
   take(mesh.tangents, vertices, piece.mesh.tangents);
   take(mesh.colours, vertices, piece.mesh.colours);
   return piece;
@@ -80,7 +81,7 @@ Placement without_pointers(const Placement& from, std::uint32_t piece) {
   p.identity = from.identity;
   p.see_through = from.see_through;
   p.layered = from.layered;
-  p.textured = from.textured;
+  p.texture_sets = from.texture_sets;
   p.orientation = from.orientation;
   p.to_world = from.to_world;
   p.normal_to_world = from.normal_to_world;

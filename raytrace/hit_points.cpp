@@ -10,6 +10,11 @@
 
 namespace delray::raytrace {
 
+// Texture coordinates of a set: [corner][lane].
+struct CornerUvs {
+  alignas(64) float u[3][kPacketRays], v[3][kPacketRays];
+};
+
 // What meshes and placements know of the triangles that lanes hit: [corner][axis][lane]. What a
 // lane's mask does not ask for may hold anything.
 struct Gathered {
@@ -17,12 +22,13 @@ struct Gathered {
   alignas(64) float linear[3][3][kPacketRays], origin[3][kPacketRays];  // Placement::to_world
   alignas(64) float normal_matrix[3][3][kPacketRays];
   alignas(64) float orientation[kPacketRays], transform_scale[kPacketRays];
-  alignas(64) float u[3][kPacketRays], v[3][kPacketRays];
+  CornerUvs uvs[2];
   alignas(64) float tangent[3][3][kPacketRays], handedness[kPacketRays];
   alignas(64) float colour[3][3][kPacketRays], alpha[3][kPacketRays];
   shading::LaneMask instanced = 0;  // positions are to be moved
   shading::LaneMask placed = 0;     // normals and tangents are to be turned
-  shading::LaneMask smooth = 0, textured = 0, mapped = 0, tangents = 0, coloured = 0;
+  shading::LaneMask smooth = 0, tangents = 0, coloured = 0;
+  shading::LaneMask textured[2] = {}, mapped[2] = {};  // by set: it is asked for; the mesh has it
 };
 
 }  // namespace delray::raytrace
@@ -78,27 +84,33 @@ HWY_INLINE F3 unit(const F3& v, const F3& otherwise) {
   return choose(hn::Gt(squared, set(0.0F)), v * (set(1.0F) / hn::Sqrt(squared)), otherwise);
 }
 
-// What only materials with textures look at.
-HWY_INLINE void find_texture_points(const Gathered& g, const Weights& w, const F3& geometric_normal,
-                                    F area, int i, RayGroup& group) {
-  shading::Points& points = group.points;
+// What only materials with textures of the set look at.
+HWY_INLINE void find_texture_points(const Gathered& g, int number, const Weights& w,
+                                    const F3& geometric_normal, F area, int i, RayGroup& group) {
   const FloatTag d;
   const F zero = set(0.0F);
-  const M active = mask_of(g.textured, i), mapped = mask_of(g.mapped, i);
-  const F u_a = at(g.u[0], i), v_a = at(g.v[0], i);
-  const F ab_u = at(g.u[1], i) - u_a, ab_v = at(g.v[1], i) - v_a;
-  const F ac_u = at(g.u[2], i) - u_a, ac_v = at(g.v[2], i) - v_a;
+  const CornerUvs& uvs = g.uvs[number];
+  const M active = mask_of(g.textured[number], i), mapped = mask_of(g.mapped[number], i);
+  const F u_a = at(uvs.u[0], i), v_a = at(uvs.v[0], i);
+  const F ab_u = at(uvs.u[1], i) - u_a, ab_v = at(uvs.v[1], i) - v_a;
+  const F ac_u = at(uvs.u[2], i) - u_a, ac_v = at(uvs.v[2], i) - v_a;
   const F uv_area = hn::Abs(ab_u * ac_v - ab_v * ac_u);
   const F cosine = hn::Abs(dot(geometric_normal, load(group.view, i)));
   const F width = load(group.width, i) + hn::Load(d, group.packet.far + i) * load(group.spread, i);
   const F along = width * hn::Sqrt(uv_area / area) / max_of(cosine, set(kSteepest));
   const F step = hn::IfThenElseZero(hn::And(mapped, hn::Gt(area, zero)), along);
-  store(hn::IfThenElseZero(mapped, interpolated(g.u, w, i)), active, i, points.u);
-  store(hn::IfThenElseZero(mapped, interpolated(g.v, w, i)), active, i, points.v);
-  store(step, active, i, points.footprint_dx_u);
-  store(zero, active, i, points.footprint_dx_v);
-  store(zero, active, i, points.footprint_dy_u);
-  store(step, active, i, points.footprint_dy_v);
+  shading::TexturePoints& to = group.points.uvs[number];
+  store(hn::IfThenElseZero(mapped, interpolated(uvs.u, w, i)), active, i, to.u);
+  store(hn::IfThenElseZero(mapped, interpolated(uvs.v, w, i)), active, i, to.v);
+  store(step, active, i, to.dx_u);
+  store(zero, active, i, to.dx_v);
+  store(zero, active, i, to.dy_u);
+  store(step, active, i, to.dy_v);
+}
+
+HWY_INLINE void find_tangents(const Gathered& g, const Weights& w, int i, shading::Points& points) {
+  const F zero = set(0.0F);
+  const M active = mask_of(g.textured[0], i);
   F3 tangent = set(glm::vec3(0.0F));
   F handedness = zero;
   if (g.tangents != 0) {
@@ -161,7 +173,11 @@ void find_gathered_points(const Gathered& g, RayGroup& group) {
     store(geometric_normal, active, i, points.geometric_normal);
     store(normal, active, i, points.normal);
     store(offset, active, i, group.offset);
-    if (g.textured != 0) find_texture_points(g, weights, geometric_normal, area, i, group);
+    if (g.textured[0] != 0) {
+      find_texture_points(g, 0, weights, geometric_normal, area, i, group);
+      find_tangents(g, weights, i, points);
+    }
+    if (g.textured[1] != 0) find_texture_points(g, 1, weights, geometric_normal, area, i, group);
     if (!points.coloured) continue;
     const M coloured = mask_of(g.coloured, i);
     const F3 white = set(glm::vec3(1.0F));
@@ -231,18 +247,22 @@ void for_lanes(shading::LaneMask lanes, F&& f) {
 }
 
 // Of lanes that hit the same mesh; element i of corners belongs to lane i.
-void gather_textured(const scenes::Mesh& mesh, const glm::uvec3* corners, shading::LaneMask lanes,
-                     Gathered& to) {
-  to.textured |= lanes;
-  if (mesh.uvs.empty()) return;
-  to.mapped |= lanes;
-  for_lanes(lanes, [&, uvs = mesh.uvs.data()](int i) {
+void gather_uvs(const scenes::Mesh& mesh, int set, const glm::uvec3* corners,
+                shading::LaneMask lanes, Gathered& to) {
+  to.textured[set] |= lanes;
+  if (mesh.uvs_of(set).empty()) return;
+  to.mapped[set] |= lanes;
+  for_lanes(lanes, [&, uvs = mesh.uvs_of(set).data()](int i) {
     for (int k = 0; k < 3; ++k) {
-      to.u[k][i] = uvs[corners[i][k]].x;
-      to.v[k][i] = uvs[corners[i][k]].y;
+      to.uvs[set].u[k][i] = uvs[corners[i][k]].x;
+      to.uvs[set].v[k][i] = uvs[corners[i][k]].y;
     }
   });
-  if (mesh.tangents.empty()) return;
+}
+
+void gather_tangents(const scenes::Mesh& mesh, const glm::uvec3* corners, shading::LaneMask lanes,
+                     Gathered& to) {
+  if (mesh.uvs.empty() || mesh.tangents.empty()) return;
   to.tangents |= lanes;
   for_lanes(lanes, [&, tangents = mesh.tangents.data()](int i) {
     for (int k = 0; k < 3; ++k) put(glm::vec3(tangents[corners[i][k]]), i, to.tangent[k]);
@@ -289,7 +309,8 @@ void gather(const Placement& placement, const std::uint32_t* triangles, shading:
       }
     });
   }
-  if (placement.textured) gather_textured(mesh, corners, lanes, to);
+  for (int set = 0; set < placement.texture_sets; ++set) gather_uvs(mesh, set, corners, lanes, to);
+  if (placement.texture_sets > 0) gather_tangents(mesh, corners, lanes, to);
 }
 
 // GCC 12 takes functions that do nothing but prefetch for functions that do nothing, and leaves out
@@ -330,7 +351,9 @@ void fetch_vertices(std::span<const Placement> placements, const RayGroup& group
       fetch(placement.positions + corners[k]);
       if (!mesh.normals.empty()) fetch(&mesh.normals[corners[k]]);
       if (!mesh.colours.empty()) fetch(&mesh.colours[corners[k]]);
-      if (placement.textured && !mesh.uvs.empty()) fetch(&mesh.uvs[corners[k]]);
+      for (int set = 0; set < placement.texture_sets; ++set) {
+        if (!mesh.uvs_of(set).empty()) fetch(&mesh.uvs_of(set)[corners[k]]);
+      }
     }
   });
 }

@@ -37,6 +37,14 @@ class Gather {
     (*this)(from.y, to.y);
     (*this)(from.z, to.z);
   }
+  HWY_INLINE void operator()(const shading::TexturePoints& from, shading::TexturePoints& to) const {
+    (*this)(from.u, to.u);
+    (*this)(from.v, to.v);
+    (*this)(from.dx_u, to.dx_u);
+    (*this)(from.dx_v, to.dx_v);
+    (*this)(from.dy_u, to.dy_u);
+    (*this)(from.dy_v, to.dy_v);
+  }
 
  private:
   I offsets_;
@@ -44,7 +52,7 @@ class Gather {
 };
 
 void gather_block(const RayGroup& first, const PathLanes& first_lanes, const std::uint32_t* hits,
-                  bool coloured, bool textured, RayGroup& to, PathLanes& to_lanes) {
+                  bool coloured, int texture_sets, RayGroup& to, PathLanes& to_lanes) {
   for (int i = 0; i < kPacketRays; i += lanes()) {
     const I hit = hn::Load(IntTag(), reinterpret_cast<const std::int32_t*>(hits) + i);
     const I group = hn::ShiftRight<4>(hit), lane = hit & set(kPacketRays - 1);
@@ -62,16 +70,11 @@ void gather_block(const RayGroup& first, const PathLanes& first_lanes, const std
     take(first.offset, to.offset);
     take(first.packet.far, to.packet.far);
     take(first.material, to.material);
-    if (textured) {
+    if (texture_sets > 0) {
       take(from.tangent, to.points.tangent);
       take(from.handedness, to.points.handedness);
-      take(from.u, to.points.u);
-      take(from.v, to.points.v);
-      take(from.footprint_dx_u, to.points.footprint_dx_u);
-      take(from.footprint_dx_v, to.points.footprint_dx_v);
-      take(from.footprint_dy_u, to.points.footprint_dy_u);
-      take(from.footprint_dy_v, to.points.footprint_dy_v);
     }
+    for (int set = 0; set < texture_sets; ++set) take(from.uvs[set], to.points.uvs[set]);
     if (coloured) {
       take(from.colour, to.points.colour);
       take(from.colour_alpha, to.points.colour_alpha);
@@ -128,14 +131,14 @@ std::span<const std::uint32_t> HitsByMaterial::take() {
 }
 
 void gather_hits(const Groups<RayGroup>& groups, const Groups<PathLanes>& path_lanes,
-                 std::span<const std::uint32_t> hits, bool coloured, bool textured, RayGroup& group,
-                 PathLanes& lanes) {
+                 std::span<const std::uint32_t> hits, bool coloured, int texture_sets,
+                 RayGroup& group, PathLanes& lanes) {
   assert(!hits.empty() && hits.size() <= kPacketRays);
   alignas(64) std::uint32_t sources[kPacketRays];
   for (std::size_t i = 0; i < kPacketRays; ++i) sources[i] = hits[i < hits.size() ? i : 0];
   group.points.coloured = coloured;
   HWY_DYNAMIC_DISPATCH(gather_block)
-  (groups[0], path_lanes[0], sources, coloured, textured, group, lanes);
+  (groups[0], path_lanes[0], sources, coloured, texture_sets, group, lanes);
 }
 
 }  // namespace delray::raytrace

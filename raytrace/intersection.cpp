@@ -23,10 +23,10 @@ T interpolate(const std::vector<T>& values, const glm::uvec3& corners, const Hit
 
 // How far uv moves where the cone's width moves over the triangle: the ratio of areas gives the
 // scale, the slant of the surface stretches it.
-shading::Footprint footprint(const scenes::Mesh& mesh, const glm::uvec3& corners, float world_area,
-                             float cosine, float width) {
-  const glm::vec2 a = mesh.uvs[corners.y] - mesh.uvs[corners.x];
-  const glm::vec2 b = mesh.uvs[corners.z] - mesh.uvs[corners.x];
+shading::Footprint footprint(const std::vector<glm::vec2>& uvs, const glm::uvec3& corners,
+                             float world_area, float cosine, float width) {
+  const glm::vec2 a = uvs[corners.y] - uvs[corners.x];
+  const glm::vec2 b = uvs[corners.z] - uvs[corners.x];
   const float uv_area = std::abs(a.x * b.y - a.y * b.x);
   if (!(world_area > 0.0F)) return {};
   const float step = width * std::sqrt(uv_area / world_area) / std::max(cosine, kSteepest);
@@ -72,10 +72,15 @@ Intersection intersection(const Placement& placement, const Hit& hit, const glm:
     point.normal = unit(normal, point.geometric_normal);
   }
   if (!mesh.colours.empty()) point.colour = interpolate(mesh.colours, corners, hit);
-  if (placement.textured && !mesh.uvs.empty()) {
-    point.uv = interpolate(mesh.uvs, corners, hit);
-    const float cosine = std::abs(glm::dot(point.geometric_normal, direction));
-    point.footprint = footprint(mesh, corners, area, cosine, cone.width);
+  const float cosine = std::abs(glm::dot(point.geometric_normal, direction));
+  const auto texture_point = [&](const std::vector<glm::vec2>& uvs) -> shading::TexturePoint {
+    return {interpolate(uvs, corners, hit), footprint(uvs, corners, area, cosine, cone.width)};
+  };
+  if (placement.texture_sets > 1 && !mesh.uvs2.empty()) point.second = texture_point(mesh.uvs2);
+  if (placement.texture_sets > 0 && !mesh.uvs.empty()) {
+    const shading::TexturePoint first = texture_point(mesh.uvs);
+    point.uv = first.uv;
+    point.footprint = first.footprint;
     if (!mesh.tangents.empty()) {
       const glm::vec4 along = interpolate(mesh.tangents, corners, hit);
       glm::vec3 tangent(along);
@@ -87,11 +92,12 @@ Intersection intersection(const Placement& placement, const Hit& hit, const glm:
   return result;
 }
 
-CoveragePoint coverage_point(const Placement& placement, const Hit& hit) {
+CoveragePoint coverage_point(const Placement& placement, const Hit& hit, int set) {
   const scenes::Mesh& mesh = *placement.mesh;
   const glm::uvec3 corners = mesh.triangles[hit.triangle];
   CoveragePoint result;
-  if (!mesh.uvs.empty()) result.uv = interpolate(mesh.uvs, corners, hit);
+  const std::vector<glm::vec2>& uvs = mesh.uvs_of(set);
+  if (!uvs.empty()) result.uv = interpolate(uvs, corners, hit);
   if (!mesh.colours.empty()) result.alpha = interpolate(mesh.colours, corners, hit).w;
   return result;
 }

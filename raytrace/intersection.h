@@ -38,11 +38,11 @@ struct Intersection {
 Intersection intersection(const Placement& placement, const Hit& hit, const glm::vec3& direction,
                           const Cone& cone);
 
-// Texture coordinates and vertex alpha alone, for shading::coverage.
+// Texture coordinates of a set and vertex alpha alone, for shading::coverage.
 struct CoveragePoint {
   glm::vec2 uv{0.0F};
   float alpha = 1.0F;
 };
-CoveragePoint coverage_point(const Placement& placement, const Hit& hit);
+CoveragePoint coverage_point(const Placement& placement, const Hit& hit, int set);
 
 }  // namespace delray::raytrace

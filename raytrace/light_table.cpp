@@ -97,6 +97,12 @@ double area_scale(const glm::mat4x3& m) {
   return std::cbrt(det * det);
 }
 
+// Where a mesh's corners lie in a texture of the shader.
+const std::vector<glm::vec2>& uvs_of(const shading::Shader& shader, const scenes::Mesh& mesh,
+                                     std::uint32_t texture) {
+  return mesh.uvs_of(texture == kNone ? 0 : shader.textures[texture].set);
+}
+
 float area_pdf(const glm::vec3& normal, const glm::vec3& way) {
   const float distance2 = glm::dot(way, way);
   const float facing = std::abs(glm::dot(normal, way));  // times twice the area and the distance
@@ -119,7 +125,9 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
     const scenes::Mesh& mesh = scene.meshes[m];
     const scenes::Material& material = shading::material(shader, mesh.material);
     if (!(mean(material.emission) > 0.0F) || mesh.triangles.empty()) continue;
-    const bool textured = material.emission_texture != kNone && !mesh.uvs.empty();
+    const std::vector<glm::vec2>& uvs = uvs_of(shader, mesh, material.emission_texture);
+    const std::vector<glm::vec2>& alpha_uvs = uvs_of(shader, mesh, material.base_colour_texture);
+    const bool textured = material.emission_texture != kNone && !uvs.empty();
     GlowingMesh glowing;
     glowing.material = mesh.material;
     const std::vector<std::uint64_t> solid = solid_triangles(mesh, material, alphas);
@@ -133,7 +141,8 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
       triangle.ac = mesh.positions[c.z] - triangle.a;
       triangle.solid = !solid.empty() && (solid[t / 64] >> (t % 64) & 1) != 0;
       for (int k = 0; k < 3; ++k) {
-        if (!mesh.uvs.empty()) triangle.uv[k] = mesh.uvs[c[k]];
+        if (!uvs.empty()) triangle.uv[k] = uvs[c[k]];
+        if (!alpha_uvs.empty()) triangle.alpha_uv[k] = alpha_uvs[c[k]];
         triangle.alpha[k] = mesh.colours.empty() ? 1.0F : mesh.colours[c[k]].w;
       }
       float brightness = mean(material.emission);
@@ -299,16 +308,19 @@ LightSample LightTable::draw_glow(const shading::Shader& shader, const GlowingIn
   if (!(pdf > 0.0F) || !std::isfinite(pdf)) return result;
   const scenes::Material& material = shading::material(shader, mesh.material);
   const float rest = 1.0F - b.x - b.y;
-  const glm::vec2 uv = triangle.uv[0] * rest + triangle.uv[1] * b.x + triangle.uv[2] * b.y;
+  const auto interpolated = [&](const glm::vec2(&uv)[3]) {
+    return uv[0] * rest + uv[1] * b.x + uv[2] * b.y;
+  };
   glm::vec3 radiance = material.emission;
   if (material.emission_texture != kNone) {
-    radiance *= glm::vec3(
-        shading::sample(shader.textures[material.emission_texture], uv, shading::Footprint{}));
+    radiance *= glm::vec3(shading::sample(shader.textures[material.emission_texture],
+                                          interpolated(triangle.uv), shading::Footprint{}));
   }
   if (material.alpha != scenes::Material::Alpha::opaque && !triangle.solid) {
     const float alpha =
         triangle.alpha[0] * rest + triangle.alpha[1] * b.x + triangle.alpha[2] * b.y;
-    radiance *= shading::coverage(shader, material, uv, shading::Footprint{}, alpha);
+    radiance *= shading::coverage(shader, material, interpolated(triangle.alpha_uv),
+                                  shading::Footprint{}, alpha);
   }
   result.distance = length(way);
   result.direction = way * (1.0F / result.distance);

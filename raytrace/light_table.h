@@ -88,7 +88,7 @@ class LightTable {
   // In space of the mesh.
   struct Triangle {
     glm::vec3 a, ab, ac;
-    glm::vec2 uv[3];
+    glm::vec2 uv[3], alpha_uv[3];  // for the textures of emission and of alpha
     float alpha[3];
     bool solid;  // covered everywhere
   };

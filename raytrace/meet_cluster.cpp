@@ -32,9 +32,10 @@ shading::Point point_of(const shading::Points& p, int i) {
   point.geometric_normal = p.geometric_normal.get(i);
   point.normal = p.normal.get(i);
   point.tangent = glm::vec4(p.tangent.get(i), p.handedness[i]);
-  point.uv = {p.u[i], p.v[i]};
-  point.footprint = {{p.footprint_dx_u[i], p.footprint_dx_v[i]},
-                     {p.footprint_dy_u[i], p.footprint_dy_v[i]}};
+  const shading::TexturePoint first = p.uvs[0].get(i);
+  point.uv = first.uv;
+  point.footprint = first.footprint;
+  point.second = p.uvs[1].get(i);
   if (p.coloured) point.colour = glm::vec4(p.colour.get(i), p.colour_alpha[i]);
   return point;
 }
@@ -75,6 +76,8 @@ void meet(const Cluster& cluster, std::span<TravellingRay* const> rays, bool coh
     if (group.active.ray[i] == 0) continue;
     rays[k]->point = point_of(group.points, i);
     rays[k]->asker.coloured = group.points.coloured ? 1 : 0;
+    const Placement& placement = cluster.placements()[hit_of(group.packet, i).placement];
+    rays[k]->asker.second_uvs = placement.texture_sets > 1 ? 1 : 0;
     rays[k]->offset = group.offset[i];
     rays[k]->material = group.material[i];
   }

@@ -64,7 +64,7 @@ class Path final : public Walk {
     asked_lights_.clear();
     filling_ = straight_ = {};
     used_lights_ = kPacketRays;
-    textured_ = false;
+    texture_sets_ = 0;
     for (std::size_t g = 0; g < wave_.shadows.size(); ++g) {
       add_light(wave_.shadows[g], answered_lights_[g]);
     }
@@ -144,7 +144,7 @@ class Path final : public Walk {
       if (same == shading::kAllLanes) return meet_all(number, lanes);
       const bool known = material < setting_.shader.materials.size();
       (group.points.coloured ? coloured_ : plain_).add(known ? material : 0, number, same);
-      textured_ = textured_ || setting_.shader.material(material).textured;
+      texture_sets_ = std::max(texture_sets_, setting_.shader.material(material).texture_sets);
     }
   }
 
@@ -156,7 +156,8 @@ class Path final : public Walk {
   void meet_gathered(std::span<const std::uint32_t> hits, bool coloured) {
     while (!hits.empty()) {
       const std::size_t count = std::min<std::size_t>(hits.size(), kPacketRays);
-      gather_hits(wave_.rays, answered_, hits.first(count), coloured, textured_, group_, lanes_);
+      gather_hits(wave_.rays, answered_, hits.first(count), coloured, texture_sets_, group_,
+                  lanes_);
       std::copy_n(hits.begin(), count, sources_);
       meet(group_, lanes_, shading::first_lanes(static_cast<int>(count)));
       hits = hits.subspan(count);
@@ -389,7 +390,7 @@ class Path final : public Walk {
   Filling filling_, straight_;       // groups of next_.rays, straight_ of camera rays
   int used_lights_ = kPacketRays;    // lanes of the last group of next_.shadows
   HitsByMaterial plain_, coloured_;  // colours of vertices: of none, of some of a group
-  bool textured_ = false;            // whether any of their materials is
+  int texture_sets_ = 0;             // the most that one of their materials looks at
   // Of the surfaces that are looked at.
   RayGroup group_;
   PathLanes lanes_;

@@ -31,10 +31,11 @@ void move_to_world(Placement& placement) {
   placement.positions = placement.moved.data();
 }
 
-void look_at_material(Placement& placement, const scenes::Material& material) {
+void look_at_material(Placement& placement, const shading::Shader& shader) {
+  const scenes::Material& material = shader.materials[placement.material];
   placement.layered = material.alpha != scenes::Material::Alpha::opaque;
   placement.see_through = placement.layered || material.transmission > 0.0F;
-  placement.textured = material.textured();
+  placement.texture_sets = shading::texture_sets(shader, material);
 }
 
 // The largest coordinate of a mesh.
@@ -95,7 +96,7 @@ std::vector<Placement> place(const scenes::Scene& scene, const shading::Shader& 
     placement.to_world = instance.transform;
     placement.material =
         placement.mesh->material < shader.materials.size() ? placement.mesh->material : 0;
-    look_at_material(placement, shader.materials[placement.material]);
+    look_at_material(placement, shader);
     placement.solid = solid[instance.mesh];
     look_at_transform(placement, reaches[instance.mesh]);
     placement.instanced = share_meshes && uses[instance.mesh] > 1;

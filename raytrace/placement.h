@@ -24,7 +24,7 @@ struct Placement {
   bool see_through = false;  // masked, blended or transmitting: shadow rays do not end there
   bool layered = false;      // masked or blended: no ray need end there
   std::shared_ptr<const std::vector<std::uint64_t>> solid;  // solid_triangles(); null: none
-  bool textured = false;                                    // the material looks at uv
+  int texture_sets = 0;                                     // that the material looks at
   float orientation = 1.0F;                                 // -1 if the transform mirrors
   glm::mat4x3 to_world{1.0F};                               // the instance's transform
   glm::mat3 normal_to_world{1.0F};

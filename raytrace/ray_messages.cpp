@@ -22,8 +22,12 @@ class Writer {
   std::size_t at_ = 0;
 };
 
+// The point is last in a ray, and what few points need is last in a point.
+constexpr std::size_t kPlainRay = offsetof(TravellingRay, point) + offsetof(shading::Point, second);
+
 std::size_t size_of(const TravellingRay& ray) {
-  return ray.placement == kMiss ? offsetof(TravellingRay, point) : sizeof(TravellingRay);
+  if (ray.placement == kMiss) return offsetof(TravellingRay, point);
+  return ray.asker.second_uvs != 0 ? sizeof(TravellingRay) : kPlainRay;
 }
 std::size_t size_of(const TravellingShadow& shadow) {
   return offsetof(TravellingShadow, layer) + shadow.layers * sizeof(Layer);
@@ -74,7 +78,7 @@ Travellers unpack_travellers(const comm::Buffer& message, const MessageHeader& h
   for (std::uint32_t i = 0; i < header.rays; ++i) {
     TravellingRay& ray = result.rays.emplace_back();
     read(static_cast<void*>(&ray), kRay);
-    if (ray.placement != kMiss) read(static_cast<void*>(&ray), sizeof(ray));
+    if (ray.placement != kMiss) read(static_cast<void*>(&ray), size_of(ray));
     advance(size_of(ray));
   }
   result.shadows.reserve(header.shadows);

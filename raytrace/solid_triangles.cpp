@@ -65,6 +65,7 @@ LeastAlpha::LeastAlpha(const shading::Texture& texture)
     : columns_((texture.levels[0].width + kTileSide - 1) / kTileSide),
       width_(texture.levels[0].width),
       height_(texture.levels[0].height),
+      set_(texture.set),
       wrap_u_(texture.wrap_u),
       wrap_v_(texture.wrap_v) {
   const int rows = (height_ + kTileSide - 1) / kTileSide;
@@ -113,16 +114,19 @@ std::vector<std::uint64_t> solid_triangles(const scenes::Mesh& mesh,
                                            std::span<const LeastAlpha> alphas) {
   const std::uint32_t texture = material.base_colour_texture;
   if (material.alpha == Alpha::opaque || material.transmission > 0.0F || !mesh.colours.empty() ||
-      !is_solid(material, 255) || (texture != scenes::kNone && mesh.uvs.empty())) {
+      !is_solid(material, 255)) {
     return {};
   }
+  const std::vector<glm::vec2>& uvs =
+      mesh.uvs_of(texture == scenes::kNone ? 0 : alphas[texture].set());
+  if (texture != scenes::kNone && uvs.empty()) return {};
   std::vector<std::uint64_t> solid((mesh.triangles.size() + 63) / 64, 0);
   std::uint64_t any = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     int least = 255;
     if (texture != scenes::kNone) {
       const glm::uvec3& t = mesh.triangles[i];
-      const glm::vec2 &a = mesh.uvs[t.x], &b = mesh.uvs[t.y], &c = mesh.uvs[t.z];
+      const glm::vec2 &a = uvs[t.x], &b = uvs[t.y], &c = uvs[t.z];
       least = alphas[texture].over(glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c));
     }
     const std::uint64_t bit = is_solid(material, least) ? 1 : 0;

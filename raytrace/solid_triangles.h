@@ -21,8 +21,10 @@ class LeastAlpha {
   // boxes that are too large, over all of the texture.
   int over(const glm::vec2& low, const glm::vec2& high) const;
 
+  int set() const { return set_; }  // of texture coordinates
+
  private:
-  int columns_ = 0, width_ = 0, height_ = 0;
+  int columns_ = 0, width_ = 0, height_ = 0, set_ = 0;
   scenes::Texture::Wrap wrap_u_{}, wrap_v_{};
   std::uint8_t everywhere_ = 0;
   std::vector<std::uint8_t> least_;

@@ -16,7 +16,8 @@ std::size_t bytes_of(const std::vector<T>& v) {
 
 std::size_t bytes_of(const scenes::Mesh& mesh) {
   return bytes_of(mesh.triangles) + bytes_of(mesh.positions) + bytes_of(mesh.normals) +
-         bytes_of(mesh.uvs) + bytes_of(mesh.colours) + bytes_of(mesh.tangents);
+         bytes_of(mesh.uvs) + bytes_of(mesh.uvs2) + bytes_of(mesh.colours) +
+         bytes_of(mesh.tangents);
 }
 
 }  // namespace

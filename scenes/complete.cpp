@@ -45,9 +45,11 @@ double area(const Mesh& mesh, const glm::mat4x3& transform) {
   return sum;
 }
 
-bool needs_tangents(const Scene& scene, const Mesh& mesh) {
-  return scene.materials[mesh.material].normal_texture != kNone && mesh.tangents.empty() &&
-         !mesh.uvs.empty();
+void add_tangents(const Scene& scene, Mesh& mesh) {
+  const std::uint32_t texture = scene.materials[mesh.material].normal_texture;
+  if (texture == kNone || !mesh.tangents.empty()) return;
+  const int set = texture < scene.textures.size() ? scene.textures[texture].set : 0;
+  if (!mesh.uvs_of(set).empty()) internal::compute_tangents(mesh, set);
 }
 
 }  // namespace
@@ -94,7 +96,7 @@ void complete_surfaces(Scene& scene, float crease_degrees) {
   parallel::parallel_for(0, scene.meshes.size(), 1, [&](std::size_t i) {
     Mesh& mesh = scene.meshes[i];
     if (mesh.normals.empty()) internal::compute_normals(mesh, crease_cosine);
-    if (needs_tangents(scene, mesh)) internal::compute_tangents(mesh);
+    add_tangents(scene, mesh);
   });
 }
 

@@ -13,9 +13,11 @@ void add_mesh(const Mesh& mesh, Description& d) {
   d.stored_vertices += mesh.positions.size();
   d.has_normals |= !mesh.normals.empty();
   d.has_uvs |= !mesh.uvs.empty();
+  d.has_second_uvs |= !mesh.uvs2.empty();
   d.has_colours |= !mesh.colours.empty();
   d.bytes += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.uvs) +
-             bytes_of(mesh.tangents) + bytes_of(mesh.colours) + bytes_of(mesh.triangles);
+             bytes_of(mesh.uvs2) + bytes_of(mesh.tangents) + bytes_of(mesh.colours) +
+             bytes_of(mesh.triangles);
 }
 
 void add_light(const Light& light, Description& d) {

@@ -25,6 +25,7 @@ struct Description {
   std::uint64_t point_lights = 0, directional_lights = 0, area_lights = 0;
   std::vector<std::string> cameras;                                // names
   bool has_normals = false, has_uvs = false, has_colours = false;  // any mesh
+  bool has_second_uvs = false;
   bool z_up = false;
   geometry::Box3 bounds;    // empty for an empty scene
   std::uint64_t bytes = 0;  // of vertices, triangles and texels in memory

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace delray::scenes::internal {
 namespace {
@@ -36,22 +37,53 @@ std::uint32_t read_image(const GltfDocument& document, std::uint32_t number, con
   return textures.from_file(decode_percent(uri), use);
 }
 
+UvUse uv_use(const JsonView& info) {
+  UvUse use;
+  use.set = info["texCoord"].whole(0);
+  const JsonView transform = info["extensions"]["KHR_texture_transform"];
+  if (!transform) return use;
+  use.set = transform["texCoord"].whole(use.set);
+  const glm::dvec2 offset = transform["offset"].vector<2>({0, 0});
+  const glm::dvec2 scale = transform["scale"].vector<2>({1, 1});
+  const double angle = transform["rotation"].number(0);
+  const double c = std::cos(angle), s = std::sin(angle);
+  use.transform = {c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y};
+  return use;
+}
+
+// The coordinates that textures of one material use, numbered as they come.
+struct MaterialUvs {
+  std::vector<UvUse> uses;  // of sets 0 and 1
+  bool any_others = false;
+
+  std::uint8_t set_of(const UvUse& use) {
+    const auto known = std::find(uses.begin(), uses.end(), use);
+    if (known != uses.end()) return static_cast<std::uint8_t>(known - uses.begin());
+    if (uses.size() == 2) {
+      any_others = true;
+      return 0;
+    }
+    uses.push_back(use);
+    return static_cast<std::uint8_t>(uses.size() - 1);
+  }
+};
+
 // What the materials of a file have in common while they are read.
 struct Reader {
   const GltfDocument& document;
   TextureFiles& textures;
 
   // `info` refers to a texture from a material; absent: kNone.
-  std::uint32_t texture(const JsonView& info, bool srgb, std::vector<UvUse>& uses) const {
+  std::uint32_t texture(const JsonView& info, bool srgb, MaterialUvs& uvs) const {
     if (!info) return kNone;
     const JsonView root = document.root();
     const JsonView all = root["textures"];
     const std::uint32_t number = info["index"].reference(all.size());
     if (number == kNone) info["index"].fail("is missing");
-    uses.push_back(uv_use(info));
+    const std::uint8_t set = uvs.set_of(uv_use(info));
     const JsonView texture = all[number];
     const JsonView samplers = root["samplers"];
-    TextureUse use{srgb, Texture::Wrap::repeat, Texture::Wrap::repeat};
+    TextureUse use{srgb, Texture::Wrap::repeat, Texture::Wrap::repeat, set};
     const std::uint32_t sampler = texture["sampler"].reference(samplers.size());
     if (sampler != kNone) {
       use.wrap_u = wrap_of(samplers[sampler]["wrapS"]);
@@ -70,27 +102,11 @@ struct Reader {
   void left_out(const JsonView& what) const {
     document.source.warn(what.place() + " is not supported and left out");
   }
-
- private:
-  static UvUse uv_use(const JsonView& info) {
-    UvUse use;
-    use.set = info["texCoord"].whole(0);
-    const JsonView transform = info["extensions"]["KHR_texture_transform"];
-    if (!transform) return use;
-    use.set = transform["texCoord"].whole(use.set);
-    const glm::dvec2 offset = transform["offset"].vector<2>({0, 0});
-    const glm::dvec2 scale = transform["scale"].vector<2>({1, 1});
-    const double angle = transform["rotation"].number(0);
-    const double c = std::cos(angle), s = std::sin(angle);
-    use.transform = {c * scale.x, -s * scale.x, s * scale.y, c * scale.y, offset.x, offset.y};
-    return use;
-  }
 };
 
 glm::vec3 nonnegative(const glm::dvec3& colour) { return glm::max(colour, glm::dvec3(0)); }
 
-void read_base(const Reader& reader, const JsonView& json, std::vector<UvUse>& uses,
-               Material& material) {
+void read_base(const Reader& reader, const JsonView& json, MaterialUvs& uvs, Material& material) {
   const JsonView base = json["pbrMetallicRoughness"];
   // The older way to say a colour; its gloss becomes roughness, its reflections are left out.
   const JsonView gloss = json["extensions"]["KHR_materials_pbrSpecularGlossiness"];
@@ -99,15 +115,15 @@ void read_base(const Reader& reader, const JsonView& json, std::vector<UvUse>& u
     material.base_colour = glm::max(gloss["diffuseFactor"].vector<4>(white), glm::dvec4(0));
     material.metallic = 0;
     material.roughness = static_cast<float>(1 - gloss["glossinessFactor"].number(1, 0, 1));
-    material.base_colour_texture = reader.texture(gloss["diffuseTexture"], true, uses);
+    material.base_colour_texture = reader.texture(gloss["diffuseTexture"], true, uvs);
     return;
   }
   material.base_colour = glm::max(base["baseColorFactor"].vector<4>(white), glm::dvec4(0));
   material.metallic = static_cast<float>(base["metallicFactor"].number(1, 0, 1));
   material.roughness = static_cast<float>(base["roughnessFactor"].number(1, 0, 1));
-  material.base_colour_texture = reader.texture(base["baseColorTexture"], true, uses);
+  material.base_colour_texture = reader.texture(base["baseColorTexture"], true, uvs);
   material.metallic_roughness_texture =
-      reader.texture(base["metallicRoughnessTexture"], false, uses);
+      reader.texture(base["metallicRoughnessTexture"], false, uvs);
 }
 
 Material::Alpha alpha_mode(const JsonView& mode) {
@@ -122,11 +138,11 @@ float factor(const JsonView& json, const char* key, double otherwise = 0) {
   return static_cast<float>(json[key].number(otherwise, 0, 1));
 }
 
-void read_transmission(const Reader& reader, const JsonView& extensions, std::vector<UvUse>& uses,
+void read_transmission(const Reader& reader, const JsonView& extensions, MaterialUvs& uvs,
                        Material& material) {
   const JsonView transmission = extensions["KHR_materials_transmission"];
   material.transmission = factor(transmission, "transmissionFactor");
-  material.transmission_texture = reader.texture(transmission["transmissionTexture"], false, uses);
+  material.transmission_texture = reader.texture(transmission["transmissionTexture"], false, uvs);
   const JsonView volume = extensions["KHR_materials_volume"];
   material.thickness = static_cast<float>(volume["thicknessFactor"].number(0, 0, 1e18));
   if (volume["thicknessTexture"]) reader.left_out(volume["thicknessTexture"]);
@@ -136,7 +152,7 @@ void read_transmission(const Reader& reader, const JsonView& extensions, std::ve
       glm::clamp(volume["attenuationColor"].vector<3>({1, 1, 1}), glm::dvec3(0), glm::dvec3(1));
 }
 
-void read_reflection(const Reader& reader, const JsonView& extensions, std::vector<UvUse>& uses,
+void read_reflection(const Reader& reader, const JsonView& extensions, MaterialUvs& uvs,
                      Material& material) {
   const JsonView ior = extensions["KHR_materials_ior"]["ior"];
   // 0 stands for a dielectric that reflects everything.
@@ -145,21 +161,21 @@ void read_reflection(const Reader& reader, const JsonView& extensions, std::vect
   const JsonView specular = extensions["KHR_materials_specular"];
   material.specular = factor(specular, "specularFactor", 1);
   material.specular_colour = nonnegative(specular["specularColorFactor"].vector<3>({1, 1, 1}));
-  material.specular_texture = reader.texture(specular["specularTexture"], false, uses);
-  material.specular_colour_texture = reader.texture(specular["specularColorTexture"], true, uses);
+  material.specular_texture = reader.texture(specular["specularTexture"], false, uvs);
+  material.specular_colour_texture = reader.texture(specular["specularColorTexture"], true, uvs);
   const JsonView coat = extensions["KHR_materials_clearcoat"];
   material.clearcoat = factor(coat, "clearcoatFactor");
   material.clearcoat_roughness = factor(coat, "clearcoatRoughnessFactor");
-  material.clearcoat_texture = reader.texture(coat["clearcoatTexture"], false, uses);
+  material.clearcoat_texture = reader.texture(coat["clearcoatTexture"], false, uvs);
   material.clearcoat_roughness_texture =
-      reader.texture(coat["clearcoatRoughnessTexture"], false, uses);
+      reader.texture(coat["clearcoatRoughnessTexture"], false, uvs);
   if (coat["clearcoatNormalTexture"]) reader.left_out(coat["clearcoatNormalTexture"]);
   const JsonView sheen = extensions["KHR_materials_sheen"];
   material.sheen_colour =
       glm::clamp(sheen["sheenColorFactor"].vector<3>({0, 0, 0}), glm::dvec3(0), glm::dvec3(1));
   material.sheen_roughness = factor(sheen, "sheenRoughnessFactor");
-  material.sheen_colour_texture = reader.texture(sheen["sheenColorTexture"], true, uses);
-  material.sheen_roughness_texture = reader.texture(sheen["sheenRoughnessTexture"], false, uses);
+  material.sheen_colour_texture = reader.texture(sheen["sheenColorTexture"], true, uvs);
+  material.sheen_roughness_texture = reader.texture(sheen["sheenRoughnessTexture"], false, uvs);
 }
 
 void warn_of_others(const Reader& reader, const JsonView& extensions) {
@@ -171,28 +187,28 @@ void warn_of_others(const Reader& reader, const JsonView& extensions) {
 GltfMaterial read_material(const Reader& reader, const JsonView& json) {
   GltfMaterial result;
   Material& material = result.material;
-  std::vector<UvUse> uses;
+  MaterialUvs uvs;
   material.name = json["name"].text();
-  read_base(reader, json, uses, material);
-  material.normal_texture = reader.texture(json["normalTexture"], false, uses);
+  read_base(reader, json, uvs, material);
+  material.normal_texture = reader.texture(json["normalTexture"], false, uvs);
   material.normal_scale = static_cast<float>(json["normalTexture"]["scale"].number(1));
   const JsonView extensions = json["extensions"];
   const double strength =
       extensions["KHR_materials_emissive_strength"]["emissiveStrength"].number(1, 0, 1e18);
   material.emission = nonnegative(json["emissiveFactor"].vector<3>({0, 0, 0}) * strength);
-  material.emission_texture = reader.texture(json["emissiveTexture"], true, uses);
+  material.emission_texture = reader.texture(json["emissiveTexture"], true, uvs);
   material.alpha = alpha_mode(json["alphaMode"]);
   material.alpha_cutoff = static_cast<float>(json["alphaCutoff"].number(0.5, 0, 2));
   material.double_sided = json["doubleSided"].flag(false);
   material.unlit = static_cast<bool>(extensions["KHR_materials_unlit"]);
-  read_transmission(reader, extensions, uses, material);
-  read_reflection(reader, extensions, uses, material);
+  read_transmission(reader, extensions, uvs, material);
+  read_reflection(reader, extensions, uvs, material);
   warn_of_others(reader, extensions);
-  if (!uses.empty()) result.uvs = uses.front();
-  for (const UvUse& use : uses) {
-    if (use == result.uvs) continue;
-    reader.document.source.warn(json.place() + ": its textures use different coordinates");
-    break;
+  result.uvs = std::move(uvs.uses);
+  if (uvs.any_others) {
+    reader.document.source.warn(json.place() +
+                                ": its textures use more than two kinds of coordinates; the rest "
+                                "use the first texture's");
   }
   return result;
 }

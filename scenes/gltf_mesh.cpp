@@ -50,6 +50,7 @@ void drop_unused_vertices(Mesh& mesh) {
   keep(mesh.positions, kept);
   keep(mesh.normals, kept);
   keep(mesh.uvs, kept);
+  keep(mesh.uvs2, kept);
   keep(mesh.tangents, kept);
   keep(mesh.colours, kept);
   for (glm::uvec3& t : mesh.triangles) t = {number[t.x], number[t.y], number[t.z]};
@@ -123,14 +124,40 @@ void read_colours(Attributes& attributes, Mesh& mesh) {
   for (glm::vec4& c : mesh.colours) c = glm::max(c, glm::vec4(0));
 }
 
-void read_uvs(Attributes& attributes, const UvUse& use, Mesh& mesh) {
-  mesh.uvs = attributes.read<2>(("TEXCOORD_" + std::to_string(use.set)).c_str());
-  if (use.transform == glm::dmat3x2(1.0)) return;
-  for (glm::vec2& uv : mesh.uvs) uv = use.transform * glm::dvec3(uv, 1.0);
+std::string attribute_of(const UvUse& use) { return "TEXCOORD_" + std::to_string(use.set); }
+
+// A set that the mesh does not have is replaced by set 0.
+std::vector<glm::vec2> read_uvs(Attributes& attributes, const UvUse& use) {
+  const std::string own = attribute_of(use);
+  std::vector<glm::vec2> uvs =
+      attributes.read<2>(attributes.has(own.c_str()) ? own.c_str() : "TEXCOORD_0");
+  if (use.transform != glm::dmat3x2(1.0)) {
+    for (glm::vec2& uv : uvs) uv = use.transform * glm::dvec3(uv, 1.0);
+  }
+  return uvs;
+}
+
+// What the material's textures are looked up at.
+void read_all_uvs(const JsonView& primitive, Attributes& attributes, const GltfDocument& document,
+                  GltfMaterial& material, Mesh& mesh) {
+  if (material.uvs.empty()) {
+    mesh.uvs = read_uvs(attributes, {});
+    return;
+  }
+  for (const UvUse& use : material.uvs) {
+    if (material.lacks_uvs || attributes.has(attribute_of(use).c_str())) continue;
+    material.lacks_uvs = true;
+    document.source.warn(primitive.place() + " has no " + attribute_of(use) +
+                         ", where its material's textures are looked up");
+  }
+  mesh.uvs = read_uvs(attributes, material.uvs[0]);
+  if (material.uvs.size() == 1) return;
+  mesh.uvs2 = read_uvs(attributes, material.uvs[1]);
+  if (mesh.uvs.empty()) mesh.uvs.resize(mesh.uvs2.size(), glm::vec2(0));
 }
 
 Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std::uint64_t mode,
-                    std::span<const GltfMaterial> materials) {
+                    std::span<GltfMaterial> materials) {
   Mesh mesh;
   Attributes attributes(document, primitive);
   if (!attributes.has("POSITION")) return mesh;
@@ -175,7 +202,9 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
   normalize_or_clear(mesh.normals);
   if (!mesh.normals.empty()) mesh.tangents = attributes.read<4>("TANGENT");
   normalize_or_clear(mesh.tangents);
-  read_uvs(attributes, material == kNone ? UvUse{} : materials[material].uvs, mesh);
+  GltfMaterial none;
+  read_all_uvs(primitive, attributes, document, material == kNone ? none : materials[material],
+               mesh);
   read_colours(attributes, mesh);
   document.source.require_memory(mesh.positions.size() * 2 * sizeof(std::uint32_t),
                                  primitive.place());
@@ -186,7 +215,7 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
 }  // namespace
 
 std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
-                            std::span<const GltfMaterial> materials) {
+                            std::span<GltfMaterial> materials) {
   const JsonView json = document.root()["meshes"][number];
   const JsonView primitives = json["primitives"];
   std::vector<Mesh> meshes;

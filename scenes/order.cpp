@@ -153,6 +153,7 @@ void number_vertices_as_used(Mesh& mesh) {
   reorder(old_number, mesh.positions);
   reorder(old_number, mesh.normals);
   reorder(old_number, mesh.uvs);
+  reorder(old_number, mesh.uvs2);
   reorder(old_number, mesh.tangents);
   reorder(old_number, mesh.colours);
 }

@@ -22,11 +22,15 @@ struct Mesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;   // unit length
   std::vector<glm::vec2> uvs;       // v grows downwards, as rows of the texture do
+  std::vector<glm::vec2> uvs2;      // the same for textures of set 1; none where there are no uvs
   std::vector<glm::vec4> tangents;  // xyz unit length, w = handedness: bitangent = w * cross(n, t)
   std::vector<glm::vec4> colours;   // linear, straight alpha; multiplies the base colour
   std::vector<glm::uvec3>
       triangles;  // indices into the attributes; counter-clockwise seen from outside
   std::uint32_t material = 0;
+
+  // Of textures of a set.
+  const std::vector<glm::vec2>& uvs_of(int set) const { return set == 0 ? uvs : uvs2; }
 };
 
 // A mesh placed in the world. The same mesh may be placed many times.
@@ -87,6 +91,7 @@ struct Texture {
   bool srgb = true;                  // colours; false: data such as normals, used as they are
   enum class Wrap : std::uint8_t { repeat, mirror, clamp } wrap_u = Wrap::repeat,
                                                            wrap_v = Wrap::repeat;
+  std::uint8_t set = 0;  // looked up at Mesh::uvs; 1: at uvs2
   // In place of texels: linear light without an upper limit, opaque. Of environments only.
   std::vector<glm::vec3> radiance{};
 };

@@ -68,6 +68,7 @@ void split_vertices(Mesh& mesh, std::span<const std::uint32_t> labels) {
   append_copies(mesh.positions, sources);
   append_copies(mesh.normals, sources);
   append_copies(mesh.uvs, sources);
+  append_copies(mesh.uvs2, sources);
   append_copies(mesh.tangents, sources);
   append_copies(mesh.colours, sources);
 }

@@ -37,7 +37,7 @@ std::uint32_t TextureFiles::add_picture(const std::string& name, const TextureUs
   image::Texels texels = decode();
   const auto number = static_cast<std::uint32_t>(textures_.size());
   textures_.push_back({name, texels.width, texels.height, std::move(texels.texels), use.srgb,
-                       use.wrap_u, use.wrap_v});
+                       use.wrap_u, use.wrap_v, use.set});
   pictures_.emplace(std::pair(digest, use), number);
   return number;
 }

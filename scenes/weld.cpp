@@ -41,12 +41,13 @@ std::vector<std::uint32_t> weld(Mesh& mesh) {
     std::uint64_t h = hash_value(0, mesh.positions, i);
     h = hash_value(h, mesh.normals, i);
     h = hash_value(h, mesh.uvs, i);
+    h = hash_value(h, mesh.uvs2, i);
     h = hash_value(h, mesh.tangents, i);
     return hash_value(h, mesh.colours, i);
   };
   const auto equal = [&mesh](std::size_t i, std::size_t j) {
     return same(mesh.positions, i, j) && same(mesh.normals, i, j) && same(mesh.uvs, i, j) &&
-           same(mesh.tangents, i, j) && same(mesh.colours, i, j);
+           same(mesh.uvs2, i, j) && same(mesh.tangents, i, j) && same(mesh.colours, i, j);
   };
   std::vector<std::uint32_t> table(std::bit_ceil(2 * n + 1), kNone);  // places in `kept`
   const std::size_t mask = table.size() - 1;
@@ -63,6 +64,7 @@ std::vector<std::uint32_t> weld(Mesh& mesh) {
   keep(mesh.positions, kept);
   keep(mesh.normals, kept);
   keep(mesh.uvs, kept);
+  keep(mesh.uvs2, kept);
   keep(mesh.tangents, kept);
   keep(mesh.colours, kept);
   for (glm::uvec3& t : mesh.triangles) t = {new_index[t.x], new_index[t.y], new_index[t.z]};

@@ -29,8 +29,8 @@ std::uint64_t least_size(const Scene& scene) {
   std::uint64_t size = 0;
   const auto bytes = [](const auto& values) { return values.size() * sizeof(values[0]); };
   for (const Mesh& m : scene.meshes) {
-    size += bytes(m.positions) + bytes(m.normals) + bytes(m.uvs) + bytes(m.tangents) +
-            bytes(m.colours) + bytes(m.triangles);
+    size += bytes(m.positions) + bytes(m.normals) + bytes(m.uvs) + bytes(m.uvs2) +
+            bytes(m.tangents) + bytes(m.colours) + bytes(m.triangles);
   }
   return size;
 }
@@ -107,6 +107,7 @@ class Writer {
       if (filled(mesh.normals)) attributes["NORMAL"] = add_accessor<3>(mesh.normals);
       if (filled(mesh.tangents)) attributes["TANGENT"] = add_accessor<4>(mesh.tangents);
       if (filled(mesh.uvs)) attributes["TEXCOORD_0"] = add_accessor<2>(mesh.uvs);
+      if (filled(mesh.uvs2)) attributes["TEXCOORD_1"] = add_accessor<2>(mesh.uvs2);
       if (filled(mesh.colours)) attributes["COLOR_0"] = add_accessor<4>(mesh.colours);
       if (filled(mesh.triangles)) primitive["indices"] = add_indices(mesh.triangles);
     }
@@ -139,8 +140,11 @@ class Writer {
     if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
   }
 
-  static void refer(Json& json, const char* key, std::uint32_t texture) {
-    if (texture != kNone) json[key] = {{"index", texture}};
+  void refer(Json& json, const char* key, std::uint32_t texture) const {
+    if (texture == kNone) return;
+    json[key] = {{"index", texture}};
+    if (texture < scene_.textures.size() && scene_.textures[texture].set != 0)
+      json[key]["texCoord"] = 1;
   }
 
   void add_material(const Material& material) {

@@ -4,7 +4,7 @@
 //
 // All functions write the lanes in `lanes` and leave the others of their results as they were.
 // `views` are unit vectors to the viewer. REQUIRES (all): what the lanes in `lanes` hold is finite,
-// except for uv and footprints.
+// except for `uvs`.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -34,11 +34,11 @@ void shade(const BatchShader& shader, std::uint32_t material, const Points& poin
            const Vectors16& views, LaneMask lanes, std::span<const Vectors16> visibility,
            Shaded& shaded);
 
-// Surface::alpha alone, as coverage() gives it. Reads colours' alpha, uv and footprints of points.
+// Surface::alpha alone, as coverage() gives it. Reads colours' alpha and uvs of points.
 void coverage(const BatchShader& shader, std::uint32_t material, const Points& points,
               LaneMask lanes, Floats16& alpha);
 
-// A texture at the points' uv and footprints.
+// A texture at the points.
 void sample(const Texture& texture, const Points& points, LaneMask lanes, Shaded& texels);
 
 // In parts, for renderers that send rays in between. What Surface and Lobes say of one point; lanes

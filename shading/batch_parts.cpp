@@ -179,8 +179,9 @@ void coverage_block(const BatchShader& shader, std::uint32_t number, const Point
                           material.base_colour_texture != scenes::kNone;
     if (textured) {
       const Texture& texture = shader.shader->textures[material.base_colour_texture];
-      alpha = alpha * sample_alpha(texture, load(points.u, i), load(points.v, i),
-                                   level_of(texture, points, i), active);
+      const TexturePoints& at = points.uvs[texture.set];
+      alpha = alpha *
+              sample_alpha(texture, load(at.u, i), load(at.v, i), level_of(texture, at, i), active);
     }
     store(resolve_alpha(material, alpha), active, i, alphas);
   }
@@ -219,9 +220,10 @@ Point point_at(const Points& points, int i) {
   Point point;
   point.geometric_normal = points.geometric_normal.get(i);
   point.normal = points.normal.get(i);
-  point.uv = {points.u[i], points.v[i]};
-  point.footprint = {{points.footprint_dx_u[i], points.footprint_dx_v[i]},
-                     {points.footprint_dy_u[i], points.footprint_dy_v[i]}};
+  const TexturePoint first = points.uvs[0].get(i);
+  point.uv = first.uv;
+  point.footprint = first.footprint;
+  point.second = points.uvs[1].get(i);
   return point;
 }
 

@@ -36,7 +36,7 @@ bool covers(const Shader& shader, const scenes::Material& material) {
 BatchMaterial make_material(const Shader& shader, const scenes::Material& material) {
   BatchMaterial result;
   result.covers = covers(shader, material);
-  result.textured = material.textured();
+  result.texture_sets = texture_sets(shader, material);
   result.layered = is_layered(material);
   result.material = material;
   result.material.name.clear();

@@ -18,7 +18,7 @@ struct BatchMaterial {
   Specular plain = Specular::varying;     // without colours of vertices
   Specular coloured = Specular::varying;  // with them
   bool covers = false;                    // alpha is 1 everywhere, without colours of vertices
-  bool textured = false;                  // looks at uv
+  int texture_sets = 0;                   // it looks at the uvs of so many
   Lobes lobes;                            // of the material's factors alone
 
   bool layered = false;         // has a coat or a sheen

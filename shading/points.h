@@ -31,14 +31,25 @@ struct Vectors16 {
   glm::vec3 get(int i) const { return {x[i], y[i], z[i]}; }
 };
 
+// Where they lie in the textures of a set, and Footprint: how that changes to the next pixel.
+struct TexturePoints {
+  Floats16 u, v;
+  Floats16 dx_u, dx_v, dy_u, dy_v;
+  void set(int i, const TexturePoint& point) {
+    u[i] = point.uv.x, v[i] = point.uv.y;
+    dx_u[i] = point.footprint.dx.x, dx_v[i] = point.footprint.dx.y;
+    dy_u[i] = point.footprint.dy.x, dy_v[i] = point.footprint.dy.y;
+  }
+  TexturePoint get(int i) const { return {{u[i], v[i]}, {{dx_u[i], dx_v[i]}, {dy_u[i], dy_v[i]}}}; }
+};
+
 // What Point says of one point.
 struct Points {
   Vectors16 position;
   Vectors16 geometric_normal, normal;
   Vectors16 tangent;
-  Floats16 handedness;  // the tangent's w; read where normals are mapped
-  Floats16 u, v;        // read where there is a texture, as is the footprint
-  Floats16 footprint_dx_u, footprint_dx_v, footprint_dy_u, footprint_dy_v;
+  Floats16 handedness;    // the tangent's w; read where normals are mapped
+  TexturePoints uvs[2];   // by set; read where there is a texture of the set
   bool coloured = false;  // false: colours of vertices are not read
   Vectors16 colour;
   Floats16 colour_alpha;
@@ -51,9 +62,8 @@ inline void set_point(Points& points, int i, const Point& point) {
   points.normal.set(i, point.normal);
   points.tangent.set(i, glm::vec3(point.tangent));
   points.handedness[i] = point.tangent.w;
-  points.u[i] = point.uv.x, points.v[i] = point.uv.y;
-  points.footprint_dx_u[i] = point.footprint.dx.x, points.footprint_dx_v[i] = point.footprint.dx.y;
-  points.footprint_dy_u[i] = point.footprint.dy.x, points.footprint_dy_v[i] = point.footprint.dy.y;
+  points.uvs[0].set(i, {point.uv, point.footprint});
+  points.uvs[1].set(i, point.second);
   if (!points.coloured) return;
   points.colour.set(i, glm::vec3(point.colour));
   points.colour_alpha[i] = point.colour.w;

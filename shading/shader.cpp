@@ -1,5 +1,7 @@
 #include "shading/shader.h"
 
+#include <algorithm>
+
 #include "shading/take_shader.h"
 
 namespace delray::shading {
@@ -43,6 +45,14 @@ Shader shader_of(const scenes::Scene& scene, TextureOf&& texture_of) {
 
 Shader make_shader(const scenes::Scene& scene) {
   return shader_of(scene, [&](std::size_t i) { return make_texture(scene.textures[i]); });
+}
+
+int texture_sets(const Shader& shader, const scenes::Material& material) {
+  int sets = 0;
+  for (const std::uint32_t texture : material.textures()) {
+    if (texture != scenes::kNone) sets = std::max(sets, shader.textures[texture].set + 1);
+  }
+  return sets;
 }
 
 Shader take_shader(scenes::Scene& scene) {

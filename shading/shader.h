@@ -27,4 +27,8 @@ inline const scenes::Material& material(const Shader& shader, std::uint32_t numb
   return shader.materials[number < shader.materials.size() ? number : 0];
 }
 
+// The sets of texture coordinates that a material's textures use: 0: none, 1: the first, 2: both.
+// REQUIRES: its textures are the shader's or kNone.
+int texture_sets(const Shader& shader, const scenes::Material& material);
+
 }  // namespace delray::shading

@@ -25,8 +25,7 @@ glm::vec3 normal_mapped(const Shader& shader, const scenes::Material& material,
                         const Point& point) {
   const glm::vec3 tangent(point.tangent);
   const glm::vec3 bitangent = glm::cross(point.normal, tangent) * point.tangent.w;
-  const glm::vec4 texel =
-      sample(shader.textures[material.normal_texture], point.uv, point.footprint);
+  const glm::vec4 texel = sample(shader.textures[material.normal_texture], point);
   const float x = (2.0F * texel.x - 1.0F) * material.normal_scale;
   const float y = (2.0F * texel.y - 1.0F) * material.normal_scale;
   const float z = 2.0F * texel.z - 1.0F;
@@ -37,7 +36,7 @@ glm::vec3 normal_mapped(const Shader& shader, const scenes::Material& material,
 
 glm::vec4 looked_up(const Shader& shader, std::uint32_t texture, const Point& point) {
   if (texture == scenes::kNone) return glm::vec4(1.0F);
-  return sample(shader.textures[texture], point.uv, point.footprint);
+  return sample(shader.textures[texture], point);
 }
 
 // On the viewer's side. Meshes exist whose normals contradict their winding; the winding says which
@@ -87,7 +86,7 @@ Surface evaluate(const Shader& shader, const scenes::Material& material, const P
 
   glm::vec4 colour = material.base_colour * point.colour;
   if (material.base_colour_texture != scenes::kNone) {
-    colour *= sample(shader.textures[material.base_colour_texture], point.uv, point.footprint);
+    colour *= sample(shader.textures[material.base_colour_texture], point);
   }
   surface.base_colour = glm::vec3(colour);
   surface.alpha = resolve_alpha(material, colour.w);
@@ -95,8 +94,7 @@ Surface evaluate(const Shader& shader, const scenes::Material& material, const P
   surface.metallic = material.metallic;
   surface.roughness = material.roughness;
   if (material.metallic_roughness_texture != scenes::kNone) {
-    const glm::vec4 texel =
-        sample(shader.textures[material.metallic_roughness_texture], point.uv, point.footprint);
+    const glm::vec4 texel = sample(shader.textures[material.metallic_roughness_texture], point);
     surface.roughness *= texel.y;
     surface.metallic *= texel.z;
   }
@@ -121,8 +119,7 @@ Surface evaluate(const Shader& shader, const scenes::Material& material, const P
   }
   surface.emission = material.emission;
   if (material.emission_texture != scenes::kNone) {
-    surface.emission *=
-        glm::vec3(sample(shader.textures[material.emission_texture], point.uv, point.footprint));
+    surface.emission *= glm::vec3(sample(shader.textures[material.emission_texture], point));
   }
   surface.unlit = material.unlit;
   if (material.unlit) {
@@ -140,6 +137,13 @@ float coverage(const Shader& shader, const scenes::Material& material, const glm
     alpha *= sample_alpha(shader.textures[material.base_colour_texture], uv, footprint);
   }
   return resolve_alpha(material, alpha);
+}
+
+float coverage(const Shader& shader, const scenes::Material& material, const Point& point) {
+  const std::uint32_t texture = material.base_colour_texture;
+  const bool second = texture != scenes::kNone && shader.textures[texture].set != 0;
+  return coverage(shader, material, second ? point.second.uv : point.uv,
+                  second ? point.second.footprint : point.footprint, point.colour.w);
 }
 
 }  // namespace delray::shading

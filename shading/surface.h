@@ -17,7 +17,14 @@ struct Point {
   glm::vec2 uv{0.0F};
   Footprint footprint;
   glm::vec4 colour{1.0F};  // of the vertices
+  TexturePoint second;     // in textures of set 1; uv and footprint belong to set 0
 };
+
+// A texture at a point.
+inline glm::vec4 sample(const Texture& texture, const Point& point) {
+  if (texture.set == 0) return sample(texture, point.uv, point.footprint);
+  return sample(texture, point.second.uv, point.second.footprint);
+}
 
 // The point with its material's textures looked up. Both normals are turned to the viewer's side.
 struct Surface {
@@ -59,8 +66,10 @@ glm::vec3 transmittance(const scenes::Material& material, float distance);
 Surface evaluate(const Shader& shader, const scenes::Material& material, const Point& point,
                  const glm::vec3& view);
 
-// Surface::alpha alone, for rays that only ask whether something is in their way.
+// Surface::alpha alone, for rays that only ask whether something is in their way. `uv` and
+// `footprint` are those of the base colour texture's set.
 float coverage(const Shader& shader, const scenes::Material& material, const glm::vec2& uv,
                const Footprint& footprint, float vertex_alpha);
+float coverage(const Shader& shader, const scenes::Material& material, const Point& point);
 
 }  // namespace delray::shading

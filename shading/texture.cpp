@@ -171,6 +171,7 @@ Texture without_texels(const scenes::Texture& texture, int width, int height, st
   result.srgb = texture.srgb;
   result.wrap_u = texture.wrap_u;
   result.wrap_v = texture.wrap_v;
+  result.set = texture.set == 0 ? 0 : 1;
   total = 0;
   for (;;) {
     result.levels.push_back({total, width, height});

@@ -1,6 +1,7 @@
 // Textures with their chain of smaller copies, and how they are sampled.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Texture {
   bool opaque = true;  // no texel has an alpha below 255
   scenes::Texture::Wrap wrap_u = scenes::Texture::Wrap::repeat;
   scenes::Texture::Wrap wrap_v = scenes::Texture::Wrap::repeat;
+  std::uint8_t set = 0;  // of texture coordinates, as in the scene
 };
 
 // A texture without texels becomes one white texel. O(texels). REQUIRES: there is radiance for
@@ -34,6 +36,12 @@ Texture make_texture(const scenes::Texture& texture);
 // How uv changes from one pixel to the next; zero asks for the sharpest level.
 struct Footprint {
   glm::vec2 dx{0.0F}, dy{0.0F};
+};
+
+// Where a point lies in the textures of a set.
+struct TexturePoint {
+  glm::vec2 uv{0.0F};
+  Footprint footprint;
 };
 
 // The level, from 0 to levels - 1, at which a step to the next pixel is about one texel (the longer

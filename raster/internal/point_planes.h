@@ -14,17 +14,25 @@ namespace delray::raster {
 
 // Attributes of the tile's triangles as planes, by triangle. Those that no triangle has are empty.
 struct PointPlanes {
-  std::vector<PixelTriangle> position;   // and 1
-  std::vector<ValuePlanes> normal;       // and 0
-  std::vector<glm::vec4> geometric;      // unit normal; w: handedness of the tangents
-  std::vector<ValuePlanes> uv, tangent;  // and 0
+  std::vector<PixelTriangle> position;  // and 1
+  std::vector<ValuePlanes> normal;      // and 0
+  std::vector<glm::vec4> geometric;     // unit normal; w: handedness of the tangents
+  std::vector<ValuePlanes> uv;          // of both sets
+  std::vector<ValuePlanes> tangent;     // and 0
   std::vector<ValuePlanes> colour;
+  int texture_sets = 0;  // that are looked at
 };
 
 // Vertices of a cluster: four numbers each.
 struct VertexRows {
   alignas(64) float row[kClusterVertices + 16][4];
 };
+
+// Texture coordinates of a vertex, those of set 1 last; 0 where the mesh has none.
+inline glm::vec4 uv_row(const scenes::Mesh& mesh, std::uint32_t vertex) {
+  return {mesh.uvs.empty() ? glm::vec2(0.0F) : mesh.uvs[vertex],
+          mesh.uvs2.empty() ? glm::vec2(0.0F) : mesh.uvs2[vertex]};
+}
 
 // Positions and normals of `count` triangles from number `first` on, whose barycentrics are set,
 // and perhaps of some more, up to the next multiple of 16. `handedness`: -1 where the draw mirrors.
@@ -45,8 +53,13 @@ struct PixelBlock {
 // Colours of vertices stay as they are if planes.colour is empty.
 void set_points(const PointPlanes& planes, const PixelBlock& block, shading::Points& points);
 
-// The same of any three values beside 1, and of uv and footprints unless there are no uvs.
-void set_values(std::span<const PixelTriangle> values, std::span<const ValuePlanes> uvs,
-                const PixelBlock& block, shading::Vectors16& results, shading::Points& points);
+// Planes of texture coordinates, and the sets of them that are looked at. May be empty.
+struct UvPlanes {
+  std::span<const ValuePlanes> planes;
+  int sets = 0;
+};
+// The same of any three values beside 1, and of the points' uvs.
+void set_values(std::span<const PixelTriangle> values, const UvPlanes& uvs, const PixelBlock& block,
+                shading::Vectors16& results, shading::Points& points);
 
 }  // namespace delray::raster

@@ -23,9 +23,10 @@ struct FrameShading {
   shading::BatchShader batch;                // the shader for many points at a time
   std::vector<scenes::Material> untextured;  // the shader's materials without textures; for gouraud
   shading::BatchShader untextured_batch;     // the same, for many vertices at a time
-  // Whether any draw so far has colours of vertices, a material with a texture, with a normal map,
-  // or may be seen through.
-  bool any_colours = false, any_textures = false, any_normal_maps = false, any_blended = false;
+  // Whether any draw so far has colours of vertices, a material with a normal map, or may be seen
+  // through, and the most sets of texture coordinates that a material looks at.
+  bool any_colours = false, any_normal_maps = false, any_blended = false;
+  int texture_sets = 0;
   Lighting lighting;
   // Images get distances along the view axis rather than -near / distance.
   bool distances;
@@ -68,9 +69,9 @@ bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number,
 
 // What shading needs to know of a triangle at a pixel. It may travel.
 struct SeenPoint {
-  shading::Point point;
   std::uint32_t material = 0;  // of the shader's
   std::uint32_t blended = 0;   // whether what is behind may be seen
+  shading::Point point;
 };
 inline bool is_opaque(const SeenPoint& seen) { return seen.blended == 0; }
 SeenPoint point_seen(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,

@@ -28,8 +28,8 @@ class ClusterPacker {
   // Appends the triangles at places[i] for the i of `which`, ascending: 16 bytes, 3 per triangle
   // and 12 per vertex (view coordinates), and per vertex
   // - gouraud: 12 (radiance), 8 with a base colour texture (uv), 16 where alpha counts (colour);
-  // - phong: 12 (position), and what the mesh has of 12 (normal), 8 with a texture (uv), 16 with a
-  //   normal texture (tangent), 16 (colour).
+  // - phong: 12 (position), and what the mesh has of 12 (normal), 8 with a texture (uv), 8 with one
+  //   of the second set, 16 with a normal texture (tangent), 16 (colour).
   // A closed mesh has about 0.65 vertices per triangle in a cluster: 19 bytes per triangle with
   // gouraud, 27 with phong and normals. Where no two triangles share a vertex, since most are not
   // seen, it is 75 and 111.

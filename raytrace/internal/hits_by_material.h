@@ -42,9 +42,9 @@ class HitsByMaterial {
 // Lane i of `group` and `lanes` becomes what hit i of `hits` is of, as far as a path tracer looks
 // at surfaces: points, their materials, views and cones, distances, and PathLanes but for the layer
 // left behind. Lanes beyond repeat the first one. Colours of vertices are taken if the groups of
-// all hits have them, what textures are looked up with if `textured`. REQUIRES: 1 to 16 hits.
+// all hits have them, what textures of so many sets are looked up with. REQUIRES: 1 to 16 hits.
 void gather_hits(const Groups<RayGroup>& groups, const Groups<PathLanes>& path_lanes,
-                 std::span<const std::uint32_t> hits, bool coloured, bool textured, RayGroup& group,
-                 PathLanes& lanes);
+                 std::span<const std::uint32_t> hits, bool coloured, int texture_sets,
+                 RayGroup& group, PathLanes& lanes);
 
 }  // namespace delray::raytrace

@@ -15,9 +15,10 @@ struct Asker {
   std::int32_t rank = 0;
   std::uint32_t strand = 0, group = 0;
   std::uint8_t lane = 0;
-  std::uint8_t coherent = 0;       // traced by the kernel for packets, wherever it comes
-  std::uint8_t coloured = 0;       // Points::coloured of the answer
-  std::uint8_t through_glass = 0;  // of light: passes glass, unbent
+  std::uint8_t coherent = 0;        // traced by the kernel for packets, wherever it comes
+  std::uint8_t coloured : 1 = 0;    // Points::coloured of the answer
+  std::uint8_t second_uvs : 1 = 0;  // Point::second of the answer is needed
+  std::uint8_t through_glass = 0;   // of light: passes glass, unbent
 };
 
 // How far a ray has come: it has met all clusters up to `last`, in the order of ClusterTree::find.

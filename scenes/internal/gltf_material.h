@@ -11,7 +11,7 @@
 
 namespace delray::scenes::internal {
 
-// Which texture coordinates a material uses, and how: uv = transform * (u, v, 1).
+// Which texture coordinates a texture uses, and how: uv = transform * (u, v, 1).
 struct UvUse {
   std::uint64_t set = 0;  // TEXCOORD_<set>
   glm::dmat3x2 transform{1.0};
@@ -20,15 +20,17 @@ struct UvUse {
 
 struct GltfMaterial {
   Material material;
-  UvUse uvs;
+  std::vector<UvUse> uvs;  // what Mesh::uvs are made by, and uvs2: at most two
+  bool lacks_uvs = false;  // a mesh was found that does not have them
 };
 
 // Whether an extension is one of materials that is read.
 bool is_material_extension(std::string_view name);
 
-// All materials in the order of the file. Where textures of one material use different coordinates
-// those of the first (base colour, metallic-roughness, normal, emission) are taken, with a warning.
-// What other extensions say of a material is left out with a warning.
+// All materials in the order of the file. Textures of one material may use two different
+// coordinates, of different sets or transformed differently; set 0 are those of its first texture
+// (in the order of Material::textures). What uses others uses those, with a warning. What other
+// extensions say of a material is left out with a warning.
 std::vector<GltfMaterial> read_materials(const GltfDocument& document, TextureFiles& textures);
 
 }  // namespace delray::scenes::internal

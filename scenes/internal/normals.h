@@ -15,11 +15,11 @@ namespace delray::scenes::internal {
 // count.
 void compute_normals(Mesh& mesh, float crease_cosine);
 
-// Gives `mesh` tangents along growing u, orthogonal to the normals; a vertex whose triangles
-// disagree on the handedness of u and v is split. Triangles without area in texture space take part
-// in no sum; a vertex with no other triangle gets any tangent.
+// Gives `mesh` tangents along growing u of its uvs_of(set), orthogonal to the normals; a vertex
+// whose triangles disagree on the handedness of u and v is split. Triangles without area in texture
+// space take part in no sum; a vertex with no other triangle gets any tangent.
 //
-// REQUIRES: normals and uvs have one value per vertex.
-void compute_tangents(Mesh& mesh);
+// REQUIRES: normals and uvs_of(set) have one value per vertex.
+void compute_tangents(Mesh& mesh, int set);
 
 }  // namespace delray::scenes::internal

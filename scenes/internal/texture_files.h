@@ -20,6 +20,7 @@ namespace delray::scenes::internal {
 struct TextureUse {
   bool srgb = true;
   Texture::Wrap wrap_u = Texture::Wrap::repeat, wrap_v = Texture::Wrap::repeat;
+  std::uint8_t set = 0;
   auto operator<=>(const TextureUse&) const = default;
 };
 

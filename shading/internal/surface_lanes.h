@@ -23,13 +23,13 @@ struct SurfaceLanes {
   F3 emission;
 };
 
-HWY_INLINE F level_of(const Texture& texture, const Points& points, int i) {
-  return mip_level(texture, {load(points.footprint_dx_u, i), load(points.footprint_dx_v, i),
-                             load(points.footprint_dy_u, i), load(points.footprint_dy_v, i)});
+HWY_INLINE F level_of(const Texture& texture, const TexturePoints& at, int i) {
+  return mip_level(texture,
+                   {load(at.dx_u, i), load(at.dx_v, i), load(at.dy_u, i), load(at.dy_v, i)});
 }
 HWY_INLINE TexelLanes looked_up(const Texture& texture, const Points& points, int i, M active) {
-  return sample(texture, load(points.u, i), load(points.v, i), level_of(texture, points, i),
-                active);
+  const TexturePoints& at = points.uvs[texture.set];
+  return sample(texture, load(at.u, i), load(at.v, i), level_of(texture, at, i), active);
 }
 
 HWY_INLINE F3 normal_mapped(const Texture& texture, const scenes::Material& material,

@@ -72,6 +72,18 @@ inline scenes::Scene transparent_scene(unsigned seed, int triangles_per_mesh = 4
   return scene;
 }
 
+// A scene of the same picture in which the first texture is of set 1, with other coordinates in set
+// 0 where nothing looks at them.
+inline scenes::Scene with_second_uvs(scenes::Scene scene) {
+  scene.textures[0].set = 1;
+  for (scenes::Mesh& mesh : scene.meshes) {
+    mesh.uvs2 = mesh.uvs;
+    if (scene.materials[mesh.material].normal_texture != scenes::kNone) continue;
+    for (glm::vec2& uv : mesh.uvs) uv = {0.3F - 2 * uv.y, uv.x};
+  }
+  return scene;
+}
+
 inline scenes::Camera random_scene_camera() {
   scenes::Camera camera;
   camera.eye = {0.5F, 0.7F, 3};

@@ -413,6 +413,32 @@ TEST(Render, StopsWhenAsked) {
   });
 }
 
+// Wherever a mesh has the coordinates of a texture, and whoever shades what.
+TEST(Render, TexturesOfASecondSetLookAsThoseOfTheFirst) {
+  int turn = 0;
+  for (const Lighting lighting : {Lighting::phong, Lighting::gouraud})
+    for (const bool transparent : {false, true}) {
+      scenes::Scene scene = transparent ? transparent_scene(17) : random_scene(17);
+      scene.materials[3].base_colour_texture = 0;  // beside a normal texture
+      RenderOptions options;
+      options.width = 97;
+      options.height = 61;
+      options.lighting = lighting;
+      const Result expected = rendered(scene, random_scene_camera(), options);
+      const scenes::Scene moved = with_second_uvs(scene);
+      EXPECT_TRUE(
+          same_bytes(rendered(moved, random_scene_camera(), options).picture, expected.picture));
+      for (const RenderOptions& way : some_combinations(options, ++turn))
+        EXPECT_TRUE(
+            same_bytes(rendered(moved, random_scene_camera(), way, 3).picture, expected.picture))
+            << described(way, 3, 1);
+      if (lighting == Lighting::gouraud) continue;
+      options.shade = Shade::composited;
+      EXPECT_TRUE(
+          same_bytes(rendered(moved, random_scene_camera(), options, 3).picture, expected.picture));
+    }
+}
+
 TEST(Render, PicturesOfGeneratedScenesDoNotDependOnRanks) {
   for (const char* name : {"gen:terrain:20000", "gen:city:5000"}) {
     const scenes::Scene scene = scenes::generate(name);

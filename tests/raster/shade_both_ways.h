@@ -86,6 +86,7 @@ void expect_vectors_give_what_pixels_give(Lighting lighting) {
     both(scene, random_scene_camera(), 131, 97, image::Rgba8());
     both(scene, random_scene_camera(), 66, 130, image::RgbaF());
   }
+  both(with_second_uvs(random_scene(3)), random_scene_camera(), 131, 97, image::Rgba8());
   for (const char* name : {"gen:terrain:40000", "gen:city:3000", "gen:field:20000"}) {
     SCOPED_TRACE(name);
     const scenes::Scene scene = scenes::generate(name);

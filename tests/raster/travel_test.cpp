@@ -17,7 +17,7 @@ void expect_same(const std::vector<Value>& from, const std::vector<Value>& to, s
 }
 
 TEST(Travel, GeometryArrivesAsItLeft) {
-  const scenes::Scene scene = random_scene(1);
+  const scenes::Scene scene = with_second_uvs(random_scene(1));
   const std::vector<std::uint64_t> first = scenes::first_primitives(scene);
   const std::vector<Piece> sent = pieces_of(scene, first, 7, first.back() - 5);
   ASSERT_EQ(sent.size(), scene.instances.size());
@@ -38,6 +38,7 @@ TEST(Travel, GeometryArrivesAsItLeft) {
         expect_same(sent[k].mesh->positions, piece.mesh->positions, from, to);
         expect_same(sent[k].mesh->normals, piece.mesh->normals, from, to);
         expect_same(sent[k].mesh->uvs, piece.mesh->uvs, from, to);
+        expect_same(sent[k].mesh->uvs2, piece.mesh->uvs2, from, to);
         expect_same(sent[k].mesh->tangents, piece.mesh->tangents, from, to);
         expect_same(sent[k].mesh->colours, piece.mesh->colours, from, to);
       }

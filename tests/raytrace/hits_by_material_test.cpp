@@ -77,7 +77,7 @@ TEST(HitsByMaterial, GathersWhatEachHitIsOf) {
     constexpr int kHits = 7;
     const auto to = std::make_unique<RayGroup>();
     const auto to_lanes = std::make_unique<PathLanes>();
-    gather_hits(groups, path_lanes, hits, true, true, *to, *to_lanes);
+    gather_hits(groups, path_lanes, hits, true, 2, *to, *to_lanes);
     EXPECT_TRUE(to->points.coloured);
     for (int i = 0; i < kPacketRays; ++i) {
       const std::uint32_t hit = hits[i < kHits ? i : 0];
@@ -93,11 +93,12 @@ TEST(HitsByMaterial, GathersWhatEachHitIsOf) {
       EXPECT_TRUE(all(a.geometric_normal, b.geometric_normal)) << i;
       EXPECT_TRUE(all(a.normal, b.normal)) << i;
       EXPECT_TRUE(all(a.tangent, b.tangent) && same(a.handedness, b.handedness)) << i;
-      EXPECT_TRUE(same(a.u, b.u) && same(a.v, b.v)) << i;
-      EXPECT_TRUE(same(a.footprint_dx_u, b.footprint_dx_u)) << i;
-      EXPECT_TRUE(same(a.footprint_dx_v, b.footprint_dx_v)) << i;
-      EXPECT_TRUE(same(a.footprint_dy_u, b.footprint_dy_u)) << i;
-      EXPECT_TRUE(same(a.footprint_dy_v, b.footprint_dy_v)) << i;
+      for (int set = 0; set < 2; ++set) {
+        const shading::TexturePoints &at = a.uvs[set], &other = b.uvs[set];
+        EXPECT_TRUE(same(at.u, other.u) && same(at.v, other.v)) << i;
+        EXPECT_TRUE(same(at.dx_u, other.dx_u) && same(at.dx_v, other.dx_v)) << i;
+        EXPECT_TRUE(same(at.dy_u, other.dy_u) && same(at.dy_v, other.dy_v)) << i;
+      }
       EXPECT_TRUE(all(a.colour, b.colour) && same(a.colour_alpha, b.colour_alpha)) << i;
       EXPECT_TRUE(all(to->view, group.view) && same(to->width, group.width)) << i;
       EXPECT_TRUE(same(to->spread, group.spread) && same(to->offset, group.offset)) << i;

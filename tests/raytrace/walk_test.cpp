@@ -170,18 +170,22 @@ scenes::Scene attributes() {
   texture.width = texture.height = 1;
   texture.texels.resize(1);
   scene.textures.push_back(texture);
+  texture.set = 1;
+  scene.textures.push_back(texture);
   for (int kind = 0; kind < 4; ++kind) {
     scenes::Mesh mesh = sphere(6);
     if (kind == 1) mesh.normals.clear();
     for (const glm::vec3& p : mesh.positions) {
       if (kind >= 1) mesh.uvs.emplace_back(p.x, p.y);
       if (kind >= 2) mesh.tangents.emplace_back(p.y, -p.x, 0.1F, p.z < 0 ? -1 : 1);
+      if (kind == 3) mesh.uvs2.emplace_back(p.z * 0.3F, p.x + p.y);
       if (kind == 3) mesh.colours.emplace_back(0.5F + 0.5F * p.x, 0.5F, 0.2F, 0.7F);
     }
     glm::mat4x3 at = placed(0.9F, {kind % 2 * 1.5F - 0.7F, kind / 2 * 1.5F - 0.7F, 0});
     if (kind == 2) at[0].x = -0.8F;
     scenes::Material& material = add(scene, mesh, at);
     if (kind >= 1) material.normal_texture = 0;
+    if (kind >= 2) material.base_colour_texture = 1;
     if (kind == 3) scene.instances.push_back({3, placed(0.5F, {0, 0, 1})});
   }
   return scene;
@@ -191,7 +195,7 @@ TEST(HitPoints, AgreeWithIntersectionToTheLastBit) {
   const scenes::Scene scene = attributes();
   const Tracer tracer = make_tracer(scene);
   std::mt19937 random(7);
-  int hits = 0;
+  int hits = 0, second_hits = 0;
   for (int turn = 0; turn < 200; ++turn) {
     RayGroup group = random_group(random);
     if (turn % 2 == 0) {  // neighbours, which hit the same placement
@@ -226,14 +230,22 @@ TEST(HitPoints, AgreeWithIntersectionToTheLastBit) {
       } else {
         ASSERT_EQ(at.point.colour, glm::vec4(1.0F));
       }
-      if (!placement.textured) continue;
-      ASSERT_EQ(glm::vec2(p.u[i], p.v[i]), at.point.uv);
-      ASSERT_EQ(p.footprint_dx_u[i], at.point.footprint.dx.x);
-      ASSERT_EQ(p.footprint_dy_v[i], at.point.footprint.dy.y);
+      if (placement.texture_sets == 0) continue;
+      const shading::TexturePoint first = p.uvs[0].get(i), second = p.uvs[1].get(i);
+      ASSERT_EQ(first.uv, at.point.uv);
+      ASSERT_EQ(first.footprint.dx, at.point.footprint.dx);
+      ASSERT_EQ(first.footprint.dy, at.point.footprint.dy);
+      if (placement.texture_sets > 1) {
+        ASSERT_EQ(second.uv, at.point.second.uv);
+        ASSERT_EQ(second.footprint.dx, at.point.second.footprint.dx);
+        ASSERT_EQ(second.footprint.dy, at.point.second.footprint.dy);
+        ++second_hits;
+      }
       ASSERT_EQ(glm::vec4(p.tangent.get(i), p.handedness[i]), at.point.tangent);
     }
   }
   EXPECT_GT(hits, 500);
+  EXPECT_GT(second_hits, 100);
 }
 
 // What lets rays share groups with any others.

@@ -241,6 +241,22 @@ TEST(Complete, AddsTangentsForNormalTexturesAndSplitsMirroredOnes) {
   }
 }
 
+TEST(Complete, TangentsFollowTheSetOfTheNormalTexture) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.uvs = {{0, 1}, {1, 1}, {0, 0}};
+  mesh.uvs2 = {{0, 0}, {0, 1}, {1, 0}};  // u grows upwards
+  mesh.triangles = {{0, 1, 2}};
+  Scene scene = with_mesh(mesh);
+  scene.materials.resize(1);
+  scene.materials[0].normal_texture = 0;
+  scene.textures.push_back({"flat", 1, 1, {{128, 128, 255, 255}}, false});
+  scene.textures[0].set = 1;
+  complete(scene, Camera{});
+  ASSERT_EQ(scene.meshes[0].tangents.size(), 3U);
+  EXPECT_EQ(glm::vec3(scene.meshes[0].tangents[0]), glm::vec3(0, 1, 0));
+}
+
 TEST(Complete, AnEmptySceneStaysEmptyAndGetsAMaterial) {
   Scene scene;
   complete(scene, Camera{});

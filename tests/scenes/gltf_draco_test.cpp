@@ -85,6 +85,22 @@ TEST(GltfDraco, AttributesThatAreNotThereAreRefusedByName) {
   }
 }
 
+TEST(GltfDraco, AnySetOfTextureCoordinatesComesBack) {
+  const std::vector<glm::vec2> expected = read(gltf(kEncoded, kBytes)).meshes.at(0).uvs;
+  std::string content = gltf(kEncoded, kBytes);
+  for (std::size_t at = 0; (at = content.find("TEXCOORD_0", at)) != std::string::npos; ++at)
+    content[at + 9] = '1';
+  const std::string primitive = R"("primitives":[{)";
+  content.insert(content.find(primitive) + primitive.size(), R"("material":0,)");
+  content.insert(1, R"("textures":[{}],"materials":[{
+"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1}},"emissiveTexture":{"index":0,
+"texCoord":1,"extensions":{"KHR_texture_transform":{"scale":[2,2]}}}}],)");
+  const Mesh mesh = read(content).meshes.at(0);
+  EXPECT_EQ(mesh.uvs, expected);
+  ASSERT_EQ(mesh.uvs2.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(mesh.uvs2[i], 2.0F * expected[i]);
+}
+
 TEST(GltfDraco, FewBytesThatClaimMuchDoNotGetTheMemory) {
   std::string bytes;
   ASSERT_TRUE(internal::decode_data_uri("data:;base64," + std::string(kEncoded), bytes));

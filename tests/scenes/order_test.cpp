@@ -20,11 +20,13 @@ Mesh shuffled_grid(std::uint32_t n, unsigned seed) {
   Mesh mesh;
   mesh.positions.resize(number.size());
   mesh.uvs.resize(number.size());
+  mesh.uvs2.resize(number.size());
   for (std::uint32_t j = 0; j <= n; ++j)
     for (std::uint32_t i = 0; i <= n; ++i) {
       const std::uint32_t v = number[j * (n + 1) + i];
       mesh.positions[v] = {i, j, 0};
       mesh.uvs[v] = {i, j};
+      mesh.uvs2[v] = {j, i};
     }
   for (std::uint32_t j = 0; j < n; ++j)
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -43,6 +45,7 @@ std::vector<Corners> corners_of(const Mesh& mesh) {
     Corners c;
     for (int k = 0; k < 3; ++k) {
       EXPECT_EQ(glm::vec2(mesh.positions[t[k]]), mesh.uvs[t[k]]);
+      EXPECT_EQ(glm::vec2(mesh.uvs[t[k]].y, mesh.uvs[t[k]].x), mesh.uvs2[t[k]]);
       c[static_cast<std::size_t>(2 * k)] = mesh.positions[t[k]].x;
       c[static_cast<std::size_t>(2 * k + 1)] = mesh.positions[t[k]].y;
     }
@@ -97,6 +100,7 @@ TEST(Order, LeavesSmallMeshesAndVerticesWithoutTrianglesAlone) {
   Mesh mesh = shuffled_grid(40, 4);
   mesh.positions.insert(mesh.positions.end(), 5, glm::vec3(7, 7, 7));
   mesh.uvs.insert(mesh.uvs.end(), 5, glm::vec2(7, 7));
+  mesh.uvs2.insert(mesh.uvs2.end(), 5, glm::vec2(7, 7));
   order_for_locality(mesh);
   ASSERT_EQ(mesh.positions.size(), 41U * 41 + 5);
   EXPECT_EQ(mesh.positions.back(), glm::vec3(7, 7, 7));

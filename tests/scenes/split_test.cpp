@@ -11,6 +11,7 @@ TEST(Split, TheFirstLabelKeepsTheVertexAndOthersGetCopies) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   mesh.uvs = {{0, 0}, {0, 1}, {0, 2}};
+  mesh.uvs2 = {{1, 0}, {1, 1}, {1, 2}};
   mesh.triangles = {{0, 1, 2}, {2, 1, 0}, {0, 1, 2}, {1, 0, 2}};
   const std::vector<std::uint32_t> labels = {5, 7, 7, 8, 7, 5, 0xFFFFFFFF, 3, 7, 3, 5, 8};
   split_vertices(mesh, labels);
@@ -18,6 +19,8 @@ TEST(Split, TheFirstLabelKeepsTheVertexAndOthersGetCopies) {
   EXPECT_EQ(mesh.positions, (std::vector<glm::vec3>{
                                 {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 0}, {0, 0, 0}, {1, 0, 0}}));
   EXPECT_EQ(mesh.uvs[5], glm::vec2(0, 1));
+  ASSERT_EQ(mesh.uvs2.size(), 6U);
+  EXPECT_EQ(mesh.uvs2[5], glm::vec2(1, 1));
   EXPECT_TRUE(mesh.normals.empty());
 }
 

@@ -28,6 +28,7 @@ void expect_equal(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.normals, b.normals);
   EXPECT_EQ(a.uvs, b.uvs);
+  EXPECT_EQ(a.uvs2, b.uvs2);
   EXPECT_EQ(a.tangents, b.tangents);
   EXPECT_EQ(a.colours, b.colours);
   EXPECT_EQ(a.triangles, b.triangles);
@@ -108,6 +109,7 @@ Scene everything() {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}};
   mesh.uvs = {{0.1F, 0.2F}, {1.7F, -3}, {0, 1}};
+  mesh.uvs2 = {{0.3F, 0.1F}, {2.7F, -1}, {1, 0}};
   mesh.tangents = {{1, 0, 0, 1}, {0, 1, 0, -1}, {1, 0, 0, 1}};
   mesh.colours = {{0.1F, 0.2F, 0.3F, 0.4F}, {1, 1, 1, 1}, {0, 0, 0, 0}};
   mesh.triangles = {{0, 1, 2}};
@@ -156,6 +158,7 @@ Scene everything() {
                               i == 1 ? Wrap::mirror : Wrap::repeat,
                               i == 2 ? Wrap::clamp : Wrap::repeat});
   }
+  scene.textures[1].set = scene.textures[2].set = 1;
   scene.lights = {{Light::Kind::point, {3, 4, 5}, {1, 2, 3}, {0, 0, -1}, {}, {}},
                   {Light::Kind::directional, {0.1F, 0.2F, 0.05F}, {}, {0, -1, 0}, {}, {}},
                   {Light::Kind::area, {9, 8, 7}, {0, 3, 0}, {0, 0, -1}, {1, 0, 0}, {0, 0, 1}}};
@@ -177,6 +180,7 @@ TEST(WriteGlb, KeepsEveryAttribute) {
     EXPECT_EQ(back.textures[i].srgb, scene.textures[i].srgb);
     EXPECT_EQ(back.textures[i].wrap_u, scene.textures[i].wrap_u);
     EXPECT_EQ(back.textures[i].wrap_v, scene.textures[i].wrap_v);
+    EXPECT_EQ(back.textures[i].set, scene.textures[i].set);
   }
   ASSERT_EQ(back.lights.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {

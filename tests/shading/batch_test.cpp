@@ -193,7 +193,7 @@ TEST(Batch, LanesThatAreNotMeantMakeNoDifference) {
         views.set(i, nothing);
         others.position.set(i, nothing);
         others.normal.set(i, nothing);
-        others.footprint_dx_u[i] = nothing.x;
+        others.uvs[0].dx_u[i] = others.uvs[1].dx_u[i] = nothing.x;
         others.colour.set(i, nothing);
       }
       Shaded some;
@@ -221,18 +221,20 @@ TEST(Batch, TexturesAndCoverageAreThoseOfTheScalarFunctions) {
       coverage(c.batch, m, c.points, kAllLanes, alpha);
       for (int i = 0; i < kBlockPoints; ++i) {
         const Point& p = c.point[i];
-        ASSERT_TRUE(same(alpha[i],
-                         coverage(c.shader, c.shader.materials[m], p.uv, p.footprint, p.colour.w)))
+        ASSERT_TRUE(same(alpha[i], coverage(c.shader, c.shader.materials[m], p)))
             << "seed " << seed << " lane " << i;
       }
       for (const Texture& texture : c.shader.textures) {
         Shaded texels;
         sample(texture, c.points, kAllLanes, texels);
         for (int i = 0; i < kBlockPoints; ++i) {
-          const glm::vec4 texel = sample(texture, c.point[i].uv, c.point[i].footprint);
+          const Point& p = c.point[i];
+          const TexturePoint at = texture.set == 0 ? TexturePoint{p.uv, p.footprint} : p.second;
+          const glm::vec4 texel = sample(texture, p);
+          ASSERT_EQ(texel.x, sample(texture, at.uv, at.footprint).x) << "seed " << seed;
           ASSERT_TRUE(equal(texels.colour.get(i), glm::vec3(texel))) << "seed " << seed;
           ASSERT_TRUE(same(texels.alpha[i], texel.w)) << "seed " << seed << " lane " << i;
-          ASSERT_TRUE(same(sample_alpha(texture, c.point[i].uv, c.point[i].footprint), texel.w))
+          ASSERT_TRUE(same(sample_alpha(texture, at.uv, at.footprint), texel.w))
               << "seed " << seed << " lane " << i;
         }
       }

@@ -71,6 +71,8 @@ class RandomScene {
       point.footprint.dy = {between(-size, size), between(-size, size)};
     }
     if (one_in(30)) point.footprint.dx.x = odd_number();
+    point.second.uv = {coordinate(), coordinate()};
+    point.second.footprint.dy = point.footprint.dx * 3.0F;
     point.colour = {unit(), unit(), unit(), unit()};
     return point;
   }
@@ -99,6 +101,7 @@ class RandomScene {
     texture.srgb = one_in(2);
     texture.wrap_u = static_cast<Wrap>(below(3));
     texture.wrap_v = static_cast<Wrap>(below(3));
+    texture.set = static_cast<std::uint8_t>(below(2));
     texture.texels.resize(static_cast<std::size_t>(texture.width * texture.height));
     for (image::Rgba8& t : texture.texels) {
       t = {static_cast<std::uint8_t>(random_()), static_cast<std::uint8_t>(random_()),
