@@ -144,8 +144,10 @@ void read_all_uvs(const JsonView& primitive, Attributes& attributes, const GltfD
     mesh.uvs = read_uvs(attributes, {});
     return;
   }
+  // Meshes that have no coordinates at all are common, and show one texel.
+  const bool only_first = material.uvs.size() == 1 && material.uvs[0].set == 0;
   for (const UvUse& use : material.uvs) {
-    if (material.lacks_uvs || attributes.has(attribute_of(use).c_str())) continue;
+    if (only_first || material.lacks_uvs || attributes.has(attribute_of(use).c_str())) continue;
     material.lacks_uvs = true;
     document.source.warn(primitive.place() + " has no " + attribute_of(use) +
                          ", where its material's textures are looked up");
