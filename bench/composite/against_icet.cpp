@@ -187,7 +187,9 @@ class AllCores {
   cpu_set_t bound_;
 };
 
-enum class Side { icet, mpi, in_process };
+// Ours: processes that hand over messages in memory that they share, as on one machine; processes
+// whose messages all travel through MPI, as between machines; threads of one process.
+enum class Side { icet, shared, mpi, in_process };
 
 struct Row {
   Side side;
@@ -199,12 +201,15 @@ struct Row {
     processor.push_back(times.processor);
   }
   std::string name() const {
-    return side == Side::icet ? "IceT " + method
-                              : method + " " + codec + (side == Side::mpi ? "" : " in process");
+    if (side == Side::icet) return "IceT " + method;
+    return method + " " + codec +
+           (side == Side::shared ? ", shared memory"
+            : side == Side::mpi  ? ", MPI"
+                                 : ", threads");
   }
 };
 
-// All rows: IceT's, ours over MPI, and ours over threads of rank 0 while the others sleep.
+// All rows: IceT's, ours of processes, and ours of threads of rank 0 while the others sleep.
 std::vector<Row> rows_of(const Options& options, IcetKind kind) {
   std::vector<Row> rows;
   const auto add = [&](Side side, const std::string& method, const std::string& codec) {
@@ -213,7 +218,7 @@ std::vector<Row> rows_of(const Options& options, IcetKind kind) {
     if (wanted) rows.push_back({side, method, codec, {}, {}});
   };
   for (const std::string& strategy : Icet::strategies(kind)) add(Side::icet, strategy, "");
-  for (const Side side : {Side::mpi, Side::in_process}) {
+  for (const Side side : {Side::shared, Side::mpi, Side::in_process}) {
     for (const composite::Scheme& scheme : composite::schemes()) {
       for (const composite::Codec& codec : composite::codecs()) {
         if (options.all || std::strcmp(codec.name, "active") == 0) {
@@ -237,11 +242,17 @@ composite::Part compose(comm::Communicator& communicator, const Row& row,
   return composite::gather(communicator, std::move(part), 0);
 }
 
+// Over the same processes.
+struct Communicators {
+  comm::Communicator& shared;  // messages in memory that processes share
+  comm::Communicator& mpi;     // all through MPI
+};
+
 // Colours of the picture, on rank 0. `pictures` are those of all ranks there, else of this one.
-Image8 run(comm::Communicator& communicator, const std::string& kind, Icet& icet,
+Image8 run(const Communicators& communicators, const std::string& kind, Icet& icet,
            std::span<const Image8> pictures, Row& row) {
   const bool blended = kind == "blended";
-  const int rank = communicator.rank(), ranks = communicator.size();
+  const int rank = communicators.mpi.rank(), ranks = communicators.mpi.size();
   const Image8& mine = pictures[static_cast<std::size_t>(rank)];
   if (row.side == Side::icet) {
     Image8 image = copy(mine);
@@ -257,7 +268,9 @@ Image8 run(comm::Communicator& communicator, const std::string& kind, Icet& icet
     return image;
   }
   composite::Part part;
-  if (row.side == Side::mpi) {
+  if (row.side == Side::shared || row.side == Side::mpi) {
+    comm::Communicator& communicator =
+        row.side == Side::mpi ? communicators.mpi : communicators.shared;
     auto layer = layer_of(row, mine, blended);
     row.add(times_of(ranks, [&] { part = compose(communicator, row, std::move(layer)); }));
   } else if (rank == 0) {
@@ -317,10 +330,14 @@ double error_promised(const std::string& kind, int ranks) {
 }
 
 void print(const std::vector<Row>& rows) {
-  double best = 1e9;
-  for (const Row& row : rows) {
-    if (row.side == Side::icet) best = std::min(best, median(row.seconds));
-  }
+  const auto best_of = [&](Side side) {
+    double best = 1e9;
+    for (const Row& row : rows) {
+      if (row.side == side) best = std::min(best, median(row.seconds));
+    }
+    return best;
+  };
+  const double best = best_of(Side::icet);
   // IceT's seconds for the same algorithm; 0 where it has none.
   const auto same = [&](const std::string& scheme) {
     const std::string strategy = scheme.starts_with("binary-swap") ? "bswap"
@@ -341,9 +358,13 @@ void print(const std::vector<Row>& rows) {
                other > 0 && row.side != Side::icet ? fmt::format("{:.2f}", seconds / other) : "",
                row.error);
   }
+  fmt::print("best of ours / IceT's best: {:.2f} shared memory, {:.2f} MPI, {:.2f} threads\n",
+             best_of(Side::shared) / best, best_of(Side::mpi) / best,
+             best_of(Side::in_process) / best);
 }
 
-void measure(comm::Communicator& communicator, const Options& options, const std::string& kind) {
+void measure(const Communicators& communicators, const Options& options, const std::string& kind) {
+  const comm::Communicator& communicator = communicators.mpi;
   std::vector<Image8> pictures(static_cast<std::size_t>(communicator.size()));
   for (int rank = 0; rank < communicator.size(); ++rank) {
     if (communicator.rank() != 0 && communicator.rank() != rank) continue;
@@ -355,7 +376,7 @@ void measure(comm::Communicator& communicator, const Options& options, const std
   const Exact exact = communicator.rank() == 0 ? exact_picture(pictures, kind) : Exact();
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     for (Row& row : rows) {
-      const Image8 image = run(communicator, kind, icet, pictures, row);
+      const Image8 image = run(communicators, kind, icet, pictures, row);
       if (repeat == 0) row.error = largest_error(image, exact);
     }
   }
@@ -385,9 +406,11 @@ int main(int argc, char** argv) {
   const delray::bench::KeepMemory kept;
   const delray::parallel::AllowThreads allowed(64);
   delray::comm::run_mpi(&argc, &argv, [&](delray::comm::Communicator& communicator) {
+    const MPI_Comm world = MPI_COMM_WORLD;
+    const auto mpi = delray::comm::make_mpi_communicator(&world, {.share_memory = false});
     delray::parallel::Arena(1).execute([&] {
       for (const std::string& kind : options.pictures) {
-        delray::bench::measure(communicator, options, kind);
+        delray::bench::measure({communicator, *mpi}, options, kind);
       }
     });
   });
