@@ -75,7 +75,7 @@ Partition counted_mahd(const Costs& costs, Rect frame, int parts) {
 
 TEST(KeptPartition, IsTheSameOnAllRanksAndCutOnOne) {
   constexpr int kRanks = 5, kFrames = 8;
-  constexpr Partitioner kCounted{"counted", "", counted_mahd};
+  constexpr Partitioner kCounted{"counted", "", counted_mahd, ""};
   std::vector<Costs> frames;
   for (unsigned seed = 0; seed < kFrames; ++seed) {
     std::mt19937 random(seed / 2);  // every other frame is like the last
