@@ -12,6 +12,7 @@
 
 #include "files/error.h"
 #include "files/read_file.h"
+#include "tests/support/device.h"
 
 namespace delray::files {
 namespace {
@@ -117,14 +118,20 @@ TEST_F(AtomicFileTest, WritesIntoPipes) {
   EXPECT_EQ(entries(), 1);
 }
 
+// With devices of its own: a program that replaced the machine's would do harm.
 TEST_F(AtomicFileTest, WritesIntoDevices) {
-  EXPECT_NO_THROW(write_file("/dev/null", "x"));
-  EXPECT_TRUE(fs::is_character_file("/dev/null"));
-  fs::create_symlink("/dev/full", folder_ / "full");
-  EXPECT_NO_THROW(check_writable(folder_ / "full"));
-  EXPECT_THROW(write_file(folder_ / "full", "x"), FileError);
-  EXPECT_TRUE(fs::is_symlink(folder_ / "full"));
-  EXPECT_EQ(entries(), 1);
+  const fs::path null = folder_ / "null", full = folder_ / "full";
+  if (!tests::make_device(null, tests::kNull) || !tests::make_device(full, tests::kFull)) {
+    GTEST_SKIP() << "only root can make devices, and not everywhere";
+  }
+  EXPECT_NO_THROW(write_file(null, "x"));
+  EXPECT_TRUE(fs::is_character_file(null));
+  fs::create_symlink("full", folder_ / "link");
+  EXPECT_NO_THROW(check_writable(folder_ / "link"));
+  EXPECT_THROW(write_file(folder_ / "link", "x"), FileError);
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_TRUE(fs::is_character_file(full));
+  EXPECT_EQ(entries(), 3);
 }
 
 TEST_F(AtomicFileTest, LeavesNothingOnAFullDisk) {

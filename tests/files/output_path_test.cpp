@@ -124,7 +124,7 @@ TEST(IsSameFile, SeesThroughNamesAndLinks) {
   EXPECT_TRUE(is_same_file({folder / "new"}, {folder / "." / "new"}));
   EXPECT_FALSE(is_same_file({folder / "new"}, {folder / "newer"}));
   EXPECT_FALSE(is_same_file({folder / "no" / "a"}, {folder / "none" / "a"}));
-  EXPECT_FALSE(is_same_file({"/dev/null"}, {"/dev/null"}));
+  EXPECT_FALSE(is_same_file({"/dev/null"}, {"/dev/null"}));  // which only looks
 }
 
 }  // namespace
