@@ -32,7 +32,11 @@ void check(const Session& session, const ComparisonOptions& options, const std::
   if (!options.output.empty() && !options.output.ends_with(".html"))
     throw UsageError(fmt::format("-o: '{}' does not end in .html", options.output));
   if (!session.first_process) return;
-  check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {input});
+  check_outputs(outputs_of(options), {input});
+}
+
+std::vector<OutputFile> outputs_of(const ComparisonOptions& options) {
+  return {{"-o", options.output}, {"--stats", options.statistics}};
 }
 
 Json spread_json(const Spread& times) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/outputs.h"
 #include "apps/session.h"
 #include "apps/spread.h"
 #include "apps/statistics.h"
@@ -25,6 +26,7 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
                             const std::string& listed);
 // Throws UsageError, FileError where nothing could be written in the end.
 void check(const Session& session, const ComparisonOptions& options, const std::string& input);
+std::vector<OutputFile> outputs_of(const ComparisonOptions& options);
 
 // Least, most and number of the runs, and the interval of their median, which stands elsewhere.
 Json spread_json(const Spread& times);

@@ -96,7 +96,8 @@ Json describe_picture(const std::string& path, const files::MemoryBudget& memory
   return description;
 }
 
-Json describe(const std::string& path, const InputLimits& limits) {
+// `output` is not to be a file that a scene names.
+Json describe(const std::string& path, const InputLimits& limits, const OutputFile& output) {
   const files::MemoryBudget memory = limits.budget();
   const InputKind kind = input_kind(path, memory);
   if (kind != InputKind::scene) refuse_outside(path, limits);
@@ -113,7 +114,9 @@ Json describe(const std::string& path, const InputLimits& limits) {
   SceneInput input;
   input.file.path = path;
   input.file.limits = limits;
-  return describe_scene(load_scene(input, nullptr));
+  const scenes::Scene scene = load_scene(input, nullptr);
+  refuse_overwriting({output}, scene.files);
+  return describe_scene(scene);
 }
 
 std::string shown(const Json& value) {
@@ -165,8 +168,9 @@ void add_info(CLI::App& program, Session& session) {
         list_formats();
         return int{kDone};
       }
-      check_outputs({{"--stats", options->statistics}}, {options->path});
-      const Json description = describe(options->path, options->limits);
+      const OutputFile output = {"--stats", options->statistics};
+      check_outputs({output}, {options->path});
+      const Json description = describe(options->path, options->limits, output);
       if (options->statistics != "-") print(description);
       Json statistics = {{"schema", "delray.info/1"}, {"file", options->path}};
       statistics.update(description);

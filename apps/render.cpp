@@ -98,10 +98,9 @@ void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) 
   request.frames_output = video->frames();
 }
 
-void refuse_overwriting(const RenderRequest& request) {
+void refuse_overwriting(const RenderRequest& request, const std::vector<std::string>& inputs) {
   std::vector<OutputFile> outputs = {{"--stats", request.statistics},
                                      {"--checkpoint", request.practice.checkpoint}};
-  const std::vector<std::string> inputs = inputs_of(request);
   if (!request.is_animation() || is_video(request.output)) {
     outputs.push_back({"-o", request.output});
   } else {
@@ -119,7 +118,7 @@ void refuse_overwriting(const RenderRequest& request) {
 int run(Session& session, const CLI::App& command, RenderRequest request) {
   if (request.list) return print_lists();
   check(command, request);
-  refuse_overwriting(request);
+  refuse_overwriting(request, inputs_of(request));
   if (!session.under_mpi) refuse_terminal(request.output);
   check(session, request.launch);
   ProgressBar bar(session, "render");
@@ -135,6 +134,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     const parallel::AllowThreads allowed(threads);
     parallel::Arena arena(threads);
     shared = arena.execute([&] { return prepare(request, progress); });
+    refuse_overwriting(request, shared->scene.files);
   }
   const auto render = [&](comm::Communicator& communicator) {
     std::shared_ptr<const Prepared> prepared = shared;
@@ -144,6 +144,9 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
         if (communicator.rank() == 0) prepare_outputs(request, video);
       });
       prepared = prepare(communicator, request, progress);
+      comm::all_or_none(communicator, comm::Phase::load, [&] {
+        if (communicator.rank() == 0) refuse_overwriting(request, prepared->scene.files);
+      });
       comm::handshake(communicator, scene_facts(*prepared));
     }
     if (!prepared->cameras.empty()) {

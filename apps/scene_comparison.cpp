@@ -55,6 +55,7 @@ int run_scene_comparison(
   const auto prepared = parallel::Arena(parallel::arena_threads()).execute([&] {
     return prepare(options.render, &session.progress);
   });
+  if (session.first_process) refuse_overwriting(outputs_of(options), prepared->scene.files);
   Found found = compare(*prepared, session.progress);
   bar.end();
   return session.first_process ? tell(options, std::move(found)) : int{kDone};

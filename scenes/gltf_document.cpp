@@ -98,6 +98,17 @@ void check_version(const GltfDocument& document) {
   }
 }
 
+// Those that no material uses as well.
+void note_images(const GltfDocument& document) {
+  const JsonView images = document.root()["images"];
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const JsonView uri = images[i]["uri"];
+    if (uri && !uri.text().starts_with("data:")) {
+      document.source.note_named(decode_percent(uri.text()));
+    }
+  }
+}
+
 void read_buffers(GltfDocument& document, const Chunks& chunks) {
   const JsonView buffers = document.root()["buffers"];
   for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -195,6 +206,7 @@ GltfDocument read_document(const Source& source) {
   const Chunks chunks = split_chunks(source);
   GltfDocument document{source, parse_json(source, chunks.json), {}, {}};
   check_version(document);
+  note_images(document);
   read_buffers(document, chunks);
   return document;
 }

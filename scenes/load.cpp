@@ -70,6 +70,9 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   if (format == Format::obj) content = join_continued_lines(std::move(content));
   const Source source{path, content, warnings, options.memory, options.outside};
   Scene scene = read(format, source);
+  scene.files = std::move(source.named);
+  std::ranges::sort(scene.files);
+  scene.files.erase(std::ranges::unique(scene.files).begin(), scene.files.end());
   if (options.progress) options.progress->advance();
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y

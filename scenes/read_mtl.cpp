@@ -144,6 +144,12 @@ Material material_of(const Phong& from, TextureFiles& textures) {
   return material;
 }
 
+// Whether the picture is read or not.
+bool names_a_picture(std::string_view key) {
+  constexpr std::array<std::string_view, 5> kOthers = {"bump", "disp", "decal", "refl", "norm"};
+  return key.starts_with("map_") || std::ranges::find(kOthers, key) != kOthers.end();
+}
+
 }  // namespace
 
 std::vector<Material> read_mtl(std::string_view content, TextureFiles& textures) {
@@ -161,6 +167,10 @@ std::vector<Material> read_mtl(std::string_view content, TextureFiles& textures)
       current = Phong{};
       current->name = words.rest();
     } else if (current) {
+      if (names_a_picture(key)) {
+        Words rest = words;
+        textures.note_named(std::string(read_map(rest).file));
+      }
       read_line(key, words, *current);
     }
   }

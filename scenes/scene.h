@@ -127,6 +127,9 @@ struct Scene {
   std::vector<Camera> cameras;  // those of the file; may be empty
   glm::dvec3 origin{0.0};       // added to a position gives the coordinates of the file (UTM ...)
   bool z_up = false;
+  // Other files that the scene's file names (textures, buffers, materials), whether they are there
+  // and read or not; relative to the working folder. Sorted, each once.
+  std::vector<std::string> files;
   geometry::Box3 framed;  // what cameras around the scene show; empty: all of it
 };
 

@@ -1,6 +1,7 @@
 // A scene file in memory while it is read.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -26,8 +27,17 @@ struct Source {
   files::MemoryBudget memory{};
   files::Outside outside = files::Outside::refused;
 
+  // Every file that the content names, whether it is read or not, from the folder of this one.
+  mutable std::vector<std::string> named{};
+
+  void note_named(std::string name) const {
+    if (name.empty() || name.find('\0') != std::string::npos) return;
+    std::replace(name.begin(), name.end(), '\\', '/');
+    named.push_back((path.parent_path() / name).string());
+  }
   // The file that the content calls `name`, relative to the folder of this one.
   std::filesystem::path resolve(const std::string& name) const {
+    note_named(name);
     return files::resolve(path.parent_path(), name, outside);
   }
   // To be called before so much is allocated for `place`.

@@ -37,6 +37,9 @@ class TextureFiles {
   std::uint32_t from_memory(const std::string& name, std::span<const std::byte> bytes,
                             const TextureUse& use);
 
+  // A file that the scene names, though it may not be read.
+  void note_named(const std::string& name) const { source_.note_named(name); }
+
   using Digest = std::array<std::uint64_t, 3>;  // of the bytes of a file
 
  private:

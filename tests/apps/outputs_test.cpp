@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "tests/support/device.h"
 #include "tests/support/run_program.h"
 
 namespace delray::tests {
@@ -49,6 +50,48 @@ TEST(Outputs, DoNotOverwriteTheirInput) {
   EXPECT_EQ(folder.read("a.obj"), kTriangle);
 }
 
+TEST(Outputs, DoNotOverwriteFilesThatTheSceneNames) {
+  const Folder folder;
+  fs::create_directory(folder / "s");
+  ASSERT_EQ(run(kPicture + "-o s/t.png && cp s/t.png s/t-0001.png && cp s/t.png outside.png && cp "
+                           "s/t.png s/unused.png",
+                folder.path())
+                .exit_code,
+            0);
+  folder.write("s/a.mtl",
+               "newmtl m\nmap_Kd t.png\nmap_Ns -s 1 1 unused.png\nnewmtl n\nmap_Kd t-0001.png\n"
+               "newmtl o\nmap_Kd ../outside.png\n");
+  folder.write("s/a.obj", std::string("mtllib a.mtl\nusemtl m\n") + kTriangle);
+  folder.write("s/a.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"t%2Epng"}],
+"buffers":[{"uri":"a.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})");
+  std::string positions(36, '\0');
+  positions[14] = positions[30] = '\x80', positions[15] = positions[31] = '\x3f';
+  folder.write("s/a.bin", positions);
+  fs::create_symlink("t.png", folder / "s/link.png");
+  const auto content = [&] {
+    return folder.read("s/t.png") + folder.read("s/a.mtl") + folder.read("s/a.bin") +
+           folder.read("outside.png") + folder.read("s/unused.png");
+  };
+  const std::string before = content(), render = "delray render s/a.obj --size 64x48 ";
+  for (const std::string& command :
+       {render + "-o s/t.png", render + "-o s/link.png", render + "-o b.png --stats s/a.mtl",
+        render + "-o s/t.png --ranks 2", mpirun(2) + render + "-o s/t.png",
+        render + "-o s/t.png --turntable 2", render + "-o outside.png", render + "-o s/unused.png",
+        render + "-o b.png --engine raytrace --checkpoint s/t.png",
+        std::string("delray render s/a.gltf --size 64x48 -o s/t.png"),
+        std::string("delray info s/a.gltf --stats s/a.bin"),
+        std::string("delray info s/a.obj --stats s/a.mtl"),
+        std::string("delray compare partition s/a.obj --quick --stats s/t.png")}) {
+    expect_refused(command, folder);
+  }
+  EXPECT_EQ(content(), before);
+  for (const std::string scene : {"s/a.obj", "s/a.gltf"})
+    EXPECT_EQ(run("delray render " + scene + " --size 64x48 -o s/b.png", folder.path()).exit_code,
+              0);
+}
+
 TEST(Outputs, DoNotOverwriteEachOther) {
   const Folder folder;
   folder.write("p.xyz", "0 0 0\n1 0 0\n0 1 0\n");
@@ -64,21 +107,33 @@ TEST(Outputs, DoNotOverwriteEachOther) {
     const Ran ran = run(command, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << command << "\n" << ran.err;
   }
-  EXPECT_EQ(run(kPicture + "-o a.png --stats /dev/null", folder.path()).exit_code, 0);
+}
+
+// A device of its own: a program that replaced the machine's would do harm.
+TEST(Outputs, AreWrittenIntoDevices) {
+  const Folder folder;
+  if (!make_device(folder / "null.png", kNull)) {
+    GTEST_SKIP() << "only root can make devices, and not everywhere";
+  }
+  EXPECT_EQ(run(kPicture + "-o null.png --stats null.png", folder.path()).exit_code, 0);
+  EXPECT_TRUE(fs::is_character_file(folder / "null.png"));
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"null.png"});
 }
 
 TEST(Outputs, AreWrittenIntoPipesDevicesAndWhatLinksLeadTo) {
   const Folder folder;
+  fs::create_symlink("/proc/self/fd/1", folder / "out");  // as /dev/stdout
   for (const std::string suffix : {"png", "jpg", "exr", "tif"}) {
     const std::string pipe = "p." + suffix, got = "got." + suffix;
     const Ran ran = run("mkfifo " + pipe + "; cat " + pipe + " > " + got + " & " + kPicture +
-                            "-o " + pipe + " --stats /dev/stdout; code=$?; " +
+                            "-o " + pipe + " --stats out; code=$?; " +
                             // Should nobody have written into it, cat would wait for ever.
                             "test -p " + pipe + " && : <> " + pipe + "; wait; exit $code",
                         folder.path());
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_NE(ran.out.find("delray.render/1"), std::string::npos);
     EXPECT_TRUE(fs::is_fifo(folder / pipe)) << suffix;
+    EXPECT_TRUE(fs::is_symlink(folder / "out")) << suffix;
     EXPECT_EQ(run("delray info " + got, folder.path()).exit_code, 0) << suffix;
   }
   fs::create_directory(folder / "results");
