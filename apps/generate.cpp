@@ -56,6 +56,9 @@ int generate_scene(const GenerateOptions& options) {
     throw UsageError(fmt::format("-o: '{}' is not a .glb file", options.output));
   }
   const std::uint64_t triangles = options.count > 0 ? options.count : generator.default_triangles;
+  files::MemoryBudget().require(
+      static_cast<std::uint64_t>(static_cast<double>(triangles) * generator.bytes_per_triangle),
+      "gen:" + options.kind);
   scenes::write_glb(options.output, generator.generate(triangles, options.seed));
   return kDone;
 }

@@ -56,12 +56,7 @@ std::string settings_of(const RenderRequest& request, const scenes::Camera& came
 std::string mark_of(const RenderRequest& request, const scenes::Camera& camera,
                     const Prepared& prepared) {
   const std::string settings = settings_of(request, camera, prepared.triangles);
-  if (!prepared.told_by_name) return raytrace::fingerprint(prepared.scene, settings);
-  scenes::Scene lights;  // which --light may have changed
-  lights.lights = prepared.scene.lights;
-  lights.environment = prepared.scene.environment;
-  lights.textures = prepared.scene.textures;
-  return raytrace::fingerprint(lights, settings + " scene " + request.scene.file.path);
+  return raytrace::fingerprint({}, settings + " scene " + prepared.fingerprint);
 }
 
 // Empty where samples are too few to tell.

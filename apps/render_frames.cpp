@@ -1,15 +1,18 @@
 #include "apps/render_frames.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 
 #include "apps/animation.h"
 #include "apps/ray_frame.h"
+#include "apps/scene_facts.h"
 #include "apps/statistics.h"
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "parallel/arena.h"
+#include "raytrace/checkpoint.h"
 #include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "shading/take_shader.h"
@@ -124,11 +127,49 @@ raytrace::ShareOptions share_options(const RenderRequest& request) {
   return options;
 }
 
-// Smaller levels are a third of a texture; the ray tracers have copies of the textures as well.
+bool has_tracer(const RenderRequest& request) {
+  return request.kind == Engine::raytrace && request.data == "replicated";
+}
+
+// Measured with one rank, peak and file included.
+std::uint64_t bytes_per_pixel(const RenderRequest& request) {
+  const bool floats = wants_floats(request);
+  if (request.kind == Engine::raster) return floats ? 48 : 12;
+  if (request.practice.channels || request.practice.denoise) return 140;
+  return floats ? 48 : 33;
+}
+
+// Pictures on their way, and of sort-last the layers of all ranks in the process.
+void require_memory_for_pictures(const RenderRequest& request) {
+  const std::uint64_t layer = wants_floats(request) ? sizeof(image::RgbaF) + sizeof(float)
+                                                    : sizeof(image::Rgba8) + sizeof(float);
+  const bool layers = request.kind == Engine::raster && request.strategy == "sort-last";
+  const auto others =
+      static_cast<std::uint64_t>(layers ? std::max(0, request.launch.ranks - 1) : 0);
+  const geometry::Rect& window = request.practice.window;
+  const auto pixels = static_cast<std::uint64_t>(
+      window.empty() ? std::int64_t{request.width} * request.height : window.area());
+  request.scene.file.limits.budget().require(
+      pixels * (bytes_per_pixel(request) + others * layer), request.output,
+      fmt::format("{} x {} pixels", request.width, request.height));
+}
+
+// What Embree builds for a triangle that is stored: 65 to 87 bytes were measured.
+void require_memory_for_embree(const RenderRequest& request, const scenes::Scene& scene) {
+  constexpr std::uint64_t kBytesPerTriangle = 65, kBytesPerTriangleQuick = 80;
+  std::uint64_t triangles = 0;
+  for (const scenes::Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
+  request.scene.file.limits.budget().require(
+      triangles * (request.build == "low" ? kBytesPerTriangleQuick : kBytesPerTriangle),
+      request.scene.file.path, fmt::format("Embree's structures of {} triangles", triangles));
+}
+
+// Smaller levels are a third of a texture; with distributed data ranks have copies of the textures.
 void require_memory_for_textures(const RenderRequest& request, const scenes::Scene& scene) {
   std::uint64_t texels = 0;
   for (const scenes::Texture& texture : scene.textures) texels += texture.texels.size();
-  const std::uint64_t levels = texels / 3, copies = request.kind == Engine::raster ? 0 : texels;
+  const bool copied = request.kind == Engine::raytrace && !has_tracer(request);
+  const std::uint64_t levels = texels / 3, copies = copied ? texels : 0;
   request.scene.file.limits.budget().require((levels + copies) * sizeof(image::Rgba8),
                                              request.scene.file.path, "textures");
 }
@@ -185,6 +226,17 @@ void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
       request.scene.file.path);
 }
 
+// Of what a checkpoint is for. Where the name tells what is in the scene, ranks may have parts of
+// it.
+std::string fingerprint_of(const RenderRequest& request, const Prepared& prepared) {
+  if (!prepared.told_by_name) return raytrace::fingerprint(prepared.scene, "");
+  scenes::Scene lights;  // which --light may have changed
+  lights.lights = prepared.scene.lights;
+  lights.environment = prepared.scene.environment;
+  lights.textures = prepared.scene.textures;
+  return raytrace::fingerprint(lights, request.scene.file.path);
+}
+
 // Completes the scene and builds what the engine needs. `watch` has run since loading began.
 void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
   load_light(request.light, request.scene.file.limits.budget(), prepared.scene);
@@ -198,13 +250,18 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
   warn_of_glow(request, prepared.scene);
   prepared.load_seconds = watch.lap();
   require_memory_for_textures(request, prepared.scene);
+  require_memory_for_pictures(request);
+  prepared.texture_hash = texture_hash(prepared.scene);
+  if (!request.practice.checkpoint.empty())
+    prepared.fingerprint = fingerprint_of(request, prepared);
   if (request.kind == Engine::raster) {
     prepared.shader = std::make_shared<const shading::Shader>(shading::take_shader(prepared.scene));
   } else if (request.data != "replicated") {
     prepared.shader = std::make_shared<const shading::Shader>(shading::make_shader(prepared.scene));
   } else {
-    prepared.tracer = std::make_unique<const raytrace::Tracer>(
-        raytrace::make_tracer(prepared.scene, build_options(request)));
+    require_memory_for_embree(request, prepared.scene);
+    prepared.tracer = std::make_unique<const raytrace::Tracer>(raytrace::make_tracer(
+        prepared.scene, shading::take_shader(prepared.scene), build_options(request)));
   }
   prepared.build_seconds = watch.lap();
 }

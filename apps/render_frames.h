@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct Prepared {
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
   // Ranks make parts of the geometry for themselves, and `scene` has none.
   bool in_parts = false;
+  std::string texture_hash;                   // before the shader took the texels
+  std::string fingerprint;                    // likewise, of all; where there are checkpoints
   bool told_by_name = false;                  // the name of the scene alone tells what is in it
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
   double load_seconds = 0, build_seconds = 0;

@@ -48,6 +48,18 @@ comm::Fact fact(const char* what, const Things& things, const Add& add) {
 
 }  // namespace
 
+std::string texture_hash(const scenes::Scene& scene) {
+  Hasher hasher;
+  for (const scenes::Texture& texture : scene.textures) {
+    hasher.add_value(texture.width);
+    hasher.add_value(texture.height);
+    hasher.add_value(texture.set);
+    hasher.add(texture.texels);
+    hasher.add(texture.radiance);
+  }
+  return hasher.text();
+}
+
 std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
   const scenes::Scene& scene = prepared.scene;
   Hasher camera, sky;
@@ -91,14 +103,8 @@ std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
                    material.normal_texture, material.emission_texture})
                hasher.add_value(texture);
            }),
-      fact("textures", scene.textures,
-           [](Hasher& hasher, const scenes::Texture& texture) {
-             hasher.add_value(texture.width);
-             hasher.add_value(texture.height);
-             hasher.add_value(texture.set);
-             hasher.add(texture.texels);
-             hasher.add(texture.radiance);
-           }),
+      {"the scene's textures",
+       fmt::format("{}, hash {}", scene.textures.size(), prepared.texture_hash)},
       fact("lights", scene.lights,
            [](Hasher& hasher, const scenes::Light& light) {
              hasher.add_value(light.kind);

@@ -1,6 +1,7 @@
 // What ranks that have each loaded the same scene must agree in.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "apps/render_frames.h"
@@ -12,5 +13,8 @@ namespace delray::apps {
 // files that a scene names may differ where the scene's own file does not. Reads 128 KiB of an
 // array at most.
 std::vector<comm::Fact> scene_facts(const Prepared& prepared);
+
+// Likewise, of the textures.
+std::string texture_hash(const scenes::Scene& scene);
 
 }  // namespace delray::apps

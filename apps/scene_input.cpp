@@ -136,6 +136,7 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
   scenes::Scene scene;
   if (scenes::is_generated(input.file.path)) {
     try {
+      input.file.limits.budget().require(scenes::generated_bytes(input.file.path), input.file.path);
       scene = scenes::generate(input.file.path);
     } catch (const std::invalid_argument& error) {
       throw UsageError(error.what());

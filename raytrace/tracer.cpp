@@ -23,8 +23,12 @@ std::size_t bytes_of(const scenes::Mesh& mesh) {
 }  // namespace
 
 Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
+  return make_tracer(scene, shading::make_shader(scene), options);
+}
+
+Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader,
+                   const BuildOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  shading::Shader shader = shading::make_shader(scene);
   std::vector<Placement> placements = place(scene, shader, options.share_meshes);
   const std::uint64_t degenerate = count_degenerate(placements);
   EmbreeScene embree(placements, options);

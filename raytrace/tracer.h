@@ -27,5 +27,7 @@ struct Tracer {
 
 // Parallel in the caller's arena. Throws what EmbreeScene throws.
 Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options = {});
+// With the scene's shader, which may have taken its texels (shading::take_shader).
+Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader, const BuildOptions& options);
 
 }  // namespace delray::raytrace

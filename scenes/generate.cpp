@@ -17,18 +17,18 @@ constexpr std::string_view kPrefix = "gen:";
 constexpr std::uint64_t kDefaultSeed = 1;
 
 constexpr std::array kGenerators = {
-    Generator{"terrain", "fractal height field with lakes, woods and snow", 1'000'000,
+    Generator{"terrain", "fractal height field with lakes, woods and snow", 1'000'000, 32,
               &internal::generate_terrain, &internal::generate_terrain_part},
-    Generator{"cornell", "the Cornell box: two blocks under an area light", 40,
+    Generator{"cornell", "the Cornell box: two blocks under an area light", 40, 34,
               &internal::generate_cornell},
-    Generator{"spheres", "reflective and refractive spheres over a chequered plane", 500'000,
+    Generator{"spheres", "reflective and refractive spheres over a chequered plane", 500'000, 7,
               &internal::generate_spheres},
-    Generator{"city", "blocks of buildings, high in the middle, between streets", 1'000'000,
+    Generator{"city", "blocks of buildings, high in the middle, between streets", 1'000'000, 105,
               &internal::generate_city},
-    Generator{"field", "a thousand instances of four detailed models on a plain", 13'000'000,
+    Generator{"field", "a thousand instances of four detailed models on a plain", 13'000'000, 1,
               &internal::generate_field},
     Generator{"corner", "glass spheres in a corner of the picture: uneven work for rays", 100'000,
-              &internal::generate_corner}};
+              1, &internal::generate_corner}};
 
 [[noreturn]] void refuse(std::string_view name, const std::string& why) {
   std::string message =
@@ -88,6 +88,12 @@ std::string full_name(std::string_view name) {
   const Wanted wanted = parsed(name);
   return std::string(kPrefix) + wanted.generator->name + ":" + std::to_string(wanted.triangles) +
          ":" + std::to_string(wanted.seed);
+}
+
+std::uint64_t generated_bytes(std::string_view name) {
+  const Wanted wanted = parsed(name);
+  return static_cast<std::uint64_t>(static_cast<double>(wanted.triangles) *
+                                    wanted.generator->bytes_per_triangle);
 }
 
 Scene generate(std::string_view name) {

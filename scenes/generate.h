@@ -22,6 +22,7 @@ struct Generator {
   const char* name;
   const char* description;
   std::uint64_t default_triangles;
+  double bytes_per_triangle;  // that making the scene takes at most, of large ones (measured)
   // About `triangles` triangles, the same for the same seed on every machine.
   Scene (*generate)(std::uint64_t triangles, std::uint64_t seed);
   // Part `part` of `parts` in the memory that it takes alone; null where there is no such way.
@@ -42,6 +43,9 @@ Scene generate(std::string_view name);
 bool is_generated(std::string_view name);  // starts with "gen:"
 // The name with triangles and seed, whatever was left to the defaults. Throws as generate.
 std::string full_name(std::string_view name);
+
+// The memory that making it takes, nearly. Throws as generate.
+std::uint64_t generated_bytes(std::string_view name);
 
 // The same in parts. Throws as generate.
 bool has_parts(std::string_view name);

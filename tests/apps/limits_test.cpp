@@ -3,6 +3,9 @@
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "image/io.h"
 #include "tests/support/run_program.h"
@@ -48,6 +51,42 @@ TEST(Limits, TriangulatingIsPartOfThePromise) {
         << command << ran.err;
   }
   EXPECT_EQ(folder.files(), std::vector<std::string>{"p.ply"});
+}
+
+TEST(Limits, PicturesStructuresAndGeneratedScenesArePartOfThePromise) {
+  const Folder folder;
+  for (const auto& [command, what] : std::vector<std::pair<std::string, std::string>>{
+           {"render gen:city:100000000 --memory 500MB", "gen:city:100000000: takes 9.78 GiB"},
+           {"info gen:city:100000000 --memory 500MB", "gen:city:100000000: takes 9.78 GiB"},
+           {"render gen:cornell --size 32768x32768 --memory 1GiB",
+            "32768 x 32768 pixels: takes 12"},
+           {"render gen:cornell --size 32768x32768 --ranks 4 --memory 1GiB", "pixels: takes 36"},
+           {"render gen:cornell --size 30000x30000 --engine raytrace --memory 1GiB",
+            "30000 x 30000 pixels: takes 27"},
+           {"render gen:city:1000000 --engine raytrace --size 16x16 --memory 180MB",
+            "Embree's structures of 999996 triangles: takes 62.0 MiB"}}) {
+    const bool writes = command.starts_with("render");
+    const Ran ran = run("delray " + command + (writes ? " -o a.png" : ""), folder.path());
+    EXPECT_EQ(ran.exit_code, 1) << command << ran.err;
+    EXPECT_NE(ran.err.find(what), std::string::npos) << command << "\n" << ran.err;
+    EXPECT_NE(ran.err.find("(--memory)"), std::string::npos) << command << "\n" << ran.err;
+  }
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Limits, TheRayTracerHasNoCopiesOfTextures) {
+  const Folder folder;
+  constexpr int kSide = 5000;
+  write_png(folder, "big.png", kSide);
+  folder.write("a.mtl", "newmtl m\nmap_Kd big.png\n");
+  folder.write("a.obj", "mtllib a.mtl\n" + kObj);
+  const auto peak = [&](const std::string& engine) {
+    const Ran ran = run("delray render a.obj -o b.png -q --size 16x16 --stats - --engine " + engine,
+                        folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return nlohmann::json::parse(ran.out)["ranks"][0]["peak_rss"].get<double>();
+  };
+  EXPECT_LT(peak("raytrace") - peak("raster"), 0.5 * kSide * kSide * sizeof(image::Rgba8));
 }
 
 TEST(Limits, OnlyWithAllowOutsideAreFilesElsewhereRead) {
