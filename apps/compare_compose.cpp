@@ -4,8 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <random>
 #include <thread>
 
 #include "apps/composed_shares.h"
@@ -32,6 +35,8 @@ using composite::MachineModel;
 constexpr int kMostFittedRanks = 16;
 // Pictures of more ranks would not fit a page.
 constexpr int kMostShownRanks = 8;
+// A scheme is predicted from the times of the schemes of the other half.
+constexpr std::size_t kHalves = 2;
 // Of the progress bar; a run is one.
 constexpr std::size_t kStepsOfPrediction = 10;
 // Simulating this many takes long, and nobody has so many on one machine.
@@ -144,8 +149,14 @@ class Comparison {
     for (const std::string& codec : codecs(is_transparent(share)))
       for (const std::string& scheme : schemes_of(request_))
         all.push_back({scheme, codec, {}, {}, {}, {}, {}});
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
     for (int turn = 0; turn <= repeats(ranks); ++turn) {
-      for (MeasuredScheme& measured : all) {
+      // In another order each time, the same on all ranks: what ran before leaves its traces in
+      // caches.
+      std::shuffle(order.begin(), order.end(), std::mt19937(static_cast<unsigned>(turn)));
+      for (const std::size_t i : order) {
+        MeasuredScheme& measured = all[i];
         // All ranks stop before the same scheme.
         const bool stop = root && steps_.stop_requested();
         if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0) {
@@ -250,13 +261,14 @@ class Comparison {
     const std::vector<composite::TimedScheme> samples = samples_of(codec);
     for (const int ranks : counts) {
       const HollowImages images = hollow(ranks, codec);
-      Machines machines;
-      for (const comm::NamedNetwork& named : comm::networks()) {
-        machines.emplace_back(named.name, MachineModel{named.network, costs});
-      }
-      if (ranks <= kMostRanksHere) {
-        machines.emplace_back(kThisMachine,
-                              fit_to_others({network_here(ranks), costs}, samples, ranks));
+      std::array<Machines, kHalves> machines;  // by the half that a scheme is in
+      for (std::size_t half = 0; half < kHalves; ++half) {
+        for (const comm::NamedNetwork& named : comm::networks()) {
+          machines[half].emplace_back(named.name, MachineModel{named.network, costs});
+        }
+        if (ranks > kMostRanksHere) continue;
+        machines[half].emplace_back(
+            kThisMachine, fit_to_others({network_here(ranks), costs}, samples, ranks, half));
       }
       if (ranks > kMostMeasuredRanks) {
         for (const std::string& scheme : schemes_of(request_)) {
@@ -264,7 +276,7 @@ class Comparison {
             result_.left_out.push_back({scheme, codec, ranks});
             steps_.done(kStepsOfPrediction);
           } else {
-            rows_.push_back(simulated_row(scheme, codec, images, machines));
+            rows_.push_back(simulated_row(scheme, codec, images, machines[half_of(scheme)]));
           }
         }
       } else {
@@ -272,7 +284,7 @@ class Comparison {
           if (row.codec != codec || row.ranks != ranks) continue;
           steps_.stop_if_asked();
           steps_.done(kStepsOfPrediction);
-          predict(row, images, machines);
+          predict(row, images, machines[half_of(row.scheme)]);
         }
       }
       if (ranks > kMostFittedRanks) shapes_.erase(ranks);
@@ -345,18 +357,27 @@ class Comparison {
     return samples;
   }
 
-  // Fitted to what other numbers of ranks took; ranks that have a core each and ranks that take
-  // turns tell nothing about each other.
-  static MachineModel fit_to_others(const MachineModel& here,
-                                    const std::vector<composite::TimedScheme>& samples, int ranks) {
+  // Of the two halves of the table that take turns, the one that a scheme is in.
+  std::size_t half_of(const std::string& scheme) const {
+    const std::vector<std::string> names = schemes_of(request_);
+    const auto at = std::find(names.begin(), names.end(), scheme);
+    return static_cast<std::size_t>(at - names.begin()) % kHalves;
+  }
+
+  // The machine as the schemes of the other half show it, so that no scheme is predicted from its
+  // own times. Ranks that have a core each and ranks that take turns tell nothing about each other.
+  MachineModel fit_to_others(const MachineModel& here,
+                             const std::vector<composite::TimedScheme>& samples, int ranks,
+                             std::size_t half) const {
     std::vector<composite::TimedScheme> others;
     for (const composite::TimedScheme& sample : samples) {
       const auto count = sample.images.count();
-      if (count == ranks || (count <= cores_here()) != (ranks <= cores_here())) continue;
+      if (half_of(sample.scheme) == half || (count <= cores_here()) != (ranks <= cores_here()))
+        continue;
       // Ranks that share cores as these do tell most.
       const double octaves = std::log2(static_cast<double>(count) / ranks);
       others.push_back(sample);
-      others.back().weight = 1 / (1 + 4 * octaves * octaves);
+      others.back().weight = 1 / (1 + 16 * octaves * octaves);
     }
     return fit_machine(here, others);
   }

@@ -119,8 +119,8 @@ Html predictions(const ComposeComparison& comparison) {
   return in_columns(charts) + omissions(comparison.left_out) +
          paragraph(
              "Predicted: the schemes' own code runs on a simulated machine whose ranks "
-             "have a core each. On this machine by a model that was fitted to the times "
-             "measured on the other numbers of ranks.");
+             "have a core each. On this machine: by a model fitted to the times of the other "
+             "half of the schemes, so that none is predicted from its own.");
 }
 
 constexpr const char* kActs[] = {"composite", "send", "wait and receive", "gather"};
