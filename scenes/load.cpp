@@ -72,7 +72,7 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   Scene scene = read(format, source);
   scene.files = std::move(source.named);
   std::ranges::sort(scene.files);
-  scene.files.erase(std::ranges::unique(scene.files).begin(), scene.files.end());
+  scene.files.erase(std::unique(scene.files.begin(), scene.files.end()), scene.files.end());
   if (options.progress) options.progress->advance();
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y
