@@ -5,9 +5,13 @@ include(CMakePackageConfigHelpers)
 get_property(libraries GLOBAL PROPERTY DELRAY_LIBRARIES)
 get_property(folders GLOBAL PROPERTY DELRAY_FOLDERS)
 install(TARGETS ${libraries} EXPORT delrayTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# Public headers lie directly in a folder. What they include of a sub-folder comes along.
 foreach(folder IN LISTS folders)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/delray
-          FILES_MATCHING PATTERN "*.h" PATTERN internal EXCLUDE)
+  get_property(included GLOBAL PROPERTY DELRAY_INCLUDED_${folder})
+  foreach(path IN ITEMS ${folder} LISTS included)
+    file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*.h)
+    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/delray/${path})
+  endforeach()
 endforeach()
 install(EXPORT delrayTargets NAMESPACE delray::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/delray)

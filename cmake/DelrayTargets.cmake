@@ -1,8 +1,10 @@
-# delray_library(<folder> [FIRST <source>...] [ALONE <source>...] [DEPENDS <target>...]
-#                [PRIVATE_DEPENDS <target>...])
+# delray_library(<folder> [INCLUDED <sub-folder>...] [FIRST <source>...] [ALONE <source>...]
+#                [DEPENDS <target>...] [PRIVATE_DEPENDS <target>...])
 #
-# One static library per folder, made of every .cpp in it, known as delray::<folder>. Adding a source
-# file needs no change here or there. For FIRST and ALONE see delray_compile_together.
+# One static library per folder, made of every .cpp in it and in its sub-folders but for those that have
+# a CMakeLists.txt of their own, known as delray::<folder>. Adding a source file or a sub-folder needs no
+# change here or there. Headers directly in the folder are public; INCLUDED are the sub-folders with
+# headers that those include. For FIRST and ALONE see delray_compile_together.
 include_guard()
 
 set(CMAKE_CXX_STANDARD 20)
@@ -117,9 +119,21 @@ function(delray_compile_together target)
   endforeach()
 endfunction()
 
+# delray_sources(<variable> <pattern>): the sources of this folder and of its sub-folders without a
+# CMakeLists.txt.
+function(delray_sources variable pattern)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${pattern})
+  file(GLOB_RECURSE others ${CMAKE_CURRENT_SOURCE_DIR}/*/CMakeLists.txt)
+  foreach(other IN LISTS others)
+    cmake_path(GET other PARENT_PATH other)
+    list(FILTER sources EXCLUDE REGEX "^${other}/")
+  endforeach()
+  set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
 function(delray_library folder)
-  cmake_parse_arguments(ARG "" "" "FIRST;ALONE;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  cmake_parse_arguments(ARG "" "" "INCLUDED;FIRST;ALONE;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  delray_sources(sources *.cpp)
   set(target delray_${folder})
   if(sources)
     add_library(${target} STATIC ${sources})
@@ -144,4 +158,6 @@ function(delray_library folder)
   add_library(delray::${folder} ALIAS ${target})
   set_property(GLOBAL APPEND PROPERTY DELRAY_LIBRARIES ${target})
   set_property(GLOBAL APPEND PROPERTY DELRAY_FOLDERS ${folder})
+  list(TRANSFORM ARG_INCLUDED PREPEND ${folder}/)
+  set_property(GLOBAL PROPERTY DELRAY_INCLUDED_${folder} ${ARG_INCLUDED})
 endfunction()
