@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "delaunay/array.h"
+#include "delaunay/mesh/array.h"
 
 namespace delray::bench {
 

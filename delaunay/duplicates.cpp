@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "delaunay/internal/equal_points.h"
+#include "delaunay/mesh/equal_points.h"
 
 namespace delray::delaunay {
 namespace {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "delaunay/internal/arguments.h"
-#include "delaunay/internal/random.h"
+#include "delaunay/mesh/arguments.h"
+#include "delaunay/mesh/random.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {

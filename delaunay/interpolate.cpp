@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "delaunay/internal/arguments.h"
+#include "delaunay/mesh/arguments.h"
 #include "delaunay/natural_neighbours.h"
 
 namespace delray::delaunay {

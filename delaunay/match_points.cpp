@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "delaunay/internal/equal_points.h"
+#include "delaunay/mesh/equal_points.h"
 
 namespace delray::delaunay {
 namespace {

@@ -5,15 +5,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "delaunay/internal/arguments.h"
-#include "delaunay/internal/batch.h"
-#include "delaunay/internal/burglary.h"
-#include "delaunay/internal/cavity_insertion.h"
-#include "delaunay/internal/circumcircle.h"
-#include "delaunay/internal/divide.h"
-#include "delaunay/internal/insertion.h"
-#include "delaunay/internal/optimistic.h"
-#include "delaunay/internal/pessimistic.h"
+#include "delaunay/cavity/cavity_insertion.h"
+#include "delaunay/divide_and_conquer/divide.h"
+#include "delaunay/history/batch.h"
+#include "delaunay/history/burglary.h"
+#include "delaunay/history/circumcircle.h"
+#include "delaunay/history/insertion.h"
+#include "delaunay/history/optimistic.h"
+#include "delaunay/history/pessimistic.h"
+#include "delaunay/mesh/arguments.h"
 #include "files/similar_name.h"
 
 namespace delray::delaunay {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "delaunay/internal/arguments.h"
+#include "delaunay/mesh/arguments.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {

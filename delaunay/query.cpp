@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "delaunay/internal/arguments.h"
+#include "delaunay/mesh/arguments.h"
 #include "delaunay/predicates.h"
 
 namespace delray::delaunay {

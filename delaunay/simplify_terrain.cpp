@@ -9,15 +9,15 @@
 #include <stdexcept>
 #include <string>
 
-#include "delaunay/insertion_order.h"
-#include "delaunay/internal/access.h"
-#include "delaunay/internal/arguments.h"
-#include "delaunay/internal/first_triangle.h"
-#include "delaunay/internal/flip.h"
-#include "delaunay/internal/start_mesh.h"
-#include "delaunay/mesh.h"
+#include "delaunay/flip/flip.h"
+#include "delaunay/insertion/first_triangle.h"
+#include "delaunay/insertion/insertion_order.h"
+#include "delaunay/insertion/walk.h"
+#include "delaunay/mesh/access.h"
+#include "delaunay/mesh/arguments.h"
+#include "delaunay/mesh/mesh.h"
+#include "delaunay/mesh/start_mesh.h"
 #include "delaunay/predicates.h"
-#include "delaunay/walk.h"
 
 namespace delray::delaunay {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "delaunay/internal/arguments.h"
-#include "delaunay/mesh.h"
+#include "delaunay/mesh/arguments.h"
+#include "delaunay/mesh/mesh.h"
 #include "delaunay/methods.h"
 
 namespace delray::delaunay {

@@ -1,7 +1,7 @@
 #include <array>
 #include <vector>
 
-#include "delaunay/internal/arguments.h"
+#include "delaunay/mesh/arguments.h"
 #include "delaunay/triangulate.h"
 #include "parallel/parallel_for.h"
 

@@ -1,6 +1,6 @@
 #include "delaunay/voronoi.h"
 
-#include "delaunay/internal/arguments.h"
+#include "delaunay/mesh/arguments.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "delaunay/internal/point_readers.h"
+#include "delaunay/files/point_readers.h"
 #include "files/read_file.h"
 
 namespace delray::delaunay {

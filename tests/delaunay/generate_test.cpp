@@ -11,7 +11,7 @@
 #include <string>
 #include <tuple>
 
-#include "delaunay/internal/random.h"
+#include "delaunay/mesh/random.h"
 #include "delaunay/predicates.h"
 #include "parallel/arena.h"
 

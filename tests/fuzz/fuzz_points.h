@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "delaunay/internal/point_readers.h"
+#include "delaunay/files/point_readers.h"
 
 namespace delray::tests {
 

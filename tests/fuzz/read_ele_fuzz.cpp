@@ -1,4 +1,4 @@
-#include "delaunay/internal/point_readers.h"
+#include "delaunay/files/point_readers.h"
 #include "tests/fuzz/fuzz_points.h"
 
 // The bytes are the .ele file beside four good points.

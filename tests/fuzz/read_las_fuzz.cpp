@@ -1,4 +1,4 @@
-#include "delaunay/internal/point_readers.h"
+#include "delaunay/files/point_readers.h"
 #include "tests/fuzz/fuzz_points.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,0 +1,86 @@
+#include "delaunay/cavity/cavity_insertion.h"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "delaunay/cavity/cavity_rounds.h"
+#include "delaunay/insertion/first_tetrahedron.h"
+#include "delaunay/mesh/blocks.h"
+#include "delaunay/mesh/extract.h"
+#include "delaunay/mesh/mesh.h"
+#include "delaunay/mesh/slot_pool.h"
+#include "delaunay/mesh/start_mesh.h"
+#include "delaunay/mesh/stopwatch.h"
+#include "delaunay/order/curve_order3.h"
+#include "delaunay/predicates/sphere_tests.h"
+#include "parallel/arena.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// Seven tetrahedra to a point and some, as evenly spread points have, and what threads take and do
+// not use; more where that is not enough.
+std::size_t first_slots(std::size_t n, int threads) {
+  const std::size_t several = threads > 1 ? static_cast<std::size_t>(threads) : 0;
+  return 7 * n + n / 8 + 64 + several * SlotPool::kChunk;
+}
+
+// The rows of the vertices, close together for those who look up many.
+Array<std::uint32_t> take_rows(Array<SpaceVertex>&& vertices, int threads) {
+  const Array<SpaceVertex> own = std::move(vertices);
+  Array<std::uint32_t> rows(own.size() - 1);
+  Blocks(rows.size(), threads).for_each([&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) rows[i] = own[i + 1].row;
+  });
+  return rows;
+}
+
+Triangulation run(PointView<double> points, const Options& options) {
+  Statistics unused;
+  Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
+  Stopwatch watch;
+
+  const PointRange range = finite_range(points, options.threads);
+  CurveOrder3 order = curve_order3(points, range, options.seed, options.threads);
+  const std::size_t n = points.size();
+  seconds.order = watch.lap();
+
+  const auto at = [&](VertexNumber v) -> const glm::dvec3& {
+    return order.vertices[std::size_t{v} + 1].position;
+  };
+  const auto start = first_tetrahedron(n, at);
+  if (!start) {
+    Triangulation result;
+    result.dim = 3;
+    std::vector<glm::dvec3> all(n);
+    for (VertexNumber v = 0; v < n; ++v) all[v] = at(v);
+    result.distinct = count_distinct(std::move(all));
+    return result;
+  }
+  const SphereTests tests(range);
+  Mesh<3> mesh(first_slots(n, options.threads));
+  start_mesh(mesh, *start);
+  if (options.progress != nullptr) options.progress->advance(start->size());
+  const CavityInput input{mesh, 5, *start, order, range, tests};
+  const auto insert = options.threads > 1 ? insert_together : insert_alone;
+  const std::uint64_t distinct = insert(input, options, options.statistics);
+  watch.lap();
+  const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
+  Triangulation result = extract(std::move(mesh), std::span(rows.data(), rows.size()),
+                                 options.threads, options.threads > 1 ? options.makers : nullptr);
+  result.distinct = distinct;
+  seconds.extract = watch.lap();
+  return result;
+}
+
+}  // namespace
+
+Triangulation insert_by_cavities(PointView<double> points, const Options& options) {
+  // An arena takes longer to set up than a thousand points to triangulate.
+  if (options.threads <= 1) return run(points, options);
+  return parallel::Arena(options.threads).execute([&] { return run(points, options); });
+}
+
+}  // namespace delray::delaunay::internal

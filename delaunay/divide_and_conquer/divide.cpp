@@ -1,0 +1,369 @@
+#include "delaunay/divide_and_conquer/divide.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "delaunay/divide_and_conquer/hull_mesh.h"
+#include "delaunay/divide_and_conquer/knit.h"
+#include "delaunay/divide_and_conquer/seam_filter.h"
+#include "delaunay/divide_and_conquer/seam_pair.h"
+#include "delaunay/flip/four_points.h"
+#include "delaunay/mesh/extract.h"
+#include "delaunay/mesh/mesh.h"
+#include "delaunay/mesh/stopwatch.h"
+#include "delaunay/order/cell_order.h"
+#include "delaunay/order/cells.h"
+#include "delaunay/predicates/conflict.h"
+#include "parallel/arena.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// A triangulated range of points: the extreme vertices of its hull, ties broken by the other
+// coordinate.
+struct Part {
+  HullVertex left, right, bottom, top;
+};
+
+bool less_by_y(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.y < b.y || (a.y == b.y && a.x < b.x);
+}
+
+class Divider {
+ public:
+  Divider(const CellOrder& order, Mesh<2>& mesh, const Options& options)
+      : points_(order.points.data()),
+        hulls_{order.points.data(), mesh},
+        filter_({order.points.data(), order.points.size()}, order.box, options.threads),
+        progress_(options.progress),
+        parallel_(options.threads > 1),
+        makers_(parallel_ ? options.makers : nullptr) {
+    if (makers_ != nullptr) makers_->assign(mesh.size(), 0);
+  }
+
+  // Triangulates points [first, last), whose triangles are [2 first, 2 last - 2): merging two
+  // ranges needs two triangles more than they have, and those lie between them.
+  Part divide(std::size_t first, std::size_t last, const CellGrid& grid) {
+    if (!parallel_ || last - first <= kPointsPerTask) {
+      note_makers(first, last);
+      return timed([&] { return divide_alone(first, last, grid); });
+    }
+    const std::uint32_t low = grid.number(points_[first]), high = grid.number(points_[last - 1]);
+    if (low == high) return divide(first, last, grid_over(first, last));
+    const std::size_t split = find_split(first, last, grid, low, high);
+    std::array<Part, 2> halves;
+    parallel::parallel_for(0, 2, 1, [&](std::size_t half) {
+      halves[half] = half == 0 ? divide(first, split, grid) : divide(split, last, grid);
+    });
+    const Part whole =
+        timed([&] { return merge(halves[0], halves[1], split, split_by_y(low, high)); });
+    note_seam_makers(split);
+    return whole;
+  }
+
+  // Summed over threads.
+  double seconds() const { return seconds_.load(); }
+
+ private:
+  // Cell numbers of so many points are computed at once and looked up while dividing them.
+  static constexpr std::size_t kBlock = 256;
+  // Takes about a millisecond.
+  static constexpr std::size_t kPointsPerTask = 8192;
+
+  template <class F>
+  Part timed(const F& f) {
+    Stopwatch watch;
+    const Part part = f();
+    seconds_.fetch_add(watch.lap(), std::memory_order_relaxed);
+    return part;
+  }
+
+  // All triangles of a range are the calling thread's.
+  void note_makers(std::size_t first, std::size_t last) const {
+    if (makers_ == nullptr) return;
+    const auto begin = makers_->begin() + static_cast<std::ptrdiff_t>(2 * first);
+    const auto end = makers_->begin() + static_cast<std::ptrdiff_t>(2 * last - 2);
+    std::fill(begin, end, static_cast<std::uint16_t>(parallel::arena_thread()));
+  }
+  // The same of those that a merge has made: they have vertices on both sides of `split`, and lie
+  // in a row from one of the two slots before it to the other.
+  void note_seam_makers(std::size_t split) const {
+    if (makers_ == nullptr) return;
+    const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
+    const Mesh<2>& mesh = hulls_.mesh;
+    CornerNumber entry = mesh.neighbour(static_cast<SimplexNumber>(2 * split - 2), 2);
+    while (!mesh.is_ghost(simplex_of(entry))) {
+      (*makers_)[simplex_of(entry)] = thread;
+      // The other edge with an end on either side is opposite the vertex on the apex's side.
+      const CornerNumber one = next_corner(entry), other = previous_corner(entry);
+      const bool is_apex_first = mesh.vertex(entry) < split;
+      entry = mesh.neighbour((mesh.vertex(one) < split) == is_apex_first ? one : other);
+    }
+  }
+
+  static std::uint32_t first_of_upper_half(std::uint32_t low, std::uint32_t high) {
+    const int bit = std::bit_width(low ^ high) - 1;
+    return high >> bit << bit;
+  }
+  std::size_t find_split(std::size_t first, std::size_t last, const CellGrid& grid,
+                         std::uint32_t low, std::uint32_t high) const {
+    const std::uint32_t upper = first_of_upper_half(low, high);
+    const auto below = [&](const glm::dvec2& p) { return grid.number(p) < upper; };
+    return static_cast<std::size_t>(std::partition_point(points_ + first, points_ + last, below) -
+                                    points_);
+  }
+  CellGrid grid_over(std::size_t first, std::size_t last) const {
+    return CellGrid(box_of({points_ + first, last - first}));
+  }
+
+  Part divide_alone(std::size_t first, std::size_t last, const CellGrid& grid) {
+    if (last - first <= kBlock) {
+      const Part part = divide_block(first, last, grid);
+      if (progress_ != nullptr) progress_->advance(last - first);
+      return part;
+    }
+    const std::uint32_t low = grid.number(points_[first]), high = grid.number(points_[last - 1]);
+    if (low == high) return divide_alone(first, last, grid_over(first, last));
+    const std::size_t split = find_split(first, last, grid, low, high);
+    const Part lower = divide_alone(first, split, grid);
+    return merge(lower, divide_alone(split, last, grid), split, split_by_y(low, high));
+  }
+
+  Part divide_block(std::size_t first, std::size_t last, const CellGrid& grid) {
+    std::array<std::uint32_t, kBlock> cells;
+    for (std::size_t i = first; i < last; ++i) cells[i - first] = grid.number(points_[i]);
+    return divide_cells(first, std::span(cells).first(last - first));
+  }
+
+  // Points in lexicographic order.
+  Part divide_sorted(std::size_t first, std::size_t last) {
+    if (last - first <= 3) return base(first, last);
+    const std::size_t split = first + (last - first) / 2;
+    const Part lower = divide_sorted(first, split);
+    return merge(lower, divide_sorted(split, last), split, false);
+  }
+
+  // Points from `first` on in the given cells.
+  Part divide_cells(std::size_t first, std::span<const std::uint32_t> cells) {
+    const std::size_t last = first + cells.size();
+    if (cells.size() <= 3) return base(first, last);
+    if (cells.size() == 4) {
+      if (const auto part = four(static_cast<VertexNumber>(first))) return *part;
+    }
+    const std::uint32_t low = cells.front(), high = cells.back();
+    if (low == high) {
+      return cells.size() <= kSmallCell ? divide_sorted(first, last)
+                                        : divide_block(first, last, grid_over(first, last));
+    }
+    const auto split = static_cast<std::size_t>(
+        std::ranges::lower_bound(cells, first_of_upper_half(low, high)) - cells.begin());
+    const Part lower = divide_cells(first, cells.first(split));
+    return merge(lower, divide_cells(first + split, cells.subspan(split)), first + split,
+                 split_by_y(low, high));
+  }
+
+  // One, two or three points.
+  Part base(std::size_t first, std::size_t last) {
+    const auto vertex = static_cast<VertexNumber>(first);
+    if (last - first == 3) return triangle(vertex);
+    if (last - first == 2) return segment(vertex);
+    const HullVertex only{vertex, kNoGhost};
+    return {only, only, only, only};
+  }
+
+  // Two points are joined by two ghosts, back to back.
+  Part segment(VertexNumber first) {
+    const SimplexNumber there = 2 * first, back = there + 1;
+    const VertexNumber a = first, b = first + 1;
+    hulls_.set_ghost(there, a, b);
+    hulls_.set_ghost(back, b, a);
+    hulls_.link(there, 2, corner_of(back, 2));
+    hulls_.follow(there, back);
+    hulls_.follow(back, there);
+    const HullVertex at_a{a, there}, at_b{b, back};
+    const bool rightward = lexicographically_less(points_[a], points_[b]);
+    const bool upward = less_by_y(points_[a], points_[b]);
+    return {rightward ? at_a : at_b, rightward ? at_b : at_a, upward ? at_a : at_b,
+            upward ? at_b : at_a};
+  }
+
+  Part triangle(VertexNumber first) {
+    const SimplexNumber inside = 2 * first;
+    VertexNumber a = first, b = first + 1, c = first + 2;
+    const int turn = orient2d(points_[a], points_[b], points_[c]);
+    if (turn == 0) return chain(first);
+    if (turn < 0) std::swap(b, c);
+    hulls_.set_triangle(inside, a, b, c);
+    hulls_.set_ghost(inside + 1, a, b);
+    hulls_.set_ghost(inside + 2, b, c);
+    hulls_.set_ghost(inside + 3, c, a);
+    hulls_.link(inside, 2, corner_of(inside + 1, 2));
+    hulls_.link(inside, 0, corner_of(inside + 2, 2));
+    hulls_.link(inside, 1, corner_of(inside + 3, 2));
+    hulls_.follow(inside + 1, inside + 2);
+    hulls_.follow(inside + 2, inside + 3);
+    hulls_.follow(inside + 3, inside + 1);
+    return extremes({{{a, inside + 1}, {b, inside + 2}, {c, inside + 3}}});
+  }
+
+  // Three points on a line.
+  Part chain(VertexNumber first) {
+    VertexNumber a = first, b = first + 1, c = first + 2;
+    if (lexicographically_less(points_[b], points_[a])) std::swap(a, b);
+    if (lexicographically_less(points_[c], points_[b])) std::swap(b, c);
+    if (lexicographically_less(points_[b], points_[a])) std::swap(a, b);
+    const SimplexNumber t = 2 * first;
+    hulls_.set_ghost(t, a, b);
+    hulls_.set_ghost(t + 1, b, c);
+    hulls_.set_ghost(t + 2, c, b);
+    hulls_.set_ghost(t + 3, b, a);
+    hulls_.link(t, 2, corner_of(t + 3, 2));
+    hulls_.link(t + 1, 2, corner_of(t + 2, 2));
+    for (SimplexNumber k = 0; k < 4; ++k) hulls_.follow(t + k, t + (k + 1) % 4);
+    return extremes({{{a, t}, {a, t}, {c, t + 2}}});
+  }
+
+  // Four points; none if three of them are on a line or all on a circle, or nearly so.
+  std::optional<Part> four(VertexNumber first) {
+    const glm::dvec2* p = points_ + first;
+    const SeamViewPair seen_01(p[0], p[1], PointPair(p[2], p[3]));
+    const SeamViewPair seen_23(p[2], p[3], PointPair(p[0], p[1]));
+    unsigned left = 0, right = 0, bottom = 0, top = 0;
+    for (unsigned i = 1; i < 4; ++i) {
+      left = before(p[i].x, p[i].y, p[left].x, p[left].y) ? i : left;
+      right = before(p[right].x, p[right].y, p[i].x, p[i].y) ? i : right;
+      bottom = before(p[i].y, p[i].x, p[bottom].y, p[bottom].x) ? i : bottom;
+      top = before(p[top].y, p[top].x, p[i].y, p[i].x) ? i : top;
+    }
+    const SeamFilter::Bounds bounds =
+        filter_.bounds((p[right].x - p[left].x) + (p[top].y - p[bottom].y));
+    const double error = std::max(bounds.cross, 0.0);
+    const double determinant =
+        seen_01.dot[0] * seen_01.cross[1] - seen_01.cross[0] * seen_01.dot[1];
+    const unsigned sure =
+        bits_of(absolute(seen_01.cross) > error) & bits_of(absolute(seen_23.cross) > error);
+    if (sure != 3 || !(std::abs(determinant) > bounds.circle)) return std::nullopt;
+    const unsigned turns = bits_of(seen_01.cross > 0) | bits_of(seen_23.cross > 0) << 2;
+    // Of points that turn right the determinant is negative inside.
+    const bool inside = (determinant > 0) == ((turns & 1) != 0);
+    const FourPoints& of = kFourPoints[turns | (inside ? 16 : 0)];
+    const std::array<VertexNumber, 5> vertices = {first, first + 1, first + 2, first + 3,
+                                                  kInfiniteVertex};
+    const SimplexNumber slot = 2 * first;
+    for (unsigned i = 0; i < 18; ++i) {
+      hulls_.mesh.set_vertex(slot + i / 3, i % 3, vertices[of.vertices[i]]);
+      hulls_.mesh.set_neighbour(slot + i / 3, i % 3, corner_of(slot, of.neighbours[i]));
+    }
+    const auto at = [&](unsigned i) { return HullVertex{first + i, slot + of.ghosts[i]}; };
+    return Part{at(left), at(right), at(bottom), at(top)};
+  }
+
+  // Lexicographically, without branches: nobody can guess the outcome.
+  static bool before(double a, double b, double c, double d) {
+    return static_cast<bool>(static_cast<int>(a < c) |
+                             (static_cast<int>(a == c) & static_cast<int>(b < d)));
+  }
+
+  Part extremes(const std::array<HullVertex, 3>& hull) const {
+    Part part{hull[0], hull[0], hull[0], hull[0]};
+    for (const HullVertex& v : {hull[1], hull[2]}) {
+      const glm::dvec2& p = points_[v.vertex];
+      if (lexicographically_less(p, points_[part.left.vertex])) part.left = v;
+      if (lexicographically_less(points_[part.right.vertex], p)) part.right = v;
+      if (less_by_y(p, points_[part.bottom.vertex])) part.bottom = v;
+      if (less_by_y(points_[part.top.vertex], p)) part.top = v;
+    }
+    return part;
+  }
+
+  // Merges the ranges before and after `split`: the second lies to the right of the first, or above
+  // it. What follows speaks of left and right; a quarter turn makes that of below and above.
+  Part merge(const Part& first, const Part& second, std::size_t split, bool by_y) {
+    const auto spare = static_cast<SimplexNumber>(2 * split - 2);
+    const auto [lower, upper] =
+        knit(hulls_, filter_, by_y ? first.top : first.right, by_y ? second.bottom : second.left,
+             extent_of(first, second), spare);
+    // The edges of the hull that start at these two are new; those of the other extremes are not.
+    const auto of_first = [&, vertex = lower.left, ghost = lower.ghost](HullVertex v) {
+      return v.vertex == vertex ? HullVertex{vertex, ghost} : v;
+    };
+    const auto of_second = [&, vertex = upper.right, ghost = upper.ghost](HullVertex v) {
+      return v.vertex == vertex ? HullVertex{vertex, ghost} : v;
+    };
+    // Of the direction in which the ranges follow each other the extremes are known.
+    if (by_y) {
+      return {precedes(second.left, first.left) ? of_second(second.left) : of_first(first.left),
+              precedes(first.right, second.right) ? of_second(second.right) : of_first(first.right),
+              of_first(first.bottom), of_second(second.top)};
+    }
+    return {of_first(first.left), of_second(second.right),
+            below(second.bottom, first.bottom) ? of_second(second.bottom) : of_first(first.bottom),
+            below(first.top, second.top) ? of_second(second.top) : of_first(first.top)};
+  }
+
+  // At least |dx| + |dy| of any two points of both, but for rounding.
+  double extent_of(const Part& first, const Part& second) const {
+    const auto x = [&](HullVertex v) { return points_[v.vertex].x; };
+    const auto y = [&](HullVertex v) { return points_[v.vertex].y; };
+    const double width =
+        std::max(x(first.right), x(second.right)) - std::min(x(first.left), x(second.left));
+    const double height =
+        std::max(y(first.top), y(second.top)) - std::min(y(first.bottom), y(second.bottom));
+    return width + height;
+  }
+
+  bool precedes(HullVertex a, HullVertex b) const {
+    const glm::dvec2 &p = points_[a.vertex], &q = points_[b.vertex];
+    return before(p.x, p.y, q.x, q.y);
+  }
+  bool below(HullVertex a, HullVertex b) const {
+    const glm::dvec2 &p = points_[a.vertex], &q = points_[b.vertex];
+    return before(p.y, p.x, q.y, q.x);
+  }
+
+  const glm::dvec2* points_;
+  HullMesh hulls_;
+  SeamFilter filter_;
+  parallel::Progress* progress_;
+  bool parallel_;
+  std::vector<std::uint16_t>* makers_;  // by slot; null if nobody wants to know
+  std::atomic<double> seconds_ = 0;
+};
+
+Triangulation run(PointView<double> points, const Options& options) {
+  Statistics seconds;
+  Stopwatch watch;
+  CellOrder order = cell_order(points, options.threads);
+  seconds.order = watch.lap();
+  const std::size_t n = order.points.size();
+  if (options.progress != nullptr) options.progress->advance(points.size() - n);
+  Mesh<2> mesh(n < 2 ? 0 : 2 * n - 2);
+  if (n >= 2) {
+    Divider divider(order, mesh, options);
+    divider.divide(0, n, CellGrid(order.box));
+    seconds.subdivide = divider.seconds();
+  }
+  watch.lap();
+  order.points = {};
+  Triangulation result = extract(std::move(mesh), {order.rows.data(), n}, options.threads,
+                                 n >= 2 && options.threads > 1 ? options.makers : nullptr);
+  seconds.extract = watch.lap();
+  if (options.statistics != nullptr) *options.statistics = seconds;
+  return result;
+}
+
+}  // namespace
+
+Triangulation divide_and_conquer(PointView<double> points, const Options& options) {
+  // An arena takes longer to set up than a thousand points to triangulate.
+  if (options.threads <= 1) return run(points, options);
+  return parallel::Arena(options.threads).execute([&] { return run(points, options); });
+}
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,101 @@
+// .node and .ele, the files of Triangle (Shewchuk 1996) and TetGen: "n dimension attributes
+// markers", then rows "number coordinates attributes marker"; "n corners attributes", then rows
+// "number corners attributes". Numbers begin with 0 or 1. Of points in the plane the first
+// attribute is taken as z.
+#include "delaunay/files/point_readers.h"
+#include "delaunay/files/text_rows.h"
+
+namespace delray::delaunay {
+namespace {
+
+struct Table {
+  RowIndex rows;
+  std::int64_t columns = 0;     // dimension of points, corners of elements
+  std::int64_t attributes = 0;  // per row
+};
+
+Table find_table(const Input& input, const char* what) {
+  const RowIndex first = index_rows(input, {}, 1, is_data_row);
+  if (first.count == 0) fail(input, "", std::string("no ") + what);
+  TextPlace place = first.blocks[0];
+  const std::size_t number = place.line;
+  Fields fields(input, take_line(input.content, place), number);
+  const std::int64_t count = fields.integer();
+  Table table;
+  table.columns = fields.integer();
+  std::string_view attributes;
+  if (fields.next(attributes) && !parse_integer(attributes, table.attributes)) {
+    fields.fail("not a number of attributes");
+  }
+  if (count < 0 || table.attributes < 0) fields.fail("a negative number");
+  table.rows = index_rows(input, place, static_cast<std::size_t>(count), is_data_row);
+  if (table.rows.count < static_cast<std::size_t>(count)) {
+    fields.fail("announces " + std::to_string(count) + " " + what + ", the file has " +
+                std::to_string(table.rows.count));
+  }
+  return table;
+}
+
+// The number of the first row: 0 or 1.
+std::int64_t first_number(const Input& input, const Table& table) {
+  if (table.rows.count == 0) return 0;
+  TextPlace place = table.rows.blocks[0];
+  const std::size_t line_number = place.line;
+  Fields fields(input, take_line(input.content, place), line_number);
+  const std::int64_t number = fields.integer();
+  if (number != 0 && number != 1) fields.fail("the first number must be 0 or 1");
+  return number;
+}
+
+PointCloud read_points_of(const Input& input, const Table& table, std::int64_t base) {
+  if (table.columns != 2 && table.columns != 3) {
+    fail(input, "", "points of dimension 2 or 3 are expected");
+  }
+  PointCloud cloud;
+  cloud.has_z = table.columns == 3 || table.attributes > 0;
+  input.require_points(table.rows.count);
+  cloud.positions.resize(table.rows.count);
+  for_each_row(input, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
+    if (fields.integer() != static_cast<std::int64_t>(i) + base) {
+      fields.fail("points are not numbered one after the other");
+    }
+    for (int k = 0; k < (cloud.has_z ? 3 : 2); ++k) cloud.positions[i][k] = fields.number();
+  });
+  return cloud;
+}
+
+}  // namespace
+
+PointCloud read_node_points(const Input& input) {
+  const Table table = find_table(input, "points");
+  return read_points_of(input, table, first_number(input, table));
+}
+
+PointMesh read_node_mesh(const Input& input, const Input& elements) {
+  const Table points = find_table(input, "points");
+  const std::int64_t base = first_number(input, points);
+  PointMesh mesh;
+  mesh.points = read_points_of(input, points, base);
+  const Table table = find_table(elements, "elements");
+  if (table.columns != 3 && table.columns != 4) {
+    fail(elements, "", "elements of 3 or 4 corners are expected");
+  }
+  const auto corners = static_cast<std::size_t>(table.columns);
+  mesh.triangulation.dim = static_cast<int>(corners) - 1;
+  std::vector<std::uint32_t>& vertices = mesh.triangulation.vertices;
+  input.require_memory(table.rows.count * corners * sizeof vertices[0]);
+  vertices.resize(table.rows.count * corners);
+  for_each_row(elements, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
+    fields.integer();
+    for (std::size_t k = 0; k < corners; ++k) {
+      const std::int64_t vertex = fields.integer() - base;
+      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= mesh.points.size()) {
+        fields.fail("refers to a point that is not there");
+      }
+      vertices[i * corners + k] = static_cast<std::uint32_t>(vertex);
+    }
+  });
+  return mesh;
+}
+
+}  // namespace delray::delaunay

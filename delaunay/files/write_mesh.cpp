@@ -1,0 +1,90 @@
+#include "delaunay/write_mesh.h"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "delaunay/files/mesh_writers.h"
+#include "delaunay/mesh/arguments.h"
+#include "delaunay/mesh/facets.h"
+
+namespace delray::delaunay {
+namespace {
+
+using files::Format;
+
+constexpr std::array kWriters = {
+    MeshWriter{Format::ply, "PLY", "binary, coordinates as double, with colours", ".ply", false,
+               &write_ply},
+    MeshWriter{Format::obj, "OBJ", "Wavefront, text", ".obj", false, &write_obj},
+    MeshWriter{Format::off, "OFF", "object file, text", ".off", false, &write_off},
+    MeshWriter{Format::stl, "STL", "binary, coordinates as 32-bit float", ".stl", false,
+               &write_stl},
+    MeshWriter{Format::vtu, "VTU", "VTK unstructured grid, binary, with all attributes", ".vtu",
+               true, &write_vtu},
+    MeshWriter{Format::node, "NODE+ELE", "two text files, as Triangle and TetGen write them",
+               ".node .ele", true, &write_node},
+};
+
+std::string known_suffixes() {
+  std::string list;
+  for (const MeshWriter& writer : kWriters) {
+    list += (list.empty() ? "" : " ") + std::string(writer.suffixes);
+  }
+  return list;
+}
+
+// The vertices of the facet opposite to vertex i, so that a positively oriented simplex lies to
+// their left (2D) or below them, seen counterclockwise from outside (3D).
+constexpr std::array<std::array<int, 2>, 3> kEdges = {{{1, 2}, {2, 0}, {0, 1}}};
+constexpr std::array<std::array<int, 3>, 4> kTriangles = {
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+}  // namespace
+
+std::span<const MeshWriter> mesh_writers() { return kWriters; }
+
+const MeshWriter& mesh_writer_for(const std::filesystem::path& path) {
+  const Format format = path == "-" ? Format::ply : files::format_of_suffix(path);
+  for (const MeshWriter& writer : kWriters) {
+    if (writer.format == format) return writer;
+  }
+  throw std::invalid_argument(path.string() + ": no mesh format has the suffix \"" +
+                              path.extension().string() + "\"; legal are " + known_suffixes());
+}
+
+void write_mesh(const std::filesystem::path& path, const PointCloud& points,
+                const Triangulation& triangulation, std::span<const std::uint16_t> makers) {
+  const MeshWriter& writer = mesh_writer_for(path);
+  internal::check_triangulation(triangulation, points.size());
+  internal::check_attributes(points);
+  if (!makers.empty() && makers.size() != triangulation.size())
+    throw std::invalid_argument("makers: one for each simplex");
+  if (triangulation.dim == 3 && !writer.tetrahedra) {
+    const std::vector<std::uint32_t> facets = hull_facets(triangulation);
+    writer.write(path, {points, 3, facets});
+  } else {
+    writer.write(path, {points, triangulation.dim + 1, triangulation.vertices, makers});
+  }
+}
+
+std::vector<std::uint32_t> hull_facets(const Triangulation& triangulation) {
+  internal::check_triangulation(triangulation, std::numeric_limits<std::size_t>::max());
+  const std::span<const std::uint32_t> simplices = triangulation.vertices;
+  const auto corners = static_cast<std::size_t>(triangulation.dim) + 1;
+  std::uint32_t points = 0;
+  for (const std::uint32_t vertex : simplices) points = std::max(points, vertex + 1);
+  const FacetMates facets = match_facets(triangulation.dim, simplices, points);
+  std::vector<std::uint32_t> result;
+  for (std::size_t facet = 0; facet < simplices.size(); ++facet) {
+    if (facets.mates[facet] != FacetMates::kNone) continue;
+    const std::size_t opposite = facet % corners;
+    for (std::size_t k = 0; k + 1 < corners; ++k) {
+      const int i = triangulation.dim == 2 ? kEdges[opposite][k] : kTriangles[opposite][k];
+      result.push_back(simplices[facet - opposite + static_cast<std::size_t>(i)]);
+    }
+  }
+  return result;
+}
+
+}  // namespace delray::delaunay

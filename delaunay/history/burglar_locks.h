@@ -1,0 +1,99 @@
+// The access policy of the burglary method: a lock in every simplex, and no journal.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
+
+#include "delaunay/flip/dag.h"
+#include "delaunay/flip/dag_flip.h"
+#include "delaunay/history/held_leaves.h"
+#include "delaunay/history/thread_waits.h"
+#include "delaunay/mesh/team.h"
+#include "delaunay/triangulate.h"
+
+namespace delray::delaunay::internal {
+
+// Simplices stay locked until commit(), but nothing is ever undone.
+//
+// A thread whose waiting would close a circle breaks into the simplices of the thread that it would
+// wait for, until its own commit(). Nobody else uses them meanwhile: their owner waits for a
+// simplex, whose owner waits, and so on to the burglar; of such a chain only the last thread runs,
+// and if that comes to wait another may become the last. Threads wait between operations only, so
+// what is broken into is a triangulation; but whoever has waited may find it changed, be it robbed
+// or a burglar itself, and is told so. kCounted: whether to count.
+template <int D, bool kCounted>
+class BurglarLocks {
+ public:
+  static constexpr bool kShakes = true;
+
+  BurglarLocks(Dag<D>& dag, Team& team, ThreadWaits& waits, std::uint32_t thread,
+               std::size_t threads)
+      : dag_(dag), team_(team), waits_(waits), held_(dag, thread), robbed_(threads) {}
+
+  // Never kRefused.
+  Grant acquire(std::initializer_list<NodeNumber> nodes) {
+    if (kCounted) ++counts_.lock_calls;
+    for (const NodeNumber node : nodes) {
+      RecordNumber record = kNoRecord;
+      const std::uint32_t owner = held_.try_lock(node, record);
+      if (owner == kReplaced) return Grant::kShaken;
+      if (owner == held_.owner() || (owner != 0 && robbed_[owner - 1])) {
+        if (kCounted) ++counts_.already_locked;
+        continue;
+      }
+      if (owner == 0) {
+        if (kCounted) ++counts_.free;
+        continue;
+      }
+      if (kCounted) ++counts_.waits;
+      if (wait_or_rob(node, record)) return Grant::kShaken;
+    }
+    return Grant::kGranted;
+  }
+
+  void reserve(NodeNumber count) { held_.reserve(count); }
+  NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
+    return held_.create(vertices);
+  }
+  void link(CornerNumber outside, CornerNumber inside) {
+    dag_.set_neighbour(inside, outside);
+    dag_.set_neighbour(outside, inside);
+  }
+  void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
+    held_.retire(node, children);
+  }
+
+  void commit() {
+    held_.commit();
+    if (robs_) robbed_.assign(robbed_.size(), false);
+    robs_ = false;
+  }
+
+  // Whether this thread ever was a burglar.
+  bool has_robbed() const { return has_robbed_; }
+  const Synchronization& counts() const { return counts_; }
+
+ private:
+  // Returns whether it has waited, or the leaf was replaced.
+  bool wait_or_rob(NodeNumber node, RecordNumber record) {
+    held_.show();
+    const std::uint32_t owner = held_.wait(node, record, waits_, team_);
+    if (owner == 0 || owner == kReplaced) return true;
+    robbed_[owner - 1] = robs_ = has_robbed_ = true;
+    if (kCounted) ++counts_.deadlocks;
+    if (kCounted) ++counts_.burglaries;
+    return !dag_.is_leaf(node);
+  }
+
+  Dag<D>& dag_;
+  Team& team_;
+  ThreadWaits& waits_;
+  HeldLeaves<D> held_;
+  std::vector<bool> robbed_;  // thread i, by this one, since its last commit
+  bool robs_ = false, has_robbed_ = false;
+  Synchronization counts_;
+};
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,79 @@
+#include "delaunay/history/burglary.h"
+
+#include <optional>
+#include <vector>
+
+#include "delaunay/history/burglar_locks.h"
+#include "delaunay/history/dag_run.h"
+#include "delaunay/history/delaunay_repair.h"
+#include "delaunay/history/insert_in_leaf.h"
+#include "delaunay/history/insert_shaken.h"
+#include "delaunay/history/insertion.h"
+#include "delaunay/history/insertion_team.h"
+#include "delaunay/history/leaf_search.h"
+#include "delaunay/mesh/add_counts.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// From the points, alone.
+Triangulation rebuild(PointView<double> points, const Options& options) {
+  Options alone = options;
+  alone.location = "walk";
+  alone.order = "brio";
+  alone.threads = 1;
+  alone.statistics = nullptr;
+  alone.progress = nullptr;
+  return insert_all(points, alone);
+}
+
+template <int D, bool kCounted>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation<D> triangulation = run.triangulation();
+  PointSupply supply = insert_alone(run, triangulation);
+  ThreadWaits waits(run.parts());
+  struct Burglar {
+    BurglarLocks<D, kCounted> access;
+    LeafSearch<D> search;
+  };
+  bool robbed = false;
+  insert_with_team(
+      run, supply,
+      [&](Team& team, std::size_t thread) {
+        return Burglar{
+            {triangulation.dag, team, waits, static_cast<std::uint32_t>(thread), run.parts()},
+            {triangulation, options.location}};
+      },
+      [&](Burglar& burglar, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const NodeNumber leaf = burglar.search.find(run.point(vertex));
+        insert_shaken(run, triangulation, leaf, vertex, burglar.access, suspects, phases);
+        burglar.access.commit();
+      },
+      [&](const Burglar& burglar) {
+        robbed |= burglar.access.has_robbed();
+        if (kCounted) add(options.statistics->synchronization, burglar.access.counts());
+      });
+  // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
+  // without a burglary; with one, all that came after it may have built on what it left.
+  std::optional<std::uint64_t> repaired = 0;
+  if (robbed) repaired = repair(triangulation, run.parts());
+  if (kCounted) options.statistics->synchronization.repaired += repaired.value_or(0);
+  Triangulation result = run.finish();
+  if (repaired) return result;
+  if (kCounted) ++options.statistics->synchronization.rebuilds;
+  if (options.makers != nullptr) options.makers->clear();
+  return rebuild(points, options);
+}
+
+}  // namespace
+
+Triangulation insert_by_burglary(PointView<double> points, const Options& options) {
+  return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
+    return insert_all_points<D, kCounted>(points, options);
+  });
+}
+
+}  // namespace delray::delaunay::internal

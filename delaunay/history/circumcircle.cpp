@@ -1,0 +1,60 @@
+#include "delaunay/history/circumcircle.h"
+
+#include <vector>
+
+#include "delaunay/history/circle_access.h"
+#include "delaunay/history/current_points.h"
+#include "delaunay/history/dag_location.h"
+#include "delaunay/history/dag_run.h"
+#include "delaunay/history/delaunay_repair.h"
+#include "delaunay/history/insert_in_leaf.h"
+#include "delaunay/history/insert_shaken.h"
+#include "delaunay/history/insertion_team.h"
+#include "delaunay/mesh/add_counts.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+template <bool kCounted>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation<2> triangulation = run.triangulation();
+  PointSupply supply = insert_alone(run, triangulation);
+  CurrentPoints current(run.parts());
+  bool robbed = false;
+  insert_with_team(
+      run, supply,
+      [&](Team& team, std::size_t thread) {
+        return CircleAccess<kCounted>(triangulation, team, current,
+                                      static_cast<std::uint32_t>(thread));
+      },
+      [&](CircleAccess<kCounted>& access, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const glm::dvec2& q = run.point(vertex);
+        const NodeNumber leaf =
+            descend(triangulation.dag, triangulation.orientation,
+                    root_of(triangulation.dag, triangulation.orientation, q), q);
+        // Not before, because the others wait for this point from now on.
+        access.begin(vertex);
+        insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
+        access.commit();
+      },
+      [&](const CircleAccess<kCounted>& access) {
+        robbed |= access.has_robbed();
+        if (kCounted) add(options.statistics->synchronization, access.counts());
+      });
+  // As in the burglary method.
+  const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;
+  if (kCounted) options.statistics->synchronization.repaired += repaired;
+  return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_by_circles(PointView<double> points, const Options& options) {
+  return options.statistics != nullptr ? insert_all_points<true>(points, options)
+                                       : insert_all_points<false>(points, options);
+}
+
+}  // namespace delray::delaunay::internal

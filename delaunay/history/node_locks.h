@@ -1,0 +1,152 @@
+// The access policy of the optimistic method: a lock in every simplex, and a journal.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <initializer_list>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "delaunay/flip/dag.h"
+#include "delaunay/flip/dag_flip.h"
+#include "delaunay/history/held_leaves.h"
+#include "delaunay/history/thread_waits.h"
+#include "delaunay/mesh/team.h"
+#include "delaunay/triangulate.h"
+
+namespace delray::delaunay::internal {
+
+// What the threads of a run share to decide who waits.
+struct Blocking {
+  explicit Blocking(std::size_t threads) : waits(threads), priorities(threads) {
+    for (std::size_t i = 0; i < threads; ++i) priorities[i].store(i, std::memory_order_relaxed);
+  }
+
+  ThreadWaits waits;
+  std::vector<std::atomic<std::uint64_t>> priorities;
+  std::mutex raising;
+};
+
+// Simplices stay locked until commit() or rollback(), and no other thread ever sees what is undone.
+// kCounted: whether to count.
+template <int D, bool kCounted>
+class NodeLocks {
+ public:
+  static constexpr bool kShakes = false;
+
+  NodeLocks(Dag<D>& dag, Team& team, Blocking& blocking, std::uint32_t thread, bool priorities)
+      : dag_(dag),
+        team_(team),
+        blocking_(blocking),
+        thread_(thread),
+        priorities_(priorities),
+        held_(dag, thread) {}
+
+  Grant acquire(std::initializer_list<NodeNumber> nodes) {
+    if (kCounted) ++counts_.lock_calls;
+    for (const NodeNumber node : nodes) {
+      RecordNumber record = kNoRecord;
+      std::uint32_t owner = held_.try_lock(node, record);
+      if (owner == held_.owner()) {
+        if (kCounted) ++counts_.already_locked;
+        continue;
+      }
+      if (owner == 0) {
+        if (kCounted) ++counts_.free;
+        continue;
+      }
+      if (owner != kReplaced) {
+        if (kCounted) ++counts_.waits;
+        owner = priorities_ ? wait_by_priority(node, record)
+                            : held_.wait(node, record, blocking_.waits, team_);
+        if (owner == 0) continue;
+      }
+      if (owner != kReplaced) {
+        if (kCounted) ++counts_.deadlocks;
+        refused_ = {node, record};
+        refuser_ = owner;
+      }
+      return Grant::kRefused;
+    }
+    return Grant::kGranted;
+  }
+
+  void reserve(NodeNumber count) { held_.reserve(count); }
+  NodeNumber create(const std::array<VertexNumber, D + 1>& vertices) {
+    return held_.create(vertices);
+  }
+  void link(CornerNumber outside, CornerNumber inside) {
+    // What is undone altogether needs no journal.
+    if (!held_.is_new(simplex_of(outside))) {
+      journal_.push_back({outside, dag_.neighbour(outside)});
+    }
+    dag_.set_neighbour(outside, inside);
+    dag_.set_neighbour(inside, outside);
+  }
+  void retire(NodeNumber node, const std::array<NodeNumber, D + 1>& children) {
+    held_.retire(node, children);
+  }
+
+  void commit() {
+    held_.commit();
+    journal_.clear();
+  }
+  void rollback() {
+    if (kCounted && !journal_.empty()) ++counts_.rollbacks;
+    for (std::size_t i = journal_.size(); i-- > 0;) {
+      dag_.set_neighbour(journal_[i].corner, journal_[i].neighbour);
+    }
+    journal_.clear();
+    held_.undo();
+    if (priorities_) raise_priority();
+    // Trying again at once would only be in the way of the thread that waits for what was just
+    // unlocked. Waiting here closes no circle, since there is nothing locked.
+    while (refused_.node != kNoNode && dag_.owner(refused_.node, refused_.record) == refuser_) {
+      std::this_thread::yield();
+      team_.check();
+    }
+    refused_ = {};
+  }
+
+  const Synchronization& counts() const { return counts_; }
+
+ private:
+  struct Link {
+    CornerNumber corner, neighbour;
+  };
+  // Returns as HeldLeaves::wait().
+  std::uint32_t wait_by_priority(NodeNumber node, RecordNumber record) {
+    const std::uint64_t own = blocking_.priorities[thread_].load(std::memory_order_relaxed);
+    for (;;) {
+      const std::uint32_t owner = held_.try_again(node, record);
+      if (owner == 0 || owner == kReplaced) return owner;
+      if (blocking_.priorities[owner - 1].load(std::memory_order_relaxed) >= own) return owner;
+      std::this_thread::yield();
+      team_.check();
+    }
+  }
+  void raise_priority() {
+    const std::lock_guard guard(blocking_.raising);
+    std::uint64_t highest = 0;
+    for (const auto& priority : blocking_.priorities) {
+      highest = std::max(highest, priority.load(std::memory_order_relaxed));
+    }
+    blocking_.priorities[thread_].store(highest + 1, std::memory_order_relaxed);
+  }
+
+  Dag<D>& dag_;
+  Team& team_;
+  Blocking& blocking_;
+  std::uint32_t thread_;
+  bool priorities_;
+  HeldLeaves<D> held_;
+  HeldLeaf refused_;  // what refuser_ (1 + its number) would not give
+  std::uint32_t refuser_ = 0;
+  std::vector<Link> journal_;
+  Synchronization counts_;
+};
+
+}  // namespace delray::delaunay::internal

@@ -1,0 +1,77 @@
+#include "delaunay/history/optimistic.h"
+
+#include <vector>
+
+#include "delaunay/history/dag_run.h"
+#include "delaunay/history/insertion_team.h"
+#include "delaunay/history/leaf_search.h"
+#include "delaunay/history/node_locks.h"
+#include "delaunay/mesh/add_counts.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// Returns whether the point is in; otherwise everything was undone.
+template <int D, class Access>
+bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber leaf,
+            VertexNumber vertex, Access& access, std::vector<NodeNumber>& suspects,
+            InsertionPhases& phases) {
+  // Another thread may have been faster between the location and the lock.
+  if (access.acquire({leaf}) != Grant::kGranted || !triangulation.dag.is_leaf(leaf)) return false;
+  phases.located();
+  const VertexNumber equal = run.equal_vertex(leaf, run.point(vertex));
+  if (equal != kInfiniteVertex) {
+    run.merge(equal, vertex);
+    return true;
+  }
+  if (subdivide(triangulation, leaf, vertex, access, suspects) != Grant::kGranted) return false;
+  phases.subdivided();
+  if (legalize(triangulation, access, suspects) != Grant::kGranted) return false;
+  phases.legalized();
+  return true;
+}
+
+template <int D, bool kCounted>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation<D> triangulation = run.triangulation();
+  PointSupply supply = run.supply();
+  Blocking blocking(run.parts());
+  struct Locker {
+    NodeLocks<D, kCounted> access;
+    LeafSearch<D> search;
+  };
+  insert_with_team(
+      run, supply,
+      [&](Team& team, std::size_t thread) {
+        return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread),
+                       options.deadlocks == "priorities"},
+                      {triangulation, options.location}};
+      },
+      [&](Locker& locker, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const auto& q = run.point(vertex);
+        NodeNumber node = locker.search.find(q);
+        while (!insert(run, triangulation, node, vertex, locker.access, suspects, phases)) {
+          locker.access.rollback();
+          suspects.clear();
+          node = locker.search.find_below(node, q);
+        }
+        locker.access.commit();
+      },
+      [&](const Locker& locker) {
+        if (kCounted) add(options.statistics->synchronization, locker.access.counts());
+      });
+  return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_optimistically(PointView<double> points, const Options& options) {
+  return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
+    return insert_all_points<D, kCounted>(points, options);
+  });
+}
+
+}  // namespace delray::delaunay::internal

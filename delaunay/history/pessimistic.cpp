@@ -1,0 +1,52 @@
+#include "delaunay/history/pessimistic.h"
+
+#include <mutex>
+#include <vector>
+
+#include "delaunay/history/dag_location.h"
+#include "delaunay/history/dag_run.h"
+#include "delaunay/history/insert_in_leaf.h"
+#include "delaunay/history/insertion_team.h"
+#include "delaunay/history/sole_dag_access.h"
+
+namespace delray::delaunay::internal {
+
+namespace {
+
+template <int D>
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
+  DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
+  if (run.is_flat()) return run.finish();
+  const DagTriangulation<D> triangulation = run.triangulation();
+  PointSupply supply = run.supply();
+  std::mutex leaves;
+  std::uint64_t entered = 0;
+  insert_with_team(
+      run, supply,
+      [&](Team&, std::size_t thread) {
+        return SoleDagAccess<D>(triangulation.dag, static_cast<std::uint32_t>(thread));
+      },
+      [&](SoleDagAccess<D>& access, VertexNumber vertex, std::vector<NodeNumber>& suspects,
+          InsertionPhases& phases) {
+        const auto& q = run.point(vertex);
+        NodeNumber leaf = descend(triangulation.dag, triangulation.orientation,
+                                  root_of(triangulation.dag, triangulation.orientation, q), q);
+        const std::lock_guard alone(leaves);
+        ++entered;
+        leaf = descend(triangulation.dag, triangulation.orientation, leaf, q);
+        phases.located();
+        insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
+      },
+      [](const SoleDagAccess<D>&) {});
+  if (options.statistics != nullptr) options.statistics->synchronization.lock_calls = entered;
+  return run.finish();
+}
+
+}  // namespace
+
+Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
+  return options.dim == 2 ? insert_all_points<2>(points, options)
+                          : insert_all_points<3>(points, options);
+}
+
+}  // namespace delray::delaunay::internal

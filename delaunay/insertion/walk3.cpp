@@ -1,0 +1,36 @@
+#include <array>
+
+#include "delaunay/insertion/orientation3.h"
+#include "delaunay/insertion/walk.h"
+
+namespace delray::delaunay {
+
+Place walk(const Mesh<3>& mesh, const Orientation<3>& orientation, SimplexNumber start,
+           const glm::dvec3& q, std::uint32_t& random) {
+  SimplexNumber here = start;
+  unsigned entered = 4;
+  for (;;) {
+    std::array<VertexNumber, 4> vertices;
+    for (unsigned k = 0; k < 4; ++k) vertices[k] = mesh.vertex(corner_of(here, k));
+    // Marsaglia's xorshift (2003).
+    random ^= random << 13;
+    random ^= random >> 17;
+    random ^= random << 5;
+    unsigned exit = 4;
+    for (unsigned i = 0; i < 4 && exit == 4; ++i) {
+      const unsigned k = (random + i) & 3;
+      if (k != entered && orientation.with(q, k, vertices) < 0) exit = k;
+    }
+    if (exit == 4) {
+      for (const VertexNumber vertex : vertices) {
+        if (vertex != kInfiniteVertex && orientation.point(vertex) == q) return {here, vertex};
+      }
+      return {here, kInfiniteVertex};
+    }
+    const CornerNumber next = mesh.neighbour(corner_of(here, exit));
+    here = simplex_of(next);
+    entered = next & 3;
+  }
+}
+
+}  // namespace delray::delaunay

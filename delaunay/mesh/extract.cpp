@@ -1,0 +1,83 @@
+#include "delaunay/mesh/extract.h"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "delaunay/mesh/array.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay::internal {
+
+namespace {
+
+// Simplices whose memory goes back at once: whole huge pages, which take long to split.
+template <int D>
+constexpr std::size_t kPiece = std::size_t{1} << (D == 2 ? 18 : 16);
+
+}  // namespace
+
+// Piece by piece, so that the mesh goes as the result comes, and in order, so that the result does
+// not depend on the number of threads.
+template <int D>
+Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                      std::vector<std::uint16_t>* makers) {
+  constexpr std::size_t kCorners = Mesh<D>::kCorners;
+  Mesh<D> own = std::move(mesh);
+  Triangulation result;
+  result.dim = D;
+  result.distinct = rows.size();
+  result.vertices.reserve(kCorners * own.size());
+  prefer_huge_pages(result.vertices.data(), kCorners * own.size() * sizeof(VertexNumber));
+
+  std::size_t ghosts = 0, made = 0;
+  std::atomic<std::size_t> next_taken = 0, next_appended = 0;
+  const std::size_t pieces = (own.size() + kPiece<D> - 1) / kPiece<D>;
+  const auto work = [&] {
+    Array<VertexNumber> packed(kCorners * std::min(kPiece<D>, own.size()));
+    std::vector<std::uint16_t> own_makers;
+    for (std::size_t piece; (piece = next_taken++) < pieces;) {
+      const std::size_t first = piece * kPiece<D>, last = std::min(own.size(), first + kPiece<D>);
+      std::size_t count = 0, own_ghosts = 0;
+      for (auto simplex = static_cast<SimplexNumber>(first); simplex < last; ++simplex) {
+        if (own.is_dead(simplex)) continue;
+        if (own.is_ghost(simplex)) {
+          ++own_ghosts;
+          continue;
+        }
+        for (unsigned k = 0; k < kCorners; ++k) packed[count++] = rows[own.vertex(simplex, k)];
+        if (makers != nullptr) own_makers.push_back((*makers)[simplex]);
+      }
+      own.discard(first, last);
+      // Pieces are taken in order, so whoever has the one before is at work on it.
+      for (std::size_t i; (i = next_appended) != piece;) next_appended.wait(i);
+      result.vertices.insert(result.vertices.end(), packed.data(), packed.data() + count);
+      if (makers != nullptr) {
+        // Their slots are those of this piece and of pieces before it, which nobody reads any more.
+        std::ranges::copy(own_makers, makers->begin() + static_cast<std::ptrdiff_t>(made));
+        made += own_makers.size();
+        own_makers.clear();
+      }
+      ghosts += own_ghosts;
+      ++next_appended;
+      next_appended.notify_all();
+    }
+  };
+  const auto workers = std::min(static_cast<std::size_t>(std::max(threads, 1)), pieces);
+  if (workers <= 1) {
+    work();
+  } else {
+    parallel::parallel_for(0, workers, 1, [&](std::size_t) { work(); });
+  }
+  if (makers != nullptr) makers->resize(made);
+  // Of collinear points only ghosts are left, and those bound nothing.
+  if (!result.vertices.empty()) result.hull_facets = ghosts;
+  return result;
+}
+
+template Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                               std::vector<std::uint16_t>* makers);
+template Triangulation extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                               std::vector<std::uint16_t>* makers);
+
+}  // namespace delray::delaunay::internal
