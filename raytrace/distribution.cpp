@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "raytrace/internal/distributions.h"
+#include "raytrace/distributed/distributions.h"
 
 namespace delray::raytrace {
 namespace {

@@ -3,11 +3,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "raytrace/ao.h"
-#include "raytrace/direct.h"
-#include "raytrace/feature_walks.h"
-#include "raytrace/path.h"
-#include "raytrace/whitted.h"
+#include "raytrace/integrators/ao.h"
+#include "raytrace/integrators/direct.h"
+#include "raytrace/integrators/feature_walks.h"
+#include "raytrace/integrators/path.h"
+#include "raytrace/integrators/whitted.h"
 
 namespace delray::raytrace {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "raytrace/walk.h"
+#include "raytrace/integrators/walk.h"
 
 namespace delray::raytrace {
 

@@ -9,11 +9,11 @@
 #include "comm/recording.h"
 #include "loadbalance/partition.h"
 #include "parallel/arena.h"
-#include "raytrace/internal/collect_tiles.h"
-#include "raytrace/internal/ray_traffic.h"
-#include "raytrace/internal/sample_tile.h"
-#include "raytrace/internal/serving_communicator.h"
-#include "raytrace/internal/tile_shares.h"
+#include "raytrace/distributed/collect_tiles.h"
+#include "raytrace/distributed/ray_traffic.h"
+#include "raytrace/distributed/serving_communicator.h"
+#include "raytrace/distributed/tile_shares.h"
+#include "raytrace/integrators/sample_tile.h"
 
 namespace delray::raytrace {
 namespace {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "comm/communicator.h"
-#include "raytrace/cluster.h"
-#include "raytrace/cluster_tree.h"
-#include "raytrace/light_table.h"
+#include "raytrace/distributed/cluster.h"
+#include "raytrace/distributed/cluster_tree.h"
+#include "raytrace/sampling/light_table.h"
 #include "scenes/generate.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"

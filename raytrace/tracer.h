@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "raytrace/embree_scene.h"
-#include "raytrace/light_table.h"
-#include "raytrace/placement.h"
+#include "raytrace/sampling/light_table.h"
+#include "raytrace/scene/embree_scene.h"
+#include "raytrace/scene/placement.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 

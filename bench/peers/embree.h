@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/placement.h"
+#include "raytrace/scene/placement.h"
 
 namespace delray::bench {
 

@@ -1,7 +1,7 @@
 // Nanoseconds for the random numbers of ray tracing.
 #include <benchmark/benchmark.h>
 
-#include "raytrace/sampler.h"
+#include "raytrace/sampling/sampler.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "comm/bad_message.h"
-#include "raytrace/internal/ray_messages.h"
+#include "raytrace/distributed/ray_messages.h"
 
 // Whatever the bytes, as many rays come out as the header says, or the message is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,0 +1,226 @@
+#include "raytrace/distributed/cluster.h"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "comm/bad_message.h"
+
+namespace delray::raytrace {
+namespace {
+
+// Beyond the rounding of a transform and of Embree's intersection, relative to the largest number
+// that takes part.
+constexpr float kSlack = 0x1p-18F;
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+  return values.capacity() * sizeof(T);
+}
+
+class Writer {
+ public:
+  template <class T>
+  void value(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    append(&value, sizeof(T));
+  }
+  template <class T>
+  void array(const std::vector<T>& values) {
+    value(static_cast<std::uint64_t>(values.size()));
+    append(values.data(), values.size() * sizeof(T));
+  }
+  comm::Buffer buffer() const { return comm::Buffer::of(std::span<const std::byte>(bytes_)); }
+
+ private:
+  void append(const void* data, std::size_t size) {
+    if (size == 0) return;
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    std::memcpy(bytes_.data() + at, data, size);
+  }
+  std::vector<std::byte> bytes_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  template <class T>
+  T value() {
+    T result;
+    take(&result, sizeof(T));
+    return result;
+  }
+  // Of exactly that capacity, but for `spare` more elements.
+  template <class T>
+  std::vector<T> array(std::size_t spare = 0) {
+    std::vector<T> values;
+    const auto size = static_cast<std::size_t>(value<std::uint64_t>());
+    comm::check_message(size <= bytes_.size() / sizeof(T));
+    values.reserve(size + spare);
+    values.resize(size);
+    take(values.data(), size * sizeof(T));
+    return values;
+  }
+
+ private:
+  void take(void* to, std::size_t size) {
+    if (size == 0) return;
+    comm::check_message(size <= bytes_.size());
+    std::memcpy(to, bytes_.data(), size);
+    bytes_ = bytes_.subspan(size);
+  }
+  std::span<const std::byte> bytes_;
+};
+
+// A placement without its pointers.
+struct PlacementValues {
+  std::uint32_t piece, material;
+  std::uint8_t instanced, identity, see_through, layered, texture_sets, unused[3];
+  float orientation, transform_scale;
+  glm::mat4x3 to_world;
+  glm::mat3 normal_to_world;
+};
+
+PlacementValues values_of(const Placement& p) {
+  return {p.mesh_number,
+          p.material,
+          p.instanced,
+          p.identity,
+          p.see_through,
+          p.layered,
+          static_cast<std::uint8_t>(p.texture_sets),
+          {},
+          p.orientation,
+          p.transform_scale,
+          p.to_world,
+          p.normal_to_world};
+}
+
+Placement placement_of(const PlacementValues& v) {
+  Placement p;
+  p.mesh_number = v.piece;
+  p.material = v.material;
+  p.instanced = v.instanced != 0;
+  p.identity = v.identity != 0;
+  p.see_through = v.see_through != 0;
+  p.layered = v.layered != 0;
+  p.texture_sets = std::min<int>(v.texture_sets, 2);
+  p.orientation = v.orientation;
+  p.transform_scale = v.transform_scale;
+  p.to_world = v.to_world;
+  p.normal_to_world = v.normal_to_world;
+  return p;
+}
+
+geometry::Box3 with_slack(const glm::vec3& low, const glm::vec3& high, float more) {
+  float reach = more;
+  for (int k = 0; k < 3; ++k)
+    reach = std::max(reach, std::max(std::abs(low[k]), std::abs(high[k])));
+  geometry::Box3 box;
+  box.include(low - glm::vec3(reach * kSlack));
+  box.include(high + glm::vec3(reach * kSlack));
+  return box;
+}
+
+}  // namespace
+
+std::uint64_t ClusterData::triangles() const {
+  std::uint64_t sum = 0;
+  for (const Piece& piece : pieces) sum += piece.triangles.size();
+  return sum;
+}
+
+std::uint64_t ClusterData::bytes() const {
+  std::uint64_t sum = bytes_of(pieces) + bytes_of(placements);
+  for (const Piece& piece : pieces) {
+    const scenes::Mesh& mesh = piece.mesh;
+    sum += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.uvs) +
+           bytes_of(mesh.uvs2) + bytes_of(mesh.tangents) + bytes_of(mesh.colours) +
+           bytes_of(mesh.triangles) + bytes_of(piece.triangles) + bytes_of(piece.placements);
+  }
+  return sum;
+}
+
+std::vector<geometry::Box3> boxes_of(const ClusterData& cluster) {
+  std::vector<geometry::Box3> boxes;
+  glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
+  bool any = false;
+  for (const Placement& placement : cluster.placements) {
+    const scenes::Mesh& mesh = cluster.pieces[placement.mesh_number].mesh;
+    if (!placement.instanced) {
+      for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
+      any = any || !mesh.positions.empty();
+      continue;
+    }
+    glm::vec3 placed_low(std::numeric_limits<float>::infinity()), placed_high = -placed_low;
+    for (const glm::vec3& p : mesh.positions) {
+      const glm::vec3 q = placement.to_world * glm::vec4(p, 1.0F);
+      placed_low = glm::min(placed_low, q), placed_high = glm::max(placed_high, q);
+    }
+    if (!mesh.positions.empty())
+      boxes.push_back(with_slack(placed_low, placed_high, placement.transform_scale));
+  }
+  if (any) boxes.push_back(with_slack(low, high, 0.0F));
+  return boxes;
+}
+
+comm::Buffer pack(const ClusterData& cluster) {
+  Writer out;
+  out.value(static_cast<std::uint64_t>(cluster.pieces.size()));
+  for (const Piece& piece : cluster.pieces) {
+    out.value(piece.mesh.material);
+    out.array(piece.mesh.positions);
+    out.array(piece.mesh.normals);
+    out.array(piece.mesh.uvs);
+    out.array(piece.mesh.uvs2);
+    out.array(piece.mesh.tangents);
+    out.array(piece.mesh.colours);
+    out.array(piece.mesh.triangles);
+    out.array(piece.triangles);
+    out.array(piece.placements);
+  }
+  std::vector<PlacementValues> placements;
+  for (const Placement& p : cluster.placements) placements.push_back(values_of(p));
+  out.array(placements);
+  return out.buffer();
+}
+
+ClusterData unpack_cluster(std::span<const std::byte> message) {
+  Reader in(message);
+  ClusterData cluster;
+  const auto pieces = in.value<std::uint64_t>();
+  comm::check_message(pieces <= message.size() / sizeof(std::uint64_t));  // each has several
+  cluster.pieces.resize(pieces);
+  for (Piece& piece : cluster.pieces) {
+    piece.mesh.material = in.value<std::uint32_t>();
+    piece.mesh.positions = in.array<glm::vec3>(1);  // Embree loads past the last one
+    piece.mesh.normals = in.array<glm::vec3>();
+    piece.mesh.uvs = in.array<glm::vec2>();
+    piece.mesh.uvs2 = in.array<glm::vec2>();
+    piece.mesh.tangents = in.array<glm::vec4>();
+    piece.mesh.colours = in.array<glm::vec4>();
+    piece.mesh.triangles = in.array<glm::uvec3>();
+    piece.triangles = in.array<std::uint32_t>();
+    piece.placements = in.array<std::uint32_t>();
+  }
+  for (const PlacementValues& values : in.array<PlacementValues>())
+    cluster.placements.push_back(placement_of(values));
+  return cluster;
+}
+
+Cluster::Cluster(ClusterData&& data, const BuildOptions& options, const EmbreeDevice& device)
+    : data_(std::move(data)) {
+  for (Placement& placement : data_.placements) {
+    const Piece& piece = data_.pieces[placement.mesh_number];
+    placement.mesh = &piece.mesh;
+    placement.positions = piece.mesh.positions.data();
+  }
+  for (const Piece& piece : data_.pieces)
+    numbers_.insert(numbers_.end(), piece.placements.begin(), piece.placements.end());
+  geometry_bytes_ = data_.bytes();
+  embree_ = std::make_unique<EmbreeScene>(data_.placements, options, device);
+}
+
+}  // namespace delray::raytrace

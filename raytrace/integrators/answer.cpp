@@ -1,0 +1,118 @@
+#include "raytrace/integrators/answer.h"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+#include "raytrace/integrators/glass_layers.h"
+#include "raytrace/sampling/optics.h"
+#include "raytrace/scene/hit_points.h"
+#include "raytrace/scene/intersection.h"
+#include "shading/arithmetic.h"
+
+namespace delray::raytrace {
+namespace {
+
+// Memory that is not written to before it is used.
+template <class T>
+union PerHit {
+  PerHit() {}
+  T element[kPacketRays * SeeThrough::kMost];
+};
+
+bool transmits(const Tracer& tracer, const Hit& hit) {
+  return tracer.shader.materials[tracer.placements[hit.placement].material].transmission > 0.0F;
+}
+
+void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGroup& group) {
+  const shading::LaneMask active = active_lanes(group.active);
+  SeeThrough passed[kPacketRays];
+  tracer.embree.occluded(group.active, group.packet, passed, group.coherent);
+  group.lit = group.dimmed = 0;
+  for (int i = 0; i < kPacketRays; ++i) {
+    group.lit |= group.packet.far[i] >= 0.0F ? 1U << i : 0U;
+  }
+  group.lit &= active;
+  if (!tracer.embree.has_see_through()) return;
+  PerHit<PaneHit> panes;
+  PerHit<Layer> layers;
+  std::size_t pane_count = 0, first = 0;
+  for (int i = 0; i < kPacketRays; ++i) {
+    if ((group.lit >> i & 1) == 0 || passed[i].count == 0) continue;
+    group.dimmed |= 1U << i;
+    const glm::vec3 direction(group.packet.direction_x[i], group.packet.direction_y[i],
+                              group.packet.direction_z[i]);
+    for (int k = 0; k < passed[i].count; ++k) {
+      const Hit& hit = passed[i].hits[k];
+      Layer& layer = layers.element[first++];
+      const bool through_glass = (group.through_glass >> i & 1) != 0;
+      if (through_glass && transmits(tracer, hit)) {
+        layer = {hit.distance, hit.placement, hit.triangle, {}};
+        panes.element[pane_count++] = {hit, direction, &layer.left};
+      } else {
+        layer = layer_of(tracer.placements, tracer.shader, hit, direction, through_glass);
+      }
+    }
+  }
+  if (pane_count != 0) find_left(tracer.placements, shader, {panes.element, pane_count});
+  first = 0;
+  for (shading::LaneMask rest = group.dimmed; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const auto count = static_cast<std::size_t>(passed[i].count);
+    group.left.set(i, left_by({layers.element + first, count}));
+    first += count;
+  }
+}
+
+}  // namespace
+
+void answer(const Tracer& tracer, const shading::BatchShader& shader, Wave& wave) {
+  const RayGroup* before = nullptr;
+  for (RayGroup& group : wave.rays) {
+    if (group.misses) continue;
+    tracer.embree.intersect(group.active, group.packet, group.coherent);
+    if (!tracer.large) continue;
+    fetch_corners(tracer.placements, group);
+    if (before != nullptr) fetch_vertices(tracer.placements, *before);
+    before = &group;
+  }
+  if (before != nullptr) fetch_vertices(tracer.placements, *before);
+  for (RayGroup& group : wave.rays) {
+    group.hits = 0;
+    if (!group.misses) find_points(tracer.placements, group);
+  }
+  for (ShadowGroup& group : wave.shadows) occlude(tracer, shader, group);
+}
+
+Layer layer_of(std::span<const Placement> placements, const shading::Shader& shader, const Hit& hit,
+               const glm::vec3& direction, bool through_glass) {
+  const Placement& placement = placements[hit.placement];
+  const scenes::Material& material = shader.materials[placement.material];
+  if (!through_glass || !(material.transmission > 0.0F)) {
+    const std::uint32_t texture = material.base_colour_texture;
+    const int set = texture == scenes::kNone ? 0 : shader.textures[texture].set;
+    const CoveragePoint at = coverage_point(placement, hit, set);
+    const float alpha = shading::coverage(shader, material, at.uv, {}, at.alpha);
+    return {hit.distance, hit.placement, hit.triangle, glm::vec3(1.0F - alpha)};
+  }
+  const Intersection at = intersection(placement, hit, direction, {0.0F});
+  const glm::vec3 view = -direction;
+  const shading::Surface s = shading::evaluate(shader, material, at.point, view);
+  const float share = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
+  const float reflected = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior).reflected;
+  return {hit.distance, hit.placement, hit.triangle,
+          glm::vec3(1.0F - s.alpha) +
+              s.base_colour * s.attenuation * (s.alpha * share * (1.0F - reflected))};
+}
+
+glm::vec3 left_by(std::span<Layer> layers) {
+  std::sort(layers.begin(), layers.end(), [](const Layer& a, const Layer& b) {
+    return std::tie(a.distance, a.placement, a.triangle) <
+           std::tie(b.distance, b.placement, b.triangle);
+  });
+  glm::vec3 left(1.0F);
+  for (const Layer& layer : layers) left *= layer.left;
+  return left;
+}
+
+}  // namespace delray::raytrace

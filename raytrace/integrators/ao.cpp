@@ -1,0 +1,51 @@
+#include "raytrace/integrators/ao.h"
+
+#include <bit>
+
+#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/lit_walk.h"
+#include "raytrace/sampling/sampler.h"
+#include "raytrace/sampling/warp.h"
+
+namespace delray::raytrace {
+namespace {
+
+using shading::LaneMask;
+
+class AmbientOcclusion final : public LitWalk {
+ public:
+  explicit AmbientOcclusion(const Setting& setting) : LitWalk(setting, Positions::random) {
+    for (float& reach : reach_.lane) reach = setting.options.reach;
+  }
+
+ private:
+  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& /*shown*/) override {
+    const LaneMask seen = look_at(group, lanes, surfaces_);
+    if (seen == 0) return 0;
+    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      Sampler numbers = sampler(lanes.pixel_of(i));
+      numbers.skip(lanes.whole ? 0 : lanes.layers[i]);
+      const glm::vec3 normal = surfaces_.normal.get(i);
+      const glm::vec3 up = surfaces_.geometric_normal.get(i);
+      const glm::vec3 direction = Frame(normal).to_world(cosine_direction(numbers.two()));
+      directions_.set(i, direction);
+      // Below the surface itself all is dark.
+      white_.set(i, glm::vec3(glm::dot(direction, up) > 0.0F ? 1.0F : 0.0F));
+    }
+    ask_shadows(group, lanes, seen, surfaces_, directions_, reach_, white_, false);
+    return 0;
+  }
+
+  shading::Surfaces surfaces_;
+  shading::Vectors16 directions_, white_;
+  shading::Floats16 reach_;
+};
+
+}  // namespace
+
+std::unique_ptr<Walk> make_ao(const Setting& setting) {
+  return std::make_unique<AmbientOcclusion>(setting);
+}
+
+}  // namespace delray::raytrace

@@ -1,0 +1,15 @@
+// Ambient occlusion.
+#pragma once
+
+#include <memory>
+
+#include "raytrace/integrators/walk.h"
+
+namespace delray::raytrace {
+
+// White where nothing is within `reach` above a surface, black where all directions are covered,
+// weighted with the cosine to the normal: one direction for each sample. Materials play no part,
+// but for layers, which cover as much as they do elsewhere.
+std::unique_ptr<Walk> make_ao(const Setting& setting);
+
+}  // namespace delray::raytrace

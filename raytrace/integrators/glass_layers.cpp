@@ -1,0 +1,97 @@
+#include "raytrace/integrators/glass_layers.h"
+
+#include <algorithm>
+#include <bit>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/integrators/glass_layers.cpp"
+#include <hwy/foreach_target.h>
+// What is compiled per target comes after it.
+#include <hwy/highway.h>
+
+#include "raytrace/scene/hit_points.h"
+#include "raytrace/scene/same_material.h"
+#include "shading/batch.h"
+#include "shading/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raytrace {
+namespace HWY_NAMESPACE {
+
+using namespace shading::HWY_NAMESPACE;
+
+// refracted() of raytrace/sampling/optics.h: what is mirrored.
+HWY_INLINE F mirrored_share(const F3& view, const F3& normal, F ratio) {
+  const F one = set(1.0F), zero = set(0.0F);
+  const F cosine = min_of(max_of(dot(normal, view), zero), one);
+  const F squared = one - ratio * ratio * (one - cosine * cosine);
+  const F other = hn::Sqrt(squared);
+  const F parallel = (cosine - ratio * other) / (cosine + ratio * other);
+  const F perpendicular = (ratio * cosine - other) / (ratio * cosine + other);
+  return hn::IfThenElse(hn::Le(squared, zero), one,
+                        set(0.5F) * (parallel * parallel + perpendicular * perpendicular));
+}
+
+void left_block(const shading::Surfaces& s, const shading::Vectors16& views,
+                shading::Vectors16& left) {
+  const F one = set(1.0F);
+  const FloatTag d;
+  for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
+    const F share = clamp01(load(s.transmission, i)) * (one - clamp01(load(s.metallic, i)));
+    const M front = hn::RebindMask(d, hn::Ne(hn::Load(IntTag(), s.front + i), set(0)));
+    const F ior = load(s.ior, i);
+    const F ratio = hn::IfThenElse(front, one / ior, ior);
+    const F mirrored = mirrored_share(load(views, i), load(s.normal, i), ratio);
+    const F alpha = load(s.alpha, i), past = one - alpha;
+    const F3 through = load(s.tint, i) * (alpha * share * (one - mirrored));
+    hn::Store(past + through.x, d, left.x.lane + i);
+    hn::Store(past + through.y, d, left.y.lane + i);
+    hn::Store(past + through.z, d, left.z.lane + i);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raytrace
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raytrace {
+namespace {
+
+HWY_EXPORT(left_block);
+
+}  // namespace
+
+void find_left(std::span<const Placement> placements, const shading::BatchShader& shader,
+               std::span<const PaneHit> hits) {
+  RayGroup group;
+  shading::Surfaces surfaces;
+  shading::Vectors16 left;
+  group.width = group.spread = {};
+  for (; !hits.empty(); hits = hits.subspan(std::min<std::size_t>(hits.size(), kPacketRays))) {
+    const int count = static_cast<int>(std::min<std::size_t>(hits.size(), kPacketRays));
+    for (int i = 0; i < kPacketRays; ++i) {
+      const PaneHit& pane = hits[static_cast<std::size_t>(i < count ? i : 0)];
+      group.active.ray[i] = i < count ? -1 : 0;
+      group.packet.far[i] = pane.hit.distance;
+      group.packet.geometry[i] = pane.hit.placement;
+      group.packet.instance[i] = kMiss;
+      group.packet.triangle[i] = pane.hit.triangle;
+      group.packet.u[i] = pane.hit.u;
+      group.packet.v[i] = pane.hit.v;
+      group.view.set(i, -pane.direction);
+    }
+    find_points(placements, group);
+    for (shading::LaneMask rest = group.hits; rest != 0;) {
+      const shading::LaneMask same = same_material(group, rest);
+      shading::evaluate(shader, group.material[std::countr_zero(rest)], group.points, group.view,
+                        same, surfaces);
+      rest &= ~same;
+    }
+    HWY_DYNAMIC_DISPATCH(left_block)(surfaces, group.view, left);
+    for (int i = 0; i < count; ++i) *hits[static_cast<std::size_t>(i)].left = left.get(i);
+  }
+}
+
+}  // namespace delray::raytrace
+#endif

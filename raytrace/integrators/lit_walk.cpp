@@ -1,0 +1,286 @@
+#include "raytrace/integrators/lit_walk.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "image/image.h"
+#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/lane_sums.h"
+#include "raytrace/scene/same_material.h"
+
+namespace delray::raytrace {
+namespace {
+
+using shading::LaneMask;
+
+void multiply(const shading::Vectors16& by, shading::Vectors16& v) {
+  for (int i = 0; i < kPacketRays; ++i) {
+    v.x[i] *= by.x[i];
+    v.y[i] *= by.y[i];
+    v.z[i] *= by.z[i];
+  }
+}
+
+}  // namespace
+
+void LitWalk::begin() {
+  asked_.clear();
+  asked_lights_.clear();
+  std::fill_n(open_, kBundles, Open{});
+  for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
+    RayLanes& lanes = asked_.add();
+    lanes.whole = true;
+    lanes.block = block;
+    lanes.bundle = Bundle::straight;
+    lanes.weighted = false;
+  }
+}
+
+void LitWalk::look() {
+  std::swap(asked_, answered_);
+  std::swap(asked_lights_, answered_lights_);
+  asked_.clear();
+  asked_lights_.clear();
+  std::fill_n(open_, kBundles, Open{});
+  add_lights();
+  // Bundle by bundle, so that the rays of a sample have one order however groups were filled.
+  for (int bundle = 0; bundle < kBundles; ++bundle) {
+    for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
+      if (answered_[g].bundle != static_cast<Bundle>(bundle)) continue;
+      RayGroup& group = wave_.rays[g];
+      source_ = g;
+      // Once for each ray, as two rays of one sample may or may not share a group.
+      LaneMask shown = show_environment(group, answered_[g]);
+      if (group.hits != 0) shown |= shade(group, answered_[g], shown_);
+      if (shown != 0) add(answered_[g], shown, shown_.colour);
+    }
+  }
+}
+
+// A ray's lights are summed before they are added to its sample, so that it makes no difference
+// which rays share a group.
+void LitWalk::add_lights() {
+  for (std::size_t g = 0; g < wave_.shadows.size();) {
+    const Light& first = answered_lights_[g];
+    sum_ = {};
+    LaneMask lit = 0;
+    for (; g < wave_.shadows.size() && answered_lights_[g].source == first.source; ++g) {
+      const ShadowGroup& group = wave_.shadows[g];
+      shading::Vectors16& reflected = answered_lights_[g].reflected;
+      for (LaneMask rest = group.dimmed; rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        reflected.set(i, reflected.get(i) * group.left.get(i));
+      }
+      add_lanes(reflected, group.lit, sum_);
+      lit |= group.lit;
+    }
+    if (first.whole) {
+      add_lanes(sum_, lit, samples_[first.block].colour);
+      continue;
+    }
+    for (LaneMask rest = lit; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      SampleBlock& block = samples_[first.pixel[i] / kPacketRays];
+      const int lane = static_cast<int>(first.pixel[i] % kPacketRays);
+      block.colour.set(lane, block.colour.get(lane) + sum_.get(i));
+    }
+  }
+}
+
+LaneMask LitWalk::show_environment(const RayGroup& group, const RayLanes& lanes) {
+  LaneMask missed = active_lanes(group.active) & ~group.hits;
+  if (missed == 0) return 0;
+  if (setting_.options.background == TraceOptions::Background::transparent) {
+    // Primary rays make the picture transparent.
+    for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      if (depth_of(lanes, i) != setting_.options.depth) continue;
+      const std::uint32_t pixel = lanes.pixel_of(i);
+      samples_[pixel / kPacketRays].alpha[static_cast<int>(pixel % kPacketRays)] =
+          1.0F - lanes.weight_of(i).x;
+      missed &= ~(1U << i);
+    }
+  }
+  if (missed == 0 || setting_.shader.shader->environment.black) return 0;
+  negate_lanes(group.view, directions_);
+  shading::environment_radiance(setting_.shader, directions_, 0.0F, missed, shown_.colour);
+  return missed;
+}
+
+LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces) {
+  for (LaneMask rest = group.hits; rest != 0;) {
+    const LaneMask same = same_material(group, rest);
+    shading::evaluate(setting_.shader, group.material[std::countr_zero(rest)], group.points,
+                      group.view, same, surfaces);
+    rest &= ~same;
+  }
+  return see(group, lanes, surfaces.alpha);
+}
+
+LaneMask LitWalk::see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha) {
+  LaneMask layered = 0;
+  for (LaneMask rest = group.hits; rest != 0;) {
+    const LaneMask same = same_material(group, rest);
+    const auto& material = setting_.shader.material(group.material[std::countr_zero(rest)]);
+    if (material.material.alpha != scenes::Material::Alpha::opaque) layered |= same;
+    rest &= ~same;
+  }
+  const LaneMask hidden = layered != 0 ? look_through(group, lanes, layered, alpha) : 0;
+  const LaneMask seen = group.hits & ~hidden;
+  if (lanes.whole) {  // the first that these pixels see
+    choose_lanes(group.packet.far, image::kEmptyDepth, seen, samples_[lanes.block].depth);
+    return seen;
+  }
+  for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint32_t pixel = lanes.pixel_of(i);
+    float& depth = samples_[pixel / kPacketRays].depth[static_cast<int>(pixel % kPacketRays)];
+    if (depth == image::kEmptyDepth) depth = group.packet.far[i];
+  }
+  return seen;
+}
+
+LaneMask LitWalk::look_through(const RayGroup& group, RayLanes& lanes, LaneMask layered,
+                               const shading::Floats16& alpha) {
+  if (!lanes.weighted) {
+    for (int i = 0; i < kPacketRays; ++i) lanes.weight.set(i, glm::vec3(1.0F));
+    lanes.weighted = true;
+  }
+  LaneMask hidden = 0;
+  for (LaneMask rest = layered; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const Hit hit = hit_of(group.packet, i);
+    const bool again =
+        !lanes.whole && hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
+    const float covered = again ? 0.0F : alpha[i];
+    const glm::vec3 weight = lanes.weight.get(i);
+    ask_behind(group, lanes, i, weight * (1.0F - covered));
+    lanes.weight.set(i, weight * covered);
+    if (!(covered > 0.0F)) hidden |= 1U << i;
+  }
+  return hidden;
+}
+
+void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
+                         const glm::vec3& weight) {
+  const std::uint32_t layers = lanes.whole ? 1 : lanes.layers[i] + 1;
+  if (brightest(weight) < kLeastWeight || layers >= kMostLayers) return;
+  const RayPacket& packet = group.packet;
+  const Hit hit = hit_of(packet, i);
+  NextRay ray;
+  ray.origin = {packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]};
+  ray.direction = {packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]};
+  ray.view = group.view.get(i);
+  ray.near = next_up(hit.distance);
+  ray.width = group.width[i];
+  ray.spread = group.spread[i];
+  ray.weight = weight;
+  ray.pixel = lanes.pixel_of(i);
+  ray.depth = depth_of(lanes, i);
+  ray.branch = branch_of(lanes, i, Bundle::straight);
+  ray.layers = layers;
+  ray.placement = hit.placement;
+  ray.triangle = hit.triangle;
+  ask(ray, Bundle::straight);
+}
+
+void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16& radiance) {
+  if (lanes.whole && !lanes.weighted) {
+    SampleBlock& block = samples_[lanes.block];
+    add_lanes(radiance, mask, block.colour);
+    return;
+  }
+  for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const std::uint32_t pixel = lanes.pixel_of(i);
+    SampleBlock& block = samples_[pixel / kPacketRays];
+    const int lane = static_cast<int>(pixel % kPacketRays);
+    block.colour.set(lane, block.colour.get(lane) + radiance.get(i) * lanes.weight_of(i));
+  }
+}
+
+void LitWalk::ask_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                         const shading::Surfaces& surfaces, const Mirrored& mirrored) {
+  for (std::size_t l = 0; l < setting_.shader.lights.size(); ++l) {
+    if (setting_.shader.lights[l].kind == scenes::Light::Kind::area) continue;
+    ask_light(group, lanes, mask, l, surfaces);
+  }
+  ask_sized_lights(group, lanes, mask, surfaces, mirrored);
+}
+
+void LitWalk::ask_light(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                        std::size_t light, const shading::Surfaces& surfaces) {
+  if (mask == 0) return;
+  shading::Arriving& arriving = arriving_;
+  const LaneMask reached =
+      shading::reflect_light(setting_.shader, light, surfaces, group.view, mask, arriving);
+  if (reached == 0) return;
+  for (int i = 0; i < kPacketRays; ++i) arriving.distance[i] *= kShadowReach;
+  ask_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
+              arriving.reflected, true);
+}
+
+void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                          const shading::Surfaces& surfaces, const shading::Vectors16& directions,
+                          const shading::Floats16& distances, const shading::Vectors16& reflected,
+                          bool coherent) {
+  rays_.shadow += static_cast<std::uint64_t>(std::popcount(mask));
+  Light& light = asked_lights_.add();
+  light.source = source_;
+  light.whole = lanes.whole;
+  light.block = lanes.block;
+  if (!lanes.whole) std::copy_n(lanes.pixel, kPacketRays, light.pixel);
+  light.reflected = reflected;
+  if (lanes.weighted) multiply(lanes.weight, light.reflected);
+  ShadowGroup& shadows = next_.shadows.add();
+  shadows.coherent = coherent;
+  shadows.through_glass = shading::kAllLanes;
+  ShadowPacket& packet = shadows.packet;
+  const shading::Vectors16 &from = surfaces.position, &up = surfaces.geometric_normal;
+  for (int i = 0; i < kPacketRays; ++i) {
+    shadows.active.ray[i] = (mask >> i & 1) != 0 ? -1 : 0;
+    packet.origin_x[i] = from.x[i] + up.x[i] * group.offset[i];
+    packet.origin_y[i] = from.y[i] + up.y[i] * group.offset[i];
+    packet.origin_z[i] = from.z[i] + up.z[i] * group.offset[i];
+    packet.near[i] = 0.0F;
+    packet.direction_x[i] = directions.x[i];
+    packet.direction_y[i] = directions.y[i];
+    packet.direction_z[i] = directions.z[i];
+    packet.time[i] = 0.0F;
+    packet.far[i] = distances[i];
+    packet.mask[i] = 0xFFFFFFFFU;
+    packet.flags[i] = 0;
+  }
+}
+
+void LitWalk::ask(const NextRay& ray, Bundle bundle) {
+  Open& open = open_[static_cast<int>(bundle)];
+  if (open.used == kPacketRays) {
+    open = {next_.rays.size(), 0};
+    RayGroup& fresh = next_.rays.add();
+    clear_lanes(fresh);
+    fresh.coherent = true;  // neighbours' rays are mirrored and refracted alike
+    RayLanes& lanes = asked_.add();
+    lanes.whole = false;
+    lanes.bundle = bundle;
+    lanes.weighted = true;
+  }
+  const int i = open.used++;
+  RayGroup& group = next_.rays[open.group];
+  set_ray(group, i, ray.origin, ray.direction, ray.view, ray.near);
+  group.width[i] = ray.width;
+  group.spread[i] = ray.spread;
+  RayLanes& lanes = asked_[open.group];
+  lanes.weight.set(i, ray.weight);
+  lanes.pixel[i] = ray.pixel;
+  lanes.depth[i] = ray.depth;
+  lanes.branch[i] = ray.branch;
+  lanes.layers[i] = ray.layers;
+  lanes.placement[i] = ray.placement;
+  lanes.triangle[i] = ray.triangle;
+  ++(ray.depth == setting_.options.depth ? rays_.primary : rays_.secondary);
+}
+
+}  // namespace delray::raytrace

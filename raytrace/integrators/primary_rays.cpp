@@ -1,0 +1,102 @@
+#include "raytrace/integrators/primary_rays.h"
+
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/integrators/primary_rays.cpp"
+#include <hwy/foreach_target.h>
+// What is compiled per target comes after it.
+#include <hwy/highway.h>
+
+#include "shading/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raytrace {
+namespace HWY_NAMESPACE {
+
+using namespace shading::HWY_NAMESPACE;
+
+HWY_ALIGN constexpr std::int32_t kColumns[kPacketRays] = {0, 1, 2, 3, 0, 1, 2, 3,
+                                                          0, 1, 2, 3, 0, 1, 2, 3};
+HWY_ALIGN constexpr std::int32_t kRows[kPacketRays] = {0, 0, 0, 0, 1, 1, 1, 1,
+                                                       2, 2, 2, 2, 3, 3, 3, 3};
+
+HWY_INLINE void put(F v, float* to) { hn::Store(v, FloatTag(), to); }
+HWY_INLINE void put(I v, std::uint32_t* to) {
+  hn::Store(v, IntTag(), reinterpret_cast<std::int32_t*>(to));
+}
+
+// No ray runs exactly along an axis: it could pass between boxes that only touch. What a thousandth
+// of a pixel is to a ray is added.
+HWY_INLINE F off_axis(F component, F length) {
+  const F least = length * set(1e-6F);
+  return hn::IfThenElse(hn::Lt(hn::Abs(component), least), least, component);
+}
+
+void primary_block(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
+                   shading::LaneMask mask, RayGroup& group) {
+  const IntTag di;
+  RayPacket& packet = group.packet;
+  const F zero = set(0.0F), scale = set(view.scale);
+  const I none = set(-1);
+  for (int i = 0; i < kPacketRays; i += lanes()) {
+    const F column = to_float(hn::Load(di, kColumns + i) + set(x)) + load(places.x, i);
+    const F row = to_float(hn::Load(di, kRows + i) + set(y)) + load(places.y, i);
+    const F right = (column - set(view.half_width)) / scale;
+    const F up = (row - set(view.half_height)) / scale;
+    F3 direction = set(view.forward), origin = set(view.eye);
+    F3& moved = view.orthographic ? origin : direction;
+    moved = moved + set(view.right) * right - set(view.up) * up;
+    if (view.lens_radius > 0.0F) {
+      const F radius = set(view.lens_radius);
+      const F3 aside = set(view.right) * (load(places.lens_x, i) * radius) +
+                       set(view.up) * (load(places.lens_y, i) * radius);
+      origin = origin + aside;
+      direction = direction - aside * set(1.0F / view.focus_distance);
+    }
+    const F length = hn::Sqrt(dot(direction, direction));
+    direction = {off_axis(direction.x, length), off_axis(direction.y, length),
+                 off_axis(direction.z, length)};
+    const F3 unit = direction * (set(1.0F) / length);
+    put(origin.x, packet.origin_x + i);
+    put(origin.y, packet.origin_y + i);
+    put(origin.z, packet.origin_z + i);
+    put(set(view.near), packet.near + i);
+    put(direction.x, packet.direction_x + i);
+    put(direction.y, packet.direction_y + i);
+    put(direction.z, packet.direction_z + i);
+    put(zero, packet.time + i);
+    put(set(std::numeric_limits<float>::infinity()), packet.far + i);
+    put(none, packet.mask + i);
+    put(set(0), packet.id + i);
+    put(set(0), packet.flags + i);
+    put(none, packet.triangle + i);
+    put(none, packet.geometry + i);
+    put(none, packet.instance + i);
+    put(hn::Neg(unit.x), group.view.x.lane + i);
+    put(hn::Neg(unit.y), group.view.y.lane + i);
+    put(hn::Neg(unit.z), group.view.z.lane + i);
+    put(set(view.first_width()), group.width.lane + i);
+    put(set(view.spread()), group.spread.lane + i);
+    hn::Store(hn::VecFromMask(di, hn::RebindMask(di, mask_of(mask, i))), di, group.active.ray + i);
+  }
+  group.coherent = true;
+  group.misses = false;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raytrace
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raytrace {
+
+HWY_EXPORT(primary_block);
+
+void set_primary_rays(const scenes::View& view, int x, int y, const PrimaryPlaces& places,
+                      shading::LaneMask mask, RayGroup& group) {
+  HWY_DYNAMIC_DISPATCH(primary_block)(view, x, y, places, mask, group);
+}
+
+}  // namespace delray::raytrace
+#endif

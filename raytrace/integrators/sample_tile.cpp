@@ -1,0 +1,174 @@
+#include "raytrace/integrators/sample_tile.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#include "parallel/processor_time.h"
+#include "raytrace/integrators/answer.h"
+#include "raytrace/scene/flush_to_zero.h"
+
+namespace delray::raytrace {
+
+using geometry::Rect;
+
+static_assert(kTaskSide % kBlockSide == 0);
+
+double thread_seconds() {
+  return 1e-9 * static_cast<double>(parallel::quick_processor_nanoseconds());
+}
+
+TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile) {
+  TilePixels pixels;
+  pixels.tile = tile;
+  pixels.rect = frame.tiles.block(tile);
+  if (tasks_of(frame, pixels.rect).empty()) return pixels;
+  const auto count = static_cast<std::size_t>(pixels.rect.area());
+  pixels.pixels = static_cast<std::uint32_t>(count);
+  if (frame.picture != nullptr) {
+    const Rect& window = frame.tiles.frame;
+    pixels.stride = static_cast<std::size_t>(frame.picture->width);
+    const std::size_t first = static_cast<std::size_t>(pixels.rect.y0 - window.y0) * pixels.stride +
+                              static_cast<std::size_t>(pixels.rect.x0 - window.x0);
+    pixels.colour = frame.picture->colour.data() + first;
+    pixels.depth = frame.picture->depth.data() + first;
+    return pixels;
+  }
+  pixels.stride = static_cast<std::size_t>(pixels.rect.width());
+  pixels.own_colour.resize(count);
+  pixels.own_depth.assign(count, image::kEmptyDepth);
+  pixels.colour = pixels.own_colour.data();
+  pixels.depth = pixels.own_depth.data();
+  return pixels;
+}
+
+int samples_of(const RenderOptions& options) {
+  return options.part.samples > 0 ? options.part.samples
+                                  : options.samples - options.part.first_sample;
+}
+
+std::vector<Task> tasks_of(const TiledFrame& frame, const Rect& tile, int side) {
+  const Part& part = frame.options.part;
+  const Rect& window = frame.tiles.frame;
+  const auto columns = static_cast<std::size_t>((window.width() + kTaskSide - 1) / kTaskSide);
+  if (!part.squares.empty()) side = kTaskSide;
+  std::vector<Task> tasks;
+  for (int y = tile.y0; y < tile.y1; y += side) {
+    for (int x = tile.x0; x < tile.x1; x += side) {
+      const std::size_t square = static_cast<std::size_t>((y - window.y0) / kTaskSide) * columns +
+                                 static_cast<std::size_t>((x - window.x0) / kTaskSide);
+      if (!part.squares.empty() && part.squares[square] == 0) continue;
+      Task& task = tasks.emplace_back();
+      task.pixels = geometry::intersection(tile, {x, y, x + side, y + side});
+      task.first_sample = part.first_sample;
+    }
+  }
+  return tasks;
+}
+
+namespace {
+
+// Adds `weight` times a block's lanes to the pixels of it that are within so many columns and rows,
+// or overwrites those with it.
+template <bool kFirst>
+void add_block(const SampleBlock& block, float weight, int columns, int rows, image::RgbaF* colour,
+               float* depth, std::size_t stride) {
+  for (int y = 0; y < rows; ++y, colour += stride, depth += stride) {
+    for (int x = 0; x < columns; ++x) {
+      const int i = y * kBlockSide + x;
+      const image::RgbaF sum = kFirst ? image::RgbaF{} : colour[x];
+      colour[x] = {sum.r + block.colour.x[i] * weight, sum.g + block.colour.y[i] * weight,
+                   sum.b + block.colour.z[i] * weight, sum.a + block.alpha[i] * weight};
+      depth[x] = kFirst ? block.depth[i] : std::min(depth[x], block.depth[i]);
+    }
+  }
+}
+
+#if defined(__SSE__)
+
+// A row of a block is a cache line: it goes to memory without being read first, and is not kept.
+void write_past_caches(const SampleBlock& block, float weight, image::RgbaF* colour, float* depth,
+                       std::size_t stride) {
+  const __m128 weights = _mm_set1_ps(weight), zero = _mm_setzero_ps();
+  for (int i = 0; i < kPacketRays; i += kBlockSide, colour += stride, depth += stride) {
+    const auto weighed = [&](const shading::Floats16& v) {
+      return _mm_add_ps(zero, _mm_mul_ps(_mm_load_ps(v.lane + i), weights));
+    };
+    __m128 r = weighed(block.colour.x), g = weighed(block.colour.y);
+    __m128 b = weighed(block.colour.z), a = weighed(block.alpha);
+    _MM_TRANSPOSE4_PS(r, g, b, a);
+    _mm_stream_ps(&colour[0].r, r);
+    _mm_stream_ps(&colour[1].r, g);
+    _mm_stream_ps(&colour[2].r, b);
+    _mm_stream_ps(&colour[3].r, a);
+    std::memcpy(depth, block.depth.lane + i, kBlockSide * sizeof(float));
+  }
+}
+
+// Whether nobody reads the pixels of the block before all of the picture is done.
+bool may_pass_caches(const TiledFrame& frame, const image::RgbaF* colour) {
+  return frame.picture != nullptr && samples_of(frame.options) == 1 &&
+         reinterpret_cast<std::uintptr_t>(colour) % 16 == 0;
+}
+
+// Others see what was written once this thread has told them that it is done.
+void finish_writes() { _mm_sfence(); }
+
+#else
+
+void write_past_caches(const SampleBlock& block, float weight, image::RgbaF* colour, float* depth,
+                       std::size_t stride) {
+  add_block<true>(block, weight, kBlockSide, kBlockSide, colour, depth, stride);
+}
+bool may_pass_caches(const TiledFrame&, const image::RgbaF*) { return false; }
+void finish_writes() {}
+
+#endif
+
+}  // namespace
+
+void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels) {
+  const float weight = 1.0F / static_cast<float>(samples_of(frame.options));
+  const bool first = task.first_sample == frame.options.part.first_sample;
+  const Rect& tile = pixels.rect;
+  const SampleBlock* block = walk.samples().data();
+  const bool past_caches = first && may_pass_caches(frame, pixels.colour);
+  for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
+    const std::size_t row = static_cast<std::size_t>(y - tile.y0) * pixels.stride;
+    for (int x = task.pixels.x0; x < task.pixels.x1; x += kBlockSide, ++block) {
+      const std::size_t at = row + static_cast<std::size_t>(x - tile.x0);
+      if (past_caches && x + kBlockSide <= task.pixels.x1 && y + kBlockSide <= task.pixels.y1) {
+        write_past_caches(*block, weight, pixels.colour + at, pixels.depth + at, pixels.stride);
+        continue;
+      }
+      const auto add = first ? add_block<true> : add_block<false>;
+      add(*block, weight, std::min(kBlockSide, task.pixels.x1 - x),
+          std::min(kBlockSide, task.pixels.y1 - y), pixels.colour + at, pixels.depth + at,
+          pixels.stride);
+    }
+  }
+  if (past_caches) finish_writes();
+  pixels.rays += walk.rays();
+}
+
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk) {
+  const FlushToZero flush;
+  const double start = thread_seconds();
+  TilePixels pixels = start_tile(frame, tile);
+  const int samples = samples_of(frame.options);
+  for (Task& task : tasks_of(frame, pixels.rect, frame.walks.side())) {
+    for (int s = 0; s < samples; ++s, ++task.first_sample) {
+      for (walk.start(task); !walk.done(); walk.go_on()) {
+        answer(*frame.tracer, frame.setting.shader, walk.wave());
+      }
+      add_samples(frame, walk, task, pixels);
+    }
+  }
+  pixels.busy = thread_seconds() - start;
+  return pixels;
+}
+
+}  // namespace delray::raytrace

@@ -1,0 +1,48 @@
+// The samples of a tile: from walks to pixels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/integrators/tiled_frame.h"
+
+namespace delray::raytrace {
+
+// A tile's pixels and what they took.
+struct TilePixels {
+  std::uint32_t tile = 0;
+  geometry::Rect rect;
+  std::uint32_t pixels = 0;  // that are rendered; 0: none of its squares are
+  // Where its first pixel is and, `stride` pixels further, the one below: in a picture, or in
+  // memory of its own, row by row.
+  image::RgbaF* colour = nullptr;
+  float* depth = nullptr;
+  std::size_t stride = 0;
+  std::vector<image::RgbaF> own_colour;
+  std::vector<float> own_depth;
+  RayCounts rays;
+  double busy = 0.0;  // seconds of processor time
+};
+
+// Without samples yet: what is in its pixels is overwritten by the first one.
+TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile);
+
+// The parts of a tile that are walked through at once, the first sample of each. Rays of so many
+// pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
+// `side`: of the largest, a multiple of kTaskSide.
+std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile,
+                           int side = kTaskSide);
+
+// How many samples a task gets, one after the other.
+int samples_of(const RenderOptions& options);
+
+// What a walk that is done found. Samples of a pixel have to be added in ascending order.
+void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels);
+
+// All samples, on the calling thread. `walk` is of frame.walks and at rest.
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk);
+
+// Processor time of this thread: ranks may share a core, and waiting is no work.
+double thread_seconds();
+
+}  // namespace delray::raytrace

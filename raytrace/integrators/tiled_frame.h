@@ -1,0 +1,19 @@
+// What all tiles of a frame have in common.
+#pragma once
+
+#include "loadbalance/task_grid.h"
+#include "raytrace/integrators/walks.h"
+#include "raytrace/render.h"
+
+namespace delray::raytrace {
+
+struct TiledFrame {
+  const Tracer* tracer;  // null where the scene is shared out over ranks
+  const RenderOptions& options;
+  const Setting& setting;
+  Walks& walks;
+  loadbalance::Blocks tiles;  // tile k is task k of the schedule
+  image::ImageF* picture;     // of the window, on rank 0, whose tiles go there; null elsewhere
+};
+
+}  // namespace delray::raytrace

@@ -1,0 +1,119 @@
+#include "raytrace/integrators/walk.h"
+
+#include <bit>
+#include <cassert>
+#include <utility>
+
+#include "image/image.h"
+#include "raytrace/integrators/primary_rays.h"
+#include "raytrace/sampling/samples.h"
+#include "raytrace/sampling/warp.h"
+
+namespace delray::raytrace {
+namespace {
+
+void clear(SampleBlock& block) {
+  for (int i = 0; i < kPacketRays; ++i) {
+    block.colour.x[i] = block.colour.y[i] = block.colour.z[i] = 0.0F;
+    block.alpha[i] = 1.0F;
+    block.depth[i] = image::kEmptyDepth;
+  }
+}
+
+// Lanes of the block at (x, y) that are pixels of the task.
+shading::LaneMask inside(const geometry::Rect& pixels, int x, int y) {
+  if (x + kBlockSide <= pixels.x1 && y + kBlockSide <= pixels.y1) return shading::kAllLanes;
+  shading::LaneMask mask = 0;
+  for (int i = 0; i < kPacketRays; ++i) {
+    mask |= pixels.contains(x + i % kBlockSide, y + i / kBlockSide) ? 1U << i : 0U;
+  }
+  return mask;
+}
+
+// Dimensions of the sampler.
+enum : std::uint32_t { kPosition, kLens, kFirstFree };
+
+}  // namespace
+
+void Walk::ask_primary_rays() {
+  const bool lens = setting_.view.lens_radius > 0.0F;
+  const bool jittered =
+      (positions_ == Positions::random || setting_.scattered) && setting_.samples > 1;
+  keys_.resize(static_cast<std::size_t>(task_.blocks()));
+  has_keys_.assign(keys_.size(), false);
+  PrimaryPlaces places;
+  std::size_t block = 0;
+  for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
+    places.set(sample_position(s, setting_.samples));
+    block = 0;
+    for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
+      for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide, ++block) {
+        const auto sample = static_cast<std::uint32_t>(s);
+        const auto number = static_cast<std::uint32_t>(block);
+        for (int i = 0; jittered && i < kPacketRays; ++i) {
+          places.set_position(i, sobol_pair(keys(number).key(i), sample, kPosition));
+        }
+        for (int i = 0; lens && i < kPacketRays; ++i) {
+          places.set_lens(i, disc_point(sobol_pair(keys(number).key(i), sample, kLens)));
+        }
+        const shading::LaneMask mask = inside(task_.pixels, x, y);
+        RayGroup& group = next_.rays.add();
+        set_primary_rays(setting_.view, x, y, places, mask, group);
+        group.misses =
+            geometry::intersection(setting_.filled, {x, y, x + kBlockSide, y + kBlockSide}).empty();
+        rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
+      }
+    }
+  }
+}
+
+const PixelKeys& Walk::keys(std::uint32_t block) {
+  if (!has_keys_[block]) {
+    has_keys_[block] = true;
+    const int columns = task_.columns(), number = static_cast<int>(block);
+    pixel_keys(setting_.options.seed, task_.pixels.x0 + number % columns * kBlockSide,
+               task_.pixels.y0 + number / columns * kBlockSide, keys_[block]);
+  }
+  return keys_[block];
+}
+
+Sampler Walk::sampler(std::uint32_t pixel) {
+  const auto pixels = static_cast<std::uint32_t>(keys_.size()) * kPacketRays;
+  const std::uint32_t first = pixel % pixels;
+  return {keys(first / kPacketRays).key(static_cast<int>(first % kPacketRays)),
+          static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels, kFirstFree};
+}
+
+void Walk::draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples) {
+  const auto count = static_cast<std::uint32_t>(keys_.size()) * kPacketRays;
+  for (shading::LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    std::uint32_t pixel = pixels[i];
+    auto sample = static_cast<std::uint32_t>(task_.first_sample);
+    for (; pixel >= count; pixel -= count) ++sample;  // tasks have few samples
+    const PixelKeys& of_block = keys(pixel / kPacketRays);
+    const std::uint32_t lane = pixel % kPacketRays;
+    samples.set(i, of_block.low[lane], of_block.high[lane], sample, kFirstFree);
+  }
+}
+
+void Walk::start(const Task& task) {
+  assert(task.pixels.x0 % kBlockSide == 0 && task.pixels.y0 % kBlockSide == 0);
+  task_ = task;
+  rays_ = {};
+  wave_.clear();
+  next_.clear();
+  samples_.resize(static_cast<std::size_t>(task.blocks()) * static_cast<std::size_t>(task.samples));
+  for (SampleBlock& block : samples_) clear(block);
+  ask_primary_rays();
+  begin();
+  std::swap(wave_, next_);
+}
+
+void Walk::go_on() {
+  next_.clear();
+  look();
+  std::swap(wave_, next_);
+}
+
+}  // namespace delray::raytrace

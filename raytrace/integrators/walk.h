@@ -1,0 +1,137 @@
+// An integrator at work: a machine over the pixels of one task that asks for rays, wave by wave,
+// and goes on when they are answered. The same one serves a scene that this rank holds whole and
+// scenes distributed over ranks, where questions travel and the task is put aside meanwhile.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geometry/rect.h"
+#include "raytrace/sampling/light_table.h"
+#include "raytrace/sampling/sampler.h"
+#include "raytrace/scene/wave.h"
+#include "scenes/camera.h"
+#include "shading/batch_shader.h"
+
+namespace delray::raytrace {
+
+struct TraceOptions {
+  int depth = 8;  // how often light may be mirrored or refracted on its way to the camera
+  // How often it may be scattered diffusely, by `path`. Russian roulette ends paths long before.
+  int diffuse_depth = 64;
+  bool shadows = true;                                   // of integrators that can do without
+  float reach = std::numeric_limits<float>::infinity();  // of ambient occlusion, in the world
+  std::uint64_t seed = 0;                                // of everything random
+  enum class Background : std::uint8_t {
+    environment,  // where nothing is hit the environment shows, alpha 1
+    transparent,  // where nothing is hit colour and alpha are 0
+  } background = Background::environment;
+};
+
+// Rays sent. A ray that goes on behind a see-through layer counts again.
+struct RayCounts {
+  std::uint64_t primary = 0, shadow = 0, secondary = 0;
+  RayCounts& operator+=(const RayCounts& b) {
+    primary += b.primary;
+    shadow += b.shadow;
+    secondary += b.secondary;
+    return *this;
+  }
+  bool operator==(const RayCounts&) const = default;
+};
+
+// What all tasks of a frame have in common.
+struct Setting {
+  const shading::BatchShader& shader;
+  const LightTable& lights;
+  scenes::View view;
+  TraceOptions options;
+  int samples = 1;  // per pixel, in all tasks together
+  // Samples lie anywhere in their pixels, whatever the integrator: the first few of them are spread
+  // out as evenly as all are.
+  bool scattered = false;
+  // Primary rays of other pixels meet nothing.
+  geometry::Rect filled = {0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+};
+
+inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)
+
+// Pixels are walked through in squares of this side, cut from the frame's left upper corner on
+// however large tiles are: rays of so many stay in the cache between tracing and shading.
+inline constexpr int kTaskSide = 16;
+
+// Samples [first_sample, first_sample + samples) of every pixel of a rectangle, whose left and
+// upper sides are on multiples of kBlockSide; blocks that its other sides cut are filled in part.
+// How pixels and samples are cut into tasks changes no pixel.
+struct Task {
+  geometry::Rect pixels;
+  int first_sample = 0, samples = 1;
+
+  int columns() const { return (pixels.width() + kBlockSide - 1) / kBlockSide; }  // of blocks
+  int rows() const { return (pixels.height() + kBlockSide - 1) / kBlockSide; }
+  int blocks() const { return columns() * rows(); }
+};
+
+// One sample of each pixel of a block; lanes outside the task hold anything.
+struct SampleBlock {
+  shading::Vectors16 colour;  // linear, premultiplied
+  shading::Floats16 alpha;
+  shading::Floats16 depth;  // along the view axis, of the first layer that is not fully
+                            // transparent; kEmptyDepth where there is none
+};
+
+// Keeps its memory from task to task. Nothing in it depends on the task before.
+class Walk {
+ public:
+  virtual ~Walk() = default;
+  Walk(const Walk&) = delete;
+  Walk& operator=(const Walk&) = delete;
+
+  // Asks the first questions of a task.
+  void start(const Task& task);
+
+  // REQUIRES: all of wave() is answered, and not done.
+  void go_on();
+
+  bool done() const { return wave_.empty(); }
+  Wave& wave() { return wave_; }
+
+  // Once done: element s * blocks + b is sample first_sample + s of block b; blocks go row by row.
+  std::span<const SampleBlock> samples() const { return samples_; }
+  const RayCounts& rays() const { return rays_; }
+
+ protected:
+  // Where samples lie in their pixels: at the same places in all of them, or anywhere.
+  enum class Positions : std::uint8_t { regular, random };
+  explicit Walk(const Setting& setting, Positions positions = Positions::regular)
+      : setting_(setting), positions_(positions) {}
+
+  // Prepares for primary rays, which are in next_ already: group g is of samples_[g].
+  virtual void begin() = 0;
+  // Looks at the answered wave_, adds to samples_ and asks in next_, which is empty.
+  virtual void look() = 0;
+
+  // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
+  Sampler sampler(std::uint32_t pixel);
+  // The same for sixteen lanes, of which those in `lanes` are set.
+  void draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples);
+
+  Setting setting_;
+  Task task_;
+  Wave wave_, next_;
+  std::vector<SampleBlock> samples_;
+  RayCounts rays_;
+
+ private:
+  void ask_primary_rays();
+  const PixelKeys& keys(std::uint32_t block);
+
+  Positions positions_;
+  // Of the task's blocks, where they were asked for.
+  std::vector<PixelKeys> keys_;
+  std::vector<bool> has_keys_;
+};
+
+}  // namespace delray::raytrace

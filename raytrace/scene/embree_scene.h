@@ -1,0 +1,84 @@
+// The acceleration structure: all that the project knows of Embree is behind this file.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "geometry/box.h"
+#include "raytrace/scene/placement.h"
+#include "raytrace/scene/ray.h"
+
+namespace delray::raytrace {
+
+struct BuildOptions {
+  // How much time to spend on a better structure; `high` splits triangles and takes most memory.
+  enum class Quality : std::uint8_t { low, medium, high } quality = Quality::medium;
+  bool robust = true;        // no ray slips between two triangles that share an edge
+  bool share_meshes = true;  // meshes placed more than once become Embree instances
+  std::string isa;           // sse2, sse4.2, avx, avx2, avx512 (where present); empty: the best
+};
+
+// One of Embree's devices. Those of many small scenes have one in common: a process has room for
+// some hundreds. Copies are the same device.
+class EmbreeDevice {
+ public:
+  // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
+  explicit EmbreeDevice(const BuildOptions& options);
+
+  std::uint64_t memory() const;  // bytes that Embree holds for all its scenes
+  std::string version() const;   // of the library, e.g. "3.13.5"
+  std::string isa() const;       // in use: sse2, sse4.2, avx, avx2, avx512, neon
+
+ private:
+  friend class EmbreeScene;
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+// Immutable once made; any number of threads may send rays at the same time.
+class EmbreeScene {
+ public:
+  // Builds in the caller's arena; scenes of one device one after the other, or memory() of one
+  // counts some of another. Buffers of `placements` are used in place and have to outlive the
+  // object. Degenerate triangles are never hit. O(n log n).
+  // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
+  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options,
+              const EmbreeDevice& device);
+  // On a device of its own.
+  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options)
+      : EmbreeScene(placements, options, EmbreeDevice(options)) {}
+  ~EmbreeScene();
+  EmbreeScene(EmbreeScene&&) noexcept;
+  EmbreeScene& operator=(EmbreeScene&&) noexcept;
+
+  // Nearest hits; `coherent`: the rays of a packet stay close to each other, which makes it faster
+  // and changes nothing else. Where a ray goes through an edge or a corner and meets several
+  // triangles at exactly the same distance, that of the lowest placement, then triangle, number is
+  // taken: always the same, however the triangles are dealt out to scenes. Of surfaces that lie in
+  // each other any one is taken, always the same for the same scene, ray and instruction set.
+  void intersect(Ray& ray) const;
+  void intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const;
+
+  // Whether anything opaque is on the way. What can be seen through (Placement::see_through,
+  // but for triangles that are solid) is put into `passed` instead, once each. A negative `far` on
+  // return: occluded.
+  bool occluded(Ray& ray, SeeThrough& passed) const;
+  void occluded(const ActiveRays& active, ShadowPacket& packet,
+                std::span<SeeThrough, kPacketRays> passed, bool coherent) const;
+
+  bool has_see_through() const { return has_see_through_; }
+  std::uint64_t memory() const;   // bytes that Embree took for this scene
+  geometry::Box3 bounds() const;  // of all that can be hit
+  const EmbreeDevice& device() const;
+
+  struct State;  // Embree's objects
+
+ private:
+  std::unique_ptr<State> state_;
+  bool has_see_through_ = false;
+  bool has_instances_ = false;
+};
+
+}  // namespace delray::raytrace
