@@ -14,9 +14,9 @@
 #include "composite/scheme.h"
 #include "loadbalance/partition.h"
 #include "parallel/parallel_for.h"
-#include "raster/internal/frame_memory.h"
-#include "raster/internal/rank.h"
-#include "raster/internal/share_communicator.h"
+#include "raster/distribute/frame_memory.h"
+#include "raster/distribute/rank.h"
+#include "raster/distribute/share_communicator.h"
 #include "raster/strategies.h"
 
 namespace delray::raster {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "raster/internal/rank.h"
+#include "raster/distribute/rank.h"
 
 namespace delray::raster {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "raster/internal/prepared_draw.h"
-#include "raster/internal/set_up.h"
-#include "raster/internal/visibility.h"
+#include "raster/pipeline/prepared_draw.h"
+#include "raster/pipeline/set_up.h"
+#include "raster/pipeline/visibility.h"
 
 namespace delray::raster {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <random>
 
-#include "raster/internal/draw_into_tiles.h"
-#include "raster/internal/shade_tile.h"
-#include "raster/internal/tile_triangles.h"
+#include "raster/pipeline/draw_into_tiles.h"
+#include "raster/shading/shade_tile.h"
+#include "raster/shading/tile_triangles.h"
 #include "scenes/generate.h"
 #include "tests/raster/random_scene.h"
 #include "tests/support/targets.h"

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "raster/internal/coverage.h"
-#include "raster/internal/screen.h"
+#include "raster/distribute/coverage.h"
+#include "raster/pipeline/screen.h"
 
 namespace delray::raster {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "raster/internal/set_up.h"
+#include "raster/pipeline/set_up.h"
 #include "tests/raster/coverage.h"
 #include "tests/support/targets.h"
 

@@ -1,0 +1,120 @@
+#include "raster/distribute/group_traffic.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "comm/collectives.h"
+#include "raster/distribute/travel.h"
+
+namespace delray::raster {
+namespace {
+
+// A message: how many groups are forgotten, their first primitives, then the groups that are new.
+comm::Buffer join(std::span<const std::uint64_t> forgotten, const comm::Buffer& pieces) {
+  const std::uint64_t count = forgotten.size();
+  comm::Buffer message(sizeof(count) + forgotten.size_bytes() + pieces.size());
+  std::memcpy(message.data(), &count, sizeof(count));
+  if (count > 0)
+    std::memcpy(message.data() + sizeof(count), forgotten.data(), forgotten.size_bytes());
+  if (!pieces.empty())
+    std::memcpy(message.data() + sizeof(count) + forgotten.size_bytes(), pieces.data(),
+                pieces.size());
+  return message;
+}
+
+std::span<const std::uint64_t> forgotten_in(const comm::Buffer& message) {
+  std::uint64_t count = 0;
+  std::memcpy(&count, message.data(), sizeof(count));
+  return {reinterpret_cast<const std::uint64_t*>(message.data() + sizeof(count)), count};
+}
+
+comm::Buffer pieces_in(const comm::Buffer& message) {
+  const std::size_t begin = sizeof(std::uint64_t) + forgotten_in(message).size_bytes();
+  return comm::Buffer::of(
+      std::span<const std::byte>(message.data() + begin, message.size() - begin));
+}
+
+}  // namespace
+
+void GroupTraffic::begin_frame(Rank& rank, std::size_t groups) {
+  const bool as_before = rank.number() == rank_ && rank.ranks() == ranks_ &&
+                         rank.options.travel == travel_ && groups == holders_.size();
+  if (!agreement_.holds(rank.communicator, as_before)) {
+    holders_.assign(groups, {});
+    held_.clear();
+    rank_ = rank.number();
+    ranks_ = rank.ranks();
+    travel_ = rank.options.travel;
+  }
+  ++frame_;
+  outgoing_.clear();
+  staying_.clear();
+}
+
+void GroupTraffic::need(const Rank& rank, std::span<const Piece> groups, std::size_t group,
+                        int owner) {
+  if (owner == rank.number()) {
+    staying_.push_back(groups[group]);
+    return;
+  }
+  std::vector<Holder>& holders = holders_[group];
+  const auto holder = std::find_if(holders.begin(), holders.end(),
+                                   [&](const Holder& h) { return h.rank == owner; });
+  if (holder != holders.end()) {
+    holder->last_needed = frame_;
+    return;
+  }
+  holders.push_back({owner, frame_});
+  outgoing_[owner].pieces.push_back(groups[group]);
+}
+
+void GroupTraffic::forget_unneeded(std::span<const Piece> groups) {
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    std::erase_if(holders_[i], [&](const Holder& holder) {
+      if (holder.last_needed + kFramesKept > frame_) return false;
+      outgoing_[holder.rank].forgotten.push_back(groups[i].primitive);
+      return true;
+    });
+}
+
+void GroupTraffic::keep(Rank& rank, const comm::Buffer& message) {
+  for (const std::uint64_t primitive : forgotten_in(message)) held_.erase(primitive);
+  Arrivals arrivals;
+  if (travel_ == Travel::numbers) {
+    unpack_numbers(pieces_in(message), rank.scene, rank.first_primitives, arrivals);
+    for (const Piece& piece : arrivals.pieces)
+      held_[piece.primitive] = {nullptr, nullptr, nullptr, piece};
+    return;
+  }
+  unpack_geometry(pieces_in(message), arrivals);
+  for (std::size_t i = 0; i < arrivals.pieces.size(); ++i) {
+    Held held{std::make_unique<scenes::Mesh>(std::move(arrivals.meshes[i])),
+              std::make_unique<glm::mat4x3>(arrivals.transforms[i]),
+              std::make_unique<MeshClusters>(), arrivals.pieces[i]};
+    held.piece.mesh = held.mesh.get();
+    held.piece.transform = held.transform.get();
+    held.piece.clusters = held.clusters.get();
+    const std::uint64_t primitive = held.piece.primitive;
+    held_[primitive] = std::move(held);
+  }
+}
+
+std::vector<Piece> GroupTraffic::finish_frame(Rank& rank, std::span<const Piece> groups) {
+  forget_unneeded(groups);
+  std::vector<comm::Parcel> parcels;
+  for (auto& [to, outgoing] : outgoing_) {
+    for (const Piece& piece : outgoing.pieces) rank.triangles_travelled += piece.count;
+    parcels.push_back({to, join(outgoing.forgotten, travel_ == Travel::geometry
+                                                        ? pack_geometry(outgoing.pieces)
+                                                        : pack_numbers(outgoing.pieces))});
+  }
+  std::sort(parcels.begin(), parcels.end(),
+            [](const comm::Parcel& a, const comm::Parcel& b) { return a.rank < b.rank; });
+  for (const comm::Parcel& parcel : comm::exchange(rank.communicator, std::move(parcels)))
+    keep(rank, parcel.message);
+  std::vector<Piece> pieces = std::move(staying_);
+  for (const auto& [primitive, held] : held_) pieces.push_back(held.piece);
+  return pieces;
+}
+
+}  // namespace delray::raster

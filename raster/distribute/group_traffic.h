@@ -1,0 +1,76 @@
+// Groups of primitives that change rank, over the frames of an animation.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "raster/distribute/agreement.h"
+#include "raster/distribute/rank.h"
+#include "raster/pipeline/draws.h"
+
+namespace delray::raster {
+
+// What travels in a frame is what a rank needs and was not sent before (Mueller 1995: only
+// primitives that come into a region are sent). A rank keeps what it was sent until it has not
+// needed it for kFramesKept frames, and is told by the sender, which is the one that knows; it
+// draws all that it keeps, and what lies outside its regions is culled.
+class GroupTraffic {
+ public:
+  static constexpr std::uint64_t kFramesKept = 8;
+
+  // Group i of this rank's own is needed by the ranks needed_by(i, ranks) writes. Returns what this
+  // rank is to draw: its own groups that it needs, and what others sent it, now or before.
+  // Collective. The pieces stay valid until the next call.
+  //
+  // If not all remember the same frames all begin anew. REQUIRES: for the same number of groups,
+  // they are the same from frame to frame.
+  template <class F>
+  std::vector<Piece> exchange(Rank& rank, std::span<const Piece> groups, F&& needed_by) {
+    begin_frame(rank, groups.size());
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      needed_by(i, owners_);
+      for (const int owner : owners_) need(rank, groups, i, owner);
+    }
+    return finish_frame(rank, groups);
+  }
+
+ private:
+  // A rank other than this that has a group.
+  struct Holder {
+    int rank;
+    std::uint64_t last_needed;
+  };
+  // A group that came from another rank.
+  struct Held {
+    std::unique_ptr<scenes::Mesh> mesh;  // null where numbers travel
+    std::unique_ptr<glm::mat4x3> transform;
+    std::unique_ptr<MeshClusters> clusters;
+    Piece piece;
+  };
+  // What one rank is sent in a frame.
+  struct Outgoing {
+    std::vector<Piece> pieces;
+    std::vector<std::uint64_t> forgotten;  // first primitives of groups
+  };
+
+  void begin_frame(Rank& rank, std::size_t groups);
+  void need(const Rank& rank, std::span<const Piece> groups, std::size_t group, int owner);
+  std::vector<Piece> finish_frame(Rank& rank, std::span<const Piece> groups);
+  void forget_unneeded(std::span<const Piece> groups);
+  void keep(Rank& rank, const comm::Buffer& message);
+
+  Agreement agreement_;
+  std::uint64_t frame_ = 0;
+  int rank_ = -1, ranks_ = 0;
+  Travel travel_ = Travel::geometry;
+  std::vector<std::vector<Holder>> holders_;      // by group
+  std::unordered_map<std::uint64_t, Held> held_;  // by first primitive
+  std::unordered_map<int, Outgoing> outgoing_;    // by rank
+  std::vector<Piece> staying_;
+  std::vector<int> owners_;
+};
+
+}  // namespace delray::raster

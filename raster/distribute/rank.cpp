@@ -1,0 +1,153 @@
+#include "raster/distribute/rank.h"
+
+#include "raster/distribute/gather_regions.h"
+#include "raster/pipeline/samples.h"
+
+namespace delray::raster {
+
+std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives(int holders) const {
+  const std::uint64_t all = first_primitives.back();
+  const auto n = static_cast<std::uint64_t>(holders);
+  const auto k = static_cast<std::uint64_t>(number());
+  if (k >= n) return {all, all};
+  // The first `all % n` ranks have one more.
+  const auto begin = [&](std::uint64_t i) { return all / n * i + std::min(i, all % n); };
+  return {begin(k), begin(k + 1)};
+}
+
+RegionDrawing Rank::begin(const DrawList& list, std::span<const geometry::Rect> regions) {
+  std::vector<geometry::Rect> in_samples;
+  for (const geometry::Rect& r : regions)
+    in_samples.push_back(samples_of(r, options.supersampling));
+  return RegionDrawing(
+      {screen, list, shader, options, in_samples, depths_are_distances(), progress}, scratch);
+}
+
+void Rank::tell_work(const RegionCounts& done) const {
+  communicator.work(comm::Work::primitives, done.triangles.in);
+  communicator.work(comm::Work::fragments, done.fragments);
+}
+
+void Rank::end(RegionDrawing& drawing, FinishTile finish_tile) {
+  const RegionCounts done = drawing.finish(finish_tile);
+  if (!in_steps) tell_work(done);
+  counts += done;
+}
+
+void Rank::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
+                    parallel::FunctionRef<void(int, int)> rows_finished) {
+  drawing.finish_rows(first, rows, finish_tile, [&](int begin, int end, const RegionCounts& done) {
+    tell_work(done);
+    counts += done;
+    rows_finished(begin, end);
+  });
+}
+
+void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
+                  FinishTile finish_tile) {
+  communicator.mark(comm::Phase::rasterize, 0);
+  RegionDrawing drawing = begin(list, regions);
+  drawing.draw_all();
+  end(drawing, finish_tile);
+}
+
+template <class Colour>
+void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                  const Window<Colour>& window) {
+  for (const geometry::Rect& rect : rects) tile.shade_pixels(rect, n, window);
+}
+
+template <class Colour>
+void store_samples(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                   image::BasicImage<Colour>& image) {
+  for (const geometry::Rect& rect : rects) {
+    if (n == 1) {
+      tile.shade(rect, window_of(image));
+      continue;
+    }
+    const Window<Colour> samples = tile_window<Colour>(rect);
+    tile.shade(rect, samples);
+    gather_samples(samples, n, pixels_of(rect, n), image);
+  }
+}
+
+template <class Colour>
+void Rank::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
+  const Window<Colour> window = window_of(image);
+  // Tiles that were left clear in the same memory before need not be cleared again.
+  const bool whole = ranks() == 1 && options.supersampling == 1;
+  std::vector<std::uint8_t>& clear = scratch.clear_tiles;
+  const auto tiles = static_cast<std::size_t>(screen.tiles());
+  if (scratch.taken != image.colour.data() || clear.size() != tiles) clear.assign(tiles, 0);
+  scratch.taken = nullptr;
+  end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    const geometry::Rect& first = rects.front();
+    const auto index =
+        static_cast<std::size_t>(first.y0 / kTileSize * screen.tiles_x + first.x0 / kTileSize);
+    if (whole && tile.empty() && clear[index] != 0) return;
+    if (whole) clear[index] = static_cast<std::uint8_t>(tile.empty());
+    store_pixels(rects, tile, options.supersampling, window);
+  });
+  if (whole) scratch.clear_in = image.colour.data();
+}
+
+template <class Colour>
+void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
+                         image::BasicImage<Colour>& image) {
+  communicator.mark(comm::Phase::rasterize, 0);
+  RegionDrawing drawing = begin(list, regions);
+  drawing.draw_all();
+  end_pixels(drawing, image);
+}
+
+template <class Colour>
+image::BasicImage<Colour> Rank::end_samples(RegionDrawing& drawing) {
+  const int n = options.supersampling;
+  image::BasicImage<Colour> image =
+      take_image<Colour>(options.width * samples_per_pixel(), options.height);
+  end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    store_samples(rects, tile, n, image);
+  });
+  return image;
+}
+
+template <class Colour>
+Picture Rank::gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image) {
+  communicator.mark(comm::Phase::gather, 0);
+  const double before = communicator.seconds();
+  gather_regions(communicator, partition, image);
+  counts.phases.gather += communicator.seconds() - before;
+  if (number() != 0) return image::BasicImage<Colour>();
+  return std::move(image);
+}
+
+template <class Colour>
+image::BasicImage<Colour> Rank::take_image(int width, int height) {
+  // Whoever changes the image without saying what is clear leaves nothing known of it.
+  scratch.taken = std::exchange(scratch.clear_in, nullptr);
+  if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
+      spare != nullptr && spare->width == width && spare->height == height)
+    return std::exchange(*spare, {});
+  scratch.taken = nullptr;
+  return image::BasicImage<Colour>(width, height);
+}
+
+template void Rank::end_pixels(RegionDrawing&, image::Image8&);
+template void Rank::end_pixels(RegionDrawing&, image::ImageF&);
+template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::Image8&);
+template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
+template image::Image8 Rank::end_samples(RegionDrawing&);
+template image::ImageF Rank::end_samples(RegionDrawing&);
+template Picture Rank::gather(const loadbalance::Partition&, image::Image8&&);
+template Picture Rank::gather(const loadbalance::Partition&, image::ImageF&&);
+template image::Image8 Rank::take_image(int, int);
+template image::ImageF Rank::take_image(int, int);
+
+template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
+                           const Window<image::Rgba8>&);
+template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
+                           const Window<image::RgbaF>&);
+template void store_samples(std::span<const geometry::Rect>, TileView&, int, image::Image8&);
+template void store_samples(std::span<const geometry::Rect>, TileView&, int, image::ImageF&);
+
+}  // namespace delray::raster

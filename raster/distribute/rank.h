@@ -1,0 +1,114 @@
+// What a strategy works with on one rank.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <variant>
+
+#include "comm/communicator.h"
+#include "loadbalance/schedule.h"
+#include "raster/distribute/regions.h"
+#include "raster/render.h"
+#include "raster/strategies.h"
+
+namespace delray::raster {
+
+struct FrameMemory;
+
+struct Rank {
+  comm::Communicator& communicator;
+  const scenes::Scene& scene;
+  std::span<const std::uint64_t> first_primitives;
+  const shading::Shader& shader;
+  const Screen& screen;  // in samples
+  const RenderOptions& options;
+  bool transparent;  // some mesh of the scene is blended
+  parallel::Progress* progress;
+  SceneClusters& clusters;
+  Scratch& scratch;
+  FrameMemory& memory;
+  RegionCounts counts = {};
+  std::uint64_t triangles_travelled = 0, fragments_travelled = 0;
+  loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
+  // In steps, of which only the last may use the communicator: work is told then.
+  bool in_steps = false;
+
+  int number() const { return communicator.rank(); }
+  int ranks() const { return communicator.size(); }
+
+  // The primitives that this rank has before anything travels: an equal part of all, in order.
+  std::pair<std::uint64_t, std::uint64_t> own_primitives() const { return own_primitives(ranks()); }
+  // The same if the first `holders` ranks have them all.
+  std::pair<std::uint64_t, std::uint64_t> own_primitives(int holders) const;
+  // A single rank's depths need no compositing, which wants them as they are rasterized.
+  bool depths_are_distances() const { return ranks() == 1; }
+  geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
+  int samples_per_pixel() const { return options.supersampling * options.supersampling; }
+
+  void tell_work(const RegionCounts& done) const;
+
+  // A drawing of `list`, or of what it is given later, into regions (in pixels).
+  RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
+  // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
+  void end(RegionDrawing& drawing, FinishTile finish_tile);
+  // The same as RegionDrawing::finish_rows; work is told before rows_finished is called.
+  void end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
+                parallel::FunctionRef<void(int begin, int end)> rows_finished);
+  // The same as end into an image of the frame: pixels, with samples averaged.
+  template <class Colour>
+  void end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image);
+
+  // Renders `list` into regions (in pixels) and counts; `finish_tile` as in RegionDrawing, in
+  // samples.
+  void render(const DrawList& list, std::span<const geometry::Rect> regions, FinishTile finish);
+  // The same into an image of the frame: pixels, with samples averaged.
+  template <class Colour>
+  void render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
+                     image::BasicImage<Colour>& image);
+  // Ends a drawing of the whole frame with the samples of a pixel together: see samples.h.
+  template <class Colour>
+  image::BasicImage<Colour> end_samples(RegionDrawing& drawing);
+  // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Collective.
+  template <class Colour>
+  Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);
+  // An image of any content; the spare one if that fits.
+  template <class Colour>
+  image::BasicImage<Colour> take_image(int width, int height);
+};
+
+// Parts of regions in a tile, rects in samples, into a window of pixels: n x n samples averaged.
+template <class Colour>
+void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                  const Window<Colour>& window);
+
+// The same into an image of the frame with the samples of a pixel together.
+template <class Colour>
+void store_samples(std::span<const geometry::Rect> rects, TileView& tile, int n,
+                   image::BasicImage<Colour>& image);
+
+// Runs f and adds the seconds that it took on this rank, waiting for others included.
+template <class F>
+auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
+  const double begin = communicator.seconds();
+  auto result = f();
+  seconds += communicator.seconds() - begin;
+  return result;
+}
+
+Picture sort_first(Rank& rank);
+// With options.schedule.
+Picture sort_first_scheduled(Rank& rank);
+Picture sort_middle(Rank& rank);
+Picture sort_last(Rank& rank);
+// Finishes a drawing of the whole frame and composites it meanwhile, by the scheme `tiles`: a tile
+// goes to its owner as soon as it is finished here. The part is in samples. Collective.
+//
+// REQUIRES: nothing is transparent; pixels are shaded before they are composited.
+template <class Colour>
+composite::Part hand_over_tiles(Rank& rank, RegionDrawing& drawing);
+std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank);
+// What sort_last composites, of a rank that need not have others. REQUIRES: one sample per pixel.
+Share sort_last_share(Rank& rank);
+Picture hybrid(Rank& rank);
+
+}  // namespace delray::raster

@@ -1,0 +1,206 @@
+#include "raster/distribute/regions.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+#include "parallel/parallel_for.h"
+#include "raster/pipeline/processor_seconds.h"
+
+namespace delray::raster {
+
+namespace {
+
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> drawings{0};
+  return ++drawings;
+}
+
+}  // namespace
+
+void RegionCounts::operator+=(const RegionCounts& other) {
+  phases += other.phases;
+  triangles += other.triangles;
+  fragments += other.fragments;
+  shaded += other.shaded;
+  tiles += other.tiles;
+}
+
+PreparedFrame::PreparedFrame(const RegionTask& task)
+    : shading_(make_frame_shading(task.screen, task.shader, task.list, task.options.lighting,
+                                  task.distances)) {
+  add_draws(task);
+}
+
+void PreparedFrame::add_draws(const RegionTask& task) {
+  const std::vector<Draw>& draws = task.list.draws;
+  for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].draw = &draws[i];
+  for (std::size_t i = draws_.size(); i < draws.size(); ++i)
+    draws_.push_back(
+        prepare_draw(task.screen, draws[i], task.shader, task.options.cull_single_sided));
+  raster::add_draws(shading_);
+}
+
+RegionDrawing::RegionDrawing(const RegionTask& task, Scratch& scratch)
+    : RegionDrawing(task, std::make_unique<PreparedFrame>(task), nullptr, scratch) {}
+
+RegionDrawing::RegionDrawing(const RegionTask& task, const PreparedFrame& frame, Scratch& scratch)
+    : RegionDrawing(task, nullptr, &frame, scratch) {}
+
+RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
+                             const PreparedFrame* frame, Scratch& scratch)
+    : task_(task),
+      scratch_(scratch),
+      tiles_(make_tile_jobs(task.screen, task.regions)),
+      number_(next_number()),
+      own_frame_(std::move(own)),
+      frame_(own_frame_ != nullptr ? own_frame_.get() : frame),
+      into_tiles_{task.screen,
+                  task.list,
+                  frame_->draws(),
+                  tiles_.wanted,
+                  task.options.skip_hidden_clusters,
+                  [this](std::uint32_t number, int x, int y) {
+                    return solid(frame_->shading(), memory().seen, number, x, y);
+                  },
+                  {},
+                  task.progress} {
+  const Screen& screen = task.screen;
+  if (task.progress != nullptr) task.progress->start(tiles_.jobs.size());
+  scratch_.tiles.begin(screen, tiles_);
+  begin_drawing(screen, scratch_.workers);
+  if (task.options.shade != Shade::immediate) return;
+  const auto pixels =
+      static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
+  if (scratch_.shaded.size() < pixels) scratch_.shaded = image::Plane<image::RgbaF>(pixels);
+  into_tiles_.shade_now = [this](std::uint32_t number, int x, int y) {
+    scratch_.shaded[static_cast<std::size_t>(y) * static_cast<std::size_t>(task_.screen.width) +
+                    static_cast<std::size_t>(x)] =
+        colour_at(frame_->shading(), memory().seen, number, x, y);
+  };
+}
+
+// The triangles that a thread remembers belong to one drawing.
+TileMemory& RegionDrawing::memory() const {
+  static thread_local TileMemory of_thread;
+  static thread_local std::uint64_t seen_in = 0;
+  if (seen_in != number_) of_thread.seen.clear();
+  seen_in = number_;
+  return of_thread;
+}
+
+std::vector<std::uint32_t> RegionDrawing::nearest_first(
+    std::span<const std::uint32_t> clusters) const {
+  return raster::nearest_first(into_tiles_, clusters);
+}
+
+void RegionDrawing::draw(std::span<const std::uint32_t> clusters) {
+  if (own_frame_ != nullptr) {
+    own_frame_->add_draws(task_);
+    into_tiles_.draws = own_frame_->draws();
+  }
+  draw_in_order(nearest_first(clusters));
+}
+
+void RegionDrawing::draw_in_order(std::span<const std::uint32_t> clusters) {
+  draw_clusters(into_tiles_, clusters, scratch_.tiles, scratch_.workers, costs_);
+}
+
+void RegionDrawing::draw_all() {
+  std::vector<std::uint32_t> clusters(task_.list.clusters.size());
+  std::iota(clusters.begin(), clusters.end(), 0U);
+  draw(clusters);
+}
+
+RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
+  RegionCounts counts;
+  end_drawing_into(counts);
+  finish_jobs(tiles_.jobs, finish_tile, counts);
+  return counts;
+}
+
+void RegionDrawing::finish_rows(int first, int rows, FinishTile finish_tile,
+                                RowsFinished rows_finished) {
+  const Screen& screen = task_.screen;
+  assert(0 <= first && first < screen.tiles_y && rows >= 1);
+  RegionCounts counts;
+  end_drawing_into(counts);
+  const auto job_at = [&](int row) {
+    return std::partition_point(tiles_.jobs.begin(), tiles_.jobs.end(), [&](const TileJob& job) {
+      return job.tile < row * screen.tiles_x;
+    });
+  };
+  const auto finish_between = [&](int from, int to) {
+    for (int begin = from; begin < to; begin += rows) {
+      const int end = std::min(begin + rows, to);
+      finish_jobs(std::span(job_at(begin), job_at(end)), finish_tile, counts);
+      rows_finished(begin, end, std::exchange(counts, {}));
+    }
+  };
+  finish_between(first, screen.tiles_y);
+  finish_between(0, first);
+}
+
+void RegionDrawing::end_drawing_into(RegionCounts& counts) {
+  counts.triangles = end_drawing(task_.screen, scratch_.workers, scratch_.later, costs_);
+  counts.phases.transform = costs_.set_up;
+  counts.phases.bin = costs_.sort;
+  counts.phases.rasterize = costs_.rasterize;
+  counts.shaded = costs_.shaded;
+}
+
+void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
+                                RegionCounts& counts) {
+  const Screen& screen = task_.screen;
+  const bool shade_now = task_.options.shade == Shade::immediate;
+  ProcessorSeconds rasterize_seconds, shade_seconds;
+  std::atomic<std::uint64_t> fragments{0}, shaded{0};
+  std::atomic<std::size_t> next{0};
+  parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t) {
+    StageClock<2> clock;
+    TileMemory& mine = memory();
+    std::uint64_t shaded_here = 0, shown_here = 0;
+    for (;;) {
+      const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
+      if (k >= jobs.size()) break;
+      const int index = jobs[k].tile;
+      VisibilityTile* tile = nullptr;
+      if (scratch_.tiles.is_drawn_in(index)) {
+        tile = &scratch_.tiles.open(index);
+      } else if (!scratch_.later.large.of_tile(index).empty()) {
+        // In memory that stays in the cache.
+        tile = &mine.visibility;
+        tile->clear(scratch_.tiles.rect(index));
+      }
+      if (tile != nullptr)
+        shaded_here +=
+            draw_large(into_tiles_, index, scratch_.later.large, scratch_.tiles.rect(index), *tile);
+      find_blended(screen, scratch_.tiles.rect(index), scratch_.later.blended.triangles,
+                   scratch_.later.blended.of_tile(index), tile, mine.blended);
+      clock.finish(0);
+      const geometry::Rect corner = screen.tile(index);
+      const image::RgbaF* const colours =
+          shade_now ? scratch_.shaded.data() +
+                          static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
+                    : nullptr;
+      TileView view(frame_->shading(), tile, colours, mine);
+      finish_tile(tiles_.rects_of(jobs[k]), view);
+      clock.finish(1);
+      shown_here += view.shown();
+      shaded_here += view.shaded();
+      if (task_.progress != nullptr) task_.progress->advance();
+    }
+    fragments.fetch_add(shown_here, std::memory_order_relaxed);
+    shaded.fetch_add(shaded_here, std::memory_order_relaxed);
+    clock.add_to({&rasterize_seconds, &shade_seconds});
+  });
+  counts.phases.rasterize += rasterize_seconds.seconds();
+  counts.phases.shade += shade_seconds.seconds();
+  counts.fragments += fragments;
+  counts.shaded += shaded;
+  counts.tiles += jobs.size();
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,113 @@
+// One rank's rendering: pieces of a scene into regions of the frame.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "parallel/function_ref.h"
+#include "raster/render.h"
+#include "raster/shading/tile_view.h"
+
+namespace delray::raster {
+
+// Memory that one frame leaves to the next.
+struct Scratch {
+  Picture spare;  // nobody's any more
+  // By tile: whether it is clear in the picture whose colours are at `clear_in`, or `taken` when it
+  // was taken for the frame at hand.
+  std::vector<std::uint8_t> clear_tiles;
+  const void* clear_in = nullptr;
+  const void* taken = nullptr;
+  FrameTiles tiles;
+  std::vector<std::unique_ptr<Worker>> workers;
+  LaterTriangles later;
+  image::Plane<image::RgbaF> shaded;  // of a frame that is shaded as it is drawn
+};
+
+// What rendering took, summed over threads, and what it did.
+struct RegionCounts {
+  Phases phases;
+  TriangleCounts triangles;
+  std::uint64_t fragments = 0, shaded = 0, tiles = 0;
+
+  void operator+=(const RegionCounts& other);
+};
+
+// What is to be rendered. The regions, in pixels of the screen, are disjoint.
+struct RegionTask {
+  const Screen& screen;
+  const DrawList& list;
+  const shading::Shader& shader;
+  const RenderOptions& options;
+  std::span<const geometry::Rect> regions;
+  bool distances;  // depths are distances rather than -near / distance
+  parallel::Progress* progress;
+};
+
+// The list's draws as drawing and shading want them: what drawings of the same list share.
+class PreparedFrame {
+ public:
+  explicit PreparedFrame(const RegionTask& task);
+  // Those that the list has got since. The others may have moved.
+  void add_draws(const RegionTask& task);
+
+  const FrameShading& shading() const { return shading_; }
+  std::span<const PreparedDraw> draws() const { return draws_; }
+
+ private:
+  std::vector<PreparedDraw> draws_;
+  FrameShading shading_;
+};
+
+using FinishTile = parallel::FunctionRef<void(std::span<const geometry::Rect>, TileView&)>;
+// Rows [begin, end) of the screen's tiles are finished; what was done since the last call.
+using RowsFinished = parallel::FunctionRef<void(int begin, int end, const RegionCounts& done)>;
+
+// A frame under way. The list may be given more draws and clusters until `finish`; calls are the
+// rank's own thread's.
+class RegionDrawing {
+ public:
+  RegionDrawing(const RegionTask& task, Scratch& scratch);
+  // Of a list to which nothing is added, with what others have prepared; the frame stays theirs.
+  RegionDrawing(const RegionTask& task, const PreparedFrame& frame, Scratch& scratch);
+  RegionDrawing(const RegionDrawing&) = delete;
+  RegionDrawing& operator=(const RegionDrawing&) = delete;
+
+  // Of the list's draws as they were when anything was drawn last, or at first.
+  const FrameShading& frame() const { return frame_->shading(); }
+  std::span<const PreparedDraw> draws() const { return frame_->draws(); }
+  // Numbers of clusters, those of near draws first.
+  std::vector<std::uint32_t> nearest_first(std::span<const std::uint32_t> clusters) const;
+
+  // Draws these clusters of the list, near draws first or as they are given. Parallel.
+  void draw(std::span<const std::uint32_t> clusters);
+  void draw_in_order(std::span<const std::uint32_t> clusters);
+  void draw_all();
+  // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
+  // parts of regions in it. Parallel. To be called once, in the end.
+  RegionCounts finish(FinishTile finish_tile);
+  // The same, `rows` rows of tiles at a time, from row `first` on and from the top to it again.
+  // After each time rows_finished is called, in the caller's thread.
+  //
+  // REQUIRES: 0 <= first < the screen's rows of tiles; rows >= 1.
+  void finish_rows(int first, int rows, FinishTile finish_tile, RowsFinished rows_finished);
+
+ private:
+  RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
+                const PreparedFrame* frame, Scratch& scratch);
+  TileMemory& memory() const;
+  void end_drawing_into(RegionCounts& counts);
+  void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
+
+  const RegionTask task_;
+  Scratch& scratch_;
+  const TileJobs tiles_;
+  const std::uint64_t number_;  // no other drawing has it
+  std::unique_ptr<PreparedFrame> own_frame_;
+  const PreparedFrame* frame_;
+  DrawIntoTiles into_tiles_;
+  DrawCosts costs_;
+};
+
+}  // namespace delray::raster

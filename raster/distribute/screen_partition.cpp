@@ -1,0 +1,223 @@
+#include "raster/distribute/screen_partition.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <mutex>
+
+#include "comm/collectives.h"
+#include "loadbalance/balance.h"
+#include "loadbalance/costs.h"
+#include "parallel/parallel_for.h"
+#include "raster/distribute/coverage.h"
+#include "raster/distribute/extent.h"
+#include "raster/distribute/rank.h"
+#include "raster/pipeline/processor_seconds.h"
+#include "raster/pipeline/samples.h"
+
+namespace delray::raster {
+namespace {
+
+// What a pixel costs that is drawn, beside one that is seen and shaded.
+constexpr double kDrawn = 0.05;
+
+// On a grid fine enough for so many regions.
+loadbalance::Costs costs_of(const geometry::Rect& frame, int regions,
+                            std::span<const loadbalance::WeightedBox> boxes) {
+  const int side = loadbalance::cost_cell_side(frame, regions);
+  return loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
+                                 (frame.height() + side - 1) / side, boxes);
+}
+
+}  // namespace
+
+loadbalance::RasterCostModel cost_model(Lighting lighting) {
+  return lighting == Lighting::gouraud ? loadbalance::RasterCostModel{3, 1}
+                                       : loadbalance::RasterCostModel{2, 1};
+}
+
+std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {
+  std::vector<Piece> groups;
+  for (const Piece& piece : pieces)
+    for (std::uint32_t done = 0; done < piece.count; done += triangles)
+      groups.push_back({piece.mesh, piece.transform, piece.first + done,
+                        std::min(triangles, piece.count - done), piece.primitive + done,
+                        piece.clusters});
+  return groups;
+}
+
+std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int parts) {
+  return static_cast<std::uint32_t>(loadbalance::primitives_per_box(triangles, parts));
+}
+
+std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
+                                                                std::span<const Piece> groups,
+                                                                SeenSamples* seen_samples) {
+  loadbalance::RasterCostModel model = cost_model(rank.options.lighting);
+  samples_.clear();
+  if (rank.options.costs == CostSource::measured && rank.ranks() > 1) {
+    for (const comm::Buffer& from :
+         comm::all_gather(rank.communicator, comm::Buffer::of_value(sample_)))
+      samples_.push_back(from.as<loadbalance::RasterSample>()[0]);
+    if (loadbalance::has_seconds(samples_)) model = loadbalance::fit(samples_);
+  }
+
+  const DrawList list = make_draw_list({groups.begin(), groups.end()}, &rank.clusters);
+  const std::vector<PreparedDraw> draws =
+      prepare_draws(rank.screen, list, rank.shader, rank.options.cull_single_sided);
+  // Draws are numbered in the order in which groups first name them.
+  std::vector<std::uint32_t> draw_of(groups.size());
+  std::uint32_t draw = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (i > 0 && groups[i].transform != groups[i - 1].transform) ++draw;
+    draw_of[i] = draw;
+  }
+  std::vector<loadbalance::WeightedBox> boxes(groups.size());
+  std::vector<double> samples(groups.size()), large_samples(groups.size());
+  Coverage coverage(rank.screen, rank.options.supersampling);
+  constexpr std::size_t kGrain = 1024;  // triangles
+  const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
+  std::vector<Coverage::Surface> surfaces;
+  for (const PreparedDraw& prepared : draws)
+    surfaces.push_back({prepared.blended, mean_opacity(rank.shader, *prepared.draw->mesh)});
+  const auto surface = [&](std::size_t group) { return surfaces[draw_of[group]]; };
+  std::mutex adds_large;
+  ProcessorSeconds seconds;
+  parallel::parallel_blocks(0, groups.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Extents extents(rank.screen);
+    std::vector<ScreenTriangle> large;
+    seconds.measure([&] {
+      for (std::size_t i = begin; i < end; ++i) {
+        large.clear();
+        const Extent e = extents.of(draws[draw_of[i]], groups[i].first, groups[i].count, large);
+        if (e.triangles == 0) continue;
+        boxes[i].box = pixels_of(e.box, rank.options.supersampling);
+        // A border crosses about the root of a patch's triangles.
+        boxes[i].cost = model.setup(static_cast<double>(e.triangles));
+        boxes[i].setup = model.setup(std::sqrt(static_cast<double>(e.triangles)));
+        boxes[i].primitives = e.triangles;
+        samples[i] = static_cast<double>(e.pixels);
+        if (large.empty()) continue;
+        const std::lock_guard lock(adds_large);
+        for (const ScreenTriangle& triangle : large)
+          large_samples[i] += coverage.add_large(triangle, surface(i));
+      }
+    });
+  });
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    coverage.add(boxes[i].box, samples[i], surface(i));
+  rank.counts.phases.bin += seconds.seconds();
+  unchanged_ = false;
+  if (rank.ranks() > 1) {
+    Contribution mine{rank.number(),
+                      rank.ranks(),
+                      rank.screen.frame(),
+                      rank.samples_per_pixel(),
+                      model,
+                      seen_samples != nullptr,
+                      boxes,
+                      samples,
+                      large_samples,
+                      coverage.squares()};
+    unchanged_ = agreement_.holds(rank.communicator,
+                                  rank.options.costs == CostSource::model && mine == last_);
+    if (unchanged_) {
+      if (seen_samples != nullptr) *seen_samples = answer_.seen;
+      return answer_.boxes;
+    }
+    cut_before_ = reported_ = false;
+    last_ = std::move(mine);
+    coverage.sum_over_ranks(rank.communicator);
+  }
+  statistics_.reset();
+  SeenSamples seen_of_groups;
+  if (seen_samples != nullptr)
+    seen_of_groups = {model.per_pixel, std::vector<double>(groups.size()),
+                      std::vector<double>(groups.size())};
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (boxes[i].box.empty()) continue;
+    const double seen = coverage.seen(boxes[i].box, surface(i).blended);
+    boxes[i].cost += model.per_pixel * samples[i] * (seen + kDrawn);
+    if (seen_samples == nullptr) continue;
+    seen_of_groups.all[i] = seen * (samples[i] + large_samples[i]);
+    seen_of_groups.large[i] = seen * large_samples[i];
+  }
+  large_.clear();
+  if (rank.number() == 0)
+    large_ = coverage.costs_of_large(model.per_pixel, model.per_pixel * kDrawn);
+  if (seen_samples != nullptr) *seen_samples = seen_of_groups;
+  if (rank.ranks() > 1) answer_ = {boxes, std::move(seen_of_groups)};
+  return boxes;
+}
+
+const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
+                                                   std::span<const loadbalance::WeightedBox> boxes,
+                                                   int parts, int first_rank) {
+  const RenderOptions& options = rank.options;
+  const Kind kind{options.partition, rank.ranks(), parts, options.regions_per_rank,
+                  options.keep_factor};
+  if (unchanged_ && cut_before_ && kind == kind_ && (reported_ || !options.report_partition)) {
+    if (!options.report_partition) {
+      statistics_.reset();
+      reported_ = false;
+    } else if (statistics_) {
+      statistics_->kept = true;
+      statistics_->seconds = 0;
+    }
+    return kept_->again();
+  }
+  cut_before_ = true;
+  reported_ = options.report_partition;
+  if (!kept_ || !(kind == kind_))
+    kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
+                  options.regions_per_rank);
+  kind_ = kind;
+
+  const geometry::Rect frame = rank.frame();
+  std::vector<loadbalance::WeightedBox> all = loadbalance::gather_boxes(boxes, rank.communicator);
+  all.insert(all.end(), large_.begin(), large_.end());
+  const bool cuts_here = rank.number() == 0;
+  loadbalance::Costs costs;
+  if (cuts_here) costs = costs_of(frame, parts * options.regions_per_rank, all);
+  if (cuts_here && !samples_.empty() && kept_->last().frame == frame) {
+    std::vector<double> seconds;
+    for (int k = 0; k < parts; ++k) seconds.push_back(samples_[first_rank + k].seconds);
+    loadbalance::scale_to_measured(costs, kept_->last(), seconds);
+  }
+  const std::uint64_t recomputed = kept_->recomputed();
+  const double before = rank.communicator.seconds();
+  const loadbalance::Partition& partition = kept_->next(costs, rank.communicator);
+  statistics_.reset();
+  if (!options.report_partition || !cuts_here) return partition;
+  statistics_.emplace();
+  statistics_->kept = kept_->recomputed() == recomputed;
+  if (!statistics_->kept) statistics_->seconds = rank.communicator.seconds() - before;
+  statistics_->predicted = loadbalance::imbalance(loadbalance::loads(costs, partition, parts));
+  loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);
+  statistics_->over_share = balance.over_share;
+  statistics_->overlap = balance.overlap;
+  statistics_->primitives = balance.primitives;
+  statistics_->shared = balance.shared;
+  statistics_->partition = partition;
+  statistics_->loads = std::move(balance.loads);
+  return partition;
+}
+
+loadbalance::Costs ScreenPartition::costs(Rank& rank, int regions) {
+  assert(rank.ranks() == 1);
+  const auto [begin, end] = rank.own_primitives();
+  std::vector<loadbalance::WeightedBox> boxes =
+      boxes_of(rank, groups_of(pieces_of(rank.scene, rank.first_primitives, begin, end),
+                               group_triangles(rank.first_primitives.back(), regions)));
+  boxes.insert(boxes.end(), large_.begin(), large_.end());
+  return costs_of(rank.frame(), regions, boxes);
+}
+
+void ScreenPartition::measure(const Rank& rank) {
+  const Phases& phases = rank.counts.phases;
+  sample_ = {static_cast<double>(rank.counts.triangles.rasterized),
+             static_cast<double>(rank.counts.shaded),
+             phases.transform + phases.rasterize + phases.shade};
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,100 @@
+#include "raster/distribute/triangle_sorter.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "raster/distribute/transformed_clusters.h"
+#include "raster/pipeline/cull.h"
+#include "raster/pipeline/samples.h"
+
+namespace delray::raster {
+namespace {
+
+ScreenVertices& vertices() {
+  static thread_local ScreenVertices of_thread;
+  return of_thread;
+}
+ClusterPacker& packer() {
+  static thread_local ClusterPacker of_thread;
+  return of_thread;
+}
+
+}  // namespace
+
+void TriangleSorter::find_owners(const geometry::Rect& samples) {
+  regions_.owners_of(pixels_of(samples, rank_.options.supersampling), owners_);
+}
+
+// Whether anything is for this rank itself. What others get is in places_ and receivers_.
+bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock& block,
+                                    const Cluster& cluster) {
+  bool stays = false;
+  places_.clear();
+  receivers_.clear();
+  const bool one_owner = owners_.size() == 1;
+  for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
+    geometry::Rect box{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
+    const Fate fate = set_up(
+        rank_.screen, draw, vertices(), corners_at(block, block.clusters[cluster.part], place),
+        cluster.first + place, 0, [&](const ScreenTriangle&, const geometry::Rect& pixels) {
+          box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0),
+                 std::max(box.x1, pixels.x1), std::max(box.y1, pixels.y1)};
+        });
+    if (fate == Fate::culled) continue;
+    if (!one_owner) find_owners(box);
+    bool travels = false;
+    for (const int owner : owners_) {
+      if (owner == rank_.number()) {
+        stays = true;
+        continue;
+      }
+      travels = true;
+      receivers_.emplace_back(owner, static_cast<std::uint8_t>(places_.size()));
+    }
+    if (travels) places_.push_back(static_cast<std::uint8_t>(place));
+  }
+  return stays;
+}
+
+void TriangleSorter::pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted) {
+  if (places_.empty()) return;
+  packer().set(drawing_.frame(), draw, number, places_);
+  std::sort(receivers_.begin(), receivers_.end());
+  for (std::size_t first = 0, last; first < receivers_.size(); first = last) {
+    which_.clear();
+    for (last = first;
+         last < receivers_.size() && receivers_[last].first == receivers_[first].first; ++last)
+      which_.push_back(receivers_[last].second);
+    SortedClusters::Parcel& parcel = sorted.parcel_to(receivers_[first].first);
+    parcel.triangles += which_.size();
+    packer().pack(which_, parcel.bytes);
+  }
+}
+
+void TriangleSorter::sort(std::uint32_t number, SortedClusters& sorted) {
+  const Cluster& cluster = drawing_.frame().list.clusters[number];
+  const PreparedDraw& draw = drawing_.draws()[cluster.draw];
+  const ClusterBlock& block = drawing_.frame().list.block_of(cluster);
+  const MeshCluster& mesh_cluster = block.clusters[cluster.part];
+  const ClusterBounds bounds = bound(rank_.screen, draw, mesh_cluster.box);
+  find_owners(bounds.pixels);
+  if (bounds.outside || owners_.empty() ||
+      shows_hidden_side_only(rank_.screen, draw, mesh_cluster, bounds)) {
+    sorted.culled += cluster.end - cluster.begin;
+    return;
+  }
+  if (owners_.size() == 1 && owners_[0] == rank_.number()) {
+    sorted.staying.push_back(number);
+    return;
+  }
+  transform(draw.to_view, rank_.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
+            vertices());
+  const bool stays = find_receivers(draw, block, cluster);
+  if (stays)
+    sorted.staying.push_back(number);
+  else
+    sorted.culled += cluster.end - cluster.begin - places_.size();
+  pack(draw, number, sorted);
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,454 @@
+#include "raster/pipeline/cluster_set_up.h"
+
+#include <algorithm>
+
+#include "raster/pipeline/set_up_place.h"
+#include "raster/pipeline/visibility.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/pipeline/cluster_set_up.cpp"
+#include <hwy/foreach_target.h>
+// Highway's own header comes after it.
+#include <hwy/highway.h>
+
+#include "raster/pipeline/triangle_lanes.h"
+
+#ifndef DELRAY_RASTER_CLUSTER_SET_UP
+#define DELRAY_RASTER_CLUSTER_SET_UP
+namespace delray::raster {
+
+// Triangles of which at most so many columns and rows of pixel centres lie in the box are drawn
+// pixel by pixel, many triangles at a time.
+inline constexpr int kSmallSide = 8;
+// But not those whose box has more pixel centres than this and that fit a window.
+inline constexpr int kTinyBox = 9;
+// A cluster is compact if its coordinates, seen from its corner, are below this: edge functions
+// then fit 32 bits, also 16 pixels beyond the corners, and a position fits one word.
+inline constexpr int kCompact = 30000;
+static_assert(std::int64_t{2} * kCompact * (kCompact + 16 * kSubpixels) < INT32_MAX);
+
+// What a cluster's triangles have in common. Each is set up as seen from an origin of its own, a
+// pixel's corner in the frame; that of a compact cluster's triangles is one and the same.
+struct ClusterInSetUp {
+  explicit ClusterInSetUp(const ScreenVertices& all) : vertices(all) {}
+
+  const ScreenVertices& vertices;
+  std::int32_t position[kClusterVertices + ScreenVertices::kPadding];  // if compact: x | y << 16
+  int origin_x = 0, origin_y = 0;                                      // if compact
+  geometry::Rect wanted;                                               // pixels of the frame
+  DepthsAround around;                                                 // in them
+  int centre_x = 0, centre_y = 0, tiles_x = 0;                         // the screen's
+};
+
+// Small triangles: positions x | y << 16 of the corners seen from the origin, and their numbers a |
+// b << 8 | c << 16 | place << 24. Corners run clockwise on the screen.
+struct SmallTriangles {
+  static constexpr std::size_t kSize = kClusterTriangles + kMostLanes;
+  std::int32_t a[kSize], b[kSize], c[kSize], corners[kSize], origin_x[kSize], origin_y[kSize];
+  std::size_t size = 0;
+};
+
+}  // namespace delray::raster
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace delray::raster {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// What is computed of a vector of small triangles; lanes without a triangle have no rows.
+struct SmallSetUp {
+  Origins origin;
+  Boxes box;
+  I columns, rows;  // less 1
+  Edges e0, e1, e2;
+  Slopes slope;
+  F depth, nearest, farthest;
+  F from_x, from_y;  // of the box's first pixel centre from the first vertex, in pixels
+  hn::VFromD<hn::RebindToUnsigned<Ints>> number;
+};
+
+HWY_INLINE SmallSetUp set_up_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles,
+                                   std::size_t first, std::size_t count,
+                                   std::uint32_t first_number) {
+  const Ints d;
+  const Floats df;
+  const hn::RebindToUnsigned<Ints> du;
+  const I a = hn::LoadU(d, triangles.a + first);
+  const I b = hn::LoadU(d, triangles.b + first);
+  const I c = hn::LoadU(d, triangles.c + first);
+  const I corners = hn::LoadU(d, triangles.corners + first);
+  const I ax = low_half(a), ay = high_half(a);
+  const I bx = low_half(b), by = high_half(b);
+  const I cx = low_half(c), cy = high_half(c);
+  SmallSetUp s;
+  s.origin = {hn::LoadU(d, triangles.origin_x + first), hn::LoadU(d, triangles.origin_y + first)};
+  s.box = boxes_of(cluster.wanted, s.origin, ax, ay, bx, by, cx, cy);
+  const Mask used = hn::FirstN(d, count);
+  const I none = hn::Set(d, -1);
+  s.columns = hn::IfThenElse(used, hn::Sub(s.box.x1, s.box.x0), none);
+  s.rows = hn::IfThenElse(used, hn::Sub(s.box.y1, s.box.y0), none);
+
+  const I half = hn::Set(d, kHalfPixel);
+  const I x = hn::Add(hn::ShiftLeft<kSubpixelBits>(s.box.x0), half);
+  const I y = hn::Add(hn::ShiftLeft<kSubpixelBits>(s.box.y0), half);
+  s.e0 = edges_of(ax, ay, bx, by, x, y);
+  s.e1 = edges_of(bx, by, cx, cy, x, y);
+  s.e2 = edges_of(cx, cy, ax, ay, x, y);
+
+  const I byte = hn::Set(d, 0xFF);
+  const float* depths = cluster.vertices.depth;
+  const F depth0 = hn::GatherIndex(df, depths, hn::And(corners, byte));
+  const F depth1 = hn::GatherIndex(df, depths, hn::And(hn::ShiftRight<8>(corners), byte));
+  const F depth2 = hn::GatherIndex(df, depths, hn::And(hn::ShiftRight<16>(corners), byte));
+  s.slope = slopes_of(hn::Sub(bx, ax), hn::Sub(by, ay), hn::Sub(cx, ax), hn::Sub(cy, ay), depth0,
+                      depth1, depth2);
+  s.depth = depth0;
+  s.nearest = hn::Min(hn::Min(depth0, depth1), depth2);
+  s.farthest = hn::Max(hn::Max(depth0, depth1), depth2);
+  // Whole numbers of subpixels below 2^24: exact.
+  const F per_subpixel = hn::Set(df, 1.0F / kSubpixels);
+  s.from_x = hn::Mul(hn::ConvertTo(df, hn::Sub(x, ax)), per_subpixel);
+  s.from_y = hn::Mul(hn::ConvertTo(df, hn::Sub(y, ay)), per_subpixel);
+  s.number = hn::Add(hn::Set(du, first_number), hn::ShiftRight<24>(hn::BitCast(du, corners)));
+  return s;
+}
+
+// Four vectors, lane after lane; elements past the last lane may be overwritten.
+template <class V>
+HWY_INLINE void store4(V a, V b, V c, V d, void* to) {
+  hn::StoreInterleaved4(a, b, c, d, hn::DFromV<V>(), static_cast<hn::TFromV<V>*>(to));
+}
+
+// One vector of triangles from `first` on, at most `count` of them, as windows.
+void set_up_windows(const ClusterInSetUp& cluster, const SmallTriangles& triangles,
+                    std::size_t first, std::size_t count, std::uint32_t first_number,
+                    WindowTriangles& windows) {
+  const Ints d;
+  const Floats df;
+  const SmallSetUp s = set_up_small(cluster, triangles, first, count, first_number);
+  // Windows start at multiples of their width: what one triangle has stored is soon loaded again
+  // for the next, which is slow unless both are the same vectors.
+  static_assert(WindowTriangles::kWindowWidth == 8);
+  const I pixel_x = hn::Add(s.box.x0, s.origin.x), pixel_y = hn::Add(s.box.y0, s.origin.y);
+  const I in_tile = hn::Set(d, kTileSize - 1);
+  const I x = hn::And(pixel_x, in_tile), y = hn::And(pixel_y, in_tile);
+  const I before = hn::And(x, hn::Set(d, 7));
+  const I start = hn::Sub(x, before);
+  const I parts = hn::Add(hn::ShiftRight<3>(hn::Add(before, s.columns)), hn::Set(d, 1));
+  static_assert(WindowTriangles::kRowsAtOnce == 4);
+  const I groups = hn::Add(hn::ShiftRight<2>(s.rows), hn::Set(d, 1));
+  const I rows = hn::ShiftLeft<2>(groups);
+  const I above = hn::Max(hn::Sub(hn::Add(y, rows), hn::Set(d, kTileSize)), hn::Zero(d));
+  const I below = hn::Sub(hn::Sub(rows, hn::Add(s.rows, hn::Set(d, 1))), above);
+  const auto at_start = [&](const Edges& e) {
+    return hn::Sub(e.value, hn::Add(hn::Mul(e.step_x, before), hn::Mul(e.step_y, above)));
+  };
+  const F from_x = hn::Sub(s.from_x, hn::ConvertTo(df, before));
+  const F from_y = hn::Sub(s.from_y, hn::ConvertTo(df, above));
+  const I window = hn::Or(hn::Or(hn::Or(start, hn::ShiftLeft<6>(hn::Sub(y, above))),
+                                 hn::Or(hn::ShiftLeft<12>(above), hn::ShiftLeft<14>(below))),
+                          hn::Or(hn::ShiftLeft<16>(groups), hn::ShiftLeft<20>(parts)));
+  const std::size_t n = windows.size;
+  const I zero = hn::Zero(d);
+  store4(at_start(s.e0), at_start(s.e1), at_start(s.e2), window, windows.edges.data() + n);
+  store4(s.e0.step_x, s.e1.step_x, s.e2.step_x, hn::BitCast(d, s.number),
+         windows.columns.data() + n);
+  store4(s.e0.step_y, s.e1.step_y, s.e2.step_y, zero, windows.rows.data() + n);
+  store4(s.slope.x, s.slope.y, from_x, from_y, windows.planes.data() + n);
+  store4(s.depth, s.nearest, s.farthest, hn::Zero(df), windows.depths.data() + n);
+  const I tile = hn::Add(hn::Mul(hn::ShiftRight<6>(pixel_y), hn::Set(d, cluster.tiles_x)),
+                         hn::ShiftRight<6>(pixel_x));
+  hn::StoreU(tile, d, reinterpret_cast<std::int32_t*>(windows.tile.data() + n));
+  windows.size += count;
+}
+
+// One vector of small triangles from `first` on, at most `count` of them, pixel by pixel.
+void draw_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles, std::size_t first,
+                std::size_t count, std::uint32_t first_number, SetUpResult& result) {
+  const Ints d;
+  const Floats df;
+  const hn::RebindToUnsigned<Ints> du;
+  const SmallSetUp s = set_up_small(cluster, triangles, first, count, first_number);
+  const auto& [origin, box, columns, rows, e0, e1, e2, slope, depth0, nearest, farthest, from_x,
+               from_y, number] = s;
+  const I none = hn::Set(d, -1);
+  const int most_columns = hn::GetLane(hn::MaxOfLanes(d, columns));
+  const int most_rows = hn::GetLane(hn::MaxOfLanes(d, rows));
+  const I pixel_x = hn::Add(box.x0, origin.x), pixel_y = hn::Add(box.y0, origin.y);
+
+  I row0 = e0.value, row1 = e1.value, row2 = e2.value;
+  for (int j = 0; j <= most_rows; ++j) {
+    const F plane_y = hn::Mul(slope.y, hn::Add(from_y, hn::Set(df, static_cast<float>(j))));
+    const I in_rows = hn::Sub(rows, hn::Set(d, j));
+    const I at_y = hn::Add(pixel_y, hn::Set(d, j));
+    const I tile_row = hn::Mul(hn::ShiftRight<6>(at_y), hn::Set(d, cluster.tiles_x));
+    const I row_address = hn::ShiftLeft<6>(hn::And(at_y, hn::Set(d, kTileSize - 1)));
+    I value0 = row0, value1 = row1, value2 = row2;
+    for (int i = 0; i <= most_columns; ++i) {
+      const I in_box = hn::Or(in_rows, hn::Sub(columns, hn::Set(d, i)));
+      const I sign = hn::Or(hn::Or(value0, value1), hn::Or(value2, in_box));
+      const Mask covered = hn::Gt(sign, none);
+      value0 = hn::Add(value0, e0.step_x);
+      value1 = hn::Add(value1, e1.step_x);
+      value2 = hn::Add(value2, e2.step_x);
+      if (hn::AllFalse(d, covered)) continue;
+      const F plane_x = hn::Mul(slope.x, hn::Add(from_x, hn::Set(df, static_cast<float>(i))));
+      const F plane = hn::Add(hn::Add(plane_x, plane_y), depth0);
+      const F z = hn::Min(hn::Max(plane, nearest), farthest);
+      const I at_x = hn::Add(pixel_x, hn::Set(d, i));
+      const I tile = hn::Add(tile_row, hn::ShiftRight<6>(at_x));
+      const I address = hn::Or(hn::ShiftLeft<12>(tile),
+                               hn::Or(row_address, hn::And(at_x, hn::Set(d, kTileSize - 1))));
+      const auto mask = hn::RebindMask(du, covered);
+      append(hn::BitCast(du, address), mask, result.address.data() + result.fragments);
+      append(hn::Not(hn::BitCast(du, z)), mask, result.code.data() + result.fragments);
+      append(number, mask, result.number.data() + result.fragments);
+      result.fragments += hn::CountTrue(d, covered);
+    }
+    row0 = hn::Add(row0, e0.step_y);
+    row1 = hn::Add(row1, e1.step_y);
+    row2 = hn::Add(row2, e2.step_y);
+  }
+}
+static_assert(kTileSize == 1 << 6 && kTilePixels == 1 << 12);
+
+// Of `keep`, those that are hidden: their boxes' pixels [x0, x1] x [y0, y1] of the frame show what
+// is nearer.
+HWY_INLINE Mask hidden_of(const ClusterInSetUp& cluster, Mask keep, I a, I b, I c, I x0, I y0, I x1,
+                          I y1) {
+  static_assert(VisibilityTile::kBlockWidth == 16 && VisibilityTile::kBlockHeight == 8);
+  const Ints d;
+  const Floats df;
+  const DepthsAround& around = cluster.around;
+  const I block_x = hn::ShiftRight<4>(x0), block_y = hn::ShiftRight<3>(y0);
+  const I one = hn::Set(d, 1);
+  const Mask many = hn::Or(hn::Gt(hn::ShiftRight<4>(x1), hn::Add(block_x, one)),
+                           hn::Gt(hn::ShiftRight<3>(y1), hn::Add(block_y, one)));
+  const Mask known = hn::AndNot(many, keep);
+  if (hn::AllFalse(d, known)) return known;
+  const I place =
+      hn::Add(hn::Mul(hn::Sub(block_y, hn::Set(d, around.y0)), hn::Set(d, around.width)),
+              hn::Sub(block_x, hn::Set(d, around.x0)));
+  const I farthest = hn::GatherIndex(d, around.farthest, hn::IfThenElseZero(known, place));
+  const float* depths = cluster.vertices.depth;
+  const F nearest = hn::Min(hn::Min(hn::GatherIndex(df, depths, a), hn::GatherIndex(df, depths, b)),
+                            hn::GatherIndex(df, depths, c));
+  return hn::And(known, hn::Gt(hn::Not(hn::BitCast(d, nearest)), farthest));
+}
+
+enum class Extent : bool { compact, wide };
+
+template <Extent extent>
+void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                    const Cluster& places, const ClusterInSetUp& cluster,
+                    std::uint32_t first_number, SetUpResult& result) {
+  const MeshCluster& mesh_cluster = block.clusters[places.part];
+  const geometry::Rect& wanted = cluster.wanted;
+  const Ints d;
+  const Bytes db;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::uint8_t* corners = block.corners.data() + mesh_cluster.first_corner;
+  const std::size_t stride = mesh_cluster.corner_stride();
+  SmallTriangles small, medium;
+  const Mask windows_wanted = hn::FirstN(d, result.fragments_only ? 0 : lanes);
+  const I zero = hn::Zero(d);
+  const I small_side = hn::Set(d, kSmallSide);
+  std::size_t kept = 0, set_up_alone = 0;
+  for (std::size_t place = places.begin / lanes * lanes; place < places.end; place += lanes) {
+    // Of a constant; counted from a variable, lanes are filled one by one.
+    const I places_here = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(place)));
+    const I a = hn::PromoteTo(d, hn::LoadU(db, corners + place));
+    const I b = hn::PromoteTo(d, hn::LoadU(db, corners + stride + place));
+    const I c = hn::PromoteTo(d, hn::LoadU(db, corners + 2 * stride + place));
+    Mask in_range = hn::And(hn::Gt(places_here, hn::Set(d, places.begin - 1)),
+                            hn::Lt(places_here, hn::Set(d, places.end)));
+    I pa, pb, pc, ax, ay, bx, by, cx, cy;
+    Origins origin;
+    if constexpr (extent == Extent::compact) {
+      origin = {hn::Set(d, cluster.origin_x), hn::Set(d, cluster.origin_y)};
+      pa = hn::GatherIndex(d, cluster.position, a);
+      pb = hn::GatherIndex(d, cluster.position, b);
+      pc = hn::GatherIndex(d, cluster.position, c);
+      ax = low_half(pa), ay = high_half(pa);
+      bx = low_half(pb), by = high_half(pb);
+      cx = low_half(pc), cy = high_half(pc);
+    } else {
+      ax = hn::GatherIndex(d, cluster.vertices.x, a),
+      ay = hn::GatherIndex(d, cluster.vertices.y, a);
+      bx = hn::GatherIndex(d, cluster.vertices.x, b),
+      by = hn::GatherIndex(d, cluster.vertices.y, b);
+      cx = hn::GatherIndex(d, cluster.vertices.x, c),
+      cy = hn::GatherIndex(d, cluster.vertices.y, c);
+      const I low_x = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(ax, bx), cx));
+      const I low_y = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(ay, by), cy));
+      const I first_x = hn::ShiftLeft<kSubpixelBits>(low_x);
+      const I first_y = hn::ShiftLeft<kSubpixelBits>(low_y);
+      origin = {hn::Add(low_x, hn::Set(d, cluster.centre_x)),
+                hn::Add(low_y, hn::Set(d, cluster.centre_y))};
+      ax = hn::Sub(ax, first_x), bx = hn::Sub(bx, first_x), cx = hn::Sub(cx, first_x);
+      ay = hn::Sub(ay, first_y), by = hn::Sub(by, first_y), cy = hn::Sub(cy, first_y);
+      const I farthest = hn::Max(hn::Max(hn::Max(ax, ay), hn::Max(bx, by)), hn::Max(cx, cy));
+      const Mask alone = hn::And(in_range, hn::Gt(farthest, hn::Set(d, kCompact - 1)));
+      if (!hn::AllFalse(d, alone)) {
+        HWY_ALIGN std::int32_t which[kMostLanes];
+        append(places_here, alone, which);
+        const std::size_t count = hn::CountTrue(d, alone);
+        for (std::size_t k = 0; k < count; ++k)
+          set_up_place(screen, draw, block, places, cluster.vertices,
+                       static_cast<std::uint32_t>(which[k]), first_number, wanted, result);
+        set_up_alone += count;
+        in_range = hn::AndNot(alone, in_range);
+      }
+      pa = hn::Or(ax, hn::ShiftLeft<16>(ay));
+      pb = hn::Or(bx, hn::ShiftLeft<16>(by));
+      pc = hn::Or(cx, hn::ShiftLeft<16>(cy));
+    }
+    const Boxes box = boxes_of(wanted, origin, ax, ay, bx, by, cx, cy);
+    const I columns = hn::Sub(box.x1, box.x0), rows = hn::Sub(box.y1, box.y0);
+    const I area = hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)),
+                           hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
+    const Mask clockwise = hn::Gt(area, zero), counter = hn::Lt(area, zero);
+    const Mask shown = draw.hidden_side == 0  ? hn::Or(clockwise, counter)
+                       : draw.hidden_side > 0 ? counter
+                                              : clockwise;
+    Mask keep = hn::And(hn::And(hn::Gt(hn::Or(columns, rows), hn::Set(d, -1)), shown), in_range);
+    kept += hn::CountTrue(d, keep);
+    const I pixel_x0 = hn::Add(box.x0, origin.x), pixel_y0 = hn::Add(box.y0, origin.y);
+    const I pixel_x1 = hn::Add(box.x1, origin.x), pixel_y1 = hn::Add(box.y1, origin.y);
+    if (cluster.around.may_hide)
+      keep = hn::AndNot(hidden_of(cluster, keep, a, b, c, pixel_x0, pixel_y0, pixel_x1, pixel_y1),
+                        keep);
+    if (hn::AllFalse(d, keep)) continue;
+    // Triangles of a few pixels are drawn pixel by pixel, those that are wider window by window if
+    // they lie in one tile.
+    const I border = hn::Or(hn::Xor(pixel_x0, pixel_x1), hn::Xor(pixel_y0, pixel_y1));
+    const Mask tiny = hn::Lt(hn::Add(hn::Mul(columns, rows), hn::Add(columns, rows)),
+                             hn::Set(d, kTinyBox));  // (columns + 1) * (rows + 1) - 1
+    const Mask fits = hn::And(hn::And(hn::Lt(columns, hn::Set(d, WindowTriangles::kMostColumns)),
+                                      hn::Lt(rows, hn::Set(d, WindowTriangles::kMostRows))),
+                              hn::Lt(border, hn::Set(d, kTileSize)));
+    const Mask is_medium = hn::And(hn::AndNot(tiny, hn::And(keep, fits)), windows_wanted);
+    const Mask is_small = hn::AndNot(
+        is_medium, hn::And(keep, hn::And(hn::Lt(columns, small_side), hn::Lt(rows, small_side))));
+    const I turned_b = hn::IfThenElse(counter, c, b), turned_c = hn::IfThenElse(counter, b, c);
+    const I names = hn::Or(hn::Or(a, hn::ShiftLeft<8>(turned_b)),
+                           hn::Or(hn::ShiftLeft<16>(turned_c), hn::ShiftLeft<24>(places_here)));
+    const auto append_to = [&](Mask mask, SmallTriangles& triangles) {
+      append(pa, mask, triangles.a + triangles.size);
+      append(hn::IfThenElse(counter, pc, pb), mask, triangles.b + triangles.size);
+      append(hn::IfThenElse(counter, pb, pc), mask, triangles.c + triangles.size);
+      append(names, mask, triangles.corners + triangles.size);
+      append(origin.x, mask, triangles.origin_x + triangles.size);
+      append(origin.y, mask, triangles.origin_y + triangles.size);
+      triangles.size += hn::CountTrue(d, mask);
+    };
+    append_to(is_small, small);
+    if (!hn::AllFalse(d, is_medium)) append_to(is_medium, medium);
+
+    const Mask is_other = hn::AndNot(hn::Or(is_small, is_medium), keep);
+    if (hn::AllFalse(d, is_other)) continue;
+    HWY_ALIGN std::int32_t others[kMostLanes];
+    append(names, is_other, others);
+    const std::size_t count = hn::CountTrue(d, is_other);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto name = static_cast<std::uint32_t>(others[k]);
+      const ScreenVertex v[3] = {cluster.vertices[name & 0xFF], cluster.vertices[name >> 8 & 0xFF],
+                                 cluster.vertices[name >> 16 & 0xFF]};
+      append_triangle(screen, wanted, {{v[0], v[1], v[2]}, first_number + (name >> 24)},
+                      centres_in_box(v[0], v[1], v[2], screen), false, result);
+    }
+  }
+  const std::uint64_t in = places.end - places.begin - set_up_alone;
+  result.counts.in += in;
+  result.counts.culled += in - kept;
+  result.counts.rasterized += kept;
+
+  // The worst that may follow, and a vector more.
+  const std::size_t most = result.fragments + small.size * kSmallSide * kSmallSide + kMostLanes;
+  if (result.address.size() < most) {
+    result.address.resize(2 * most);
+    result.code.resize(2 * most);
+    result.number.resize(2 * most);
+  }
+  result.windows.reserve(result.windows.size + medium.size + kMostLanes);
+  for (std::size_t i = 0; i < medium.size; i += lanes)
+    set_up_windows(cluster, medium, i, std::min(lanes, medium.size - i), first_number,
+                   result.windows);
+  for (std::size_t i = 0; i < small.size; i += lanes)
+    draw_small(cluster, small, i, std::min(lanes, small.size - i), first_number, result);
+}
+
+void set_up_compact(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                    const Cluster& places, const ClusterInSetUp& cluster,
+                    std::uint32_t first_number, SetUpResult& result) {
+  set_up_vectors<Extent::compact>(screen, draw, block, places, cluster, first_number, result);
+}
+void set_up_wide(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                 const Cluster& places, const ClusterInSetUp& cluster, std::uint32_t first_number,
+                 SetUpResult& result) {
+  set_up_vectors<Extent::wide>(screen, draw, block, places, cluster, first_number, result);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raster {
+
+HWY_EXPORT(set_up_compact);
+HWY_EXPORT(set_up_wide);
+
+namespace {
+
+// Clusters that are clipped, masked or blended.
+void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                 const Cluster& cluster, const ScreenVertices& vertices, std::uint32_t first_number,
+                 const geometry::Rect& wanted, SetUpResult& result) {
+  for (std::uint32_t place = cluster.begin; place < cluster.end; ++place)
+    set_up_place(screen, draw, block, cluster, vertices, place, first_number, wanted, result);
+}
+
+}  // namespace
+
+void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
+                    const Cluster& cluster, const ScreenVertices& vertices,
+                    std::uint32_t first_number, const geometry::Rect& wanted,
+                    const FrameTiles& tiles, SetUpResult& result) {
+  if (draw.masked || draw.blended || vertices.any_outside) {
+    set_up_each(screen, draw, block, cluster, vertices, first_number, wanted, result);
+    return;
+  }
+  ClusterInSetUp in_set_up(vertices);
+  in_set_up.wanted = wanted;
+  in_set_up.centre_x = screen.centre_x;
+  in_set_up.centre_y = screen.centre_y;
+  in_set_up.tiles_x = screen.tiles_x;
+  const auto pixel = [](std::int32_t coordinate, int centre) {
+    return (coordinate >> kSubpixelBits) + centre;
+  };
+  tiles.look_around(geometry::intersection({pixel(vertices.low_x, screen.centre_x),
+                                            pixel(vertices.low_y, screen.centre_y),
+                                            pixel(vertices.high_x, screen.centre_x) + 1,
+                                            pixel(vertices.high_y, screen.centre_y) + 1},
+                                           wanted),
+                    vertices.farthest, in_set_up.around);
+  // Whole pixels, so that pixel centres are where they are in the frame.
+  const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;
+  const int origin_x = low_x * kSubpixels, origin_y = low_y * kSubpixels;
+  if (vertices.high_x - origin_x >= kCompact || vertices.high_y - origin_y >= kCompact) {
+    HWY_DYNAMIC_DISPATCH(set_up_wide)
+    (screen, draw, block, cluster, in_set_up, first_number, result);
+    return;
+  }
+  in_set_up.origin_x = low_x + screen.centre_x;
+  in_set_up.origin_y = low_y + screen.centre_y;
+  for (std::size_t i = 0; i < block.clusters[cluster.part].vertices; ++i)
+    in_set_up.position[i] = (vertices.x[i] - origin_x) | (vertices.y[i] - origin_y) << 16;
+  HWY_DYNAMIC_DISPATCH(set_up_compact)
+  (screen, draw, block, cluster, in_set_up, first_number, result);
+}
+
+}  // namespace delray::raster
+#endif

@@ -1,0 +1,79 @@
+#include "raster/pipeline/draws.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace delray::raster {
+namespace {
+
+// Appends the clusters of a piece. One that goes on where the last one ended fills its cluster up.
+void append_clusters(const Piece& piece, std::uint32_t draw, DrawList& list) {
+  const MeshClusters& clusters = *list.draws[draw].clusters;
+  const std::uint32_t end = piece.first + piece.count;
+  for (std::uint32_t t = piece.first; t < end;) {
+    const ClusterBlock& block = *clusters.blocks[t >> kBlockBits];
+    for (std::uint32_t part = part_with(block, t); part < block.clusters.size() && t < end;
+         ++part) {
+      const MeshCluster& cluster = block.clusters[part];
+      const auto place = static_cast<std::uint16_t>(t - cluster.first);
+      const std::uint32_t last = std::min(end, cluster.first + cluster.count);
+      const auto place_end = static_cast<std::uint16_t>(last - cluster.first);
+      Cluster* const before = list.clusters.empty() ? nullptr : &list.clusters.back();
+      if (place > 0 && before != nullptr && before->draw == draw &&
+          before->first == cluster.first && before->end == place)
+        before->end = place_end;
+      else
+        list.clusters.push_back({draw, cluster.first, part, place, place_end});
+      t = last;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Piece> pieces_of(const scenes::Scene& scene,
+                             std::span<const std::uint64_t> first_primitives, std::uint64_t begin,
+                             std::uint64_t end) {
+  std::vector<Piece> pieces;
+  auto after = std::upper_bound(first_primitives.begin(), first_primitives.end(), begin);
+  for (std::size_t i = after - first_primitives.begin(); i < first_primitives.size(); ++i) {
+    const std::uint64_t instance_begin = first_primitives[i - 1];
+    if (instance_begin >= end) break;
+    const std::uint64_t low = std::max(begin, instance_begin);
+    const std::uint64_t high = std::min(end, first_primitives[i]);
+    if (low >= high) continue;
+    const scenes::Instance& instance = scene.instances[i - 1];
+    pieces.push_back({&scene.meshes[instance.mesh], &instance.transform,
+                      static_cast<std::uint32_t>(low - instance_begin),
+                      static_cast<std::uint32_t>(high - low), low});
+  }
+  return pieces;
+}
+
+DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
+  std::sort(pieces.begin(), pieces.end(),
+            [](const Piece& a, const Piece& b) { return a.primitive < b.primitive; });
+  DrawList list;
+  // An instance's pieces share a draw, in whatever order pieces of other draws lie between them.
+  std::unordered_map<const glm::mat4x3*, std::uint32_t> draw_of;
+  for (const Piece& piece : pieces) {
+    const auto [found, is_new] =
+        draw_of.emplace(piece.transform, static_cast<std::uint32_t>(list.draws.size()));
+    if (is_new) {
+      MeshClusters* clusters = piece.clusters;
+      if (clusters == nullptr && known != nullptr) clusters = known->of(*piece.mesh);
+      if (clusters == nullptr) clusters = &list.own.emplace_back();
+      list.draws.push_back({piece.mesh, piece.transform, clusters, piece.primitive - piece.first});
+    }
+    const std::uint32_t draw = found->second;
+    list.draws[draw].clusters->make(*piece.mesh, piece.first, piece.count);
+    append_clusters(piece, draw, list);
+    list.triangles += piece.count;
+  }
+  if (list.clusters.size() >= (1U << (32 - kClusterBits)))
+    throw std::length_error("one rank cannot rasterize more than 33 million clusters at once");
+  return list;
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,87 @@
+// What a rank renders: runs of triangles of meshes placed in the world.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "raster/pipeline/mesh_clusters.h"
+#include "scenes/scene.h"
+
+namespace delray::raster {
+
+// Triangles first .. first + count - 1 of a mesh placed by `transform`; the first has the global
+// primitive number `primitive` (scenes::first_primitives), the others follow. Mesh and transform
+// are the scene's, or came in a message.
+struct Piece {
+  const scenes::Mesh* mesh = nullptr;
+  const glm::mat4x3* transform = nullptr;
+  std::uint32_t first = 0, count = 0;
+  std::uint64_t primitive = 0;
+  MeshClusters* clusters = nullptr;  // of the mesh, where it is not the scene's
+};
+
+// The pieces of primitives [begin, end) of the scene, one per instance that has any.
+// `first_primitives` is scenes::first_primitives(scene).
+std::vector<Piece> pieces_of(const scenes::Scene& scene,
+                             std::span<const std::uint64_t> first_primitives, std::uint64_t begin,
+                             std::uint64_t end);
+
+// What another rank has done for the vertices of a mesh that came from it: positions are in view
+// coordinates, normals and tangents in the world; a normal of 0 stands for the triangle's.
+struct TransformedVertices {
+  std::vector<glm::vec3> world;      // positions in the world, for phong
+  std::vector<glm::vec3> radiances;  // for gouraud
+  float handedness = 1;              // -1 where the transform mirrors
+  int hidden_side = 0;               // sign of the area that is not drawn; 0: both are
+};
+
+// A mesh at a place.
+struct Draw {
+  const scenes::Mesh* mesh = nullptr;
+  const glm::mat4x3* transform = nullptr;
+  MeshClusters* clusters = nullptr;
+  std::uint64_t first_primitive = 0;  // global number of the mesh's triangle 0
+  const TransformedVertices* transformed =
+      nullptr;  // if they came so: `transform` is identity then
+};
+
+// Places [begin, end) of a cluster of a draw's mesh.
+struct Cluster {
+  std::uint32_t draw = 0;
+  std::uint32_t first = 0;  // triangle of the mesh at place 0
+  std::uint32_t part = 0;   // number of the cluster in its block
+  std::uint16_t begin = 0, end = 0;
+};
+
+// Draws and clusters in ascending order of primitives. A triangle's number within the list is
+// cluster << kClusterBits | place in the cluster: it ascends as primitive numbers do, so that ties
+// of depth resolve as they would over the whole scene, and it leads back to the triangle.
+struct DrawList {
+  std::vector<Draw> draws;
+  std::vector<Cluster> clusters;
+  std::uint64_t triangles = 0;
+  std::deque<MeshClusters> own;  // of meshes that came in messages
+
+  const Cluster& cluster_of(std::uint32_t number) const { return clusters[number >> kClusterBits]; }
+  std::uint32_t triangle_of(std::uint32_t number) const {
+    return cluster_of(number).first + (number & (kClusterTriangles - 1));
+  }
+  std::uint64_t primitive_of(std::uint32_t number) const {
+    return draws[cluster_of(number).draw].first_primitive + triangle_of(number);
+  }
+  const ClusterBlock& block_of(const Cluster& cluster) const {
+    return *draws[cluster.draw].clusters->blocks[cluster.first >> kBlockBits];
+  }
+};
+
+// Sorts `pieces` by primitive and cuts them into draws and clusters; those of meshes that `known`
+// does not have are made anew. O(pieces log pieces + clusters) once the meshes' clusters are made.
+// Throws std::length_error above 2^32 numbers.
+//
+// REQUIRES: no primitive is in two pieces.
+DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known = nullptr);
+
+}  // namespace delray::raster

@@ -1,0 +1,299 @@
+// Sort-last: every rank draws an equal, ascending part of the primitives over the whole frame, and
+// a compositing scheme merges the images. On equal depths the lower rank wins, which has the lower
+// primitive numbers.
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "composite/codec.h"
+#include "composite/deep.h"
+#include "composite/dense.h"
+#include "composite/flatten.h"
+#include "composite/scheme.h"
+#include "parallel/parallel_for.h"
+#include "raster/distribute/frame_memory.h"
+#include "raster/distribute/rank.h"
+#include "raster/pipeline/processor_seconds.h"
+#include "raster/pipeline/samples.h"
+
+namespace delray::raster {
+namespace {
+
+// All surfaces seen at the samples, those of a pixel together. for_each(tile, rect, add) calls
+// add(x, y, key, payload) for those of a tile, pixel by pixel, front to back.
+template <class Payload, class F>
+composite::DeepImage<Payload> end_deep(Rank& rank, const DrawList& list, RegionDrawing& drawing,
+                                       F&& for_each) {
+  const int n = rank.options.supersampling;
+  std::vector<composite::DeepTile<Payload>> tiles(static_cast<std::size_t>(rank.screen.tiles()));
+  const auto index_of = [&](int x, int y) {
+    const auto pixel =
+        static_cast<std::uint64_t>(y / n) * static_cast<std::uint64_t>(rank.options.width) +
+        static_cast<std::uint64_t>(x / n);
+    return pixel * static_cast<std::uint64_t>(n * n) +
+           static_cast<std::uint64_t>(y % n * n + x % n);
+  };
+  rank.end(drawing, [&](std::span<const geometry::Rect> rects, TileView& tile) {
+    const geometry::Rect& rect = rects.front();
+    composite::DeepTile<Payload>& deep =
+        tiles[rect.y0 / kTileSize * rank.screen.tiles_x + rect.x0 / kTileSize];
+    for_each(tile, rect, [&](int x, int y, std::int64_t key, const Payload& payload) {
+      const std::uint64_t primitive = list.primitive_of(number_of(key));
+      deep.fragments.push_back({payload, depth_of(key), static_cast<std::uint32_t>(primitive),
+                                static_cast<std::uint32_t>(primitive >> 32)});
+      const std::uint64_t index = index_of(x, y);
+      if (deep.pixels.empty() || deep.pixels.back().index != index)
+        deep.pixels.push_back({index, 0});
+      ++deep.pixels.back().size;
+    });
+  });
+  return {rank.options.width * n * n, rank.options.height, std::move(tiles)};
+}
+
+// The pixels that this rank owns in the end, blended. colour_of gives a payload's colour.
+template <class Colour, class Payload, class F>
+composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
+  constexpr std::size_t kGrain = 1 << 12;  // samples
+  composite::Part result;
+  result.ranges = part.ranges;
+  const composite::DeepImage<Payload> deep = composite::take_deep<Payload>(std::move(part));
+  image::BasicImage<Colour> image(deep.width, deep.height);
+  ProcessorSeconds seconds;
+  const auto colour_if_seen = [&](const Payload& payload) {
+    const image::RgbaF colour = colour_of(payload);
+    return colour.a > 0 ? std::optional(colour) : std::nullopt;
+  };
+  for (const composite::PixelRange& range : result.ranges)
+    parallel::parallel_blocks(
+        range.begin, range.end, kGrain, [&](std::size_t begin, std::size_t end) {
+          seconds.measure([&] { composite::flatten(deep, begin, end, image, colour_if_seen); });
+        });
+  rank.counts.phases.shade += seconds.seconds();
+  result.layer = composite::make_dense(std::move(image));
+  return result;
+}
+
+// Transparent surfaces have to be blended in one order over all ranks.
+composite::DeepImage<image::RgbaF> surfaces_of(Rank& rank, const DrawList& list,
+                                               RegionDrawing& drawing) {
+  return end_deep<image::RgbaF>(
+      rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
+        tile.for_each_surface(rect, [&](int x, int y, std::span<const SurfaceSeen> surfaces) {
+          for (const SurfaceSeen& surface : surfaces)
+            if (surface.colour.a > 0) add(x, y, surface.key, surface.colour);
+        });
+      });
+}
+std::unique_ptr<composite::Layer> draw_surfaces(Rank& rank, const DrawList& list,
+                                                RegionDrawing& drawing) {
+  return composite::make_deep(surfaces_of(rank, list, drawing));
+}
+
+template <class Colour>
+composite::Part blend_surfaces(Rank& rank, composite::Part&& part) {
+  return flatten<Colour, image::RgbaF>(rank, std::move(part),
+                                       [](const image::RgbaF& colour) { return colour; });
+}
+
+// The pixels that this rank owns in the end, as the picture has them.
+template <class Colour>
+composite::Part stored(composite::Part&& part) {
+  if constexpr (std::is_same_v<Colour, image::RgbaF>) {
+    return std::move(part);
+  } else {
+    constexpr std::size_t kGrain = 1 << 14;  // samples
+    composite::Part result;
+    result.ranges = part.ranges;
+    image::ImageF light = composite::take_image<image::RgbaF>(std::move(part));
+    image::BasicImage<Colour> image(light.width, light.height);
+    for (const composite::PixelRange& range : result.ranges)
+      parallel::parallel_for(range.begin, range.end, kGrain, [&](std::size_t i) {
+        composite::store(light.colour[i], image.colour[i]);
+      });
+    image.depth = std::move(light.depth);
+    result.layer = composite::make_dense(std::move(image));
+    return result;
+  }
+}
+
+// A point as it travels where no texture is of set 1: without what comes last in it.
+struct PlainSeenPoint {
+  static constexpr std::size_t kBytes =
+      offsetof(SeenPoint, point) + offsetof(shading::Point, second);
+  alignas(SeenPoint) std::byte bytes[kBytes] = {};
+
+  PlainSeenPoint() = default;
+  explicit PlainSeenPoint(const SeenPoint& point) { std::memcpy(bytes, &point, kBytes); }
+  explicit operator SeenPoint() const {
+    SeenPoint point;
+    std::memcpy(static_cast<void*>(&point), bytes, kBytes);
+    return point;
+  }
+};
+bool is_opaque(const PlainSeenPoint& point) { return is_opaque(SeenPoint(point)); }
+
+template <class Payload>
+std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
+                                              RegionDrawing& drawing) {
+  return composite::make_deep(end_deep<Payload>(
+      rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
+        tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
+          for (const std::int64_t key : keys) {
+            const SeenPoint point = point_seen(tile.frame(), tile.seen(), number_of(key), x, y);
+            add(x, y, key, Payload(point));
+            if (is_opaque(point)) break;
+          }
+        });
+      }));
+}
+
+template <class Colour, class Payload>
+composite::Part shade_points(Rank& rank, composite::Part&& part) {
+  const DrawList nothing;
+  const FrameShading frame =
+      make_frame_shading(rank.screen, rank.shader, nothing, rank.options.lighting, false);
+  std::atomic<std::uint64_t> shaded{0};
+  composite::Part result =
+      flatten<Colour, Payload>(rank, std::move(part), [&](const Payload& point) {
+        shaded.fetch_add(1, std::memory_order_relaxed);
+        return shade(frame, SeenPoint(point));
+      });
+  rank.counts.shaded += shaded;
+  return result;
+}
+
+// Triangles are drawn as soon as they are set up, so that none are kept and hidden clusters are
+// skipped: that belongs to the first step, large and blended triangles and shading to the second.
+template <class Colour>
+class Steps final : public FrameSteps {
+ public:
+  explicit Steps(Rank& rank) : rank_(rank) {}
+
+  void transform() override {
+    list_ = make_draw_list(pieces(), &rank_.clusters);
+    const geometry::Rect frame = rank_.frame();
+    drawing_.reset(new RegionDrawing(rank_.begin(list_, {&frame, 1})));
+    drawing_->draw_all();
+  }
+
+  void rasterize() override {
+    if (rank_.ranks() == 1) {
+      image_ = rank_.take_image<Colour>(rank_.options.width, rank_.options.height);
+      rank_.end_pixels(*drawing_, image_);
+    } else if (shades_last()) {
+      layer_ = two_sets() ? draw_points<SeenPoint>(rank_, list_, *drawing_)
+                          : draw_points<PlainSeenPoint>(rank_, list_, *drawing_);
+    } else if (has_cells()) {
+      layer_ = draw_cell(rank_, list_, *drawing_, cell_);
+    } else if (rank_.transparent) {
+      layer_ = draw_surfaces(rank_, list_, *drawing_);
+    } else {
+      layer_ =
+          composite::find_codec(rank_.options.codec)->make(rank_.end_samples<Colour>(*drawing_));
+    }
+    drawing_.reset();
+    list_ = {};
+  }
+
+  Picture compose() override {
+    if (rank_.ranks() == 1) return std::move(image_);
+    composite::Part part = timed(rank_.communicator, rank_.counts.phases.compose, [&] {
+      return composite::compose(
+          rank_.communicator, std::move(layer_), rank_.options.scheme,
+          {.samples_per_pixel = rank_.samples_per_pixel(), .order = std::move(order_)});
+    });
+    if (shades_last())
+      part = two_sets() ? shade_points<Colour, SeenPoint>(rank_, std::move(part))
+                        : shade_points<Colour, PlainSeenPoint>(rank_, std::move(part));
+    else if (has_cells())
+      part = stored<Colour>(std::move(part));
+    else if (rank_.transparent)
+      part = blend_surfaces<Colour>(rank_, std::move(part));
+    return picture_of(std::move(part));
+  }
+
+  // Whether tiles can go to their owners before all are finished.
+  bool has_tiles() const {
+    return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.transparent &&
+           !shades_last() && !has_cells();
+  }
+  // Instead of rasterize and compose. REQUIRES: has_tiles().
+  Picture rasterize_and_compose() { return picture_of(hand_over_tiles<Colour>(rank_, *drawing_)); }
+
+ private:
+  bool shades_last() const { return rank_.options.shade == Shade::composited; }
+  // Whether any material looks at both sets of texture coordinates; all ranks say the same.
+  bool two_sets() const {
+    const auto& materials = rank_.shader.materials;
+    return std::any_of(materials.begin(), materials.end(), [&](const scenes::Material& material) {
+      return shading::texture_sets(rank_.shader, material) > 1;
+    });
+  }
+  bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }
+
+  std::vector<Piece> pieces() {
+    if (has_cells()) {
+      SceneCells& cells = rank_.memory.cells;
+      cut_scene(rank_, cells);
+      cell_ = cells.cell(rank_.number());
+      order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.viewpoint);
+      return cells.pieces;
+    }
+    const auto [begin, end] = rank_.own_primitives();
+    return pieces_of(rank_.scene, rank_.first_primitives, begin, end);
+  }
+
+  Picture picture_of(composite::Part&& part) {
+    part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
+                           rank_.options.height);
+    part = timed(rank_.communicator, rank_.counts.phases.gather,
+                 [&] { return composite::gather(rank_.communicator, std::move(part), 0); });
+    if (rank_.number() != 0) return image::BasicImage<Colour>();
+    return composite::take_image<Colour>(std::move(part));
+  }
+
+  Rank& rank_;
+  DrawList list_;
+  std::unique_ptr<RegionDrawing> drawing_;
+  image::BasicImage<Colour> image_;          // a single rank's
+  std::unique_ptr<composite::Layer> layer_;  // of one among several
+  // With a cell for each rank.
+  geometry::Box3 cell_;
+  std::vector<int> order_;
+};
+
+template <class Colour>
+Picture render(Rank& rank) {
+  rank.communicator.mark(comm::Phase::rasterize, 0);
+  Steps<Colour> steps(rank);
+  steps.transform();
+  if (steps.has_tiles()) return steps.rasterize_and_compose();
+  steps.rasterize();
+  return steps.compose();
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank) {
+  if (rank.options.float_pixels) return std::make_unique<Steps<image::RgbaF>>(rank);
+  return std::make_unique<Steps<image::Rgba8>>(rank);
+}
+
+Share sort_last_share(Rank& rank) {
+  const auto [begin, end] = rank.own_primitives();
+  const DrawList list =
+      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
+  const geometry::Rect frame = rank.frame();
+  RegionDrawing drawing = rank.begin(list, {&frame, 1});
+  drawing.draw_all();
+  if (rank.transparent) return surfaces_of(rank, list, drawing);
+  return rank.end_samples<image::Rgba8>(drawing);
+}
+
+Picture sort_last(Rank& rank) {
+  return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
+}
+
+}  // namespace delray::raster

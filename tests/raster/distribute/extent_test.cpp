@@ -1,0 +1,77 @@
+#include "raster/distribute/extent.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/raster/coverage.h"
+
+namespace delray::raster {
+namespace {
+
+scenes::Mesh random_mesh(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> both(-1, 1);
+  scenes::Mesh mesh;
+  for (int i = 0; i < 400; ++i) {
+    const glm::vec3 centre(1.5F * both(random), 1.2F * both(random), -2);
+    const float size = i % 20 == 0 ? 1.0F : 0.05F;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int k = 0; k < 3; ++k)
+      mesh.positions.push_back(centre + size * glm::vec3(both(random), both(random), both(random)));
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  return mesh;
+}
+
+TEST(Extent, ContainsEveryPixel) {
+  const Screen screen = make_screen(plain_view(150, 90));
+  const scenes::Mesh mesh = random_mesh(2);
+  const PreparedMesh prepared(screen, mesh);
+  const SetUpMesh set_up = set_up_mesh(screen, mesh);
+  std::uint64_t with_pixels = 0;
+  std::vector<ScreenTriangle> large;
+  for (std::uint32_t t = 0; t < 400; ++t) {
+    const Extent e = Extents(screen).of(prepared.draw, t, 1, large);
+    EXPECT_EQ(e.triangles > 0, !e.box.empty());
+    std::vector<int> pixels(150 * 90);
+    for (const ScreenTriangle& triangle : set_up.triangles)
+      if (prepared.list.triangle_of(triangle.number) == t) count(screen, triangle, pixels);
+    for (int y = 0; y < 90; ++y)
+      for (int x = 0; x < 150; ++x)
+        if (pixels[y * 150 + x] != 0) {
+          ASSERT_TRUE(e.box.contains(x, y));
+          ++with_pixels;
+        }
+  }
+  EXPECT_GT(with_pixels, 1000U);
+}
+
+TEST(Extent, OfARangeIsThatOfItsTriangles) {
+  const Screen screen = make_screen(plain_view(150, 90));
+  const scenes::Mesh mesh = random_mesh(3);
+  const PreparedMesh prepared(screen, mesh);
+  for (const auto& [first, count] : {std::pair{0U, 400U}, {70U, 200U}, {399U, 1U}, {5U, 0U}}) {
+    Extent sum;
+    std::vector<ScreenTriangle> large, large_of_range;
+    for (std::uint32_t t = first; t < first + count; ++t) {
+      const Extent e = Extents(screen).of(prepared.draw, t, 1, large);
+      sum.triangles += e.triangles;
+      sum.pixels += e.pixels;
+      if (e.box.empty()) continue;
+      sum.box =
+          sum.box.empty()
+              ? e.box
+              : geometry::Rect{std::min(sum.box.x0, e.box.x0), std::min(sum.box.y0, e.box.y0),
+                               std::max(sum.box.x1, e.box.x1), std::max(sum.box.y1, e.box.y1)};
+    }
+    const Extent whole = Extents(screen).of(prepared.draw, first, count, large_of_range);
+    EXPECT_EQ(whole.box, sum.box);
+    EXPECT_EQ(whole.triangles, sum.triangles);
+    EXPECT_EQ(whole.pixels, sum.pixels);
+    EXPECT_EQ(large_of_range.size(), large.size());
+  }
+}
+
+}  // namespace
+}  // namespace delray::raster
