@@ -13,10 +13,10 @@
 #include <utility>
 
 #include "comm/agree_on_failure.h"
-#include "composite/interlaced.h"
-#include "composite/internal/members.h"
-#include "composite/internal/range.h"
+#include "composite/layers/interlaced.h"
 #include "composite/scheme.h"
+#include "composite/schemes/members.h"
+#include "composite/schemes/range.h"
 
 namespace delray::composite {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "composite/internal/exchange.h"
-#include "composite/internal/schemes.h"
+#include "composite/schemes/exchange.h"
+#include "composite/schemes/schemes.h"
 
 namespace delray::composite {
 namespace {

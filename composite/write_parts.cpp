@@ -17,7 +17,7 @@
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "composite/image_layer.h"
-#include "composite/internal/range.h"
+#include "composite/schemes/range.h"
 #include "files/atomic_file.h"
 #include "files/error.h"
 #include "image/srgb.h"

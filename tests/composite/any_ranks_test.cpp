@@ -12,7 +12,7 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "composite/hollow.h"
-#include "composite/internal/radices.h"
+#include "composite/schemes/radices.h"
 #include "composite/simulate.h"
 
 namespace delray::composite {

@@ -10,9 +10,9 @@
 #include "comm/network.h"
 #include "comm/simulated.h"
 #include "comm/threads.h"
-#include "composite/active.h"
 #include "composite/compose_images.h"
 #include "composite/dense.h"
+#include "composite/layers/active.h"
 #include "composite/scheme.h"
 #include "composite/simulate.h"
 

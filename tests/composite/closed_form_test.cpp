@@ -13,8 +13,8 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "composite/hollow.h"
-#include "composite/internal/radices.h"
 #include "composite/scheme.h"
+#include "composite/schemes/radices.h"
 
 namespace delray::composite {
 namespace {

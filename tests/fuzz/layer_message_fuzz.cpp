@@ -5,11 +5,11 @@
 #include <span>
 
 #include "comm/bad_message.h"
-#include "composite/active.h"
-#include "composite/bounds.h"
 #include "composite/deep.h"
 #include "composite/dense.h"
-#include "composite/lz4.h"
+#include "composite/layers/active.h"
+#include "composite/layers/bounds.h"
+#include "composite/layers/lz4.h"
 
 namespace {
 

@@ -1,0 +1,85 @@
+#include "composite/layers/active.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "comm/bad_message.h"
+#include "composite/coverage.h"
+#include "composite/layers/active_pixels.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::composite {
+namespace {
+
+constexpr std::size_t kGrain = 4;  // groups of 4096 pixels; some ten microseconds
+
+}  // namespace
+
+template <class Colour>
+comm::Buffer ActiveLayer<Colour>::cut(PixelRange range) {
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  const Colour* const colour = this->image().colour.data() + range.begin;
+  const float* const depth = this->image().depth.data() + range.begin;
+  const Coverage coverage(range.size(),
+                          [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {
+                            return this->find_covered(range.begin + begin, range.begin + end, mask);
+                          });
+  const std::uint64_t covered = coverage.covered();
+  comm::Buffer buffer(coverage.encoded_bytes() + covered * this->bytes_per_pixel());
+  auto* const colours = reinterpret_cast<Colour*>(coverage.encode(buffer.data()));
+  auto* const depths = reinterpret_cast<float*>(colours + covered);
+  parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
+    const Coverage::Group at = coverage.group(i);
+    const auto copy = [&]<class T>(const T* from, T* to) {
+      if (at.is_full()) {
+        std::copy_n(from + at.begin, at.covered, to + at.covered_before);
+      } else if (at.covered > 0) {
+        internal::compress(from + at.begin, coverage.mask(i),
+                           std::span(to + at.covered_before, at.covered));
+      }
+    };
+    copy(colour, colours);
+    if (this->has_depth()) copy(depth, depths);
+  });
+  return buffer;
+}
+
+template <class Colour>
+std::uint64_t ActiveLayer<Colour>::apply(PixelRange range, const comm::Buffer& pixels,
+                                         Action action) {
+  assert(range.begin <= range.end && range.end <= this->pixels());
+  const Coverage coverage(range.size(), {pixels.data(), pixels.size()});
+  const std::uint64_t covered = coverage.covered();
+  comm::check_message(pixels.size() ==
+                      coverage.encoded_bytes() + covered * this->bytes_per_pixel());
+  const auto* colour = reinterpret_cast<const Colour*>(pixels.data() + coverage.encoded_bytes());
+  const auto* depth = reinterpret_cast<const float*>(colour + covered);
+  parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
+    const Coverage::Group at = coverage.group(i);
+    const std::size_t first = range.begin + at.begin, size = at.end - at.begin;
+    const typename ImageLayer<Colour>::Pixels arrived{
+        colour + at.covered_before, this->has_depth() ? depth + at.covered_before : nullptr,
+        covered - at.covered_before};
+    if (at.covered == 0) {
+      this->apply_to_none(action, first, size);
+    } else if (at.is_full()) {
+      this->apply_to_all(action, first, size, arrived);
+    } else {
+      this->apply_to_covered(action, first, size, coverage.mask(i), arrived);
+    }
+  });
+  return covered;
+}
+
+template class ActiveLayer<image::Rgba8>;
+template class ActiveLayer<image::RgbaF>;
+
+std::unique_ptr<Layer> make_active(image::Image8&& image, Operator how) {
+  return std::make_unique<ActiveLayer<image::Rgba8>>(std::move(image), how);
+}
+
+std::unique_ptr<Layer> make_active(image::ImageF&& image, Operator how) {
+  return std::make_unique<ActiveLayer<image::RgbaF>>(std::move(image), how);
+}
+
+}  // namespace delray::composite

@@ -1,0 +1,135 @@
+#include "composite/layers/interlaced.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "composite/schemes/range.h"
+
+namespace delray::composite {
+namespace {
+
+// Of one hand; as tiles.cpp.
+constexpr std::uint64_t kPiecesOfHand = 8;
+constexpr std::uint64_t kFewestPixels = 4096;
+
+constexpr std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
+
+class InterlacedLayer final : public Layer {
+ public:
+  InterlacedLayer(std::unique_ptr<Layer> layer, int parts, int samples_per_pixel)
+      : layer_(std::move(layer)) {
+    const PixelRange all{0, layer_->pixels()};
+    const int of_hand = static_cast<int>(std::clamp<std::uint64_t>(
+        all.size() / static_cast<std::uint64_t>(parts) / kFewestPixels, 1, kPiecesOfHand));
+    std::uint64_t begin = 0;
+    for (int hand = 0; hand < parts; ++hand) {
+      for (int i = 0; i < of_hand; ++i) {
+        const PixelRange real =
+            internal::piece_of(all, i * parts + hand, of_hand * parts, samples_per_pixel);
+        if (real.size() > 0) pieces_.push_back({begin, real});
+        begin += real.size();
+      }
+    }
+  }
+
+  std::uint64_t pixels() const override { return layer_->pixels(); }
+  bool empty() const override { return layer_->empty(); }
+
+  comm::Buffer cut(PixelRange range) override {
+    std::vector<comm::Buffer> messages;
+    std::size_t bytes = 0, counted = 0;
+    for_each_piece(range, [&](PixelRange real) {
+      messages.push_back(layer_->cut(real));
+      bytes += sizeof(std::uint64_t) + padded(messages.back().size());
+      counted += sizeof(std::uint64_t) + padded(messages.back().counted_bytes());
+    });
+    comm::Buffer result(bytes);
+    std::byte* to = result.data();
+    for (const comm::Buffer& message : messages) {
+      const std::uint64_t size = message.size();
+      std::memcpy(to, &size, sizeof size);
+      to += sizeof size;
+      if (size > 0) std::memcpy(to, message.data(), size);
+      std::memset(to + size, 0, padded(size) - size);
+      to += padded(size);
+    }
+    return comm::Buffer::standing_for(counted, std::move(result));
+  }
+  std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override {
+    std::uint64_t composited = 0;
+    for_each_message(range, pixels, [&](PixelRange real, const comm::Buffer& message) {
+      composited += layer_->merge(real, message, from);
+    });
+    return composited;
+  }
+  void replace(PixelRange range, const comm::Buffer& pixels) override {
+    for_each_message(range, pixels, [&](PixelRange real, const comm::Buffer& message) {
+      layer_->replace(real, message);
+    });
+  }
+  std::uint64_t prune(PixelRange range, const comm::Buffer& pixels) override {
+    std::uint64_t compared = 0;
+    for_each_message(range, pixels, [&](PixelRange real, const comm::Buffer& message) {
+      compared += layer_->prune(real, message);
+    });
+    return compared;
+  }
+
+  Part deinterlaced(const std::vector<PixelRange>& ranges) && {
+    Part part;
+    for (const PixelRange& range : ranges) {
+      for_each_piece(range, [&](PixelRange real) { part.ranges.push_back(real); });
+    }
+    part.layer = std::move(layer_);
+    return part;
+  }
+
+ private:
+  struct Piece {
+    std::uint64_t begin;  // where it lies in the order that schemes see
+    PixelRange real;
+  };
+
+  template <class F>
+  void for_each_piece(PixelRange range, F&& f) const {
+    auto piece = std::partition_point(pieces_.begin(), pieces_.end(), [&](const Piece& at) {
+      return at.begin + at.real.size() <= range.begin;
+    });
+    for (; piece != pieces_.end() && piece->begin < range.end; ++piece) {
+      const PixelRange seen =
+          internal::overlap(range, {piece->begin, piece->begin + piece->real.size()});
+      const std::uint64_t begin = piece->real.begin + (seen.begin - piece->begin);
+      f(PixelRange{begin, begin + seen.size()});
+    }
+  }
+  template <class F>
+  void for_each_message(PixelRange range, const comm::Buffer& pixels, F&& f) const {
+    const std::byte* from = pixels.data();
+    for_each_piece(range, [&](PixelRange real) {
+      std::uint64_t size = 0;
+      std::memcpy(&size, from, sizeof size);
+      from += sizeof size;
+      f(real, comm::Buffer::of(std::span<const std::byte>(from, size)));
+      from += padded(size);
+    });
+    assert(from == pixels.data() + pixels.size());
+  }
+
+  std::unique_ptr<Layer> layer_;
+  std::vector<Piece> pieces_;  // ascending
+};
+
+}  // namespace
+
+std::unique_ptr<Layer> interlace(std::unique_ptr<Layer> layer, int parts, int samples_per_pixel) {
+  return std::make_unique<InterlacedLayer>(std::move(layer), parts, samples_per_pixel);
+}
+
+Part deinterlace(Part&& part) {
+  return std::move(dynamic_cast<InterlacedLayer&>(*part.layer)).deinterlaced(part.ranges);
+}
+
+}  // namespace delray::composite

@@ -1,0 +1,31 @@
+#include <bit>
+
+#include "composite/schemes/exchange.h"
+#include "composite/schemes/members.h"
+#include "composite/schemes/schemes.h"
+
+namespace delray::composite::internal {
+
+Part binary_swap_folded(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                        const ComposeOptions& options) {
+  const PixelRange all{0, layer->pixels()};
+  const int rank = communicator.rank(), size = communicator.size();
+  const int kept = static_cast<int>(std::bit_floor(static_cast<unsigned>(size)));
+  const int folded = size - kept;  // pairs (0, 1), (2, 3) ...
+  int round = 0;
+  if (folded > 0) communicator.mark(comm::Phase::compose, round++);
+  if (rank < 2 * folded) {
+    if (rank % 2 == 1) {
+      send(communicator, *layer, all, rank - 1, options.samples_per_pixel);
+      return {{}, std::move(layer)};
+    }
+    merge(communicator, *layer, all, rank + 1, options.samples_per_pixel);
+  }
+  std::vector<int> ranks;
+  for (int i = 0; i < kept; ++i) ranks.push_back(i < folded ? 2 * i : i + folded);
+  Members members(communicator, std::move(ranks));
+  const PixelRange mine = swap(members, *layer, all, options.samples_per_pixel, round);
+  return part_of(mine, std::move(layer));
+}
+
+}  // namespace delray::composite::internal
