@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "loadbalance/internal/cut.h"
+#include "loadbalance/partitions/cut.h"
 
 namespace delray::loadbalance {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "loadbalance/internal/task_queue.h"
+#include "loadbalance/schedules/task_queue.h"
 
 namespace delray::loadbalance {
 namespace {

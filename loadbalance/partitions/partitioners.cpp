@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "loadbalance/partitions/partitioners.h"
+
+namespace delray::loadbalance {
+namespace {
+
+constexpr std::array kPartitioners = {
+    Partitioner{"mahd", "rectangles of equal cost, from a summed-area table (Mueller)",
+                &internal::mahd, "bisection"},
+    Partitioner{"kd-split",
+                "rectangles, cut where a sweep line has equal costs on both sides (Samanta)",
+                &internal::kd_split, "bisection"},
+    Partitioner{"graph",
+                "regions of any shape whose borders few primitives cross, grown on a grid (Kurc)",
+                &internal::graph, "graph"},
+    Partitioner{"whitman", "ten quadtree leaves per rank, the fullest dealt out first (Whitman)",
+                &internal::whitman, "grid"},
+    Partitioner{
+        "whelan",
+        "rectangles with equally many primitives, by median cut of their centroids (Whelan)",
+        &internal::whelan, "bisection"},
+    Partitioner{"roble", "grid cells, of which full ones are halved and empty ones merged (Roble)",
+                &internal::roble, "grid"},
+    Partitioner{"interlaced", "many square blocks dealt out in turn, whatever they cost",
+                &internal::interlaced, "fixed"},
+};
+
+}  // namespace
+
+std::span<const Partitioner> partitioners() { return kPartitioners; }
+
+void internal::check_costs(const Costs& costs, geometry::Rect frame, int parts) {
+  if (parts < 1) throw std::invalid_argument("a partition has at least one part");
+  if (!(frame == costs.frame))
+    throw std::invalid_argument("the costs are of another frame than the partition");
+  const auto cells = static_cast<std::size_t>(std::max(0, costs.columns)) *
+                     static_cast<std::size_t>(std::max(0, costs.rows));
+  if (costs.cells.size() != cells || costs.cross_right.size() != cells ||
+      costs.cross_down.size() != cells)
+    throw std::invalid_argument("the costs are not of " + std::to_string(costs.columns) + " x " +
+                                std::to_string(costs.rows) + " cells");
+  const auto is_cost = [](double cost) { return std::isfinite(cost) && cost >= 0; };
+  if (!std::ranges::all_of(costs.cells, is_cost) ||
+      !std::ranges::all_of(costs.boxes, is_cost, &WeightedBox::cost))
+    throw std::invalid_argument("a cost is negative or not finite");
+}
+
+const Partitioner* find_partitioner(std::string_view name) {
+  const auto at =
+      std::find_if(kPartitioners.begin(), kPartitioners.end(),
+                   [name](const Partitioner& partitioner) { return partitioner.name == name; });
+  return at == kPartitioners.end() ? nullptr : &*at;
+}
+
+}  // namespace delray::loadbalance

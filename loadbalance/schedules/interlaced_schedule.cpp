@@ -1,0 +1,22 @@
+#include "loadbalance/schedules/crew.h"
+#include "loadbalance/schedules/schedules.h"
+
+namespace delray::loadbalance::internal {
+
+RankReport interlaced_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
+                               const ScheduleOptions& options, TaskFunction work) {
+  Crew crew(communicator, options, work);
+  const auto ranks = static_cast<std::uint32_t>(communicator.size());
+  const auto rank = static_cast<std::uint32_t>(communicator.rank());
+  std::vector<TaskRange> mine;
+  for (std::uint32_t j = 0; j < tasks.rows; ++j) {
+    for (std::uint64_t i = (rank + ranks - j % ranks) % ranks; i < tasks.columns; i += ranks) {
+      const std::uint32_t task = j * tasks.columns + static_cast<std::uint32_t>(i);
+      mine.push_back({task, task + 1});
+    }
+  }
+  crew.put(mine);
+  return crew.finish();
+}
+
+}  // namespace delray::loadbalance::internal

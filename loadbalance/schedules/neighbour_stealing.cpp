@@ -1,0 +1,129 @@
+#include <algorithm>
+
+#include "comm/collectives.h"
+#include "loadbalance/schedules/initial_tasks.h"
+#include "loadbalance/schedules/schedules.h"
+#include "loadbalance/schedules/theft.h"
+
+namespace delray::loadbalance::internal {
+namespace {
+
+using Kind = TheftMessage::Kind;
+
+class Neighbour {
+ public:
+  Neighbour(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
+            TaskFunction work)
+      : communicator_(communicator),
+        crew_(communicator, options, work),
+        theft_(communicator, crew_, tasks.count()),
+        ahead_(options.ahead.value_or(2 * static_cast<std::uint32_t>(crew_.threads()))) {
+    for (int bit = 1; bit < communicator.size(); bit *= 2) {
+      const int neighbour = communicator.rank() ^ bit;
+      if (neighbour < communicator.size()) neighbours_.push_back({neighbour, false, 0});
+    }
+    crew_.put(initial_tasks(communicator, tasks, options));
+  }
+
+  RankReport run() {
+    while (!theft_.is_over()) {
+      serve();
+      const bool worked = crew_.run_one();
+      ask();
+      if (worked) continue;
+      if (answers_to_come_ == 0) theft_.quiet();
+      if (!theft_.is_over()) theft_.wait();
+    }
+    // Who has left the run must not ask somebody who has not.
+    comm::barrier(communicator_);
+    crew_.waited();
+    return crew_.finish();
+  }
+
+ private:
+  enum class Asked { not_yet, with_few_left, with_none_left };
+  struct Other {
+    int rank = 0;
+    bool hungry = false;  // it asked and got nothing
+    std::uint64_t load = 0;
+  };
+
+  // Answers what has come, up to tasks: of those some are begun before anybody can take them.
+  void serve() {
+    bool any = false, has_tasks = false;
+    while (!has_tasks) {
+      const auto message = theft_.next();
+      if (!message) break;
+      any = true;
+      if (message->kind == Kind::ask_tasks) {
+        answer(other(message->from), message->value);
+      } else if (message->kind == Kind::tasks) {
+        if (message->value == 1) --answers_to_come_;
+        if (message->tasks.empty()) continue;
+        crew_.put(message->tasks);
+        asked_ = Asked::not_yet;
+        share_out();
+        has_tasks = true;
+      }
+    }
+    if (any) crew_.served();
+  }
+
+  // Half of what there is more here than there; one who has nothing gets the larger half.
+  void answer(Other& to, std::uint64_t load) {
+    const std::uint64_t mine = crew_.waiting();
+    const std::uint64_t more = mine > load ? mine - load : 0;
+    const auto tasks = crew_.give(load == 0 ? (more + 1) / 2 : more / 2);
+    to.hungry = tasks.empty();
+    to.load = load;
+    theft_.send(to.rank, Kind::tasks, 1, tasks);
+  }
+
+  // Gives of what has just come to those who got nothing before; at least one task stays here.
+  void share_out() {
+    for (Other& to : neighbours_) {
+      if (!to.hungry) continue;
+      const std::uint64_t mine = crew_.waiting();
+      if (mine < to.load + 2) continue;
+      const auto tasks = crew_.give((mine - to.load) / 2);
+      if (tasks.empty()) continue;
+      to.hungry = false;
+      theft_.send(to.rank, Kind::tasks, 0, tasks);
+    }
+  }
+
+  // All neighbours, once when few tasks are left and once when none are.
+  void ask() {
+    const std::uint64_t waiting = crew_.waiting();
+    if (answers_to_come_ > 0 || waiting > ahead_) return;
+    const Asked now = waiting > 0 ? Asked::with_few_left : Asked::with_none_left;
+    if (asked_ >= now) return;
+    asked_ = now;
+    for (const Other& to : neighbours_) {
+      theft_.send(to.rank, Kind::ask_tasks, waiting);
+      ++answers_to_come_;
+    }
+  }
+
+  Other& other(int rank) {
+    return *std::find_if(neighbours_.begin(), neighbours_.end(),
+                         [rank](const Other& candidate) { return candidate.rank == rank; });
+  }
+
+  comm::Communicator& communicator_;
+  Crew crew_;
+  Theft theft_;
+  std::uint64_t ahead_;
+  std::vector<Other> neighbours_;
+  Asked asked_ = Asked::not_yet;  // since tasks came last
+  int answers_to_come_ = 0;
+};
+
+}  // namespace
+
+RankReport neighbour_stealing(comm::Communicator& communicator, const TaskGrid& tasks,
+                              const ScheduleOptions& options, TaskFunction work) {
+  return Neighbour(communicator, tasks, options, work).run();
+}
+
+}  // namespace delray::loadbalance::internal

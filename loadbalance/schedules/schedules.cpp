@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "comm/collectives.h"
+#include "loadbalance/schedules/schedules.h"
+
+namespace delray::loadbalance {
+namespace {
+
+constexpr std::array kSchedules = {
+    Schedule{"static", "each rank has as many consecutive tasks", &internal::static_schedule,
+             "fixed"},
+    Schedule{"interlaced", "tasks are dealt out in turn, each row shifted",
+             &internal::interlaced_schedule, "fixed"},
+    Schedule{"random", "tasks are dealt out in random order", &internal::random_schedule, "fixed"},
+    Schedule{"demand", "a master hands out a few tasks whenever a rank asks (Badouel)",
+             &internal::demand, "master"},
+    Schedule{"guided", "a master hands out ever fewer rows of tasks at a time (Pandzic)",
+             &internal::guided, "master"},
+    Schedule{"hierarchical",
+             "a tree of masters: ranks ask theirs for tasks, and they ask those above (Green)",
+             &internal::hierarchical, "master"},
+    Schedule{"stealing", "idle ranks take tasks from ranks that have more than the mean",
+             &internal::stealing, "stealing"},
+    Schedule{"neighbour-stealing",
+             "ranks ask their neighbours in a hypercube for tasks before they run out (Heirich)",
+             &internal::neighbour_stealing, "stealing"},
+};
+
+}  // namespace
+
+std::span<const Schedule> schedules() { return kSchedules; }
+
+const Schedule* find_schedule(std::string_view name) {
+  const auto at = std::find_if(kSchedules.begin(), kSchedules.end(),
+                               [name](const Schedule& schedule) { return schedule.name == name; });
+  return at == kSchedules.end() ? nullptr : &*at;
+}
+
+std::vector<RankReport> gather_reports(comm::Communicator& communicator, const RankReport& mine) {
+  const ScheduleCounts& counts = mine;
+  comm::Buffer message(sizeof(counts) + mine.timeline.size() * sizeof(Interval));
+  std::memcpy(message.data(), &counts, sizeof(counts));
+  if (!mine.timeline.empty()) {
+    std::memcpy(message.data() + sizeof(counts), mine.timeline.data(),
+                mine.timeline.size() * sizeof(Interval));
+  }
+  std::vector<RankReport> reports;
+  for (const comm::Buffer& from : comm::gather(communicator, 0, std::move(message))) {
+    RankReport& report = reports.emplace_back();
+    std::memcpy(static_cast<ScheduleCounts*>(&report), from.data(), sizeof(ScheduleCounts));
+    report.timeline.resize((from.size() - sizeof(ScheduleCounts)) / sizeof(Interval));
+    if (!report.timeline.empty()) {
+      std::memcpy(report.timeline.data(), from.data() + sizeof(ScheduleCounts),
+                  report.timeline.size() * sizeof(Interval));
+    }
+  }
+  return reports;
+}
+
+}  // namespace delray::loadbalance

@@ -1,0 +1,33 @@
+#include <stdexcept>
+
+#include "loadbalance/schedules/crew.h"
+#include "loadbalance/schedules/initial_tasks.h"
+#include "loadbalance/schedules/schedules.h"
+
+namespace delray::loadbalance::internal {
+
+std::vector<TaskRange> initial_tasks(const comm::Communicator& communicator, const TaskGrid& tasks,
+                                     const ScheduleOptions& options) {
+  if (options.initial) {
+    for (const TaskRange& range : *options.initial) {
+      if (range.first > range.last || range.last > tasks.count())
+        throw std::invalid_argument("a rank begins with tasks that there are not");
+    }
+    return *options.initial;
+  }
+  const auto begin = [&](int rank) {
+    return static_cast<std::uint32_t>(std::uint64_t{tasks.count()} *
+                                      static_cast<std::uint64_t>(rank) /
+                                      static_cast<std::uint64_t>(communicator.size()));
+  };
+  return {{begin(communicator.rank()), begin(communicator.rank() + 1)}};
+}
+
+RankReport static_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
+                           const ScheduleOptions& options, TaskFunction work) {
+  Crew crew(communicator, options, work);
+  crew.put(initial_tasks(communicator, tasks, options));
+  return crew.finish();
+}
+
+}  // namespace delray::loadbalance::internal

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cmath>
+
+#include "comm/collectives.h"
+#include "loadbalance/schedules/initial_tasks.h"
+#include "loadbalance/schedules/schedules.h"
+#include "loadbalance/schedules/theft.h"
+
+namespace delray::loadbalance::internal {
+namespace {
+
+using Kind = TheftMessage::Kind;
+
+class Thief {
+ public:
+  Thief(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
+        TaskFunction work)
+      : communicator_(communicator),
+        crew_(communicator, options, work),
+        theft_(communicator, crew_, tasks.count()),
+        loads_(static_cast<std::size_t>(communicator.size())) {
+    crew_.put(initial_tasks(communicator, tasks, options));
+  }
+
+  RankReport run() {
+    while (!theft_.is_over()) {
+      serve();
+      if (crew_.run_one()) continue;
+      if (answers_to_come_ == 0) {
+        if (may_ask_ && communicator_.size() > 1) {
+          ask_for_loads();
+        } else {
+          theft_.quiet();
+        }
+      }
+      if (!theft_.is_over()) theft_.wait();
+    }
+    // Who has left the run must not ask somebody who has not.
+    comm::barrier(communicator_);
+    crew_.waited();
+    return crew_.finish();
+  }
+
+ private:
+  // Answers what has come, up to tasks: those are begun before anybody can take them away.
+  void serve() {
+    bool any = false, has_tasks = false;
+    while (!has_tasks) {
+      const auto message = theft_.next();
+      if (!message) break;
+      any = true;
+      has_tasks = handle(*message);
+    }
+    if (any) crew_.served();
+  }
+
+  // Whether there are tasks to begin.
+  bool handle(const TheftMessage& message) {
+    switch (message.kind) {
+      case Kind::ask_load:
+        theft_.send(message.from, Kind::load, crew_.waiting());
+        break;
+      case Kind::ask_tasks:
+        theft_.send(message.from, Kind::tasks, 1, crew_.give(message.value));
+        break;
+      case Kind::load:
+        loads_[message.from] = message.value;
+        if (--answers_to_come_ == 0) ask_for_tasks();
+        break;
+      case Kind::tasks:
+        crew_.put(message.tasks);
+        if (--answers_to_come_ == 0) may_ask_ = true;
+        return !message.tasks.empty();
+      default:
+        break;
+    }
+    return false;
+  }
+
+  void ask_for_loads() {
+    may_ask_ = false;
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+      if (rank == communicator_.rank()) continue;
+      theft_.send(rank, Kind::ask_load, 0);
+      ++answers_to_come_;
+    }
+  }
+
+  // As many tasks as the mean, rounded up, from those above it.
+  void ask_for_tasks() {
+    double total = 0, excess = 0;
+    for (const std::uint64_t load : loads_) total += static_cast<double>(load);
+    if (!(total > 0)) return;
+    const double mean = total / static_cast<double>(loads_.size());
+    const double wanted = std::ceil(mean);
+    for (const std::uint64_t load : loads_)
+      excess += std::max(0.0, static_cast<double>(load) - mean);
+    // Rounding is carried on from one to the next, so that the sum is right.
+    double before = 0, asked = 0;
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+      const double above = static_cast<double>(loads_[rank]) - mean;
+      if (above <= 0) continue;
+      before += above;
+      const double amount =
+          std::min(static_cast<double>(loads_[rank]), std::round(wanted * before / excess) - asked);
+      if (amount < 1) continue;
+      asked += amount;
+      theft_.send(rank, Kind::ask_tasks, static_cast<std::uint64_t>(amount));
+      ++answers_to_come_;
+    }
+  }
+
+  comm::Communicator& communicator_;
+  Crew crew_;
+  Theft theft_;
+  std::vector<std::uint64_t> loads_;  // by rank, as last told; its own 0
+  int answers_to_come_ = 0;
+  bool may_ask_ = true;  // not once it has found that nobody has anything
+};
+
+}  // namespace
+
+RankReport stealing(comm::Communicator& communicator, const TaskGrid& tasks,
+                    const ScheduleOptions& options, TaskFunction work) {
+  return Thief(communicator, tasks, options, work).run();
+}
+
+}  // namespace delray::loadbalance::internal
