@@ -7,7 +7,7 @@
 
 #include "comm/collectives.h"
 #include "comm/failure.h"
-#include "comm/internal/first_failure.h"
+#include "comm/in_process/first_failure.h"
 #include "files/error.h"
 #include "parallel/progress.h"
 

@@ -1,6 +1,6 @@
 #include "comm/buffer.h"
 
-#include "comm/internal/block_pool.h"
+#include "comm/in_process/block_pool.h"
 
 namespace delray::comm {
 

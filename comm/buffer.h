@@ -14,7 +14,7 @@ namespace internal {
 // Memory for messages, not initialised. Large blocks are kept when they are given back, up to 256
 // MiB in all, and handed out again: fresh memory from the system takes several times as long to
 // write to as a message takes on its way between two processes. Under MPI they are of memory that
-// other processes of the machine see (internal/shared_memory.h). Any thread.
+// other processes of the machine see (shared_memory.h). Any thread.
 std::byte* take_memory(std::size_t size);
 void give_back_memory(std::byte* memory, std::size_t size) noexcept;
 }  // namespace internal

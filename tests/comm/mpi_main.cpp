@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "comm/collectives.h"
-#include "comm/internal/mpi_header.h"
 #include "comm/mpi.h"
+#include "comm/mpi/mpi_header.h"
 #include "tests/comm/machine.h"
 
 namespace delray::comm::testing {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "comm/collectives.h"
-#include "comm/internal/mpi_header.h"
-#include "comm/internal/shared_message.h"
 #include "comm/mpi.h"
+#include "comm/mpi/mpi_header.h"
+#include "comm/mpi/shared_message.h"
 
 namespace delray::comm {
 namespace {

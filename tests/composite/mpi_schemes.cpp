@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "comm/collectives.h"
-#include "comm/internal/shared_message.h"
 #include "comm/ledger.h"
 #include "comm/mpi.h"
+#include "comm/mpi/shared_message.h"
 #include "comm/recording.h"
 #include "comm/threads.h"
 #include "composite/codec.h"

@@ -1,4 +1,4 @@
-#include "comm/internal/message_queue.h"
+#include "comm/in_process/message_queue.h"
 
 #include <gtest/gtest.h>
 

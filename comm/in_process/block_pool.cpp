@@ -1,4 +1,4 @@
-#include "comm/internal/block_pool.h"
+#include "comm/in_process/block_pool.h"
 
 #include <bit>
 #include <new>

@@ -1,4 +1,4 @@
-#include "comm/internal/mpi_port.h"
+#include "comm/mpi/mpi_port.h"
 
 #include <algorithm>
 #include <cassert>

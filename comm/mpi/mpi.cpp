@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "comm/collectives.h"
-#include "comm/internal/first_failure.h"
-#include "comm/internal/mpi_end.h"
-#include "comm/internal/mpi_engine.h"
-#include "comm/internal/mpi_port.h"
+#include "comm/in_process/first_failure.h"
+#include "comm/mpi/mpi_end.h"
+#include "comm/mpi/mpi_engine.h"
+#include "comm/mpi/mpi_port.h"
 
 namespace delray::comm {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "comm/collectives.h"
-#include "comm/internal/first_failure.h"
-#include "comm/internal/group.h"
+#include "comm/in_process/first_failure.h"
+#include "comm/in_process/group.h"
 #include "parallel/arena.h"
 
 namespace delray::comm {

@@ -1,4 +1,4 @@
-#include "comm/internal/group.h"
+#include "comm/in_process/group.h"
 
 #include <algorithm>
 #include <numeric>

@@ -15,9 +15,9 @@
 
 #include "comm/agree_on_failure.h"
 #include "comm/failure.h"
-#include "comm/internal/first_failure.h"
-#include "comm/internal/mpi_end.h"
-#include "comm/internal/mpi_header.h"
+#include "comm/in_process/first_failure.h"
+#include "comm/mpi/mpi_end.h"
+#include "comm/mpi/mpi_header.h"
 #include "files/error.h"
 #include "files/printable.h"
 #include "parallel/progress.h"

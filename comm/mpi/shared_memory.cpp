@@ -1,4 +1,4 @@
-#include "comm/internal/shared_memory.h"
+#include "comm/mpi/shared_memory.h"
 
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "comm/internal/block_pool.h"
+#include "comm/in_process/block_pool.h"
 
 namespace delray::comm::internal {
 namespace {

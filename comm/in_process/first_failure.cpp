@@ -1,4 +1,4 @@
-#include "comm/internal/first_failure.h"
+#include "comm/in_process/first_failure.h"
 
 #include <stdexcept>
 #include <utility>

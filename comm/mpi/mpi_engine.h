@@ -10,9 +10,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "comm/internal/mpi_header.h"
-#include "comm/internal/shared_memory.h"
 #include "comm/mpi.h"
+#include "comm/mpi/mpi_header.h"
+#include "comm/mpi/shared_memory.h"
 
 namespace delray::comm::internal {
 

@@ -1,6 +1,6 @@
 // How ranks that are MPI processes wait: without taking the core from those that they wait for, and
 // not forever.
-#include "comm/internal/mpi_engine.h"
+#include "comm/mpi/mpi_engine.h"
 
 #include <sched.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "comm/internal/mpi_end.h"
+#include "comm/mpi/mpi_end.h"
 
 namespace delray::comm::internal {
 namespace {

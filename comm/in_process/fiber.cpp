@@ -1,4 +1,4 @@
-#include "comm/internal/fiber.h"
+#include "comm/in_process/fiber.h"
 
 #include <cxxabi.h>
 

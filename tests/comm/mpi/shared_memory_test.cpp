@@ -1,4 +1,4 @@
-#include "comm/internal/shared_memory.h"
+#include "comm/mpi/shared_memory.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

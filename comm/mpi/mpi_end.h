@@ -4,7 +4,7 @@
 #include <string>
 
 #include "comm/communicator.h"
-#include "comm/internal/mpi_header.h"
+#include "comm/mpi/mpi_header.h"
 
 namespace delray::comm::internal {
 

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "comm/collectives.h"
-#include "comm/internal/fiber.h"
-#include "comm/internal/first_failure.h"
-#include "comm/internal/group.h"
+#include "comm/in_process/fiber.h"
+#include "comm/in_process/first_failure.h"
+#include "comm/in_process/group.h"
 
 namespace delray::comm {
 namespace {
