@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "shading/internal/specular_table.h"
+#include "shading/lanes/specular_table.h"
 #include "shading/lighting.h"
 
 namespace delray::shading {

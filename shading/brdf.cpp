@@ -1,6 +1,6 @@
 #include "shading/brdf.h"
 
-#include "shading/internal/specular_table.h"
+#include "shading/lanes/specular_table.h"
 #include "shading/microfacets.h"
 
 namespace delray::shading {

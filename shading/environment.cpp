@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "shading/arithmetic.h"
-#include "shading/internal/gradient.h"
+#include "shading/lanes/gradient.h"
 
 namespace delray::shading {
 namespace {

@@ -1,7 +1,7 @@
 // Clear coat and sheen: values by formula, what they reflect in all by tables.
 #include "shading/layers.h"
 
-#include "shading/internal/specular_table.h"
+#include "shading/lanes/specular_table.h"
 
 namespace delray::shading {
 namespace {

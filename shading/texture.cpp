@@ -8,7 +8,7 @@
 
 #include "image/srgb.h"
 #include "shading/arithmetic.h"
-#include "shading/internal/texel_values.h"
+#include "shading/lanes/texel_values.h"
 #include "shading/take_shader.h"
 
 namespace delray::shading {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "shading/arithmetic.h"
-#include "shading/internal/gradient.h"
+#include "shading/lanes/gradient.h"
 
 namespace delray::shading {
 namespace {

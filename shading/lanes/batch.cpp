@@ -4,13 +4,13 @@
 #include <cassert>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shading/batch.cpp"
+#define HWY_TARGET_INCLUDE "shading/lanes/batch.cpp"
 #include <hwy/foreach_target.h>
 // What is compiled per target comes after it.
 #include <hwy/highway.h>
 
-#include "shading/internal/shade_lanes.h"
-#include "shading/internal/surface_lanes.h"
+#include "shading/lanes/shade_lanes.h"
+#include "shading/lanes/surface_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

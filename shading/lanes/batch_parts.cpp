@@ -5,13 +5,13 @@
 #include "shading/shade.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shading/batch_parts.cpp"
+#define HWY_TARGET_INCLUDE "shading/lanes/batch_parts.cpp"
 #include <hwy/foreach_target.h>
 // What is compiled per target comes after it.
 #include <hwy/highway.h>
 
-#include "shading/internal/shade_lanes.h"
-#include "shading/internal/surface_lanes.h"
+#include "shading/lanes/shade_lanes.h"
+#include "shading/lanes/surface_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

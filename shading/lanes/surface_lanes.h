@@ -7,9 +7,9 @@
 #endif
 
 #include "shading/batch_shader.h"
-#include "shading/internal/brdf_lanes.h"
-#include "shading/internal/texture_lanes.h"
 #include "shading/lanes.h"
+#include "shading/lanes/brdf_lanes.h"
+#include "shading/lanes/texture_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

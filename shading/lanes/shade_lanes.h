@@ -7,9 +7,9 @@
 #endif
 
 #include "shading/batch_shader.h"
-#include "shading/internal/brdf_lanes.h"
-#include "shading/internal/environment_lanes.h"
-#include "shading/internal/lighting_lanes.h"
+#include "shading/lanes/brdf_lanes.h"
+#include "shading/lanes/environment_lanes.h"
+#include "shading/lanes/lighting_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

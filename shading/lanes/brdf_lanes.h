@@ -8,8 +8,8 @@
 
 #include "shading/batch_shader.h"
 #include "shading/brdf.h"
-#include "shading/internal/specular_table.h"
 #include "shading/lanes.h"
+#include "shading/lanes/specular_table.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {

@@ -8,8 +8,8 @@
 
 #include <limits>
 
-#include "shading/internal/texel_values.h"
 #include "shading/lanes.h"
+#include "shading/lanes/texel_values.h"
 #include "shading/texture.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -9,9 +9,9 @@
 #include <algorithm>
 
 #include "shading/environment.h"
-#include "shading/internal/gradient.h"
-#include "shading/internal/texture_lanes.h"
 #include "shading/lanes.h"
+#include "shading/lanes/gradient.h"
+#include "shading/lanes/texture_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace delray::shading {
