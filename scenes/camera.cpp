@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "scenes/internal/axes.h"
+#include "scenes/geometry/axes.h"
 
 namespace delray::scenes {
 namespace {

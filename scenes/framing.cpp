@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "files/similar_name.h"
-#include "scenes/internal/axes.h"
+#include "scenes/geometry/axes.h"
 
 namespace delray::scenes {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "files/parse_count.h"
 #include "files/similar_name.h"
-#include "scenes/internal/generators.h"
-#include "scenes/internal/order.h"
+#include "scenes/generators/generators.h"
+#include "scenes/geometry/order.h"
 
 namespace delray::scenes {
 namespace {

@@ -5,12 +5,12 @@
 
 #include "files/format.h"
 #include "files/read_file.h"
-#include "scenes/internal/finish.h"
-#include "scenes/internal/load_content.h"
-#include "scenes/internal/load_gltf.h"
-#include "scenes/internal/order.h"
-#include "scenes/internal/readers.h"
-#include "scenes/internal/up_axis.h"
+#include "scenes/files/finish.h"
+#include "scenes/files/load_content.h"
+#include "scenes/files/readers.h"
+#include "scenes/geometry/order.h"
+#include "scenes/geometry/up_axis.h"
+#include "scenes/gltf/load_gltf.h"
 
 namespace delray::scenes {
 namespace {

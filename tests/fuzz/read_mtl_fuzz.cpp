@@ -1,4 +1,4 @@
-#include "scenes/internal/read_mtl.h"
+#include "scenes/files/read_mtl.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "scenes/internal/load_content.h"
+#include "scenes/files/load_content.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,61 @@
+#include "scenes/files/finish.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace delray::scenes::internal {
+namespace {
+
+// Coordinates further from the origin than this many sizes of the scene are coarse in single
+// precision: a step is a 1600th of the size.
+constexpr float kFar = 1e4F;
+
+std::uint64_t drop_degenerate(Mesh& mesh) {
+  const auto same = [&mesh](std::uint32_t a, std::uint32_t b) {
+    return a == b || mesh.positions[a] == mesh.positions[b];
+  };
+  return std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+    return same(t.x, t.y) || same(t.y, t.z) || same(t.z, t.x);
+  });
+}
+
+void drop_empty_meshes(Scene& scene) {
+  std::vector<std::uint32_t> number(scene.meshes.size(), kNone);
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
+    if (scene.meshes[i].triangles.empty()) continue;
+    number[i] = kept;
+    if (kept != i) scene.meshes[kept] = std::move(scene.meshes[i]);
+    ++kept;
+  }
+  scene.meshes.resize(kept);
+  std::erase_if(scene.instances, [&](const Instance& i) { return number[i.mesh] == kNone; });
+  for (Instance& instance : scene.instances) instance.mesh = number[instance.mesh];
+}
+
+}  // namespace
+
+void finish(const Source& source, Scene& scene) {
+  std::uint64_t degenerate = 0;
+  for (Mesh& mesh : scene.meshes) degenerate += drop_degenerate(mesh);
+  if (degenerate > 0) {
+    source.warn(std::to_string(degenerate) + " triangles with two corners in one place left out");
+  }
+  drop_empty_meshes(scene);
+  if (scene.instances.empty()) {
+    source.fail("", kNoTriangles);
+  }
+  if (scene.materials.empty()) scene.materials.emplace_back();
+
+  const geometry::Box3 box = bounds(scene);
+  const glm::vec3 furthest = glm::max(glm::abs(box.low), glm::abs(box.high));
+  const float distance = std::max({furthest.x, furthest.y, furthest.z});
+  if (!(distance <= static_cast<float>(kLargestCoordinate))) {
+    source.fail("", "a placed coordinate is not finite or larger than 1e18");
+  }
+  if (distance > kFar * glm::length(box.size())) {
+    source.warn("the scene is far from the origin for its size; its coordinates are coarse");
+  }
+}
+
+}  // namespace delray::scenes::internal

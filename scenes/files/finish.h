@@ -1,0 +1,14 @@
+// What every loaded scene goes through.
+#pragma once
+
+#include "scenes/files/source.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// Drops triangles with two equal indices, meshes without triangles and instances of them, with a
+// warning; fails where nothing is left or a transform leaves the range of coordinates. Adds a
+// material where there is none.
+void finish(const Source& source, Scene& scene);
+
+}  // namespace delray::scenes::internal

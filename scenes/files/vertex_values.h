@@ -1,0 +1,44 @@
+// Coordinates, directions and colours as files give them, made fit for a mesh.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scenes/files/source.h"
+#include "scenes/files/text_lines.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// Null if all of `p` are finite and of at most kLargestCoordinate, else what is wrong.
+const char* wrong_with(const glm::dvec3& p);
+
+// The next words of a line as numbers; fails with the line's number unless there are N that
+// wrong_with has nothing to say of.
+template <int N>
+glm::vec<N, double> read_coordinates(const Source& source, const Lines& lines, Words& words);
+
+// sRGB, as programs that write colours of vertices show them, from 0 to 1; alpha stays as it is.
+// What is not finite is 0, or alpha 1.
+glm::vec4 linear_colour(const glm::dvec4& srgb);
+
+// Directions of unit length; all or none, as normals that are missing can be computed.
+template <class T>
+void normalize_or_clear(std::vector<T>& directions) {
+  for (T& d : directions) {
+    const float length = glm::length(glm::vec3(d));
+    if (!(length > 1e-6F) || !std::isfinite(length)) return directions.clear();
+    // What has unit length already keeps its bits.
+    if (std::abs(length - 1.0F) < 1e-6F) continue;
+    for (int k = 0; k < 3; ++k) d[k] /= length;
+  }
+}
+
+// What things are made of that have no material: grey, or white under the colours of vertices.
+Material plain_material(bool has_colours);
+
+// A scene of one mesh with a plain material.
+Scene scene_of(Mesh mesh);
+
+}  // namespace delray::scenes::internal

@@ -1,0 +1,46 @@
+// The parts of a glTF file before they mean anything: JSON, buffers, accessors.
+#pragma once
+
+#include <deque>
+#include <glm/glm.hpp>
+#include <string_view>
+#include <vector>
+
+#include "scenes/gltf/json_view.h"
+
+namespace delray::scenes::internal {
+
+struct GltfDocument {
+  const Source& source;
+  Json json;
+  std::deque<std::string> own_buffers;    // those that are not in the file itself
+  std::vector<std::string_view> buffers;  // as many bytes as the document says
+
+  JsonView root() const { return {source, &json, ""}; }
+};
+
+// Takes the container apart, parses the JSON, reads the buffers. Fails on a required extension that
+// is not known.
+GltfDocument read_document(const Source& source);
+
+// The bytes of bufferViews[number].
+std::string_view buffer_view(const GltfDocument& document, std::size_t number);
+
+// What "data:...;base64," URIs and percent signs stand for; false if `uri` is no data URI, resp.
+// left as it is where it is malformed.
+bool decode_data_uri(std::string_view uri, std::string& bytes);
+std::string decode_percent(std::string_view uri);
+
+// All elements of accessors[number] as floats: integers as numbers or, if normalised, as fractions.
+// Fails unless the accessor has N components per element and all values are finite.
+template <int N>
+std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::size_t number);
+
+// Whether accessors[number] has no data: all of its elements are zero.
+bool is_all_zero(const GltfDocument& document, std::size_t number);
+
+// Elements of an accessor of unsigned integers, and the number of components of any.
+std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_t number);
+int component_count(const GltfDocument& document, std::size_t number);
+
+}  // namespace delray::scenes::internal

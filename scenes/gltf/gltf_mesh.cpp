@@ -1,0 +1,237 @@
+#include "scenes/gltf/gltf_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "scenes/files/vertex_values.h"
+#include "scenes/gltf/gltf_draco.h"
+
+namespace delray::scenes::internal {
+namespace {
+
+constexpr std::uint64_t kTriangles = 4, kStrip = 5, kFan = 6;
+
+std::vector<glm::uvec3> triangles_of(std::span<const std::uint32_t> v, std::uint64_t mode) {
+  std::vector<glm::uvec3> triangles;
+  triangles.reserve(mode == kTriangles ? v.size() / 3 : v.size());
+  if (mode == kTriangles) {
+    for (std::size_t i = 0; i + 2 < v.size(); i += 3)
+      triangles.emplace_back(v[i], v[i + 1], v[i + 2]);
+  } else {
+    for (std::size_t i = 0; i + 2 < v.size(); ++i) {
+      const std::size_t odd = i % 2;
+      const glm::uvec3 t = mode == kStrip ? glm::uvec3(v[i], v[i + 1 + odd], v[i + 2 - odd])
+                                          : glm::uvec3(v[i + 1], v[i + 2], v[0]);
+      // Repeated vertices join strips to one; they are no triangles that went wrong.
+      if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
+    }
+  }
+  return triangles;
+}
+
+template <class T>
+void keep(std::vector<T>& values, std::span<const std::uint32_t> kept) {
+  if (values.empty()) return;
+  for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+  values.resize(kept.size());
+}
+
+void drop_unused_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone), kept;
+  for (const glm::uvec3& t : mesh.triangles) number[t.x] = number[t.y] = number[t.z] = 0;
+  for (std::uint32_t i = 0; i < number.size(); ++i) {
+    if (number[i] == kNone) continue;
+    number[i] = static_cast<std::uint32_t>(kept.size());
+    kept.push_back(i);
+  }
+  if (kept.size() == number.size()) return;
+  keep(mesh.positions, kept);
+  keep(mesh.normals, kept);
+  keep(mesh.uvs, kept);
+  keep(mesh.uvs2, kept);
+  keep(mesh.tangents, kept);
+  keep(mesh.colours, kept);
+  for (glm::uvec3& t : mesh.triangles) t = {number[t.x], number[t.y], number[t.z]};
+}
+
+// The data of a primitive, from accessors or compressed. Attributes are optional, and as many as
+// there are positions.
+class Attributes {
+ public:
+  Attributes(const GltfDocument& document, const JsonView& primitive)
+      : document_(document),
+        json_(primitive["attributes"]),
+        draco_(DracoPrimitive::read(document, primitive)) {}
+
+  bool has(const char* name) const { return find(name) != kNone; }
+  int components(const char* name) const {
+    if (is_compressed(name)) return draco_->components(name);
+    return component_count(document_, find(name));
+  }
+  template <int N>
+  std::vector<glm::vec<N, float>> read(const char* name) {
+    const std::uint32_t accessor = find(name);
+    if (accessor == kNone) return {};
+    const JsonView normalized = document_.root()["accessors"][accessor]["normalized"];
+    std::vector<glm::vec<N, float>> values = is_compressed(name)
+                                                 ? draco_->vectors<N>(name, normalized.flag(false))
+                                                 : read_vectors<N>(document_, accessor);
+    if (!vertices_) vertices_ = values.size();  // positions come first
+    if (values.size() != *vertices_) {
+      json_[name].fail("has " + std::to_string(values.size()) + " elements for " +
+                       std::to_string(*vertices_) + " vertices");
+    }
+    return values;
+  }
+  // Those of compressed triangles; nothing if there are none.
+  std::optional<std::vector<std::uint32_t>> compressed_indices() const {
+    if (!draco_) return std::nullopt;
+    return draco_->indices();
+  }
+
+ private:
+  std::uint32_t find(const char* name) const {
+    return json_[name].reference(document_.root()["accessors"].size());
+  }
+  bool is_compressed(const char* name) const { return draco_ && draco_->has(name); }
+
+  const GltfDocument& document_;
+  JsonView json_;
+  std::optional<DracoPrimitive> draco_;
+  std::optional<std::size_t> vertices_;
+};
+
+std::vector<glm::vec3> read_positions(const JsonView& primitive, Attributes& attributes) {
+  std::vector<glm::vec3> positions = attributes.read<3>("POSITION");
+  const auto limit = glm::vec3(static_cast<float>(kLargestCoordinate));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (glm::any(glm::greaterThan(glm::abs(positions[i]), limit))) {
+      primitive.fail("a coordinate of vertex " + std::to_string(i) + " is larger than 1e18");
+    }
+  }
+  return positions;
+}
+
+void read_colours(Attributes& attributes, Mesh& mesh) {
+  if (!attributes.has("COLOR_0")) return;
+  if (attributes.components("COLOR_0") == 3) {
+    for (const glm::vec3& c : attributes.read<3>("COLOR_0")) mesh.colours.emplace_back(c, 1.0F);
+  } else {
+    mesh.colours = attributes.read<4>("COLOR_0");
+  }
+  for (glm::vec4& c : mesh.colours) c = glm::max(c, glm::vec4(0));
+}
+
+std::string attribute_of(const UvUse& use) { return "TEXCOORD_" + std::to_string(use.set); }
+
+// A set that the mesh does not have is replaced by set 0.
+std::vector<glm::vec2> read_uvs(Attributes& attributes, const UvUse& use) {
+  const std::string own = attribute_of(use);
+  std::vector<glm::vec2> uvs =
+      attributes.read<2>(attributes.has(own.c_str()) ? own.c_str() : "TEXCOORD_0");
+  if (use.transform != glm::dmat3x2(1.0)) {
+    for (glm::vec2& uv : uvs) uv = use.transform * glm::dvec3(uv, 1.0);
+  }
+  return uvs;
+}
+
+// What the material's textures are looked up at.
+void read_all_uvs(const JsonView& primitive, Attributes& attributes, const GltfDocument& document,
+                  GltfMaterial& material, Mesh& mesh) {
+  if (material.uvs.empty()) {
+    mesh.uvs = read_uvs(attributes, {});
+    return;
+  }
+  // Meshes that have no coordinates at all are common, and show one texel.
+  const bool only_first = material.uvs.size() == 1 && material.uvs[0].set == 0;
+  for (const UvUse& use : material.uvs) {
+    if (only_first || material.lacks_uvs || attributes.has(attribute_of(use).c_str())) continue;
+    material.lacks_uvs = true;
+    document.source.warn(primitive.place() + " has no " + attribute_of(use) +
+                         ", where its material's textures are looked up");
+  }
+  mesh.uvs = read_uvs(attributes, material.uvs[0]);
+  if (material.uvs.size() == 1) return;
+  mesh.uvs2 = read_uvs(attributes, material.uvs[1]);
+  if (mesh.uvs.empty()) mesh.uvs.resize(mesh.uvs2.size(), glm::vec2(0));
+}
+
+Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std::uint64_t mode,
+                    std::span<GltfMaterial> materials) {
+  Mesh mesh;
+  Attributes attributes(document, primitive);
+  if (!attributes.has("POSITION")) return mesh;
+  auto compressed = attributes.compressed_indices();
+  const std::size_t accessors = document.root()["accessors"].size();
+  const std::uint32_t position = primitive["attributes"]["POSITION"].reference(accessors);
+  const std::uint32_t index_accessor = primitive["indices"].reference(accessors);
+  // Without data all corners are in one place, so nothing of it can be seen.
+  if (!compressed && (is_all_zero(document, position) ||
+                      (index_accessor != kNone && is_all_zero(document, index_accessor)))) {
+    document.source.warn(primitive.place() + ": its corners are all in one place: left out");
+    return mesh;
+  }
+  mesh.positions = read_positions(primitive, attributes);
+
+  std::vector<std::uint32_t> indices;
+  if (compressed) {
+    indices = *std::move(compressed);
+    mode = kTriangles;
+  } else if (index_accessor == kNone) {
+    document.source.require_memory(mesh.positions.size() * sizeof(std::uint32_t),
+                                   primitive.place());
+    indices.resize(mesh.positions.size());
+    std::iota(indices.begin(), indices.end(), 0U);
+  } else {
+    indices = read_indices(document, index_accessor);
+  }
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= mesh.positions.size()) {
+      primitive["indices"].fail("index " + std::to_string(i) + " is " + std::to_string(indices[i]) +
+                                "; there are " + std::to_string(mesh.positions.size()) +
+                                " vertices");
+    }
+  }
+  const std::size_t triangles = mode == kTriangles ? indices.size() / 3 : indices.size();
+  document.source.require_memory(triangles * sizeof(glm::uvec3), primitive.place());
+  mesh.triangles = triangles_of(indices, mode);
+
+  const std::uint32_t material = primitive["material"].reference(materials.size());
+  mesh.material = material;
+  mesh.normals = attributes.read<3>("NORMAL");
+  normalize_or_clear(mesh.normals);
+  if (!mesh.normals.empty()) mesh.tangents = attributes.read<4>("TANGENT");
+  normalize_or_clear(mesh.tangents);
+  GltfMaterial none;
+  read_all_uvs(primitive, attributes, document, material == kNone ? none : materials[material],
+               mesh);
+  read_colours(attributes, mesh);
+  document.source.require_memory(mesh.positions.size() * 2 * sizeof(std::uint32_t),
+                                 primitive.place());
+  drop_unused_vertices(mesh);
+  return mesh;
+}
+
+}  // namespace
+
+std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
+                            std::span<GltfMaterial> materials) {
+  const JsonView json = document.root()["meshes"][number];
+  const JsonView primitives = json["primitives"];
+  std::vector<Mesh> meshes;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const std::uint64_t mode = primitives[i]["mode"].whole(kTriangles);
+    if (mode > kFan) primitives[i]["mode"].fail("should be 0 to 6");
+    if (mode < kTriangles) {
+      document.source.warn(primitives[i].place() + ": points or lines left out");
+      continue;
+    }
+    meshes.push_back(read_primitive(document, primitives[i], mode, materials));
+    meshes.back().name = json["name"].text();
+  }
+  return meshes;
+}
+
+}  // namespace delray::scenes::internal

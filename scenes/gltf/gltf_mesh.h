@@ -1,0 +1,21 @@
+// Meshes of glTF.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scenes/gltf/gltf_document.h"
+#include "scenes/gltf/gltf_material.h"
+#include "scenes/scene.h"
+
+namespace delray::scenes::internal {
+
+// The primitives of meshes[number] that are triangles, each as a mesh of its own; strips and fans
+// are taken apart. Vertices that no triangle of the primitive uses are left out. A primitive
+// without a material has material kNone. Texture coordinates are what the material's textures use;
+// that a primitive does not have them is told once for each material,
+// unless TEXCOORD_0 is all that it asks for.
+std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
+                            std::span<GltfMaterial> materials);
+
+}  // namespace delray::scenes::internal

@@ -1,0 +1,349 @@
+#include "scenes/write_glb.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <span>
+#include <string>
+
+#include "files/atomic_file.h"
+#include "files/error.h"
+#include "geometry/box.h"
+#include "image/io.h"
+#include "scenes/gltf/gltf_extras.h"
+
+namespace delray::scenes {
+namespace {
+
+using internal::Json;
+
+constexpr std::uint64_t kLargestFile = 0xFFFFFFFFU;  // sizes in the header have 32 bits
+enum : int { kFloat = 5126, kUnsigned = 5125, kVertexBuffer = 34962, kIndexBuffer = 34963 };
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw files::FileError(files::Cause::device, path.string(), "", why);
+}
+
+std::uint64_t least_size(const Scene& scene) {
+  std::uint64_t size = 0;
+  const auto bytes = [](const auto& values) { return values.size() * sizeof(values[0]); };
+  for (const Mesh& m : scene.meshes) {
+    size += bytes(m.positions) + bytes(m.normals) + bytes(m.uvs) + bytes(m.uvs2) +
+            bytes(m.tangents) + bytes(m.colours) + bytes(m.triangles);
+  }
+  return size;
+}
+
+// The least power of two that is not less: dividing by it keeps all bits of a colour.
+float power_of_two_above(float x) { return std::exp2(std::ceil(std::log2(x))); }
+
+// glTF is y up: z becomes y, y becomes -z.
+glm::vec3 upright(const glm::vec3& v, bool z_up) { return z_up ? glm::vec3(v.x, v.z, -v.y) : v; }
+
+Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Json json_of(const glm::vec4& v) { return {v.x, v.y, v.z, v.w}; }
+
+// The document while it grows: JSON and, at 4-byte boundaries, the binary chunk.
+class Writer {
+ public:
+  explicit Writer(const Scene& scene) : scene_(scene) {
+    document_["asset"] = {{"version", "2.0"}, {"generator", "delray"}};
+    binary_.reserve(least_size(scene) + 4096);
+  }
+
+  std::string write() {
+    add_textures();
+    for (const Material& material : scene_.materials) add_material(material);
+    for (const Mesh& mesh : scene_.meshes) add_mesh(mesh);
+    for (const Instance& instance : scene_.instances) add_instance(instance);
+    for (const Light& light : scene_.lights) add_light(light);
+    for (const Camera& camera : scene_.cameras) add_camera(camera);
+    add_scene();
+    return assemble();
+  }
+
+ private:
+  std::size_t add_view(const void* data, std::size_t size, int target) {
+    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
+    if (target != 0) view["target"] = target;
+    binary_.append(static_cast<const char*>(data), size);
+    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+    document_["bufferViews"].push_back(std::move(view));
+    return document_["bufferViews"].size() - 1;
+  }
+
+  template <int N>
+  Json add_accessor(std::span<const glm::vec<N, float>> values) {
+    static const char* const kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+    const std::size_t view = add_view(values.data(), values.size_bytes(), kVertexBuffer);
+    document_["accessors"].push_back({{"bufferView", view},
+                                      {"componentType", static_cast<int>(kFloat)},
+                                      {"count", values.size()},
+                                      {"type", kTypes[N]}});
+    return document_["accessors"].size() - 1;
+  }
+
+  Json add_indices(std::span<const glm::uvec3> triangles) {
+    const std::size_t view = add_view(triangles.data(), triangles.size_bytes(), kIndexBuffer);
+    document_["accessors"].push_back({{"bufferView", view},
+                                      {"componentType", static_cast<int>(kUnsigned)},
+                                      {"count", triangles.size() * 3},
+                                      {"type", "SCALAR"}});
+    return document_["accessors"].size() - 1;
+  }
+
+  void add_mesh(const Mesh& mesh) {
+    const auto filled = [](const auto& values) { return !values.empty(); };
+    Json primitive = {{"attributes", Json::object()}, {"material", mesh.material}};
+    if (filled(mesh.positions)) {
+      Json& attributes = primitive["attributes"];
+      attributes["POSITION"] = add_accessor<3>(mesh.positions);
+      geometry::Box3 box;
+      for (const glm::vec3& p : mesh.positions) box.include(p);
+      Json& accessor = document_["accessors"].back();
+      accessor["min"] = json_of(box.low);
+      accessor["max"] = json_of(box.high);
+      if (filled(mesh.normals)) attributes["NORMAL"] = add_accessor<3>(mesh.normals);
+      if (filled(mesh.tangents)) attributes["TANGENT"] = add_accessor<4>(mesh.tangents);
+      if (filled(mesh.uvs)) attributes["TEXCOORD_0"] = add_accessor<2>(mesh.uvs);
+      if (filled(mesh.uvs2)) attributes["TEXCOORD_1"] = add_accessor<2>(mesh.uvs2);
+      if (filled(mesh.colours)) attributes["COLOR_0"] = add_accessor<4>(mesh.colours);
+      if (filled(mesh.triangles)) primitive["indices"] = add_indices(mesh.triangles);
+    }
+    Json json = {{"primitives", Json::array({std::move(primitive)})}};
+    if (!mesh.name.empty()) json["name"] = mesh.name;
+    document_["meshes"].push_back(std::move(json));
+  }
+
+  static int wrap_code(Texture::Wrap wrap) {
+    if (wrap == Texture::Wrap::clamp) return 33071;
+    return wrap == Texture::Wrap::mirror ? 33648 : 10497;
+  }
+
+  void add_textures() {
+    for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
+      const Texture& texture = scene_.textures[i];
+      const std::vector<std::byte> png =
+          image::encode_png(texture.width, texture.height, texture.texels);
+      const std::size_t view = add_view(png.data(), png.size(), 0);
+      document_["images"].push_back(
+          {{"bufferView", view}, {"mimeType", "image/png"}, {"name", texture.name}});
+      document_["samplers"].push_back(
+          {{"wrapS", wrap_code(texture.wrap_u)}, {"wrapT", wrap_code(texture.wrap_v)}});
+      document_["textures"].push_back({{"source", i}, {"sampler", i}});
+    }
+  }
+
+  void use_extension(const char* name) {
+    Json& used = document_["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+  }
+
+  void refer(Json& json, const char* key, std::uint32_t texture) const {
+    if (texture == kNone) return;
+    json[key] = {{"index", texture}};
+    if (texture < scene_.textures.size() && scene_.textures[texture].set != 0)
+      json[key]["texCoord"] = 1;
+  }
+
+  void add_material(const Material& material) {
+    Json base = {{"baseColorFactor", json_of(material.base_colour)},
+                 {"metallicFactor", material.metallic},
+                 {"roughnessFactor", material.roughness}};
+    refer(base, "baseColorTexture", material.base_colour_texture);
+    refer(base, "metallicRoughnessTexture", material.metallic_roughness_texture);
+    Json json = {{"pbrMetallicRoughness", std::move(base)}, {"doubleSided", material.double_sided}};
+    if (!material.name.empty()) json["name"] = material.name;
+    refer(json, "normalTexture", material.normal_texture);
+    if (material.normal_texture != kNone) json["normalTexture"]["scale"] = material.normal_scale;
+    refer(json, "emissiveTexture", material.emission_texture);
+    add_emission(material, json);
+    if (material.alpha == Material::Alpha::blend) json["alphaMode"] = "BLEND";
+    if (material.alpha == Material::Alpha::mask) {
+      json["alphaMode"] = "MASK";
+      json["alphaCutoff"] = material.alpha_cutoff;
+    }
+    add_transmission(material, json);
+    add_reflection(material, json);
+    if (material.unlit) extend(json, "KHR_materials_unlit", Json::object());
+    document_["materials"].push_back(std::move(json));
+  }
+
+  void extend(Json& json, const char* name, Json&& extension) {
+    use_extension(name);
+    json["extensions"][name] = std::move(extension);
+  }
+
+  void add_transmission(const Material& material, Json& json) {
+    if (!(material.transmission > 0)) return;
+    Json transmission = {{"transmissionFactor", material.transmission}};
+    refer(transmission, "transmissionTexture", material.transmission_texture);
+    extend(json, "KHR_materials_transmission", std::move(transmission));
+    if (!(material.thickness > 0)) return;
+    Json volume = {{"thicknessFactor", material.thickness}};
+    if (std::isfinite(material.attenuation_distance)) {
+      volume["attenuationDistance"] = material.attenuation_distance;
+      volume["attenuationColor"] = json_of(material.attenuation_colour);
+    }
+    extend(json, "KHR_materials_volume", std::move(volume));
+  }
+
+  // What is reflected besides the colours of the base.
+  void add_reflection(const Material& material, Json& json) {
+    const Material plain;
+    if (material.ior != plain.ior) extend(json, "KHR_materials_ior", {{"ior", material.ior}});
+    if (material.specular != plain.specular || material.specular_colour != plain.specular_colour ||
+        material.specular_texture != kNone || material.specular_colour_texture != kNone) {
+      Json specular = {{"specularFactor", material.specular},
+                       {"specularColorFactor", json_of(material.specular_colour)}};
+      refer(specular, "specularTexture", material.specular_texture);
+      refer(specular, "specularColorTexture", material.specular_colour_texture);
+      extend(json, "KHR_materials_specular", std::move(specular));
+    }
+    if (material.clearcoat > 0) {
+      Json coat = {{"clearcoatFactor", material.clearcoat},
+                   {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
+      refer(coat, "clearcoatTexture", material.clearcoat_texture);
+      refer(coat, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture);
+      extend(json, "KHR_materials_clearcoat", std::move(coat));
+    }
+    if (material.sheen_colour != plain.sheen_colour) {
+      Json sheen = {{"sheenColorFactor", json_of(material.sheen_colour)},
+                    {"sheenRoughnessFactor", material.sheen_roughness}};
+      refer(sheen, "sheenColorTexture", material.sheen_colour_texture);
+      refer(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture);
+      extend(json, "KHR_materials_sheen", std::move(sheen));
+    }
+  }
+
+  // The factor may be at most 1; what is brighter needs a strength beside it.
+  void add_emission(const Material& material, Json& json) {
+    const glm::vec3& emission = material.emission;
+    const float brightest = std::max({emission.x, emission.y, emission.z});
+    if (!(brightest > 0)) return;
+    const float strength = brightest > 1 ? power_of_two_above(brightest) : 1.0F;
+    json["emissiveFactor"] = json_of(emission / strength);
+    if (strength == 1.0F) return;
+    extend(json, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
+  }
+
+  void add_node(Json&& node, const glm::mat4x3& transform) {
+    if (transform != glm::mat4x3(1.0F)) {
+      Json& matrix = node["matrix"];
+      for (int column = 0; column < 4; ++column) {
+        const glm::vec3& v = transform[column];
+        for (int row = 0; row < 3; ++row) matrix.push_back(v[row]);
+        matrix.push_back(column == 3 ? 1 : 0);
+      }
+    }
+    top_nodes_.push_back(document_["nodes"].size());
+    document_["nodes"].push_back(std::move(node));
+  }
+
+  void add_instance(const Instance& instance) {
+    glm::mat4x3 transform;
+    for (int k = 0; k < 4; ++k) transform[k] = upright(instance.transform[k], scene_.z_up);
+    add_node({{"mesh", instance.mesh}}, transform);
+  }
+
+  // The frame of a camera, which looks along -z as lights do.
+  glm::mat4x3 frame_of(const Camera& camera) const {
+    const View view = make_view(camera, 1, 1);
+    return {upright(view.right, scene_.z_up), upright(view.up, scene_.z_up),
+            -upright(view.forward, scene_.z_up), upright(view.eye, scene_.z_up)};
+  }
+
+  void add_light(const Light& light) {
+    if (light.kind == Light::Kind::area) return;  // among the extras
+    use_extension("KHR_lights_punctual");
+    const bool is_point = light.kind == Light::Kind::point;
+    const float brightest = std::max({light.colour.x, light.colour.y, light.colour.z});
+    const float intensity = brightest > 0 ? power_of_two_above(brightest) : 1.0F;
+    Json& lights = document_["extensions"]["KHR_lights_punctual"]["lights"];
+    lights.push_back({{"type", is_point ? "point" : "directional"},
+                      {"color", json_of(light.colour / intensity)},
+                      {"intensity", intensity}});
+    Json node;
+    node["extensions"]["KHR_lights_punctual"] = {{"light", lights.size() - 1}};
+    Camera towards;
+    towards.eye = is_point ? light.position : glm::vec3(0);
+    towards.at = is_point ? light.position - glm::vec3(0, 0, 1) : light.direction;
+    add_node(std::move(node), frame_of(towards));
+  }
+
+  void add_camera(const Camera& camera) {
+    const View view = make_view(camera, 1, 1);
+    const char* const type = camera.orthographic() ? "orthographic" : "perspective";
+    Json lens = {{"znear", view.near}};
+    if (camera.orthographic()) {
+      lens["xmag"] = lens["ymag"] = camera.height * 0.5F;
+      lens["zfar"] = view.far;
+    } else {
+      lens["yfov"] = static_cast<double>(camera.vertical_fov) * (std::numbers::pi / 180);
+    }
+    document_["cameras"].push_back({{"type", type}, {type, lens}});
+    Json node = {{"camera", document_["cameras"].size() - 1}};
+    if (!camera.name.empty()) node["name"] = camera.name;
+    add_node(std::move(node), frame_of(camera));
+  }
+
+  void add_scene() {
+    Scene rest;  // what has no place in glTF proper
+    rest.environment = scene_.environment;
+    rest.environment.up = upright(scene_.environment.up, scene_.z_up);
+    for (Light light : scene_.lights) {
+      for (glm::vec3* v : {&light.position, &light.edge_u, &light.edge_v}) {
+        *v = upright(*v, scene_.z_up);
+      }
+      rest.lights.push_back(light);
+    }
+    Json json = {{"nodes", top_nodes_}};
+    if (Json extras = internal::extras_of(rest); !extras.is_null()) json["extras"] = extras;
+    document_["scenes"].push_back(std::move(json));
+    document_["scene"] = 0;
+    if (!binary_.empty()) document_["buffers"].push_back({{"byteLength", binary_.size()}});
+  }
+
+  std::string assemble() {
+    std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    std::string file;
+    const auto add_word = [&file](std::uint64_t word) {
+      const auto narrow = static_cast<std::uint32_t>(word);
+      file.append(reinterpret_cast<const char*>(&narrow), sizeof narrow);
+    };
+    const std::uint64_t binary_part = binary_.empty() ? 0 : 8 + binary_.size();
+    const std::uint64_t length = 12 + 8 + json.size() + binary_part;
+    if (length > kLargestFile) return {};
+    file.reserve(length);
+    file += "glTF";
+    add_word(2);
+    add_word(length);
+    add_word(json.size());
+    file += "JSON";
+    file += json;
+    if (binary_.empty()) return file;
+    add_word(binary_.size());
+    file.append("BIN\0", 4);
+    file += binary_;
+    return file;
+  }
+
+  const Scene& scene_;
+  Json document_;
+  std::string binary_;
+  std::vector<std::size_t> top_nodes_;
+};
+
+}  // namespace
+
+void write_glb(const std::filesystem::path& path, const Scene& scene) {
+  const std::string too_large = "a GLB file cannot be larger than 4 GiB";
+  if (least_size(scene) > kLargestFile) refuse(path, too_large);
+  const std::string file = Writer(scene).write();
+  if (file.empty()) refuse(path, too_large);
+  files::write_file(path, file);
+}
+
+}  // namespace delray::scenes
