@@ -3,7 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "parallel/internal/plain_threads.h"
+#include "parallel/threads/plain_threads.h"
 
 namespace delray::parallel {
 

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <thread>
 
-#include "parallel/internal/plain_threads.h"
+#include "parallel/threads/plain_threads.h"
 
 namespace delray::parallel {
 namespace {

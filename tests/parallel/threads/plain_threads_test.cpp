@@ -1,4 +1,4 @@
-#include "parallel/internal/plain_threads.h"
+#include "parallel/threads/plain_threads.h"
 
 #include <gtest/gtest.h>
 
