@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.h"
-#include "apps/compare_commands.h"
+#include "apps/compare/compare_commands.h"
 
 namespace delray::apps {
 

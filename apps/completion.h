@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "apps/command_text.h"
+#include "apps/options/command_text.h"
 
 namespace delray::apps {
 

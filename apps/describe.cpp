@@ -6,8 +6,8 @@
 
 #include "apps/commands.h"
 #include "apps/completion.h"
-#include "apps/list.h"
 #include "apps/manual.h"
+#include "apps/options/list.h"
 
 namespace delray::apps {
 

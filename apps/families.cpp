@@ -1,8 +1,8 @@
 // The families of algorithms that options choose from: a heading for each, with its option.
 #include "apps/families.h"
 
-#include "apps/colour_by.h"
-#include "apps/list.h"
+#include "apps/input/colour_by.h"
+#include "apps/options/list.h"
 #include "comm/network.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"

@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.h"
-#include "apps/help.h"
-#include "apps/list.h"
-#include "apps/numbers.h"
-#include "apps/outputs.h"
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/numbers.h"
+#include "apps/options/outputs.h"
 #include "delaunay/generate.h"
 #include "delaunay/write_points.h"
 #include "scenes/generate.h"

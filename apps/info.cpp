@@ -5,10 +5,10 @@
 #include <variant>
 
 #include "apps/commands.h"
-#include "apps/formats.h"
-#include "apps/help.h"
-#include "apps/outputs.h"
-#include "apps/scene_input.h"
+#include "apps/input/scene_input.h"
+#include "apps/options/formats.h"
+#include "apps/options/help.h"
+#include "apps/options/outputs.h"
 #include "apps/statistics.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/read_points.h"

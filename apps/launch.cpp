@@ -8,9 +8,9 @@
 #include <cstdlib>
 
 #include "apps/build_id.h"
-#include "apps/help.h"
-#include "apps/numbers.h"
-#include "apps/usage.h"
+#include "apps/options/help.h"
+#include "apps/options/numbers.h"
+#include "apps/options/usage.h"
 #include "comm/failure.h"
 #include "comm/handshake.h"
 #include "comm/mpi.h"

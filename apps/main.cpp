@@ -15,10 +15,10 @@
 #include <memory>
 
 #include "apps/commands.h"
-#include "apps/help.h"
 #include "apps/launch.h"
-#include "apps/progress_bar.h"
-#include "apps/usage.h"
+#include "apps/options/help.h"
+#include "apps/options/usage.h"
+#include "apps/terminal/progress_bar.h"
 #include "files/printable.h"
 #include "parallel/stack.h"
 

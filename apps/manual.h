@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/command_text.h"
+#include "apps/options/command_text.h"
 
 namespace delray::apps {
 

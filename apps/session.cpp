@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <new>
 
-#include "apps/help.h"
 #include "apps/interrupt.h"
 #include "apps/launch.h"
+#include "apps/options/help.h"
 #include "comm/failure.h"
 #include "files/error.h"
 

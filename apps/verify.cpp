@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "apps/commands.h"
-#include "apps/help.h"
-#include "apps/list.h"
-#include "apps/outputs.h"
-#include "apps/point_input.h"
+#include "apps/input/point_input.h"
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/outputs.h"
 #include "apps/statistics.h"
 #include "delaunay/match_points.h"
 #include "delaunay/read_mesh.h"

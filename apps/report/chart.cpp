@@ -8,7 +8,7 @@
 #include <map>
 #include <optional>
 
-#include "apps/report/internal/plot.h"
+#include "apps/report/plot.h"
 
 namespace delray::apps::report {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/report/internal/style.h"
+#include "apps/report/style.h"
 #include "image/io.h"
 
 namespace delray::apps::report {

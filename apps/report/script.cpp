@@ -1,5 +1,5 @@
 // What every report does in the browser: tabs, numbers on hover, lines that light up, sorting, CSV.
-#include "apps/report/internal/style.h"
+#include "apps/report/style.h"
 
 namespace delray::apps::report::internal {
 

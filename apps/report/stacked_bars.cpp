@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "apps/report/axis.h"
-#include "apps/report/internal/plot.h"
+#include "apps/report/plot.h"
 
 namespace delray::apps::report {
 

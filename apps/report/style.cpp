@@ -1,5 +1,5 @@
 // How every report is drawn, on white and on black, on telephones and on paper.
-#include "apps/report/internal/style.h"
+#include "apps/report/style.h"
 
 namespace delray::apps::report::internal {
 

@@ -1,4 +1,4 @@
-#include "apps/progress_text.h"
+#include "apps/terminal/progress_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Medians of repeated runs, and which of them can be told apart.
-#include "apps/spread.h"
+#include "apps/compare/spread.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "apps/text_table.h"
+#include "apps/terminal/text_table.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "apps/terminal.h"
+#include "apps/terminal/terminal.h"
 
 namespace delray::apps {
 namespace {

@@ -1,5 +1,5 @@
 // Looks of variants on pages: different within a family, and the same whatever is compared.
-#include "apps/variant_looks.h"
+#include "apps/compare/variant_looks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What reports say of what takes least.
-#include "apps/verdict.h"
+#include "apps/compare/verdict.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,73 @@
+// What every `delray compare` has in common: its options, its steps, how what it found is told.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/compare/spread.h"
+#include "apps/options/outputs.h"
+#include "apps/session.h"
+#include "apps/statistics.h"
+#include "apps/terminal/text_table.h"
+#include "parallel/progress.h"
+
+namespace delray::apps {
+
+struct ComparisonOptions {
+  std::string output;      // the page; empty: none
+  std::string statistics;  // --stats
+  bool quick = false;
+  bool list = false;
+};
+
+// Adds -o, --quick, --stats and --list with what the last ones do here.
+void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
+                            const std::string& listed);
+// Throws UsageError, FileError where nothing could be written in the end.
+void check(const Session& session, const ComparisonOptions& options, const std::string& input);
+std::vector<OutputFile> outputs_of(const ComparisonOptions& options);
+
+// Least, most and number of the runs, and the interval of their median, which stands elsewhere.
+Json spread_json(const Spread& times);
+// Of so many milliseconds, for tables.
+std::string range_text(const Spread& times);
+
+// Runs of a comparison. A stop that was asked for is heard between two of them, where it loses
+// nothing.
+class Steps {
+ public:
+  explicit Steps(parallel::Progress& progress) : progress_(progress), inside_(&progress) {}
+
+  void start(std::uint64_t steps) { progress_.start(steps); }
+  // So much is finished; goes on whatever was asked for.
+  void done(std::uint64_t steps = 1) {
+    try {
+      progress_.advance(steps);
+    } catch (const parallel::Interrupted&) {
+    }
+  }
+  bool stop_requested() const { return progress_.stop_requested(); }
+  // Throws parallel::Interrupted.
+  void stop_if_asked() const {
+    if (stop_requested()) throw parallel::Interrupted{};
+  }
+  // For what a single run does.
+  parallel::Progress* inside() { return &inside_; }
+
+ private:
+  parallel::Progress& progress_;
+  parallel::Progress inside_;
+};
+
+struct Found {
+  TextTable table;                    // for people
+  Json statistics;                    // for scripts
+  bool unfinished = false;            // told to stop before the end
+  std::function<std::string()> page;  // made only where it is asked for
+};
+
+// Writes what was asked for and gives the exit code.
+int tell(const ComparisonOptions& options, Found&& found);
+
+}  // namespace delray::apps

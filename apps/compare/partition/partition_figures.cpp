@@ -1,0 +1,117 @@
+#include "apps/compare/partition/partition_figures.h"
+
+#include <fmt/format.h>
+
+#include "comm/network.h"
+
+namespace delray::apps {
+namespace {
+
+Json frames_of(const DrawnFrames& drawn, int ranks) {
+  Json result = Json::array();
+  for (const PredictedFrame& one : drawn.predicted)
+    result.push_back({{"network", one.network},
+                      {"ranks", ranks},
+                      {"seconds", one.seconds},
+                      {"spread", spread_json(one.spread)},
+                      {"first_seconds", one.first_seconds}});
+  return result;
+}
+
+void add_counts(const DrawnFrames& drawn, Json& row) {
+  row["bytes_total"] = drawn.bytes_total;
+  row["bytes_next_frame"] = drawn.bytes_next;
+  row["messages"] = drawn.messages;
+  row["triangles_total"] = drawn.triangles_total;
+  row["triangles_max"] = drawn.triangles_max;
+  row["samples_shaded_max"] = drawn.shaded_max;
+  row["work_imbalance"] = drawn.work_imbalance;
+  row["work_over_share"] = drawn.work_over_share;
+}
+
+Json row_of(const ComparedPartition& row) {
+  Json one = {{"partition", row.partition},
+              {"ranks", row.ranks},
+              {"regions_per_rank", row.regions_per_rank},
+              {"regions", row.regions},
+              {"primitives", row.primitives},
+              {"primitives_shared", row.shared},
+              {"overlap", row.overlap}};
+  if (row.drawn) add_counts(*row.drawn, one);
+  one["seconds"] = {{"cut", row.cut_seconds.median},
+                    {"busiest", row.drawn ? Json(row.drawn->busiest.median) : Json(nullptr)}};
+  one["spread"] = {{"cut", spread_json(row.cut_seconds)},
+                   {"busiest", row.drawn ? spread_json(row.drawn->busiest) : Json(nullptr)}};
+  one["imbalance"] = row.drawn ? Json(row.drawn->imbalance.median) : Json(nullptr);
+  one["predicted_imbalance"] = row.predicted_imbalance;
+  one["predicted_over_share"] = row.predicted_over_share;
+  one["predicted_finish_seconds"] = row.drawn ? Json(row.finish_seconds) : Json(nullptr);
+  one["predicted"] = row.drawn ? frames_of(*row.drawn, row.ranks) : Json::array();
+  one["image_hash"] = row.drawn ? Json(row.drawn->hash) : Json(nullptr);
+  return one;
+}
+
+Json row_of(const ComparedStrategy& row) {
+  Json one = {{"strategy", row.strategy}, {"ranks", row.ranks}};
+  add_counts(row.drawn, one);
+  one["seconds"] = {{"busiest", row.drawn.busiest.median}};
+  one["spread"] = {{"busiest", spread_json(row.drawn.busiest)}};
+  one["imbalance"] = row.drawn.imbalance.median;
+  one["predicted"] = frames_of(row.drawn, row.ranks);
+  one["image_hash"] = row.drawn.hash;
+  return one;
+}
+
+std::string ratio(double value) { return fmt::format("{:.3f}", value); }
+std::string milliseconds(double seconds) { return fmt::format("{:.3f}", seconds * 1e3); }
+
+}  // namespace
+
+Json partition_statistics(const PartitionRequest& request, const Prepared& prepared,
+                          const PartitionComparison& comparison) {
+  Json rows = Json::array(), strategies = Json::array();
+  for (const ComparedPartition& row : comparison.rows) rows.push_back(row_of(row));
+  for (const ComparedStrategy& row : comparison.strategies) strategies.push_back(row_of(row));
+  return {{"schema", "delray.compare.partition/1"},
+          {"scene", scene_json(request, prepared)},
+          {"options",
+           {{"size", request.render.size},
+            {"ranks", request.ranks},
+            {"regions", request.regions},
+            {"quick", request.quick}}},
+          {"unfinished", comparison.unfinished},
+          {"networks", networks_json()},
+          {"alone", {{"work", comparison.alone_work}, {"seconds", comparison.alone_seconds}}},
+          {"rows", std::move(rows)},
+          {"strategies", std::move(strategies)}};
+}
+
+TextTable partition_table(const std::vector<ComparedPartition>& rows) {
+  TextTable table = {{"ranks", "regions", "partition", "primitives", "shared", "overlap",
+                      "triangles max", "samples max", "work max/mean", "work over share",
+                      "MB first", "MB next", "cut ms", "cut from..to ms", "busiest ms",
+                      "busiest from..to ms", "time max/mean", "max/mean, predicted",
+                      "over share, predicted"}};
+  for (const ComparedPartition& row : rows) {
+    const auto of = [&](auto&& text) { return row.drawn ? text(*row.drawn) : std::string("-"); };
+    const auto megabytes = [](std::uint64_t bytes) {
+      return fmt::format("{:.3f}", static_cast<double>(bytes) / 1e6);
+    };
+    table.push_back({std::to_string(row.ranks), std::to_string(row.regions), row.partition,
+                     std::to_string(row.primitives), std::to_string(row.shared), ratio(row.overlap),
+                     of([](const DrawnFrames& d) { return std::to_string(d.triangles_max); }),
+                     of([](const DrawnFrames& d) { return std::to_string(d.shaded_max); }),
+                     of([](const DrawnFrames& d) { return ratio(d.work_imbalance); }),
+                     of([](const DrawnFrames& d) { return ratio(d.work_over_share); }),
+                     of([&](const DrawnFrames& d) { return megabytes(d.bytes_total); }),
+                     of([&](const DrawnFrames& d) { return megabytes(d.bytes_next); }),
+                     milliseconds(row.cut_seconds.median), range_text(row.cut_seconds),
+                     of([](const DrawnFrames& d) { return milliseconds(d.busiest.median); }),
+                     of([](const DrawnFrames& d) { return range_text(d.busiest); }),
+                     of([](const DrawnFrames& d) { return ratio(d.imbalance.median); }),
+                     ratio(row.predicted_imbalance), ratio(row.predicted_over_share)});
+  }
+  return table;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,14 @@
+// How a comparison of partitions is told: as JSON and as text.
+#pragma once
+
+#include "apps/compare/partition/compare_partition.h"
+
+namespace delray::apps {
+
+// `delray.compare.partition/1`.
+Json partition_statistics(const PartitionRequest& request, const Prepared& prepared,
+                          const PartitionComparison& comparison);
+// A heading and a line for each row.
+TextTable partition_table(const std::vector<ComparedPartition>& rows);
+
+}  // namespace delray::apps

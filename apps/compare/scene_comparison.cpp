@@ -1,0 +1,81 @@
+#include "apps/compare/scene_comparison.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/options/help.h"
+#include "apps/options/numbers.h"
+#include "apps/terminal/progress_bar.h"
+#include "comm/network.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+void check_scene(const CLI::App& command, const Session& session, SceneComparison& options) {
+  if (options.render.scene.file.path.empty())
+    throw UsageError(fmt::format("compare {}: SCENE is missing", command.get_name()));
+  check(session, options, options.render.scene.file.path);
+  parse_size(options.render);
+  options.render.behind = parse_background(options.render.background);
+  if (session.under_mpi && command.count("--ranks") > 0)
+    throw UsageError("--ranks: under mpirun the ranks are its processes");
+  std::sort(options.ranks.begin(), options.ranks.end());
+  options.ranks.erase(std::unique(options.ranks.begin(), options.ranks.end()), options.ranks.end());
+}
+
+}  // namespace
+
+void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
+                                  const std::string& ranks) {
+  add_scene_options(command, options.render.scene);
+  command
+      .add_option("--size", options.render.size,
+                  "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
+      ->type_name("WxH")
+      ->group(group::kPicture);
+  add_camera_options(command, options.render.camera);
+  command
+      .add_option("--ranks", options.ranks,
+                  "Numbers of ranks to compare, separated by commas " + ranks)
+      ->group(group::kParallel)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->transform(count_between(1, 4096));
+}
+
+int run_scene_comparison(
+    Session& session, const CLI::App& command, SceneComparison& options,
+    const std::function<Found(const Prepared& prepared, parallel::Progress& progress)>& compare) {
+  check_scene(command, session, options);
+  ProgressBar bar(session, "compare");
+  const parallel::AllowThreads allowed(parallel::arena_threads());
+  const auto prepared = parallel::Arena(parallel::arena_threads()).execute([&] {
+    return prepare(options.render, &session.progress);
+  });
+  if (session.first_process) refuse_overwriting(outputs_of(options), prepared->scene.files);
+  Found found = compare(*prepared, session.progress);
+  bar.end();
+  return session.first_process ? tell(options, std::move(found)) : int{kDone};
+}
+
+Json scene_json(const SceneComparison& options, const Prepared& prepared) {
+  return {{"file", options.render.scene.file.path}, {"triangles", prepared.triangles}};
+}
+
+Json networks_json() {
+  Json networks = Json::array();
+  for (const comm::NamedNetwork& named : comm::networks()) {
+    networks.push_back({{"name", named.name},
+                        {"latency", named.network.latency},
+                        {"overhead", named.network.overhead},
+                        {"seconds_per_byte", named.network.seconds_per_byte},
+                        {"copy_seconds_per_byte", named.network.copy_seconds_per_byte},
+                        {"bus", named.network.is_bus}});
+  }
+  return networks;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,280 @@
+#include "apps/compare/schedule/compare_schedule.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <numeric>
+#include <thread>
+
+#include "apps/compare/verdict.h"
+#include "comm/collectives.h"
+#include "image/hash.h"
+#include "image/srgb.h"
+#include "loadbalance/partition.h"
+#include "loadbalance/simulated_schedule.h"
+#include "loadbalance/task_grid.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+constexpr int kMostShownRanks = 16;
+// Single frames that are handed out beside the medians of their tiles, for the spread.
+constexpr std::size_t kSampleFrames = 3;
+
+ScheduleOver summary_of(const std::string& network, const loadbalance::SimulatedSchedule& run,
+                        const std::vector<Tile>& tiles) {
+  ScheduleOver result;
+  result.network = network;
+  result.seconds = run.seconds;
+  std::vector<double> rays(run.ranks.size()), busy(run.ranks.size());
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    const auto owner = static_cast<std::size_t>(run.owners[tile]);
+    rays[owner] += static_cast<double>(tiles[tile].rays);
+    busy[owner] += tiles[tile].seconds.median;
+  }
+  for (const loadbalance::RankReport& rank : run.ranks) {
+    result.requests += rank.requests;
+    result.steals += rank.steals;
+    result.tasks_stolen += rank.tasks_stolen;
+    result.messages += rank.messages;
+    result.bytes += rank.bytes_sent;
+  }
+  result.ray_imbalance = loadbalance::imbalance(rays);
+  result.time_imbalance = loadbalance::imbalance(busy);
+  const double all = run.seconds * static_cast<double>(run.ranks.size());
+  if (all > 0) result.idle = 1 - std::accumulate(busy.begin(), busy.end(), 0.0) / all;
+  return result;
+}
+
+class Comparison {
+ public:
+  Comparison(const Session& session, const ScheduleRequest& request, const Prepared& prepared,
+             parallel::Progress& progress)
+      : session_(session), request_(request), prepared_(prepared), steps_(progress) {
+    options_.width = request.render.width;
+    options_.height = request.render.height;
+    options_.samples = request.render.samples;
+    options_.trace.depth = request.render.depth;
+    options_.trace.background = raytrace::TraceOptions::Background::transparent;
+    options_.integrator = request.render.integrator;
+    options_.tile = request.tile;
+    options_.progress = steps_.inside();
+    blocks_ = {{0, 0, options_.width, options_.height}, request.tile, request.tile};
+  }
+
+  ScheduleComparison run() {
+    const std::size_t count = schedules().size();
+    const auto traced = static_cast<std::size_t>(std::count_if(
+        request_.ranks.begin(), request_.ranks.end(), [&](int ranks) { return is_traced(ranks); }));
+    const auto frames = static_cast<std::size_t>(repeats());
+    steps_.start(frames + count * request_.ranks.size() + count * traced * frames);
+    try {
+      measure_tiles();
+      for (const int ranks : request_.ranks) {
+        spdlog::info("{} ranks", ranks);
+        for (const loadbalance::Schedule* schedule : schedules()) {
+          steps_.stop_if_asked();
+          simulate(*schedule, ranks);
+          steps_.done();
+        }
+      }
+      for (ComparedSchedule& row : result_.rows)
+        if (is_traced(row.ranks)) trace(row);
+    } catch (const parallel::Interrupted&) {
+      if (result_.rows.empty()) throw;
+      result_.unfinished = true;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  int repeats() const { return request_.quick ? 3 : 7; }
+  // More ranks than cores would tell what the system does with them.
+  static bool is_traced(int ranks) {
+    return ranks <= static_cast<int>(std::max(2U, std::thread::hardware_concurrency()));
+  }
+
+  std::vector<const loadbalance::Schedule*> schedules() const {
+    std::vector<const loadbalance::Schedule*> result;
+    for (const loadbalance::Schedule& schedule : loadbalance::schedules())
+      if (request_.schedules.empty() ||
+          std::find(request_.schedules.begin(), request_.schedules.end(), schedule.name) !=
+              request_.schedules.end())
+        result.push_back(&schedule);
+    return result;
+  }
+
+  // The request's first.
+  std::vector<const comm::NamedNetwork*> networks() const {
+    std::vector<const comm::NamedNetwork*> result = {comm::find_network(request_.network)};
+    for (const comm::NamedNetwork& named : comm::networks())
+      if (&named != result[0]) result.push_back(&named);
+    return result;
+  }
+
+  image::Image8 finished(image::ImageF&& picture) const {
+    put_behind(picture, prepared_.background, prepared_.shading(),
+               scenes::make_view(prepared_.camera, options_.width, options_.height));
+    return image::to_8bit(picture);
+  }
+
+  // One rank with one thread, so that nobody shares its core.
+  void measure_tiles() {
+    std::vector<std::vector<double>> seconds(blocks_.grid().count());
+    result_.tiles.resize(seconds.size());
+    Launch launch;
+    launch.ranks = launch.threads = 1;
+    for (int repeat = 0; repeat < repeats(); ++repeat) {
+      run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
+        raytrace::Result frame =
+            raytrace::render(communicator, *prepared_.tracer, prepared_.camera, options_);
+        for (const raytrace::TileCost& tile : frame.tile_costs) {
+          seconds[tile.tile].push_back(tile.seconds);
+          result_.tiles[tile.tile].rays = tile.rays;
+        }
+        if (repeat == 0) result_.picture = finished(std::move(frame.image));
+      });
+      steps_.done();
+    }
+    sample_frames(seconds);
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+      Tile& tile = result_.tiles[i];
+      tile.pixels = blocks_.block(static_cast<std::uint32_t>(i));
+      tile.seconds = spread_of(std::move(seconds[i]));
+      seconds_.push_back(tile.seconds.median);
+      result_.rays += tile.rays;
+      result_.seconds += tile.seconds.median;
+    }
+    scale_samples();
+  }
+
+  // Keeps what the tiles took in frames from the fastest to the slowest, evenly chosen, and how
+  // long all frames took. `seconds` are of tile i in each frame.
+  void sample_frames(const std::vector<std::vector<double>>& seconds) {
+    const std::size_t frames = seconds.front().size();
+    std::vector<double> totals(frames);
+    for (const std::vector<double>& tile : seconds)
+      for (std::size_t f = 0; f < frames; ++f) totals[f] += tile[f];
+    result_.frame = spread_of(totals);
+    std::vector<std::size_t> order(frames);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return totals[a] < totals[b]; });
+    const std::size_t count = std::min(kSampleFrames, frames);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t f = order[count > 1 ? k * (frames - 1) / (count - 1) : 0];
+      std::vector<double>& sample = samples_.emplace_back();
+      for (const std::vector<double>& tile : seconds) sample.push_back(tile[f]);
+    }
+  }
+
+  // The same time for all tiles as their medians take.
+  void scale_samples() {
+    for (std::vector<double>& sample : samples_) {
+      const double total = std::accumulate(sample.begin(), sample.end(), 0.0);
+      if (total > 0)
+        for (double& tile : sample) tile *= result_.seconds / total;
+    }
+  }
+
+  loadbalance::SimulatedSchedule simulated(const loadbalance::Schedule& schedule, int ranks,
+                                           const comm::NamedNetwork& named,
+                                           const std::vector<double>& seconds) const {
+    return loadbalance::simulate(schedule, blocks_.grid(), seconds, ranks, named.network,
+                                 raytrace::tile_schedule(blocks_.grid().count(), ranks, 1));
+  }
+
+  void simulate(const loadbalance::Schedule& schedule, int ranks) {
+    ComparedSchedule row{schedule.name, ranks, {}, {}};
+    for (const comm::NamedNetwork* named : networks()) {
+      loadbalance::SimulatedSchedule run = simulated(schedule, ranks, *named, seconds_);
+      ScheduleOver over = summary_of(named->name, run, result_.tiles);
+      std::vector<double> times = {over.seconds};
+      for (const std::vector<double>& sample : samples_)
+        times.push_back(simulated(schedule, ranks, *named, sample).seconds);
+      over.spread = spread_of(std::move(times));
+      over.spread.median = over.seconds;
+      row.over.push_back(std::move(over));
+      if (row.over.size() == 1 && ranks == shown_ranks(request_))
+        result_.shown.push_back({schedule.name, std::move(run.owners), std::move(run.ranks)});
+    }
+    result_.rows.push_back(std::move(row));
+  }
+
+  void trace(ComparedSchedule& row) {
+    Launch launch;
+    launch.ranks = row.ranks;
+    launch.threads = 1;
+    raytrace::RenderOptions options = options_;
+    options.schedule = row.schedule;
+    TracedFrames traced;
+    std::vector<double> seconds;
+    for (int repeat = 0; repeat < repeats(); ++repeat) {
+      steps_.stop_if_asked();
+      run_ranks(session_, launch, {}, [&](comm::Communicator& communicator) {
+        comm::barrier(communicator);
+        const double begin = communicator.seconds();
+        raytrace::Result frame =
+            raytrace::render(communicator, *prepared_.tracer, prepared_.camera, options);
+        if (communicator.rank() != 0) return;
+        seconds.push_back(communicator.seconds() - begin);
+        if (repeat > 0) return;
+        traced.ray_imbalance = frame.statistics.imbalance_rays;
+        for (const raytrace::RankStatistics& rank : frame.statistics.ranks) {
+          traced.requests += rank.requests;
+          traced.steals += rank.steals;
+          traced.messages += rank.messages;
+        }
+        traced.hash = image::hash(finished(std::move(frame.image)));
+      });
+      steps_.done();
+    }
+    traced.seconds = spread_of(std::move(seconds));
+    row.traced = std::move(traced);
+  }
+
+  const Session& session_;
+  const ScheduleRequest& request_;
+  const Prepared& prepared_;
+  Steps steps_;
+  raytrace::RenderOptions options_;
+  loadbalance::Blocks blocks_;
+  std::vector<double> seconds_;               // of tiles
+  std::vector<std::vector<double>> samples_;  // of tiles in single frames
+  ScheduleComparison result_;
+};
+
+}  // namespace
+
+int shown_ranks(const ScheduleRequest& request) {
+  int shown = 0;
+  for (const int ranks : request.ranks)
+    if (ranks <= kMostShownRanks) shown = std::max(shown, ranks);
+  return shown > 0 ? shown : request.ranks.front();
+}
+
+ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,
+                                    const Prepared& prepared, parallel::Progress& progress) {
+  return Comparison(session, request, prepared, progress).run();
+}
+
+std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,
+                                                    int ranks, std::size_t network) {
+  std::vector<const ComparedSchedule*> all;
+  for (const ComparedSchedule& row : rows)
+    if (row.ranks == ranks) all.push_back(&row);
+  return winners<ComparedSchedule>(
+      all, [&](const ComparedSchedule& row) { return row.over[network].spread; });
+}
+
+std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,
+                                                 int ranks) {
+  std::vector<const ComparedSchedule*> traced;
+  for (const ComparedSchedule& row : rows)
+    if (row.ranks == ranks && row.traced) traced.push_back(&row);
+  return winners<ComparedSchedule>(traced,
+                                   [](const ComparedSchedule& row) { return row.traced->seconds; });
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,90 @@
+// delray compare schedule: every schedule handing out the tiles of one ray traced picture.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/compare/scene_comparison.h"
+#include "apps/compare/spread.h"
+#include "comm/network.h"
+#include "image/image.h"
+#include "loadbalance/schedule.h"
+
+namespace delray::apps {
+
+struct ScheduleRequest : SceneComparison {
+  std::vector<std::string> schedules;  // empty: all
+  std::string network = "10-gigabit-ethernet";
+  int tile = 16;  // pixels, the side
+};
+
+// A schedule on the simulated machine, of whose ranks each has a core: counted there.
+struct ScheduleOver {
+  std::string network;
+  std::uint64_t requests = 0, steals = 0, tasks_stolen = 0, messages = 0, bytes = 0;
+  double ray_imbalance = 1;   // rays of the rank that sends most over the mean
+  double time_imbalance = 1;  // the same of the time at tiles
+  double seconds = 0;         // until the last tile is done
+  // Of `seconds`, over what tiles took in single frames, brought to the same time for all of them:
+  // that of schedules differs where one is better in every frame.
+  Spread spread;
+  double idle = 0;  // of the ranks' time until then, the part spent waiting or at messages
+};
+
+// Frames of ranks that are threads of this process.
+struct TracedFrames {
+  Spread seconds;  // whole frames
+  std::uint64_t requests = 0, steals = 0, messages = 0;
+  double ray_imbalance = 1;
+  std::string hash;
+};
+
+struct ComparedSchedule {
+  std::string schedule;
+  int ranks = 0;
+  std::vector<ScheduleOver> over;  // the request's network first
+  std::optional<TracedFrames> traced;
+};
+
+// What a tile costs, whoever traces it.
+struct Tile {
+  geometry::Rect pixels;
+  std::uint64_t rays = 0;
+  Spread seconds;  // of processor time
+};
+
+// A run over the request's network, of shown_ranks(request) or the fewest.
+struct ShownSchedule {
+  std::string name;
+  std::vector<int> owners;  // of tile i
+  std::vector<loadbalance::RankReport> ranks;
+};
+
+struct ScheduleComparison {
+  std::vector<Tile> tiles;
+  std::uint64_t rays = 0;
+  double seconds = 0;                  // processor time for all tiles
+  Spread frame;                        // that of single frames
+  std::vector<ComparedSchedule> rows;  // by ranks
+  std::vector<ShownSchedule> shown;
+  image::Image8 picture;
+  bool unfinished = false;
+};
+
+int shown_ranks(const ScheduleRequest& request);
+
+// Told to stop, gives what is finished. Throws parallel::Interrupted where nothing is finished.
+ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,
+                                    const Prepared& prepared, parallel::Progress& progress);
+
+// Of so many ranks over the i-th network of the rows, the schedule that is done first and those
+// that cannot be told from it (winners() in verdict.h). REQUIRES: there are such rows.
+std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,
+                                                    int ranks, std::size_t network = 0);
+// The same by frames that were traced; empty if none were with so many ranks.
+std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,
+                                                 int ranks);
+
+}  // namespace delray::apps

@@ -1,0 +1,96 @@
+// delray compare schedule: the command line.
+#include <CLI/CLI.hpp>
+
+#include "apps/compare/compare_commands.h"
+#include "apps/compare/schedule/compare_schedule.h"
+#include "apps/compare/schedule/schedule_figures.h"
+#include "apps/compare/schedule/schedule_report.h"
+#include "apps/families.h"
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/numbers.h"
+#include "comm/network.h"
+#include "raytrace/integrator.h"
+
+namespace delray::apps {
+namespace {
+
+int list() {
+  list_schedules();
+  list_integrators();
+  list_networks();
+  return kDone;
+}
+
+int run(Session& session, const CLI::App& command, ScheduleRequest request) {
+  if (request.list) return list();
+  if (session.under_mpi)
+    throw UsageError("compare schedule: its ranks are simulated in one process; leave out mpirun");
+  if (request.tile % raytrace::kTaskSide != 0)
+    throw UsageError("--tile: " + std::to_string(request.tile) + " is no multiple of " +
+                     std::to_string(raytrace::kTaskSide));
+  request.render.kind = Engine::raytrace;
+  return run_scene_comparison(
+      session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
+        const auto comparison = std::make_shared<const ScheduleComparison>(
+            compare_schedule(session, request, prepared, progress));
+        return Found{
+            schedule_table(*comparison), schedule_statistics(request, prepared, *comparison),
+            comparison->unfinished,
+            [&, comparison] { return schedule_report(session, request, prepared, *comparison); }};
+      });
+}
+
+}  // namespace
+
+void add_compare_schedule(CLI::App& compare, Session& session) {
+  CLI::App* command = compare.add_subcommand(
+      "schedule", "Compare schedules of the ray tracer: balance, messages and times");
+  const auto request = std::make_shared<ScheduleRequest>();
+  request->ranks = {2, 4, 8, 16, 32, 64, 128, 256};
+  add_scene_comparison_options(*command, *request,
+                               "(default: 2,4,8,16,32,64,128,256); all are simulated, and those up "
+                               "to the number of cores also run");
+  command
+      ->add_option("--integrator", request->render.integrator,
+                   "What is computed along rays (default: whitted; --list describes them)")
+      ->group(group::kRaytracer);
+  command->add_option("--spp", request->render.samples, "Samples per pixel (default: 1)")
+      ->group(group::kRaytracer)
+      ->transform(count_between(1, 65536));
+  command
+      ->add_option("--depth", request->render.depth,
+                   "Maximum reflections and refractions (default: 8)")
+      ->group(group::kRaytracer)
+      ->transform(count_between(0, 64));
+  command
+      ->add_option("--tile", request->tile,
+                   "Side in pixels of the tiles that ranks share, a multiple of 16 (default: 16)")
+      ->group(group::kSharing)
+      ->transform(count_between(16, 4096));
+  command
+      ->add_option("--schedule", request->schedules,
+                   "Schedules to compare, separated by commas (default: all)")
+      ->group(group::kSharing)
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--network", request->network,
+          "Network that the counts are for and the report shows (default: 10-gigabit-ethernet)")
+      ->group(group::kSharing);
+  choose_from(*command, "--integrator", names_in(raytrace::integrators()));
+  choose_from(*command, "--schedule", names_in(loadbalance::schedules()));
+  choose_from(*command, "--network", names_in(comm::networks()));
+  add_comparison_options(*command, *request, "Measure three frames of each",
+                         "schedules, integrators and networks");
+  add_common_options(
+      *command, session,
+      "compare schedule model.glb -o schedule.html --spp 4\n"
+      "compare schedule gen:corner --ranks 16,64,1024 --tile 16 --stats schedule.json");
+  command->callback([&session, request, command] {
+    session.run = [&session, request, command] { return run(session, *command, *request); };
+  });
+}
+
+}  // namespace delray::apps

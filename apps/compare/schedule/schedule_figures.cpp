@@ -1,0 +1,96 @@
+#include "apps/compare/schedule/schedule_figures.h"
+
+#include <fmt/format.h>
+
+namespace delray::apps {
+namespace {
+
+Json row_of(const ComparedSchedule& row) {
+  const ScheduleOver& counted = row.over.front();
+  Json one = {{"schedule", row.schedule},
+              {"ranks", row.ranks},
+              {"requests", counted.requests},
+              {"steals", counted.steals},
+              {"tasks_stolen", counted.tasks_stolen},
+              {"messages", counted.messages},
+              {"bytes_total", counted.bytes},
+              {"imbalance_rays", counted.ray_imbalance}};
+  one["traced"] = row.traced ? Json({{"requests", row.traced->requests},
+                                     {"steals", row.traced->steals},
+                                     {"messages", row.traced->messages},
+                                     {"imbalance_rays", row.traced->ray_imbalance}})
+                             : Json(nullptr);
+  one["seconds"] = {{"frame", row.traced ? Json(row.traced->seconds.median) : Json(nullptr)}};
+  one["spread"] = {{"frame", row.traced ? spread_json(row.traced->seconds) : Json(nullptr)}};
+  one["predicted"] = Json::array();
+  for (const ScheduleOver& over : row.over)
+    one["predicted"].push_back({{"network", over.network},
+                                {"ranks", row.ranks},
+                                {"seconds", over.seconds},
+                                {"spread", spread_json(over.spread)},
+                                {"imbalance", over.time_imbalance},
+                                {"idle", over.idle},
+                                {"imbalance_rays", over.ray_imbalance},
+                                {"requests", over.requests},
+                                {"steals", over.steals},
+                                {"messages", over.messages}});
+  one["image_hash"] = row.traced ? Json(row.traced->hash) : Json(nullptr);
+  return one;
+}
+
+std::string ratio(double value) { return fmt::format("{:.3f}", value); }
+std::string milliseconds(double seconds) { return fmt::format("{:.3f}", seconds * 1e3); }
+
+}  // namespace
+
+Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepared,
+                         const ScheduleComparison& comparison) {
+  Json rows = Json::array(), tiles = Json::array();
+  for (const ComparedSchedule& row : comparison.rows) rows.push_back(row_of(row));
+  for (const Tile& tile : comparison.tiles)
+    tiles.push_back({tile.pixels.x0, tile.pixels.y0, tile.rays, tile.seconds.median});
+  return {{"schema", "delray.compare.schedule/1"},
+          {"scene", scene_json(request, prepared)},
+          {"options",
+           {{"size", request.render.size},
+            {"ranks", request.ranks},
+            {"integrator", request.render.integrator},
+            {"spp", request.render.samples},
+            {"depth", request.render.depth},
+            {"tile", request.tile},
+            {"network", request.network},
+            {"quick", request.quick}}},
+          {"unfinished", comparison.unfinished},
+          {"networks", networks_json()},
+          {"alone", {{"rays", comparison.rays}, {"seconds", comparison.seconds}}},
+          {"rows", std::move(rows)},
+          {"tile_columns", {"x", "y", "rays", "seconds"}},
+          {"tiles", std::move(tiles)}};
+}
+
+TextTable schedule_table(const ScheduleComparison& comparison) {
+  std::vector<std::string> head = {"ranks",         "schedule", "requests",
+                                   "steals",        "messages", "KiB",
+                                   "rays max/mean", "frame ms", "frame from..to ms"};
+  for (const ScheduleOver& over : comparison.rows.front().over)
+    head.push_back(over.network + " ms, predicted");
+  TextTable table = {std::move(head)};
+  for (const ComparedSchedule& row : comparison.rows) {
+    const ScheduleOver& counted = row.over.front();
+    std::vector<std::string> line = {
+        std::to_string(row.ranks),
+        row.schedule,
+        std::to_string(counted.requests),
+        std::to_string(counted.steals),
+        std::to_string(counted.messages),
+        fmt::format("{:.1f}", static_cast<double>(counted.bytes) / 1024),
+        ratio(counted.ray_imbalance),
+        row.traced ? milliseconds(row.traced->seconds.median) : "-",
+        row.traced ? range_text(row.traced->seconds) : "-"};
+    for (const ScheduleOver& over : row.over) line.push_back(milliseconds(over.seconds));
+    table.push_back(std::move(line));
+  }
+  return table;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,257 @@
+#include "apps/compare/triangulate/compare_triangulate.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "apps/compare/triangulate/makers_picture.h"
+#include "apps/compare/verdict.h"
+#include "delaunay/fragments.h"
+#include "delaunay/methods.h"
+#include "delaunay/simplify_terrain.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+constexpr std::size_t kFewestPoints = 100;  // of a part of them
+constexpr int kMostShownThreads = 8;        // their colours can be told apart
+constexpr int kPictureSide = 460;           // pixels; two fit beside each other
+// How often everything is timed: at least, at most, and as long as the repetitions of a way to
+// triangulate take no more than its share of so many seconds.
+struct Repetitions {
+  int least, most;
+  double seconds;
+};
+constexpr Repetitions kUsual = {3, 9, 120}, kQuick = {1, 3, 25};
+// The method whose splits are compared, as in the report.
+constexpr std::string_view kOfSplits = "optimistic";
+// The report's sequential algorithm.
+constexpr std::string_view kSequential = "insertion", kOfSequential = "dag";
+
+// Every way to triangulate that goes with the request.
+std::vector<delaunay::Options> ways(const TriangulateRequest& request, int dim,
+                                    const std::vector<int>& threads, int shown_threads) {
+  std::vector<delaunay::Options> result;
+  for (const delaunay::Method& method : delaunay::methods()) {
+    if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
+    if (!request.methods.empty() &&
+        std::ranges::find(request.methods, method.name) == request.methods.end())
+      continue;
+    delaunay::Options how;
+    how.dim = dim;
+    how.method = method.name;
+    how.seed = request.seed;
+    if (method.alone) {
+      result.push_back(resolve(how));
+      if (method.name != kSequential) continue;
+      how.location = kOfSequential;
+      result.push_back(resolve(how));
+      continue;
+    }
+    for (const int count : threads) {
+      how.threads = count;
+      result.push_back(resolve(how));
+    }
+    if (method.name != kOfSplits) continue;
+    how.threads = shown_threads;
+    for (std::size_t i = 1; i < method.splits.size(); ++i) {
+      how.split = method.splits[i];
+      result.push_back(resolve(how));
+    }
+  }
+  return result;
+}
+
+// The rows in a random order, of which each comparison of fewer points takes the first.
+std::vector<std::uint32_t> shuffled_rows(std::size_t points, std::uint64_t seed) {
+  std::vector<std::uint32_t> rows(points);
+  std::iota(rows.begin(), rows.end(), 0);
+  std::mt19937_64 random(seed);
+  for (std::size_t i = points; i > 1; --i) std::swap(rows[i - 1], rows[random() % i]);
+  return rows;
+}
+
+class Comparison {
+ public:
+  Comparison(const TriangulateRequest& request, const delaunay::PointCloud& points, int dim,
+             parallel::Progress& progress)
+      : request_(request), points_(points), steps_(progress) {
+    result_.dim = dim;
+    result_.points = points.size();
+    result_.cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    result_.threads = request.threads.empty() ? usual_threads(result_.cores) : request.threads;
+    result_.shown_threads = result_.threads.front();
+    for (const int count : result_.threads)
+      if (count <= kMostShownThreads) result_.shown_threads = count;
+    ways_ = ways(request, dim, result_.threads, result_.shown_threads);
+  }
+
+  TriangulateComparison run() {
+    const parallel::AllowThreads allowed(result_.threads.back());
+    const std::vector<std::size_t> sizes = compared_sizes(points_.size());
+    const std::size_t all = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
+    const Repetitions often = request_.quick ? kQuick : kUsual;
+    steps_.start(all * ways_.size() * static_cast<std::size_t>(1 + often.most));
+    const std::vector<std::uint32_t> order = shuffled_rows(points_.size(), request_.seed);
+    try {
+      // Fewest points first: what is finished when somebody cannot wait tells of every method.
+      for (const std::size_t size : sizes) {
+        spdlog::info("{} points", size);
+        std::vector<std::uint32_t> rows(order.begin(),
+                                        order.begin() + static_cast<std::ptrdiff_t>(size));
+        std::sort(rows.begin(), rows.end());
+        const double share =
+            static_cast<double>(size) / static_cast<double>(std::max<std::size_t>(all, 1));
+        compare(size == points_.size() ? points_ : select_rows(points_, rows), often,
+                share * often.seconds);
+      }
+    } catch (const parallel::Interrupted&) {
+      if (result_.rows.empty()) throw;
+      result_.unfinished = true;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  // Counts and times every way, then times all of them again and again: what the machine does
+  // meanwhile meets them all alike.
+  void compare(const delaunay::PointCloud& points, const Repetitions& often, double seconds) {
+    const double share = seconds / static_cast<double>(ways_.size());
+    std::vector<std::vector<double>> times(ways_.size());
+    const std::size_t first = result_.rows.size();
+    for (int round = 0; round < often.most; ++round) {
+      for (std::size_t i = 0; i < ways_.size(); ++i) {
+        std::vector<double>& own = times[i];
+        const double spent = std::accumulate(own.begin(), own.end(), 0.0);
+        if (round >= often.least && spent + spent / round > share) {
+          steps_.done(points.size());
+          continue;
+        }
+        std::optional<ComparedTriangulation> row;
+        if (round == 0) row = count(points, ways_[i]);
+        own.push_back(time(points, ways_[i]));
+        if (row) result_.rows.push_back(std::move(*row));
+        result_.rows[first + i].seconds = spread_of(own);
+      }
+    }
+  }
+
+  delaunay::Triangulation triangulate(const delaunay::PointCloud& points, delaunay::Options how) {
+    steps_.stop_if_asked();
+    how.progress = steps_.inside();
+    return parallel::Arena(how.threads).execute([&] {
+      return delaunay::triangulate(delaunay::view(points.positions), how);
+    });
+  }
+
+  double time(const delaunay::PointCloud& points, const delaunay::Options& how) {
+    Stopwatch watch;
+    const delaunay::Triangulation result = triangulate(points, how);
+    const double seconds = watch.lap();
+    steps_.done(points.size());
+    return seconds;
+  }
+
+  ComparedTriangulation count(const delaunay::PointCloud& points, const delaunay::Options& how) {
+    ComparedTriangulation row;
+    row.how = how;
+    row.points = points.size();
+    std::vector<std::uint16_t> makers;
+    delaunay::Options counting = how;
+    counting.statistics = &row.statistics;
+    counting.makers = &makers;
+    const delaunay::Triangulation made = triangulate(points, counting);
+    row.distinct = made.distinct;
+    row.simplices = made.size();
+    row.hull_facets = made.hull_facets;
+    row.hash = to_string(hash(made));
+    row.simplices_by_thread.resize(static_cast<std::size_t>(how.threads));
+    for (const std::uint16_t maker : makers) ++row.simplices_by_thread[maker];
+    row.fragments = count_fragments(made, makers, points.size());
+    if (!request_.output.empty() && how.threads == result_.shown_threads && how.threads > 1)
+      show(points, made, makers, row);
+    steps_.done(points.size());
+    return row;
+  }
+
+  // In place of the picture of fewer points.
+  void show(const delaunay::PointCloud& points, const delaunay::Triangulation& made,
+            const std::vector<std::uint16_t>& makers, const ComparedTriangulation& row) {
+    PictureOfMakers shown{name_of(row.how), points.size(), row.fragments,
+                          makers_picture(points, made, makers, kPictureSide)};
+    const auto before = std::ranges::find(result_.pictures, shown.name, &PictureOfMakers::name);
+    if (before != result_.pictures.end())
+      *before = std::move(shown);
+    else
+      result_.pictures.push_back(std::move(shown));
+  }
+
+  const TriangulateRequest& request_;
+  const delaunay::PointCloud& points_;
+  Steps steps_;
+  std::vector<delaunay::Options> ways_;
+  TriangulateComparison result_;
+};
+
+}  // namespace
+
+std::vector<int> usual_threads(int cores) {
+  std::set<int> result = {cores};
+  for (int count = 1; count <= 8 && count <= cores; count *= 2) result.insert(count);
+  if (cores < 8) result.insert(2 * cores);
+  return {result.begin(), result.end()};
+}
+
+std::vector<std::size_t> compared_sizes(std::size_t points) {
+  std::vector<std::size_t> result;
+  for (const std::size_t part : {8, 4, 2})
+    if (points / part >= kFewestPoints) result.push_back(points / part);
+  result.push_back(points);
+  return result;
+}
+
+std::string name_of(const delaunay::Options& how) {
+  delaunay::Options plain;
+  plain.dim = how.dim;
+  plain.method = how.method;
+  plain = resolve(plain);
+  std::string name = how.method;
+  if (how.location != plain.location) name += ", " + how.location;
+  if (how.split != plain.split) name += ", " + how.split;
+  return name;
+}
+
+double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row) {
+  for (const ComparedTriangulation& other : rows)
+    // Alone it makes no difference which points are whose.
+    if (other.points == row.points && other.how.threads == 1 &&
+        other.how.method == row.how.method && other.how.location == row.how.location)
+      return row.seconds.median > 0 ? other.seconds.median / row.seconds.median : 0;
+  return 0;
+}
+
+std::vector<const ComparedTriangulation*> fastest(const std::vector<ComparedTriangulation>& rows,
+                                                  std::size_t points, int threads) {
+  std::vector<const ComparedTriangulation*> wanted;
+  for (const ComparedTriangulation& row : rows)
+    if (row.points == points && (threads == 0 || row.how.threads == threads))
+      wanted.push_back(&row);
+  return winners<ComparedTriangulation>(
+      wanted, [](const ComparedTriangulation& row) { return row.seconds; });
+}
+
+TriangulateComparison compare_triangulate(const TriangulateRequest& request,
+                                          const delaunay::PointCloud& points, int dim,
+                                          parallel::Progress& progress) {
+  return Comparison(request, points, dim, progress).run();
+}
+
+}  // namespace delray::apps

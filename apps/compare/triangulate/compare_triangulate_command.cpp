@@ -1,0 +1,113 @@
+// delray compare triangulate: the command line.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/compare/compare_commands.h"
+#include "apps/compare/triangulate/compare_triangulate.h"
+#include "apps/compare/triangulate/triangulate_figures.h"
+#include "apps/compare/triangulate/triangulate_report.h"
+#include "apps/families.h"
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/numbers.h"
+#include "apps/terminal/progress_bar.h"
+#include "delaunay/methods.h"
+#include "delaunay/read_points.h"
+#include "files/format.h"
+
+namespace delray::apps {
+namespace {
+
+// Pictures and scans from the air are terrain; other points with a z are points in space.
+bool is_terrain(const PointInput& input) {
+  if (input.given()) return true;
+  const files::Format format = files::identify_format(input.path, input.limits.budget());
+  return format == files::Format::image || format == files::Format::las;
+}
+
+delaunay::PointCloud load(const PointInput& input, int& dim) {
+  if (dim == 0 && is_terrain(input)) dim = 2;
+  if (dim > 0) return load_points(input, dim);
+  delaunay::PointCloud points =
+      delaunay::read_points(input.path, {.memory = input.limits.budget()});
+  dim = points.has_z ? 3 : 2;
+  return points;
+}
+
+void check_methods(const TriangulateRequest& request, int dim) {
+  for (const std::string& name : request.methods) {
+    delaunay::Options how;
+    how.dim = dim;
+    how.method = name;
+    resolve(how);  // names those of the dimension
+  }
+}
+
+int run(Session& session, TriangulateRequest request) {
+  if (request.list) {
+    list_methods();
+    return kDone;
+  }
+  if (request.input.path.empty()) throw UsageError("compare triangulate: POINTS is missing");
+  if (session.under_mpi)
+    throw UsageError("compare triangulate: threads are compared, there is nothing for mpirun");
+  check(session, request, request.input.path);
+  std::sort(request.threads.begin(), request.threads.end());
+  request.threads.erase(std::unique(request.threads.begin(), request.threads.end()),
+                        request.threads.end());
+  if (request.dim > 0) check_methods(request, request.dim);
+  int dim = request.dim;
+  const delaunay::PointCloud points = load(request.input, dim);
+  check_methods(request, dim);
+  ProgressBar bar(session, "compare");
+  const auto comparison = std::make_shared<const TriangulateComparison>(
+      compare_triangulate(request, points, dim, session.progress));
+  bar.end();
+  return tell(request, {triangulate_table(*comparison),
+                        triangulate_statistics(request, *comparison), comparison->unfinished,
+                        [&] { return triangulate_report(session, request, *comparison); }});
+}
+
+}  // namespace
+
+void add_compare_triangulate(CLI::App& compare, Session& session) {
+  CLI::App* command = compare.add_subcommand(
+      "triangulate", "Compare methods of triangulation: times, speed-up and synchronization");
+  const auto request = std::make_shared<TriangulateRequest>();
+  command
+      ->add_option("POINTS", request->input.path,
+                   "File of points (delray info --list names the formats); - for standard input")
+      ->group(group::kInput);
+  command
+      ->add_option(
+          "--dim", request->dim,
+          "Dimension: 2, over x and y, where z is kept as height, or 3 (default: 3 for points with "
+          "a z, but 2 for LAS files and elevation pictures, which are terrain)")
+      ->check(one_of({"2", "3"}));
+  command
+      ->add_option("--threads", request->threads,
+                   "Numbers of threads to compare, separated by commas (default: 1,2,4,8 as far as "
+                   "there are cores, and twice the cores if they are few)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->transform(count_between(1, 4096));
+  command
+      ->add_option("--method", request->methods,
+                   "Methods to compare, separated by commas (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--seed", request->seed, "Seed of all random numbers (default: 1)")
+      ->transform(any_count());
+  choose_from(*command, "--method", names_in(delaunay::methods()));
+  add_point_options(*command, request->input);
+  add_comparison_options(*command, *request, "Measure each method three times, slow ones once",
+                         "methods");
+  add_common_options(*command, session,
+                     "compare triangulate points.las -o report.html\n"
+                     "compare triangulate model.obj --dim 3 --threads 1,2,4,8 --quick --stats -");
+  command->callback([&session, request] {
+    session.run = [&session, request] { return run(session, *request); };
+  });
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,101 @@
+#include "apps/compare/triangulate/triangulate_figures.h"
+
+#include <fmt/format.h>
+
+namespace delray::apps {
+namespace {
+
+Json statistics_of(const TriangulateComparison& comparison, const ComparedTriangulation& row) {
+  const delaunay::Options& how = row.how;
+  const delaunay::Statistics& phases = row.statistics;
+  const delaunay::Synchronization& sync = phases.synchronization;
+  const double times_as_fast = speed_up(comparison.rows, row);
+  const auto ratio = [&](double value) { return times_as_fast > 0 ? Json(value) : Json(nullptr); };
+  return {{"method", how.method},
+          {"location", how.location},
+          {"split", how.split},
+          {"order", how.order},
+          {"deadlocks", how.deadlocks},
+          {"threads", how.threads},
+          {"points", row.points},
+          {"distinct", row.distinct},
+          {"simplices", row.simplices},
+          {"hull_facets", row.hull_facets},
+          {"hash", row.hash},
+          {"sync",
+           {{"lock_calls", sync.lock_calls},
+            {"already_locked", sync.already_locked},
+            {"free", sync.free},
+            {"waits", sync.waits},
+            {"deadlocks", sync.deadlocks},
+            {"rollbacks", sync.rollbacks},
+            {"burglaries", sync.burglaries},
+            {"repaired", sync.repaired},
+            {"rebuilds", sync.rebuilds},
+            {"fragments", row.fragments}}},
+          {"simplices_by_thread", row.simplices_by_thread},
+          {"dag_nodes", phases.dag_nodes},
+          {"dag_node_bytes", phases.dag_node_bytes},
+          {"seconds",
+           {{"triangulate", row.seconds.median},
+            {"order", phases.order},
+            {"locate", phases.locate},
+            {"subdivide", phases.subdivide},
+            {"legalize", phases.legalize},
+            {"extract", phases.extract}}},
+          {"spread", {{"triangulate", spread_json(row.seconds)}}},
+          {"speed_up", ratio(times_as_fast)},
+          {"efficiency", ratio(times_as_fast / how.threads)}};
+}
+
+std::string per_point(std::uint64_t count, const ComparedTriangulation& row) {
+  if (row.statistics.synchronization.lock_calls == 0) return "-";
+  return fmt::format("{:.4g}", static_cast<double>(count) / static_cast<double>(row.points));
+}
+std::string milliseconds(double seconds) { return fmt::format("{:.2f}", seconds * 1e3); }
+
+}  // namespace
+
+Json triangulate_statistics(const TriangulateRequest& request,
+                            const TriangulateComparison& comparison) {
+  Json rows = Json::array();
+  for (const ComparedTriangulation& row : comparison.rows)
+    rows.push_back(statistics_of(comparison, row));
+  return {{"schema", "delray.compare.triangulate/1"},
+          {"input",
+           {{"file", request.input.path},
+            {"points", comparison.points},
+            {"dim", comparison.dim},
+            {"duplicates", request.input.duplicates.empty() ? "first" : request.input.duplicates}}},
+          {"options",
+           {{"methods", request.methods},
+            {"threads", comparison.threads},
+            {"seed", request.seed},
+            {"quick", request.quick}}},
+          {"hardware_threads", comparison.cores},
+          {"unfinished", comparison.unfinished},
+          {"rows", std::move(rows)}};
+}
+
+TextTable triangulate_table(const TriangulateComparison& comparison) {
+  TextTable table = {{"points", "method", "threads", "ms", "least ms", "most ms", "speed-up",
+                      "efficiency", "fragments", "lock calls/point", "waits", "deadlocks",
+                      "history nodes"}};
+  for (const ComparedTriangulation& row : comparison.rows) {
+    const delaunay::Statistics& statistics = row.statistics;
+    const delaunay::Synchronization& sync = statistics.synchronization;
+    const double times_as_fast = speed_up(comparison.rows, row);
+    const bool ratios = times_as_fast > 0, locks = sync.lock_calls > 0;
+    table.push_back(
+        {std::to_string(row.points), name_of(row.how), std::to_string(row.how.threads),
+         milliseconds(row.seconds.median), milliseconds(row.seconds.least),
+         milliseconds(row.seconds.most), ratios ? fmt::format("{:.2f}", times_as_fast) : "-",
+         ratios ? fmt::format("{:.2f}", times_as_fast / row.how.threads) : "-",
+         std::to_string(row.fragments), per_point(sync.lock_calls, row),
+         locks ? std::to_string(sync.waits) : "-", locks ? std::to_string(sync.deadlocks) : "-",
+         statistics.dag_nodes > 0 ? std::to_string(statistics.dag_nodes) : "-"});
+  }
+  return table;
+}
+
+}  // namespace delray::apps

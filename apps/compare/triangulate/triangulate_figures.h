@@ -1,0 +1,15 @@
+// How a comparison of triangulation methods is told: as JSON and as text.
+#pragma once
+
+#include "apps/compare/triangulate/compare_triangulate.h"
+#include "apps/statistics.h"
+
+namespace delray::apps {
+
+// `delray.compare.triangulate/1`.
+Json triangulate_statistics(const TriangulateRequest& request,
+                            const TriangulateComparison& comparison);
+// A heading and a line for each row.
+TextTable triangulate_table(const TriangulateComparison& comparison);
+
+}  // namespace delray::apps

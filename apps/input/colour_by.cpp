@@ -1,0 +1,161 @@
+#include "apps/input/colour_by.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "apps/input/inliers.h"
+#include "apps/options/list.h"
+#include "image/srgb.h"
+#include "parallel/parallel_for.h"
+#include "scenes/colour_map.h"
+
+namespace delray::apps {
+namespace {
+
+constexpr std::size_t kGrain = 4096;  // some microseconds of colour look-ups
+
+// The values between which the colours run: all but a few outliers.
+std::pair<float, float> range_of(const std::vector<float>& values) {
+  return usual_range(values.size(), [&](std::size_t i) { return values[i]; });
+}
+
+std::vector<glm::vec4> mapped(const std::vector<float>& values, std::pair<float, float> range) {
+  const float width = std::max(range.second - range.first, 1e-30F);
+  const scenes::ColourMap& map = scenes::colour_maps().front();
+  std::vector<glm::vec4> colours(values.size());
+  parallel::parallel_for(0, values.size(), kGrain, [&](std::size_t i) {
+    const float t = std::clamp((values[i] - range.first) / width, 0.0F, 1.0F);
+    colours[i] = glm::vec4(map.colour(t), 1.0F);
+  });
+  return colours;
+}
+
+// Colours of numbers that mean nothing but themselves.
+glm::vec4 distinct_colour(std::uint64_t number) {
+  const std::uint64_t bits = (number + 1) * 0x9E3779B97F4A7C15U;
+  const auto channel = [bits](int shift) {
+    return 0.25F + 0.65F * static_cast<float>((bits >> shift) & 0xFF) / 255.0F;
+  };
+  return {channel(56), channel(40), channel(24), 1.0F};
+}
+
+// Materials that would tint the colours become white.
+void whiten(scenes::Scene& scene) {
+  for (scenes::Material& material : scene.materials) {
+    material.base_colour = glm::vec4(1.0F);
+    material.base_colour_texture = scenes::kNone;
+    material.metallic = 0.0F;
+    material.metallic_roughness_texture = scenes::kNone;
+    material.transmission = 0.0F;
+  }
+}
+
+void keep_materials(scenes::Scene&, const delaunay::PointCloud*) {}
+
+void by_height(scenes::Scene& scene, const delaunay::PointCloud*) {
+  whiten(scene);
+  std::vector<std::vector<float>> heights(scene.meshes.size());
+  std::vector<float> all;
+  for (const scenes::Instance& instance : scene.instances) {
+    const scenes::Mesh& mesh = scene.meshes[instance.mesh];
+    std::vector<float>& own = heights[instance.mesh];
+    if (!own.empty()) continue;  // a mesh placed several times is coloured by its first place
+    own.resize(mesh.positions.size());
+    const int up = scene.z_up ? 2 : 1;
+    parallel::parallel_for(0, own.size(), kGrain, [&](std::size_t i) {
+      own[i] = (instance.transform * glm::vec4(mesh.positions[i], 1.0F))[up];
+    });
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  const std::pair<float, float> range = range_of(all);
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!heights[m].empty()) scene.meshes[m].colours = mapped(heights[m], range);
+  }
+}
+
+// Every triangle gets vertices of its own.
+void by_simplex(scenes::Scene& scene, const delaunay::PointCloud*) {
+  whiten(scene);
+  std::uint64_t number = 0;
+  for (scenes::Mesh& mesh : scene.meshes) {
+    scenes::Mesh apart;
+    apart.name = mesh.name;
+    apart.material = mesh.material;
+    for (const glm::uvec3& corners : mesh.triangles) {
+      const auto first = static_cast<std::uint32_t>(apart.positions.size());
+      for (int k = 0; k < 3; ++k) {
+        apart.positions.push_back(mesh.positions[corners[k]]);
+        apart.colours.push_back(distinct_colour(number));
+        if (!mesh.normals.empty()) apart.normals.push_back(mesh.normals[corners[k]]);
+      }
+      apart.triangles.emplace_back(first, first + 1, first + 2);
+      ++number;
+    }
+    mesh = std::move(apart);
+  }
+}
+
+// The colours of the points that meshes[0] has as vertices: colour(values[i]) for vertex i.
+template <class Attribute, class F>
+void by_attribute(scenes::Scene& scene, const std::vector<Attribute>& values, const char* name,
+                  F&& colour) {
+  if (values.empty())
+    throw UsageError(fmt::format("--color-by: there are no points with {}", name));
+  whiten(scene);
+  std::vector<glm::vec4>& colours = scene.meshes[0].colours;
+  colours.resize(values.size());
+  parallel::parallel_for(0, values.size(), kGrain,
+                         [&](std::size_t i) { colours[i] = colour(values[i]); });
+}
+
+const delaunay::PointCloud& attributes(const delaunay::PointCloud* points) {
+  static const delaunay::PointCloud none;
+  return points ? *points : none;
+}
+
+void by_rgb(scenes::Scene& scene, const delaunay::PointCloud* points) {
+  by_attribute(scene, attributes(points).colours, "colours", [](const glm::u8vec4& c) {
+    return glm::vec4(image::decode_srgb(c.r), image::decode_srgb(c.g), image::decode_srgb(c.b),
+                     1.0F);
+  });
+}
+
+void by_intensity(scenes::Scene& scene, const delaunay::PointCloud* points) {
+  const std::vector<float>& values = attributes(points).intensity;
+  const auto [low, high] = range_of(values);
+  by_attribute(scene, values, "intensity", [low = low, high = high](float value) {
+    const float grey = std::clamp((value - low) / std::max(high - low, 1e-30F), 0.0F, 1.0F);
+    return glm::vec4(grey, grey, grey, 1.0F);
+  });
+}
+
+void by_classification(scenes::Scene& scene, const delaunay::PointCloud* points) {
+  by_attribute(scene, attributes(points).classification, "classification", [](std::uint8_t number) {
+    return glm::vec4(scenes::classification_colour(number), 1.0F);
+  });
+}
+
+constexpr std::array kTable = {
+    ColourBy{"material", "the materials of the scene", keep_materials},
+    ColourBy{"z", "height", by_height},
+    ColourBy{"simplex", "a colour for each triangle", by_simplex},
+    ColourBy{"rgb", "the colours of the points", by_rgb},
+    ColourBy{"intensity", "the intensity of the points", by_intensity},
+    ColourBy{"classification", "the class of the points", by_classification},
+};
+
+}  // namespace
+
+std::span<const ColourBy> colour_bys() { return kTable; }
+
+std::string_view default_colour_by(const delaunay::PointCloud& points) {
+  if (!points.colours.empty()) return "rgb";
+  return points.has_z ? "z" : "simplex";
+}
+
+void colour_by(scenes::Scene& scene, std::string_view name, const delaunay::PointCloud* points) {
+  find_entry(kTable, name, "--color-by").apply(scene, points);
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,48 @@
+#include "apps/input/relief.h"
+
+#include "delaunay/write_mesh.h"
+
+namespace delray::apps {
+namespace {
+
+std::vector<glm::uvec3> surface_of(const delaunay::Triangulation& triangulation) {
+  const std::vector<std::uint32_t> hull =
+      triangulation.dim == 3 ? hull_facets(triangulation) : std::vector<std::uint32_t>{};
+  const std::vector<std::uint32_t>& corners =
+      triangulation.dim == 3 ? hull : triangulation.vertices;
+  std::vector<glm::uvec3> triangles(corners.size() / 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    triangles[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+  }
+  return triangles;
+}
+
+}  // namespace
+
+scenes::Scene relief(const delaunay::PointCloud& points,
+                     const delaunay::Triangulation& triangulation, const Inliers& inliers,
+                     double exaggeration) {
+  scenes::Scene scene;
+  scene.z_up = true;
+  scene.origin = inliers.box.centre();
+
+  scenes::Mesh mesh;
+  mesh.name = "points";
+  mesh.positions.reserve(points.size());
+  const glm::dvec3 scale(1, 1, exaggeration);
+  for (const glm::dvec3& p : points.positions) {
+    mesh.positions.emplace_back((p - scene.origin) * scale);
+  }
+  if (inliers.outside > 0) {
+    scene.framed.include(glm::vec3((inliers.box.low - scene.origin) * scale));
+    scene.framed.include(glm::vec3((inliers.box.high - scene.origin) * scale));
+  }
+  mesh.triangles = surface_of(triangulation);
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({});
+  scene.materials.emplace_back();
+  scene.materials.back().roughness = 0.9F;
+  return scene;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,21 @@
+// Points and their triangulation as a scene.
+#pragma once
+
+#include <string>
+
+#include "apps/input/inliers.h"
+#include "delaunay/points.h"
+#include "delaunay/triangulation.h"
+#include "scenes/scene.h"
+
+namespace delray::apps {
+
+// One mesh of the triangles (2D) or of the hull (3D), of none for an empty triangulation; z is up.
+// Positions are relative to Scene::origin, the middle of the inliers, so that 32-bit floats do for
+// coordinates far away. Heights are multiplied by `exaggeration` for the picture. Where there are
+// outliers, cameras frame the inliers.
+scenes::Scene relief(const delaunay::PointCloud& points,
+                     const delaunay::Triangulation& triangulation, const Inliers& inliers,
+                     double exaggeration);
+
+}  // namespace delray::apps

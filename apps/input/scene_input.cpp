@@ -1,0 +1,235 @@
+#include "apps/input/scene_input.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/input/colour_by.h"
+#include "apps/input/dots.h"
+#include "apps/input/geographic.h"
+#include "apps/input/point_shape.h"
+#include "apps/input/relief.h"
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/numbers.h"
+#include "delaunay/read_mesh.h"
+#include "delaunay/triangulate.h"
+#include "files/error.h"
+#include "files/format.h"
+#include "files/read_file.h"
+#include "parallel/arena.h"
+#include "scenes/generate.h"
+#include "scenes/load.h"
+
+namespace delray::apps {
+namespace {
+
+using files::Format;
+
+// PLY with 64-bit coordinates is what triangulations are written as; scene loaders would round it.
+bool has_double_coordinates(const std::string& path) {
+  constexpr std::size_t kHeader = 4096;
+  const std::string start = files::read_start(path, kHeader);
+  return start.find("property double x") != std::string::npos ||
+         start.find("property float64 x") != std::string::npos;
+}
+
+// Throws FileError for points that 32-bit floats cannot hold around their middle.
+void check_reach(const SceneInput& input, const delaunay::PointCloud& points,
+                 const glm::dvec3& middle) {
+  constexpr double kFarthest = 1e18;  // as of scenes
+  for (const glm::dvec3& p : points.positions) {
+    const glm::dvec3 offset = glm::abs(p - middle) * glm::dvec3(1, 1, input.exaggeration);
+    if (std::max({offset.x, offset.y, offset.z}) <= kFarthest) continue;
+    throw files::FileError(
+        files::Cause::input, input.file.path, "",
+        "a point is more than 1e18 from the others: there is no picture of that");
+  }
+}
+
+std::string colouring(const SceneInput& input, const delaunay::PointCloud& points) {
+  return input.colour_by.empty() ? std::string(default_colour_by(points)) : input.colour_by;
+}
+
+// The points as vertices of the triangulation's triangles, coloured.
+scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& points,
+                       const delaunay::Triangulation& triangulation) {
+  const Inliers inliers = find_inliers(points);
+  check_reach(input, points, inliers.box.centre());
+  if (inliers.outside > 0) {
+    spdlog::warn("{}: {} of {} points lie far off all others: the view is of the others",
+                 input.file.path, inliers.outside, points.size());
+  }
+  scenes::Scene scene = relief(points, triangulation, inliers, input.exaggeration);
+  colour_by(scene, colouring(input, points), &points);
+  return scene;
+}
+
+scenes::Scene surface(const SceneInput& input, const delaunay::PointCloud& points,
+                      const delaunay::Triangulation& triangulation) {
+  if (triangulation.size() == 0) {
+    throw files::FileError(files::Cause::input, input.file.path, "",
+                           "all points are equal or on one line: there is no surface to show");
+  }
+  return coloured(input, points, triangulation);
+}
+
+scenes::Scene dots(const SceneInput& input, const delaunay::PointCloud& points) {
+  scenes::Scene scene = coloured(input, points, {});
+  geometry::Box3 box = scene.framed;
+  scenes::Mesh& mesh = scene.meshes[0];
+  if (box.empty()) {
+    for (const glm::vec3& p : mesh.positions) box.include(p);
+  }
+  input.file.limits.budget().require(std::min(points.size(), kMostDots) * kBytesPerDot,
+                                     input.file.path);
+  const std::size_t step = draw_as_dots(mesh, dot_diameter(points.size(), box.size()));
+  if (step > 1) {
+    spdlog::warn("{}: {} points are more than {} dots: drew one of {}", input.file.path,
+                 points.size(), kMostDots, step);
+  }
+  return scene;
+}
+
+// What --draw says, or what suits the points.
+bool drawn_as_dots(const SceneInput& input, const delaunay::PointCloud& points, bool picture) {
+  if (input.draw == "surface") return false;
+  const bool for_surfaces = !input.file.duplicates.empty() || input.colour_by == "simplex";
+  if (input.draw == "points") {
+    if (for_surfaces)
+      throw UsageError("--duplicates and --color-by simplex are for surfaces, not --draw points");
+    return true;
+  }
+  if (for_surfaces || picture || !are_in_space(points)) return false;
+  spdlog::info(
+      "{}: the points lie in space, not over a plane: drawn as points (--draw surface "
+      "makes a surface of them)",
+      input.file.path);
+  return true;
+}
+
+scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress) {
+  const bool picture = is_picture(input.file);
+  delaunay::PointCloud points = read_cloud(input.file);
+  to_metres(points, input.file.path);
+  if (drawn_as_dots(input, points, picture)) return dots(input, points);
+  merge_places(input.file, points);
+  delaunay::Options how;
+  how.threads = parallel::arena_threads();
+  how.progress = progress;
+  require_memory_to_triangulate(input.file, points.size(), how.dim);
+  return surface(input, points, triangulate(delaunay::view(points.positions), how));
+}
+
+scenes::Scene from_mesh(const SceneInput& input) {
+  delaunay::PointMesh mesh = delaunay::read_mesh(input.file.path, input.file.limits.budget());
+  for (const std::string& warning : mesh.points.warnings) {
+    spdlog::warn("{}: {}", input.file.path, warning);
+  }
+  to_metres(mesh.points, input.file.path);
+  return surface(input, mesh.points, mesh.triangulation);
+}
+
+scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
+  scenes::Scene scene;
+  if (scenes::is_generated(input.file.path)) {
+    try {
+      input.file.limits.budget().require(scenes::generated_bytes(input.file.path), input.file.path);
+      scene = scenes::generate(input.file.path);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(error.what());
+    }
+  } else {
+    std::vector<std::string> warnings;
+    const InputLimits& limits = input.file.limits;
+    scene = scenes::load(
+        input.file.path, warnings,
+        {.memory = limits.budget(), .outside = limits.outside(), .progress = progress});
+    for (const std::string& warning : warnings) spdlog::warn(warning);
+  }
+  if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
+  return scene;
+}
+
+}  // namespace
+
+InputKind input_kind(const std::string& path, const files::MemoryBudget& memory) {
+  if (scenes::is_generated(path)) return InputKind::scene;
+  const files::FileKind kind = files::identify(path, memory);
+  switch (kind.format) {
+    case Format::vtu:
+      return InputKind::mesh;
+    case Format::node:
+      return path.ends_with(".ele") ? InputKind::mesh : InputKind::points;
+    case Format::ply:
+      if (!kind.has_faces) return InputKind::points;
+      return has_double_coordinates(path) ? InputKind::mesh : InputKind::scene;
+    case Format::obj:
+    case Format::off:
+      return kind.has_faces ? InputKind::scene : InputKind::points;
+    case Format::stl:
+    case Format::gltf:
+    case Format::glb:
+    case Format::unknown:  // the scene loader says what it can read
+      return InputKind::scene;
+    case Format::image:
+      return InputKind::picture;
+    default:
+      return InputKind::points;
+  }
+}
+
+void add_scene_options(CLI::App& command, SceneInput& input) {
+  command
+      .add_option("SCENE", input.file.path,
+                  "Scene, mesh or points (delray info --list names the formats), elevation "
+                  "picture, or generated scene gen:KIND[:TRIANGLES[:SEED]], such as gen:city:1e6")
+      ->group(group::kInput);
+  command
+      .add_option(
+          "--color-by", input.colour_by,
+          "What colours show: material, z (height) or simplex (a colour for each triangle); of "
+          "points also rgb, intensity or classification (default: what the file has)")
+      ->group(group::kInput);
+  command
+      .add_option("--exaggeration", input.exaggeration,
+                  "Factor that stretches the heights of points (default: 1)")
+      ->group(group::kInput)
+      ->check(positive_number());
+  command
+      .add_option("--draw", input.draw,
+                  "Draw points as a surface of heights over x and y, or as single points (default: "
+                  "points for scans, where many lie above each other; else surface)")
+      ->group(group::kInput)
+      ->check(one_of({"surface", "points"}));
+  choose_from(command, "--color-by", names_in(colour_bys()));
+  add_point_options(command, input.file);
+  add_outside_option(command, input.file.limits);
+}
+
+scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
+  const InputKind kind = input_kind(input.file.path, input.file.limits.budget());
+  if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
+    refuse_outside(input.file.path, input.file.limits);
+  }
+  if (kind == InputKind::points || kind == InputKind::picture) {
+    return from_points(input, progress);
+  }
+  if (input.file.given()) {
+    throw UsageError(
+        fmt::format("--terrain-rgb, --cell-size and --duplicates are for points; {} is a scene",
+                    input.file.path));
+  }
+  if (!input.draw.empty()) {
+    throw UsageError(fmt::format("--draw is for points; {} has triangles", input.file.path));
+  }
+  if (kind == InputKind::mesh) return from_mesh(input);
+  if (input.exaggeration != 1) {
+    throw UsageError(fmt::format("--exaggeration is for points; {} is a scene", input.file.path));
+  }
+  return loaded(input, progress);
+}
+
+}  // namespace delray::apps

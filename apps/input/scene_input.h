@@ -1,0 +1,36 @@
+// A scene from whatever the user names: a scene file, a generated scene, points or a mesh of them.
+#pragma once
+
+#include <string>
+
+#include "apps/input/point_input.h"
+#include "apps/session.h"
+#include "scenes/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace delray::apps {
+
+struct SceneInput {
+  PointInput file;          // a scene or mesh as well as points
+  std::string colour_by;    // empty: what suits the input
+  std::string draw;         // points as "surface" or "points"; empty: what suits them
+  double exaggeration = 1;  // of the heights of points
+};
+
+// What a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit coordinates,
+// a VTU or an .ele is a mesh of points.
+enum class InputKind { scene, mesh, points, picture };
+InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
+
+// Adds SCENE, --color-by, --exaggeration, --draw, --allow-outside and the options of points.
+void add_scene_options(CLI::App& command, SceneInput& input);
+
+// Loads or generates the scene; points are triangulated in the plane, with their z as height, or
+// drawn as dots where they lie in space.
+// Warnings go to the log. Parallel in the caller's arena. Throws FileError and UsageError.
+scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress);
+
+}  // namespace delray::apps

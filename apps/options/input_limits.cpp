@@ -1,0 +1,50 @@
+#include "apps/options/input_limits.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/launch.h"
+#include "apps/options/help.h"
+#include "apps/session.h"
+
+namespace delray::apps {
+files::MemoryBudget InputLimits::budget() const {
+  if (memory > 0) return files::MemoryBudget(memory);
+  return files::MemoryBudget(files::MemoryBudget().limit() /
+                             static_cast<std::uint64_t>(processes_here()));
+}
+
+files::Outside InputLimits::outside() const {
+  return allow_outside ? files::Outside::allowed : files::Outside::refused;
+}
+
+void add_memory_option(CLI::App& command, InputLimits& limits) {
+  command
+      .add_option_function<std::string>(
+          "--memory",
+          [&limits](const std::string& text) {
+            limits.memory = files::parse_bytes(text);
+            if (limits.memory > 0) return;
+            throw CLI::ValidationError(
+                "--memory", fmt::format("'{}' is not a size such as 500MB or 2GiB", text));
+          },
+          "Maximum memory of a process, such as 500MB or 2GiB; inputs that need more are refused "
+          "(default: half of the machine's memory, divided among its processes)")
+      ->group(group::kInput)
+      ->type_name("SIZE");
+}
+
+void add_outside_option(CLI::App& command, InputLimits& limits) {
+  command
+      .add_flag("--allow-outside", limits.allow_outside,
+                "Let a scene use textures, buffers and materials outside of its own folder")
+      ->group(group::kInput);
+}
+
+void refuse_outside(const std::string& path, const InputLimits& limits) {
+  if (!limits.allow_outside) return;
+  throw UsageError(fmt::format("--allow-outside is for scenes; {} names no other files", path));
+}
+
+}  // namespace delray::apps

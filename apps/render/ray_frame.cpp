@@ -1,0 +1,172 @@
+#include "apps/render/ray_frame.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <optional>
+
+#include "apps/render/shown_channel.h"
+#include "comm/agree_on_failure.h"
+#include "raytrace/checkpoint.h"
+#include "raytrace/denoise.h"
+
+namespace delray::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Says so once every so many seconds, never if that is 0.
+class Every {
+ public:
+  explicit Every(double seconds) : seconds_(seconds) {}
+  bool due() {
+    const auto now = Clock::now();
+    if (seconds_ < 0.0 || std::chrono::duration<double>(now - last_).count() < seconds_) {
+      return false;
+    }
+    last_ = now;
+    return true;
+  }
+
+ private:
+  double seconds_;
+  Clock::time_point last_ = Clock::now();
+};
+
+// All that samples depend on but the scene, exactly.
+std::string settings_of(const RenderRequest& request, const scenes::Camera& camera,
+                        std::uint64_t triangles) {
+  const Practice& p = request.practice;
+  return fmt::format(
+      "{} triangles {} {}x{} spp {} depth {} diffuse {} reach {:a} shadows {} build {} isa {} seed "
+      "{} noise "
+      "{:a} scattered {} window {} {} {} {} "
+      "eye {:a} {:a} "
+      "{:a} at {:a} {:a} {:a} up {:a} {:a} {:a} fov {:a} near {:a} lens {:a} {:a} height {:a}",
+      request.integrator, triangles, request.width, request.height, request.samples, request.depth,
+      request.diffuse_depth, request.reach, !request.no_shadows, request.build, request.isa, p.seed,
+      p.noise, p.noise > 0.0 || p.seconds > 0.0, p.window.x0, p.window.y0, p.window.x1, p.window.y1,
+      camera.eye.x, camera.eye.y, camera.eye.z, camera.at.x, camera.at.y, camera.at.z, camera.up.x,
+      camera.up.y, camera.up.z, camera.vertical_fov, camera.near, camera.aperture, camera.focus,
+      camera.height);
+}
+
+// The same whether ranks have the whole scene or parts of it.
+std::string mark_of(const RenderRequest& request, const scenes::Camera& camera,
+                    const Prepared& prepared) {
+  const std::string settings = settings_of(request, camera, prepared.triangles);
+  return raytrace::fingerprint({}, settings + " scene " + prepared.fingerprint);
+}
+
+// Empty where samples are too few to tell.
+std::vector<float> variance_of(const raytrace::Film& film, const geometry::Rect& window) {
+  for (const std::uint32_t samples : film.samples()) {
+    if (raytrace::chunks(static_cast<int>(samples)) < 2) return {};
+  }
+  const std::vector<float> all = raytrace::variance(film);
+  std::vector<float> result;
+  for (int y = window.y0; y < window.y1; ++y) {
+    const auto row = all.begin() + static_cast<std::ptrdiff_t>(film.pixel(window.x0, y));
+    result.insert(result.end(), row, row + window.width());
+  }
+  return result;
+}
+
+// The part of the film's pixels that are in cells noisier than the threshold.
+double noisy_part(const raytrace::Film& film, float threshold) {
+  const std::vector<float> noise = raytrace::noise(film);
+  std::int64_t noisy = 0;
+  for (std::size_t c = 0; c < noise.size(); ++c) {
+    if (noise[c] > threshold) noisy += film.cell(c).area();
+  }
+  return static_cast<double>(noisy) / static_cast<double>(film.window().area());
+}
+
+}  // namespace
+
+RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& renderer,
+                     const Prepared& prepared, const RenderRequest& request,
+                     const scenes::Camera& camera, const raytrace::RenderOptions& frame,
+                     const Preview& preview) {
+  const Practice& practice = request.practice;
+  const bool root = communicator.rank() == 0;
+  raytrace::ProgressiveOptions options;
+  options.frame = frame;
+  options.window = practice.window;
+  options.noise = static_cast<float>(practice.noise);
+  if (practice.seconds > 0.0) options.seconds = practice.seconds;
+  options.film = practice.channels || practice.denoise || practice.show != "colour";
+  options.features = practice.channels || practice.denoise || shows_features(practice.show);
+
+  std::string mark;
+  std::optional<raytrace::Film> saved;
+  if (!practice.checkpoint.empty()) {
+    comm::all_or_none(communicator, comm::Phase::load, [&] {
+      if (!root) return;
+      mark = mark_of(request, camera, prepared);
+      if (!practice.resume) return;
+      const geometry::Rect all{0, 0, frame.width, frame.height};
+      const geometry::Rect window = practice.window.empty() ? all : practice.window;
+      saved = raytrace::load_checkpoint(practice.checkpoint,
+                                        {mark, raytrace::grown(window, all), frame.samples},
+                                        request.scene.file.limits.budget());
+    });
+  }
+  if (saved) options.resume = &*saved;
+  const auto save = [&](const raytrace::Film& film) {
+    raytrace::save_checkpoint(practice.checkpoint, mark, film);
+  };
+  Every preview_due(practice.preview_every > 0.0 && preview ? practice.preview_every : -1.0);
+  Every checkpoint_due(practice.checkpoint.empty() ? -1.0 : practice.checkpoint_every);
+  if (!practice.checkpoint.empty() || practice.preview_every > 0.0) {
+    options.after_pass = [&](const raytrace::Film& film) {
+      if (checkpoint_due.due()) save(film);
+      if (preview_due.due()) {
+        preview(raytrace::cut(raytrace::mean(film), film.window(), practice.window));
+      }
+    };
+  }
+  if (!practice.checkpoint.empty()) {
+    options.on_interruption = [&](const raytrace::Film& film) {
+      save(film);
+      spdlog::info("{}: {} samples a pixel are kept; go on with --resume", practice.checkpoint,
+                   film.total_samples() / std::max<std::uint64_t>(1, film.pixels().size()));
+    };
+  }
+
+  raytrace::ProgressiveResult result =
+      raytrace::render_progressively(communicator, renderer, camera, options);
+  RayFrame done;
+  done.statistics = std::move(result.statistics);
+  if (!root) return done;
+  if (!practice.checkpoint.empty()) save(result.film);
+  done.extras.passes = result.passes;
+  done.extras.out_of_time = result.out_of_time;
+  done.extras.samples = result.film.pixels().empty()
+                            ? static_cast<double>(frame.samples)
+                            : static_cast<double>(result.film.total_samples()) /
+                                  static_cast<double>(result.film.pixels().size());
+  if (options.noise > 0.0F) {
+    done.extras.noisy = noisy_part(result.film, options.noise);
+    if (done.extras.noisy > 0.0) {
+      spdlog::info("{:.3g} % of the picture is noisier than --noise {}: {} ended sampling",
+                   100.0 * done.extras.noisy, practice.noise,
+                   result.out_of_time
+                       ? "--time"
+                       : fmt::format("a maximum of {} samples per pixel (--spp)", frame.samples));
+    }
+  }
+  if (practice.channels) done.extras.channels = channels_of(result, practice.window);
+  done.picture = std::move(result.image);
+  if (practice.denoise) {
+    raytrace::denoise(done.picture, result.features, variance_of(result.film, practice.window));
+  }
+  if (practice.show != "colour") {
+    const double most = show(practice.show, result, practice.window, done.picture);
+    if (most > 0.0) spdlog::info("{}: 99 % are below {:.6g}", practice.show, most);
+  }
+  return done;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,28 @@
+// One frame by rays, pass by pass, with all that the options ask for in practice.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "apps/render/render_frames.h"
+#include "image/io.h"
+
+namespace delray::apps {
+
+// What is shown of a picture that is not yet done, on rank 0.
+using Preview = std::function<void(Picture&& picture)>;
+
+// On rank 0; elsewhere all but the statistics is empty.
+struct RayFrame {
+  image::ImageF picture;  // of the window
+  raytrace::Statistics statistics;
+  Extras extras;
+};
+
+// Collective. `frame` is what renderings with rays have in common.
+RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& renderer,
+                     const Prepared& prepared, const RenderRequest& request,
+                     const scenes::Camera& camera, const raytrace::RenderOptions& frame,
+                     const Preview& preview);
+
+}  // namespace delray::apps

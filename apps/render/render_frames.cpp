@@ -1,0 +1,407 @@
+#include "apps/render/render_frames.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "apps/render/animation.h"
+#include "apps/render/ray_frame.h"
+#include "apps/render/scene_facts.h"
+#include "apps/statistics.h"
+#include "comm/agree_on_failure.h"
+#include "comm/collectives.h"
+#include "parallel/arena.h"
+#include "raytrace/checkpoint.h"
+#include "scenes/framing.h"
+#include "scenes/generate.h"
+#include "shading/take_shader.h"
+
+namespace delray::apps {
+namespace {
+
+bool wants_floats(const RenderRequest& request) {
+  return image::picture_suffix(request.output) == ".exr";
+}
+
+// Whether the scene itself says what is to be seen around it.
+bool has_sky(const scenes::Environment& environment) {
+  return environment.texture != scenes::kNone ||
+         environment.zenith + environment.horizon + environment.ground != glm::vec3(0.0F);
+}
+
+void set_lens(const Practice& practice, scenes::Camera& camera) {
+  camera.aperture = static_cast<float>(practice.aperture);
+  camera.focus = static_cast<float>(practice.focus);
+}
+
+raster::RenderOptions raster_options(const RenderRequest& request) {
+  raster::RenderOptions options;
+  options.width = request.width;
+  options.height = request.height;
+  options.float_pixels = wants_floats(request);
+  options.lighting =
+      request.lighting == "gouraud" ? raster::Lighting::gouraud : raster::Lighting::phong;
+  options.strategy = request.strategy;
+  options.codec = request.codec;
+  options.shade = request.shade == "immediate"    ? raster::Shade::immediate
+                  : request.shade == "composited" ? raster::Shade::composited
+                                                  : raster::Shade::deferred;
+  options.blend = request.blend == "by-cell" ? raster::Blend::by_cell : raster::Blend::by_owner;
+  options.supersampling = request.supersampling;
+  options.costs =
+      request.costs == "measured" ? raster::CostSource::measured : raster::CostSource::model;
+  options.regions_per_rank = request.regions_per_rank;
+  options.keep_factor = request.keep_factor;
+  options.schedule = request.schedule;
+  options.master_works = request.master == "works";
+  options.block = request.block;
+  options.groups = request.groups == "two" ? raster::Groups::two : raster::Groups::one;
+  options.geometry_ranks = request.geometry_ranks;
+  options.redistribution = request.redistribution == "at-end" ? raster::Redistribution::at_end
+                                                              : raster::Redistribution::immediate;
+  options.report_partition = !request.statistics.empty();
+  options.travel = request.travel == "numbers" ? raster::Travel::numbers : raster::Travel::geometry;
+  options.scheme = request.scheme;
+  options.partition = request.partition;
+  return options;
+}
+
+raytrace::BuildOptions build_options(const RenderRequest& request) {
+  using Quality = raytrace::BuildOptions::Quality;
+  raytrace::BuildOptions options;
+  options.quality = request.build == "low"    ? Quality::low
+                    : request.build == "high" ? Quality::high
+                                              : Quality::medium;
+  if (request.isa != "best") options.isa = request.isa;
+  return options;
+}
+
+raytrace::RenderOptions raytrace_options(const RenderRequest& request,
+                                         parallel::Progress* progress) {
+  raytrace::RenderOptions options;
+  options.width = request.width;
+  options.height = request.height;
+  options.samples = request.samples;
+  options.trace.depth = request.depth;
+  options.trace.diffuse_depth = request.diffuse_depth;
+  options.trace.shadows = !request.no_shadows;
+  if (request.reach > 0) options.trace.reach = static_cast<float>(request.reach);
+  options.trace.background = raytrace::TraceOptions::Background::transparent;
+  options.trace.seed = request.practice.seed;
+  options.integrator = request.integrator;
+  options.schedule = request.schedule;
+  options.master_works = request.master == "works";
+  options.tile = request.block;
+  options.partition = request.partition;
+  options.costs =
+      request.costs == "measured" ? raytrace::CostSource::seconds : raytrace::CostSource::rays;
+  options.regions_per_rank = request.regions_per_rank;
+  options.keep_factor = request.keep_factor;
+  options.progress = progress;
+  return options;
+}
+
+// Whether the generator can make parts of the scene, and nothing changes what it makes.
+bool has_parts(const RenderRequest& request) {
+  if (!request.scene.colour_by.empty()) return false;
+  try {
+    return scenes::has_parts(request.scene.file.path);
+  } catch (const std::invalid_argument&) {
+    return false;  // loading says what is wrong
+  }
+}
+
+// Whether no rank need ever have the whole scene.
+bool comes_in_parts(const RenderRequest& request) {
+  return request.kind == Engine::raytrace && request.data != "replicated" && has_parts(request);
+}
+
+raytrace::ShareOptions share_options(const RenderRequest& request) {
+  constexpr double kMebibyte = 1 << 20;
+  raytrace::ShareOptions options;
+  options.build = build_options(request);
+  options.deal = request.deal == "random" ? raytrace::ShareOptions::Deal::random
+                                          : raytrace::ShareOptions::Deal::neighbours;
+  options.cache_bytes = static_cast<std::uint64_t>(request.cache_mebibytes * kMebibyte);
+  return options;
+}
+
+bool has_tracer(const RenderRequest& request) {
+  return request.kind == Engine::raytrace && request.data == "replicated";
+}
+
+// Measured with one rank, peak and file included.
+std::uint64_t bytes_per_pixel(const RenderRequest& request) {
+  const bool floats = wants_floats(request);
+  if (request.kind == Engine::raster) return floats ? 48 : 12;
+  if (request.practice.channels || request.practice.denoise) return 140;
+  return floats ? 48 : 33;
+}
+
+// Pictures on their way, and of sort-last the layers of all ranks in the process.
+void require_memory_for_pictures(const RenderRequest& request) {
+  const std::uint64_t layer = wants_floats(request) ? sizeof(image::RgbaF) + sizeof(float)
+                                                    : sizeof(image::Rgba8) + sizeof(float);
+  const bool layers = request.kind == Engine::raster && request.strategy == "sort-last";
+  const auto others =
+      static_cast<std::uint64_t>(layers ? std::max(0, request.launch.ranks - 1) : 0);
+  const geometry::Rect& window = request.practice.window;
+  const auto pixels = static_cast<std::uint64_t>(
+      window.empty() ? std::int64_t{request.width} * request.height : window.area());
+  request.scene.file.limits.budget().require(
+      pixels * (bytes_per_pixel(request) + others * layer), request.output,
+      fmt::format("{} x {} pixels", request.width, request.height));
+}
+
+// What Embree builds for a triangle that is stored: 65 to 87 bytes were measured.
+void require_memory_for_embree(const RenderRequest& request, const scenes::Scene& scene) {
+  constexpr std::uint64_t kBytesPerTriangle = 65, kBytesPerTriangleQuick = 80;
+  std::uint64_t triangles = 0;
+  for (const scenes::Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
+  request.scene.file.limits.budget().require(
+      triangles * (request.build == "low" ? kBytesPerTriangleQuick : kBytesPerTriangle),
+      request.scene.file.path, fmt::format("Embree's structures of {} triangles", triangles));
+}
+
+// Smaller levels are a third of a texture; with distributed data ranks have copies of the textures.
+void require_memory_for_textures(const RenderRequest& request, const scenes::Scene& scene) {
+  std::uint64_t texels = 0;
+  for (const scenes::Texture& texture : scene.textures) texels += texture.texels.size();
+  const bool copied = request.kind == Engine::raytrace && !has_tracer(request);
+  const std::uint64_t levels = texels / 3, copies = copied ? texels : 0;
+  request.scene.file.limits.budget().require((levels + copies) * sizeof(image::Rgba8),
+                                             request.scene.file.path, "textures");
+}
+
+// Loads the scene, or of one that comes in parts what is no geometry.
+std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
+                               parallel::Progress* progress) {
+  auto prepared = std::make_shared<Prepared>();
+  prepared->in_parts = in_parts;
+  prepared->told_by_name = has_parts(request);
+  if (in_parts) {
+    constexpr int kParts = 1 << 30;  // of which the first is nothing but camera and lights
+    scenes::ScenePart part = scenes::generate_part(request.scene.file.path, 0, kParts);
+    prepared->triangles = part.triangles;
+    prepared->vertices = part.vertices;
+    prepared->scene = std::move(part.scene);
+  } else {
+    prepared->scene = load_scene(request.scene, progress);
+    prepared->triangles = scenes::triangle_count(prepared->scene);
+    prepared->vertices = scenes::vertex_count(prepared->scene);
+  }
+  return prepared;
+}
+
+void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& farthest,
+                    Prepared& prepared) {
+  constexpr int kTurns = 24;  // between two of them a point comes 0.9 % of its arm closer
+  const scenes::Scene& scene = prepared.scene;
+  const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
+  prepared.camera = choose_camera(request.camera, scene, farthest, aspect);
+  glm::dvec3 pivot = prepared.camera.at;
+  if (request.turntable > 0 && shows_all(request.camera, scene)) {
+    const auto around =
+        scenes::turned(farthest, prepared.camera.up, std::min(request.turntable, kTurns));
+    prepared.camera = choose_camera(request.camera, scene, around, aspect);
+    const geometry::Box3 box = scenes::bounds(farthest);
+    pivot = (glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5;
+  }
+  prepared.cameras = animation_cameras(request, scene, prepared.camera, pivot);
+  for (scenes::Camera& camera : prepared.cameras) set_lens(request.practice, camera);
+  set_lens(request.practice, prepared.camera);
+  if (!prepared.cameras.empty()) prepared.camera = prepared.cameras.front();
+}
+
+// Says so where nothing but what glows lights a scene, which rasterizers do not see.
+void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
+  if (request.kind != Engine::raster || !scene.lights.empty() || has_sky(scene.environment) ||
+      !scenes::glow_lights(scene)) {
+    return;
+  }
+  spdlog::warn(
+      "{}: lit by nothing but surfaces that glow, which light others only with --engine raytrace; "
+      "--light default adds a key light and a sky",
+      request.scene.file.path);
+}
+
+// Of what a checkpoint is for. Where the name tells what is in the scene, ranks may have parts of
+// it.
+std::string fingerprint_of(const RenderRequest& request, const Prepared& prepared) {
+  if (!prepared.told_by_name) return raytrace::fingerprint(prepared.scene, "");
+  scenes::Scene lights;  // which --light may have changed
+  lights.lights = prepared.scene.lights;
+  lights.environment = prepared.scene.environment;
+  lights.textures = prepared.scene.textures;
+  return raytrace::fingerprint(lights, request.scene.file.path);
+}
+
+// Completes the scene and builds what the engine needs. `watch` has run since loading began.
+void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
+  load_light(request.light, request.scene.file.limits.budget(), prepared.scene);
+  prepared.background = request.behind;
+  if (prepared.background.kind == Background::Kind::automatic) {
+    prepared.background.kind = has_sky(prepared.scene.environment) ? Background::Kind::environment
+                                                                   : Background::Kind::studio;
+  }
+  complete_surfaces(prepared.scene);
+  complete_light(request.light, prepared.camera, prepared.scene);
+  warn_of_glow(request, prepared.scene);
+  prepared.load_seconds = watch.lap();
+  require_memory_for_textures(request, prepared.scene);
+  require_memory_for_pictures(request);
+  prepared.texture_hash = texture_hash(prepared.scene);
+  if (!request.practice.checkpoint.empty())
+    prepared.fingerprint = fingerprint_of(request, prepared);
+  if (request.kind == Engine::raster) {
+    prepared.shader = std::make_shared<const shading::Shader>(shading::take_shader(prepared.scene));
+  } else if (request.data != "replicated") {
+    prepared.shader = std::make_shared<const shading::Shader>(shading::make_shader(prepared.scene));
+  } else {
+    require_memory_for_embree(request, prepared.scene);
+    prepared.tracer = std::make_unique<const raytrace::Tracer>(raytrace::make_tracer(
+        prepared.scene, shading::take_shader(prepared.scene), build_options(request)));
+  }
+  prepared.build_seconds = watch.lap();
+}
+
+// The farthest points of all ranks' scenes; collective.
+scenes::FarthestPoints of_all_ranks(comm::Communicator& communicator,
+                                    const scenes::FarthestPoints& mine) {
+  return [&communicator, &mine](std::span<const glm::dvec3> directions) {
+    std::vector<glm::dvec3> farthest;
+    const std::vector<glm::dvec3> own = mine(directions);
+    for (const comm::Buffer& points :
+         comm::all_gather(communicator, comm::Buffer::of(std::span<const glm::dvec3>(own)))) {
+      const std::span<const glm::dvec3> candidates = points.as<glm::dvec3>();
+      scenes::keep_farthest(directions, {candidates.begin(), candidates.end()}, farthest);
+    }
+    return farthest;
+  };
+}
+
+}  // namespace
+
+std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
+                                        parallel::Progress* progress) {
+  Stopwatch watch;
+  const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
+  const std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
+  choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared);
+  build(request, watch, *prepared);
+  return prepared;
+}
+
+std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
+                                        const RenderRequest& request,
+                                        parallel::Progress* progress) {
+  const auto on_all = [&](auto&& step) {
+    comm::all_or_none(communicator, comm::Phase::load, step);
+  };
+  Stopwatch watch;
+  std::shared_ptr<Prepared> prepared;
+  scenes::ScenePart part;
+  on_all([&] {
+    prepared = load(request, comes_in_parts(request), progress);
+    if (!prepared->in_parts || request.camera.view.empty()) return;
+    part = scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
+  });
+  if (prepared->in_parts && !request.camera.view.empty()) {
+    const scenes::FarthestPoints mine = scenes::farthest_points(part.scene);
+    choose_cameras(request, of_all_ranks(communicator, mine), *prepared);
+    part = {};
+  } else {
+    on_all([&] { choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared); });
+  }
+  on_all([&] { build(request, watch, *prepared); });
+  return prepared;
+}
+
+FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
+                             const RenderRequest& request, parallel::Progress* progress)
+    : prepared_(prepared), request_(request), progress_(progress) {
+  if (request.kind == Engine::raster) {
+    raster_.emplace(prepared.scene, prepared.shader);
+    return;
+  }
+  if (prepared.tracer) {
+    raytrace_.emplace(*prepared.tracer);
+    return;
+  }
+  Stopwatch watch;
+  const raytrace::ShareOptions options = share_options(request);
+  if (prepared.in_parts) {
+    scenes::ScenePart part =
+        scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
+    part.scene.lights = prepared.scene.lights;
+    part.scene.environment = prepared.scene.environment;
+    part.scene.textures = prepared.scene.textures;
+    load_seconds_ = watch.lap();
+    shared_.emplace(raytrace::SharedScene::make(communicator, std::move(part), options));
+  } else {
+    shared_.emplace(raytrace::SharedScene::make(communicator, prepared.scene, options));
+  }
+  build_seconds_ = watch.lap();
+  raytrace_.emplace(*shared_, *raytrace::find_distribution(request.data));
+}
+
+Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera) {
+  Frame frame;
+  if (raster_) {
+    raster::Result result =
+        raster_->render(communicator, camera, raster_options(request_), progress_);
+    frame.picture = std::move(result.picture);
+    frame.statistics = std::move(result.statistics);
+  } else {
+    RayFrame done = render_rays(communicator, *raytrace_, prepared_, request_, camera,
+                                raytrace_options(request_, progress_), preview_);
+    frame.picture = std::move(done.picture);
+    frame.statistics = std::move(done.statistics);
+    frame.extras = std::move(done.extras);
+  }
+  return frame;
+}
+
+bool FrameRenderer::has_steps(int ranks) const {
+  return raster_ && raster::Renderer::has_steps(raster_options(request_), ranks);
+}
+
+std::unique_ptr<raster::FrameInSteps> FrameRenderer::begin(comm::Communicator& communicator,
+                                                           const scenes::Camera& camera) {
+  return raster_->begin(communicator, camera, raster_options(request_), progress_);
+}
+
+Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
+                     const RenderRequest& request, parallel::Progress* progress,
+                     const std::function<void(Picture&&)>& preview) {
+  FrameRenderer renderer(communicator, prepared, request, progress);
+  renderer.set_preview(preview);
+  if (request.frames > 1) renderer.render(communicator, prepared.camera);
+  Frames frames;
+  for (int i = 0; i < request.frames; ++i) {
+    barrier(communicator);
+    Stopwatch watch;
+    Frame frame = renderer.render(communicator, prepared.camera);
+    frames.seconds.push_back(watch.lap());
+    frames.picture = std::move(frame.picture);
+    frames.statistics = std::move(frame.statistics);
+    frames.extras = std::move(frame.extras);
+  }
+  frames.launched = launched(communicator, renderer);
+  return frames;
+}
+
+Launched launched(comm::Communicator& communicator, const FrameRenderer& renderer) {
+  Launched result;
+  result.threads = parallel::arena_threads();
+  result.load_seconds = renderer.load_seconds();
+  result.build_seconds = renderer.build_seconds();
+  for (const comm::Buffer& peak :
+       comm::gather(communicator, 0, comm::Buffer::of_value(peak_memory()))) {
+    result.peak_rss.push_back(peak.as<std::uint64_t>()[0]);
+  }
+  return result;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,120 @@
+// Frames of a scene on one rank: the part of `delray render` that runs on every rank.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "apps/render/render_options.h"
+#include "comm/communicator.h"
+#include "image/io.h"
+#include "scenes/scene.h"
+#include "shading/shader.h"
+
+namespace delray::apps {
+
+// A scene ready to be rendered; shared by the ranks of a process.
+struct Prepared {
+  scenes::Scene scene;
+  scenes::Camera camera;
+  std::vector<scenes::Camera> cameras;             // of an animation; empty for a single picture
+  Background background;                           // not automatic any more
+  std::shared_ptr<const shading::Shader> shader;   // rasterizer; ray tracer without a tracer
+  std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
+  // Ranks make parts of the geometry for themselves, and `scene` has none.
+  bool in_parts = false;
+  std::string texture_hash;                   // before the shader took the texels
+  std::string fingerprint;                    // likewise, of all; where there are checkpoints
+  bool told_by_name = false;                  // the name of the scene alone tells what is in it
+  std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
+  double load_seconds = 0, build_seconds = 0;
+
+  const shading::Shader& shading() const { return tracer ? tracer->shader : *shader; }
+};
+
+// Loads the scene, chooses the camera, builds what the engine needs. Parallel in the caller's
+// arena.
+std::shared_ptr<const Prepared> prepare(const RenderRequest& request, parallel::Progress* progress);
+
+// Collective: the same on every rank, for ranks that share no memory. Where they make parts of the
+// scene, each makes its own to agree on cameras that show all of it. Throws what all ranks throw.
+std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
+                                        const RenderRequest& request, parallel::Progress* progress);
+
+// What a ray traced picture has besides, and how it came about; on rank 0.
+struct Extras {
+  std::vector<image::Channel> channels;
+  int passes = 0;
+  double samples = 0;  // per pixel, on average
+  bool out_of_time = false;
+  double noisy = 0;  // part of the picture that is noisier than it was to be
+};
+
+using Picture = std::variant<image::Image8, image::ImageF>;
+using EngineStatistics = std::variant<raster::Statistics, raytrace::Statistics>;
+
+// On rank 0; elsewhere the pictures are of size 0.
+struct Frame {
+  Picture picture;
+  EngineStatistics statistics;
+  Extras extras;
+};
+
+// Either engine, ready for any number of frames. One per rank; refers to what it is given.
+class FrameRenderer {
+ public:
+  // Collective: with some --data this rank makes its part of the scene.
+  FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
+                const RenderRequest& request, parallel::Progress* progress);
+  // What that part took.
+  double load_seconds() const { return load_seconds_; }
+  double build_seconds() const { return build_seconds_; }
+  // Is given pictures that are not yet done, as often as the options want it.
+  void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
+  // Collective.
+  Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
+  // The same in steps (raster::Renderer::begin), where engine and strategy have them.
+  bool has_steps(int ranks) const;
+  std::unique_ptr<raster::FrameInSteps> begin(comm::Communicator& communicator,
+                                              const scenes::Camera& camera);
+
+ private:
+  const Prepared& prepared_;
+  const RenderRequest& request_;
+  parallel::Progress* progress_;
+  std::function<void(Picture&&)> preview_;
+  std::optional<raster::Renderer> raster_;       // one of the two
+  std::optional<raytrace::SharedScene> shared_;  // of the next, with some --data
+  std::optional<raytrace::Renderer> raytrace_;
+  double load_seconds_ = 0, build_seconds_ = 0;
+};
+
+// How ranks were at work; on rank 0.
+struct Launched {
+  int threads = 0;                      // of each rank
+  double load_seconds = 0;              // beside what `Prepared` tells, of this rank
+  double build_seconds = 0;             // likewise
+  std::vector<std::uint64_t> peak_rss;  // by rank: bytes, of its process
+};
+
+// The last of some frames from the same camera.
+struct Frames {
+  Picture picture;
+  EngineStatistics statistics;
+  Extras extras;
+  std::vector<double> seconds;  // per frame, from the scene in memory to the picture on rank 0
+  Launched launched;
+};
+
+// Collective.
+Launched launched(comm::Communicator& communicator, const FrameRenderer& renderer);
+
+// Collective. With more than one frame a further one goes before, to warm up.
+Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
+                     const RenderRequest& request, parallel::Progress* progress,
+                     const std::function<void(Picture&&)>& preview = {});
+
+}  // namespace delray::apps

@@ -1,0 +1,290 @@
+#include "apps/render/render_statistics.h"
+
+#include <algorithm>
+
+namespace delray::apps {
+namespace {
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+Json options_of(const RenderRequest& request, int ranks, int threads) {
+  Json options = {{"size", request.size},
+                  {"engine", request.engine},
+                  {"frames", request.frames},
+                  {"turntable", request.turntable},
+                  {"camera_path", request.camera_path},
+                  {"background", request.background},
+                  {"light", request.light.light},
+                  {"light_rotation", request.light.rotation},
+                  {"light_strength", request.light.strength},
+                  {"camera", request.camera.camera},
+                  {"view", request.camera.view},
+                  {"color_by", request.scene.colour_by},
+                  {"ranks", ranks},
+                  {"threads", threads}};
+  if (request.kind == Engine::raster) {
+    options["strategy"] = request.strategy;
+    options["shading"] = request.lighting;
+    options["shade"] = request.shade;
+    options["samples"] = request.supersampling;
+    if (request.strategy == "sort-last") {
+      options["compose"] = request.scheme;
+      options["codec"] = request.codec;
+      options["blend"] = request.blend;
+    } else {
+      options["partition"] = request.partition;
+      options["travel"] = request.travel;
+      options["costs"] = request.costs;
+      options["regions"] = request.regions_per_rank;
+      options["keep"] = request.keep_factor;
+      options["schedule"] = request.schedule;
+      options["master"] = request.master;
+      options["block"] = request.block;
+    }
+    if (request.strategy == "sort-middle") {
+      options["groups"] = request.groups;
+      options["geometry_ranks"] = request.geometry_ranks;
+      options["redistribute"] = request.redistribution;
+    }
+  } else {
+    options["integrator"] = request.integrator;
+    options["spp"] = request.samples;
+    options["depth"] = request.depth;
+    options["diffuse_depth"] = request.diffuse_depth;
+    options["reach"] = request.reach;
+    options["shadows"] = !request.no_shadows;
+    options["build"] = request.build;
+    options["isa"] = request.isa;
+    options["schedule"] = request.schedule;
+    options["master"] = request.master;
+    options["block"] = request.block;
+    options["partition"] = request.partition;
+    options["costs"] = request.costs;
+    options["regions"] = request.regions_per_rank;
+    options["keep"] = request.keep_factor;
+    options["data"] = request.data;
+    options["deal"] = request.deal;
+    options["cache"] = request.cache_mebibytes;
+    const Practice& practice = request.practice;
+    options["seed"] = practice.seed;
+    options["time"] = practice.seconds;
+    options["noise"] = practice.noise;
+    options["preview_every"] = practice.preview_every;
+    options["checkpoint"] = practice.checkpoint;
+    options["checkpoint_every"] = practice.checkpoint_every;
+    options["resume"] = practice.resume;
+    options["crop"] = practice.crop;
+    options["aovs"] = practice.channels;
+    options["denoise"] = practice.denoise;
+    options["exposure"] = practice.exposure;
+    options["tone"] = practice.tone;
+    options["show"] = practice.show;
+    options["aperture"] = practice.aperture;
+    options["focus"] = practice.focus;
+  }
+  return options;
+}
+
+Json phases_of(const raster::Statistics& s) {
+  const raster::Phases& p = s.phases;
+  return {{"transform", p.transform}, {"bin", p.bin},
+          {"rasterize", p.rasterize}, {"trace", 0},
+          {"shade", p.shade},         {"redistribute", p.redistribute},
+          {"compose", p.compose},     {"gather", p.gather}};
+}
+
+Json phases_of(const raytrace::Statistics& s) {
+  return {{"transform", 0}, {"bin", 0},          {"rasterize", 0}, {"trace", s.trace_seconds},
+          {"shade", 0},     {"redistribute", 0}, {"compose", 0},   {"gather", s.gather_seconds}};
+}
+
+// What only the rasterizer counts.
+Json raster_of(const raster::Statistics& s) {
+  Json counts = {{"triangles",
+                  {{"in", s.triangles_in},
+                   {"culled", s.triangles_culled},
+                   {"clipped", s.triangles_clipped},
+                   {"hidden", s.triangles_hidden},
+                   {"rasterized", s.triangles_rasterized},
+                   {"travelled", s.triangles_travelled}}},
+                 {"fragments", s.fragments},
+                 {"shaded", s.shaded}};
+  if (s.partition) {
+    counts["partition"] = {{"predicted_imbalance", s.partition->predicted},
+                           {"over_share", s.partition->over_share},
+                           {"overlap", s.partition->overlap},
+                           {"seconds", s.partition->seconds},
+                           {"kept", s.partition->kept}};
+  }
+  return counts;
+}
+Json raster_of(const raytrace::Statistics&) { return nullptr; }
+
+raytrace::RayCounts rays_of(const raster::Statistics&) { return {}; }
+raytrace::RayCounts rays_of(const raytrace::Statistics& s) { return s.rays; }
+
+Json embree_of(const raster::Statistics&) { return {{"version", nullptr}, {"isa", nullptr}}; }
+Json embree_of(const raytrace::Statistics& s) {
+  return {{"version", s.embree_version}, {"isa", s.embree_isa}};
+}
+
+// What only the ray tracer counts.
+Json raytrace_of(const raytrace::Statistics& s) {
+  Json counts = {{"imbalance_rays", s.imbalance_rays},
+                 {"structure_bytes", s.structure_bytes},
+                 {"degenerate", s.degenerate}};
+  if (s.partition) {
+    counts["partition"] = {{"predicted_imbalance", s.partition->predicted},
+                           {"measured", s.partition->measured},
+                           {"kept", s.partition->kept}};
+  }
+  return counts;
+}
+Json raytrace_of(const raster::Statistics&) { return nullptr; }
+
+Json of_rays(const raytrace::RayCounts& rays) {
+  return {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}};
+}
+
+// What a rank of either engine has more than the other.
+void add_own(const raster::RankStatistics& rank, Json& row) {
+  row["tasks_stolen"] = rank.blocks_stolen;
+}
+void add_own(const raytrace::RankStatistics& rank, Json& row) {
+  constexpr const char* kKinds[] = {"work", "serve", "wait"};
+  row["tasks_stolen"] = rank.tasks_stolen;
+  row["rays"] = of_rays(rank.rays);
+  row["data"] = {{"rays_sent", rank.rays_sent},
+                 {"answers_sent", rank.answers_sent},
+                 {"tests", rank.tests},
+                 {"clusters_fetched", rank.clusters_fetched},
+                 {"clusters_fetched_bytes", rank.clusters_fetched_bytes},
+                 {"clusters_dropped", rank.clusters_dropped},
+                 {"clusters_moved", rank.clusters_moved},
+                 {"geometry_bytes", rank.geometry_bytes}};
+  Json& timeline = row["timeline"] = Json::array();
+  for (const loadbalance::Interval& interval : rank.timeline) {
+    timeline.push_back({{"thread", interval.thread},
+                        {"kind", kKinds[static_cast<std::size_t>(interval.kind)]},
+                        {"tasks", interval.tasks},
+                        {"begin", interval.begin},
+                        {"end", interval.end}});
+  }
+}
+
+// In-process ranks share the memory of the process: each is told its peak.
+template <class Ranks>
+Json ranks_of(const Ranks& ranks, const std::vector<std::uint64_t>& peak_rss) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    rows.push_back({{"rank", i},
+                    {"busy", ranks[i].busy},
+                    {"tasks", ranks[i].tasks},
+                    {"requests", ranks[i].requests},
+                    {"steals", ranks[i].steals},
+                    {"idle", ranks[i].idle},
+                    {"bytes_sent", ranks[i].bytes_sent},
+                    {"bytes_received", ranks[i].bytes_received},
+                    {"messages", ranks[i].messages},
+                    {"peak_rss", peak_rss[i]}});
+    add_own(ranks[i], rows.back());
+  }
+  return rows;
+}
+
+template <class Ranks>
+double imbalance_of(const Ranks& ranks) {
+  double sum = 0, most = 0;
+  for (const auto& rank : ranks) {
+    sum += rank.busy;
+    most = std::max(most, rank.busy);
+  }
+  return sum > 0 ? most * static_cast<double>(ranks.size()) / sum : 1.0;
+}
+
+Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+
+// As --camera takes it, unless it is orthographic: its height tells that.
+Json json_of(const scenes::Camera& camera) {
+  Json told = {{"eye", json_of(camera.eye)},
+               {"at", json_of(camera.at)},
+               {"up", json_of(camera.up)},
+               {"fov", camera.vertical_fov}};
+  if (camera.orthographic()) told["height"] = camera.height;
+  if (!camera.name.empty()) told["name"] = camera.name;
+  return told;
+}
+
+// Of the picture, or of the part of it that is rendered.
+int width_of(const RenderRequest& request) {
+  return request.kind == Engine::raster ? request.width : request.practice.window.width();
+}
+int height_of(const RenderRequest& request) {
+  return request.kind == Engine::raster ? request.height : request.practice.window.height();
+}
+
+}  // namespace
+
+Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
+                       const std::string& hash, double write_seconds) {
+  return std::visit(
+      [&](const auto& s) -> Json {
+        return {
+            {"schema", "delray.render/1"},
+            {"scene",
+             {{"file", request.scene.file.path},
+              {"triangles", prepared.triangles},
+              {"vertices", prepared.vertices},
+              {"instances", prepared.scene.instances.size()}}},
+            {"camera", json_of(prepared.camera)},
+            {"options",
+             options_of(request, static_cast<int>(s.ranks.size()), frames.launched.threads)},
+            {"image",
+             {{"width", width_of(request)}, {"height", height_of(request)}, {"hash", hash}}},
+            {"seconds",
+             {{"load", prepared.load_seconds + frames.launched.load_seconds},
+              {"build", prepared.build_seconds + frames.launched.build_seconds},
+              {"frame", median(frames.seconds)},
+              {"frame_min", *std::min_element(frames.seconds.begin(), frames.seconds.end())},
+              {"write", write_seconds}}},
+            {"embree", embree_of(s)},
+            {"phases", phases_of(s)},
+            {"rays", of_rays(rays_of(s))},
+            {"raster", raster_of(s)},
+            {"raytrace", raytrace_of(s)},
+            {"sampling",
+             {{"passes", frames.extras.passes},
+              {"samples", frames.extras.samples},
+              {"out_of_time", frames.extras.out_of_time},
+              {"noisy", frames.extras.noisy}}},
+            {"imbalance", imbalance_of(s.ranks)},
+            {"ranks", ranks_of(s.ranks, frames.launched.peak_rss)},
+        };
+      },
+      frames.statistics);
+}
+
+Json animation_statistics(const Animation& animation) {
+  Json stages = Json::array();
+  for (std::size_t i = 0; i < animation.stages.size(); ++i) {
+    stages.push_back({{"name", animation.stages[i]},
+                      {"seconds", animation.all.stages[i]},
+                      {"seconds_alone", animation.alone.stages[i]}});
+  }
+  return {
+      {"frames", animation.frames.seconds.size()},
+      {"frames_at_once", animation.slots},
+      {"stages", stages},
+      {"seconds", animation.all.seconds},
+      {"overlapped", {{"frames", animation.overlapped}, {"seconds", animation.overlapped_seconds}}},
+      {"sequential_seconds", animation.sequential_seconds()},
+      {"predicted_seconds", animation.predicted_seconds()},
+      {"speed_up", animation.speed_up()},
+      {"predicted_speed_up", animation.predicted_speed_up()}};
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,84 @@
+// Pictures in files: what equal pictures have in common, and no more unless --metadata is given.
+#include "apps/render/write_picture.h"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/options/help.h"
+#include "image/hash.h"
+#include "image/io.h"
+#include "image/srgb.h"
+#include "image/tone.h"
+#include "shading/arithmetic.h"
+
+namespace delray::apps {
+namespace {
+
+const image::Image8& as_8bit(const image::Image8& picture, image::Image8&) { return picture; }
+const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& converted) {
+  converted = image::to_8bit(picture);
+  return converted;
+}
+
+// A file must not tell where it was made, or how, unless its maker wants it.
+std::vector<image::Attribute> attributes_of(const Session& session, const std::string& path,
+                                            const Extras& extras) {
+  std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION}};
+  if (!session.metadata) return attributes;
+  const std::string suffix = image::picture_suffix(path);
+  const bool has_free_names = suffix == ".png" || suffix == ".exr";
+  attributes.push_back({has_free_names ? "CommandLine" : "ImageDescription", session.command_line});
+  if (extras.passes > 0) {
+    attributes.push_back({"delray:samples", extras.samples});
+    attributes.push_back({"delray:passes", static_cast<double>(extras.passes)});
+  }
+  return attributes;
+}
+
+}  // namespace
+
+void add_metadata_option(CLI::App& command, Session& session) {
+  command
+      .add_flag("--metadata", session.metadata,
+                "Write the command line, with its paths, and the number of samples into the "
+                "picture (default: only what equal pictures have in common)")
+      ->group(group::kOutput);
+}
+
+void put_background_behind(const RenderRequest& request, const Prepared& prepared,
+                           const scenes::Camera& camera, Picture& picture) {
+  const scenes::View view = scenes::make_view(camera, request.width, request.height);
+  const Practice& practice = request.practice;
+  if (practice.show != "colour") return;
+  std::visit(
+      [&](auto& pixels) {
+        put_behind(pixels, prepared.background, prepared.shading(), view,
+                   {practice.window.x0, practice.window.y0});
+      },
+      picture);
+  if (practice.exposure == 0.0 && practice.tone == "linear") return;
+  image::map_tones(std::get<image::ImageF>(picture),
+                   shading::exp2(static_cast<float>(practice.exposure)),
+                   image::tone_curve(practice.tone));
+}
+
+std::string write_picture(const Session& session, const std::string& path, const Picture& picture,
+                          const Extras& extras) {
+  const std::vector<image::Attribute> attributes = attributes_of(session, path, extras);
+  image::WriteOptions options;
+  options.channels = extras.channels;
+  options.attributes = attributes;
+  return std::visit(
+      [&](const auto& pixels) {
+        image::Image8 converted;
+        const image::Image8& codes = as_8bit(pixels, converted);
+        if (image::picture_suffix(path) == ".exr") {
+          write_image(path, pixels, options);
+        } else {
+          write_image(path, codes, options);
+        }
+        return image::hash(codes);
+      },
+      picture);
+}
+
+}  // namespace delray::apps

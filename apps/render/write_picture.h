@@ -1,0 +1,28 @@
+// From a rendered frame to a file.
+#pragma once
+
+#include <string>
+
+#include "apps/render/render_frames.h"
+#include "apps/session.h"
+
+namespace CLI {
+class App;
+}
+
+namespace delray::apps {
+
+// Adds --metadata.
+void add_metadata_option(CLI::App& command, Session& session);
+
+// In place: the background behind it and, for files of 8 bits, light mapped to what a screen shows.
+void put_background_behind(const RenderRequest& request, const Prepared& prepared,
+                           const scenes::Camera& camera, Picture& picture);
+
+// Writes the picture to `path`, whole or not at all. Equal pictures make equal files; with
+// --metadata the command line and, where rays were sampled, how often, go into them. Returns the
+// hash of its 8-bit pixels. Throws files::FileError.
+std::string write_picture(const Session& session, const std::string& path, const Picture& picture,
+                          const Extras& extras = {});
+
+}  // namespace delray::apps
