@@ -45,6 +45,47 @@ const std::map<std::string, Names>& arrows() {
   return table;
 }
 
+// What each sub-folder may include of its folder's others, besides what lies directly in the
+// folder. Those that are not here include none.
+const std::map<std::string, Names> kArrowsWithin = {
+    {"apps/options", {"terminal"}},
+    {"apps/input", {"options"}},
+    {"apps/render", {"input", "options"}},
+    {"apps/compare", {"input", "options", "render", "report", "terminal"}},
+    {"comm/mpi", {"in_process"}},
+    {"composite/layers", {"schemes"}},
+    {"delaunay/predicates", {"mesh"}},
+    {"delaunay/order", {"mesh", "predicates"}},
+    {"delaunay/insertion", {"mesh", "order", "predicates"}},
+    {"delaunay/flip", {"insertion", "mesh", "predicates"}},
+    {"delaunay/history", {"flip", "insertion", "mesh", "predicates"}},
+    {"delaunay/cavity", {"insertion", "mesh", "order", "predicates"}},
+    {"delaunay/divide_and_conquer", {"flip", "mesh", "order", "predicates"}},
+    {"delaunay/dynamic", {"flip", "insertion", "mesh", "predicates"}},
+    {"delaunay/natural_neighbours", {"insertion", "predicates"}},
+    {"delaunay/files", {"mesh"}},
+    {"delaunay/verify", {"mesh"}},
+    {"raster/shading", {"pipeline"}},
+    {"raster/distribute", {"pipeline", "shading"}},
+    {"raster/strategies", {"distribute", "pipeline"}},
+    {"raytrace/sampling", {"scene"}},
+    {"raytrace/integrators", {"sampling", "scene"}},
+    {"raytrace/distributed", {"integrators", "scene"}},
+    {"scenes/files", {"geometry"}},
+    {"scenes/generators", {"geometry"}},
+    {"scenes/gltf", {"files"}},
+};
+
+// "folder/sub-folder" of a path in the tree, nothing where it lies directly in the folder.
+std::string sub_folder(const std::string& path) {
+  const std::size_t first = path.find('/'), second = path.find('/', first + 1);
+  return second == std::string::npos ? std::string() : path.substr(0, second);
+}
+
+std::string in_tree(const fs::path& file) {
+  return fs::relative(file, DELRAY_SOURCE_DIR).generic_string();
+}
+
 // "folder/name.h" of every include of this project in a file.
 std::vector<std::string> includes(const fs::path& file) {
   static const std::regex pattern(R"(^\s*#\s*include\s*\"([^\"]+)\")");
@@ -94,11 +135,47 @@ TEST(Layering, IncludesAreRootedAndExist) {
   });
 }
 
-TEST(Layering, PrivateHeadersStayInTheirFolder) {
+TEST(Layering, OnlyAllowedArrowsWithinFolders) {
   for_each_source([&](const std::string& folder, const Names&, const fs::path& file) {
+    const std::string from = sub_folder(in_tree(file));
+    if (from.empty() || folder == "tests" || folder == "bench") return;
+    const auto allowed = kArrowsWithin.find(from);
     for (const std::string& include : includes(file)) {
-      if (include.find("/internal/") == std::string::npos || folder == "tests") continue;
-      EXPECT_EQ(include.substr(0, include.find('/')), folder) << file << ": " << include;
+      const std::string to = sub_folder(include);
+      if (to.empty() || to == from || !include.starts_with(folder + "/")) continue;
+      const bool fine =
+          allowed != kArrowsWithin.end() && allowed->second.contains(to.substr(folder.size() + 1));
+      EXPECT_TRUE(fine) << file << " may not include \"" << include << "\"";
     }
   });
+}
+
+// A header directly in a folder is for everybody, one in a sub-folder for its folder alone.
+TEST(Layering, PrivateHeadersStayInTheirFolder) {
+  for_each_source([&](const std::string& folder, const Names&, const fs::path& file) {
+    if (folder == "tests" || folder == "bench") return;
+    for (const std::string& include : includes(file)) {
+      if (!sub_folder(include).empty()) {
+        EXPECT_EQ(include.substr(0, include.find('/')), folder) << file << ": " << include;
+      }
+    }
+  });
+}
+
+// A folder that is larger has a part that deserves a name.
+TEST(Layering, FoldersAreSmallEnoughToLookThrough) {
+  constexpr int kMost = 40;
+  std::map<std::string, int> files;
+  for (const auto& [folder, ignored] : arrows()) {
+    const fs::path top = fs::path(DELRAY_SOURCE_DIR) / folder;
+    if (folder == "tests") continue;  // some have corpora
+    for (const auto& entry : fs::recursive_directory_iterator(top)) {
+      if (entry.is_regular_file()) ++files[in_tree(entry.path().parent_path())];
+    }
+  }
+  for_each_source([&](const std::string& folder, const Names&, const fs::path& file) {
+    if (folder == "tests") ++files[in_tree(file.parent_path())];
+  });
+  EXPECT_GT(files.size(), 12);
+  for (const auto& [folder, count] : files) EXPECT_LE(count, kMost) << folder;
 }
