@@ -1,4 +1,4 @@
-// The folders and who may include whom (README.md, "Architecture"): any other arrow fails here.
+// The folders and who may include whom (docs/architecture.md): any other arrow fails here.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -178,4 +178,29 @@ TEST(Layering, FoldersAreSmallEnoughToLookThrough) {
   });
   EXPECT_GT(files.size(), 12);
   for (const auto& [folder, count] : files) EXPECT_LE(count, kMost) << folder;
+}
+
+// The rows "| `folder/` | content | one, two |"; an empty cell stands for nothing.
+TEST(Layering, ArchitectureTellsTheSameArrows) {
+  static const std::regex row(R"(\| `([a-z]+)/` \| [^|]* \|([^|]*)\|)");
+  static const std::regex word("[a-z]+");
+  std::ifstream page(fs::path(DELRAY_SOURCE_DIR) / "docs/architecture.md");
+  Names told;
+  std::smatch match;
+  for (std::string line; std::getline(page, line);) {
+    if (!std::regex_match(line, match, row)) continue;
+    const std::string folder = match[1], cell = match[2];
+    ASSERT_TRUE(arrows().contains(folder)) << folder;
+    told.insert(folder);
+    if (cell == " all of the above ") {
+      EXPECT_TRUE(kTop.contains(folder)) << folder;
+      continue;
+    }
+    Names names;
+    for (std::sregex_iterator at(cell.begin(), cell.end(), word), end; at != end; ++at) {
+      names.insert(at->str());
+    }
+    EXPECT_EQ(names, arrows().at(folder)) << folder;
+  }
+  EXPECT_EQ(told.size(), arrows().size());
 }
