@@ -18,11 +18,11 @@
 namespace delray::comm {
 namespace {
 
+using internal::Backoff;
 using internal::Clock;
 using internal::completed;
 using internal::Engine;
 using internal::kWaitsForNobody;
-using internal::Patience;
 using internal::Port;
 using internal::TellWaiting;
 using internal::Transfer;
@@ -82,10 +82,10 @@ class MpiCommunicator final : public Communicator {
     if (completed(incoming.requests)) return std::move(incoming.buffer);
     const TellWaiting telling(*engine_, source);
     const Wait waited(engine_->options.timeout);
-    Patience patience(*engine_);
+    Backoff backoff(*engine_);
     while (!completed(incoming.requests)) {
       if (waited.is_over()) end_stalled(waited, source, tag);
-      patience.pause(/*on_their_way=*/true);
+      backoff.pause(/*on_their_way=*/true);
     }
     return std::move(incoming.buffer);
   }
@@ -126,7 +126,7 @@ class MpiCommunicator final : public Communicator {
   void mark(Phase phase, int) override {
     engine_->phase = phase;
     internal::note_phase(phase);
-    if (!engine_->neighbours.empty()) internal::tell_phase(phase);
+    if (!engine_->local_ranks.empty()) internal::tell_phase(phase);
   }
   void work(Work, std::uint64_t) override {}
 
@@ -169,9 +169,9 @@ class MpiCommunicator final : public Communicator {
     const bool forever = deadline.wait == std::chrono::nanoseconds::max();
     const TellWaiting telling(*engine_, forever ? root_rank_or_any(from) : kWaitsForNobody);
     const Wait stalled(engine_->options.timeout), late(deadline.wait);
-    Patience patience(*engine_);
+    Backoff backoff(*engine_);
     for (bool first = true;; first = false) {
-      const std::uint32_t rings_seen = patience.rings();
+      const std::uint32_t rings_seen = backoff.rings();
       port_.pull();
       if (Message* message = find(from, tag, whole)) return message;
       if (engine_->options.progress != nullptr && engine_->options.progress->stop_requested()) {
@@ -182,7 +182,7 @@ class MpiCommunicator final : public Communicator {
       if (!first && late.is_over()) return nullptr;
       if (!first && stalled.is_over()) end_stalled(stalled, root_rank_or_any(from), tag);
       const bool is_coming = find(from, tag, /*whole=*/false) != nullptr;
-      patience.pause(is_coming || !engine_->unfinished.empty(), rings_seen);
+      backoff.pause(is_coming || !engine_->unfinished.empty(), rings_seen);
     }
   }
 
@@ -203,7 +203,7 @@ class MpiCommunicator final : public Communicator {
     {
       const TellWaiting telling(*engine_, kAnyRank);
       const Wait waited(engine_->options.timeout);
-      for (Patience patience(*engine_); !finished_all; patience.pause(!finished_mine)) {
+      for (Backoff backoff(*engine_); !finished_all; backoff.pause(!finished_mine)) {
         if (waited.is_over()) {
           engine_->end_stalled("stalled: rank " + std::to_string(engine_->root_rank) + " waited " +
                                    waited.text() + " for the others to end",
@@ -220,7 +220,7 @@ class MpiCommunicator final : public Communicator {
     }
     // What the others have sent by now is complete on their side, but perhaps not on this one.
     for (const auto& port : engine_->ports) port->close_all();
-    for (Patience patience(*engine_); !engine_->unfinished.empty(); patience.pause()) {
+    for (Backoff backoff(*engine_); !engine_->unfinished.empty(); backoff.pause()) {
       engine_->finish_some();
     }
     MPI_Comm_free(&engine_->for_splits);

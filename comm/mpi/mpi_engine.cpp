@@ -16,38 +16,38 @@
 namespace delray::comm::internal {
 namespace {
 
-// What a neighbour is doing; nothing of a process that is none.
+// What a rank of this node is doing; nothing for a rank of another node.
 std::optional<Doing> doing_of(const Engine& engine, int rank) {
-  const auto neighbour = engine.neighbours.find(rank);
-  if (neighbour == engine.neighbours.end()) return std::nullopt;
-  return doing(neighbour->second);
+  const auto local_rank = engine.local_ranks.find(rank);
+  if (local_rank == engine.local_ranks.end()) return std::nullopt;
+  return doing(local_rank->second);
 }
 
 // Shares memory with the processes of this machine, `local`, if each of them wants to, has some and
 // can reach that of the next: all agree.
-void share_with_neighbours(Engine& engine, MPI_Comm local, int processes) {
-  struct Neighbour {
+void share_with_local_ranks(Engine& engine, MPI_Comm local, int processes) {
+  struct LocalRank {
     std::int64_t rank;
     SharedMemory memory;
   };
-  const Neighbour mine{engine.root_rank,
+  const LocalRank mine{engine.root_rank,
                        engine.options.share_memory ? share_memory() : SharedMemory{}};
-  std::vector<Neighbour> neighbours(static_cast<std::size_t>(processes));
-  MPI_Allgather(&mine, sizeof mine, MPI_BYTE, neighbours.data(), sizeof mine, MPI_BYTE, local);
+  std::vector<LocalRank> local_ranks(static_cast<std::size_t>(processes));
+  MPI_Allgather(&mine, sizeof mine, MPI_BYTE, local_ranks.data(), sizeof mine, MPI_BYTE, local);
   int rank = 0;
   MPI_Comm_rank(local, &rank);
-  const Neighbour& next = neighbours[static_cast<std::size_t>((rank + 1) % processes)];
+  const LocalRank& next = local_ranks[static_cast<std::size_t>((rank + 1) % processes)];
   int reached = engine.options.share_memory && can_reach(next.memory);
   MPI_Allreduce(MPI_IN_PLACE, &reached, 1, MPI_INT, MPI_MIN, local);
   if (!reached) return;
-  for (const Neighbour& neighbour : neighbours) {
-    if (neighbour.rank != engine.root_rank) {
-      engine.neighbours.emplace(static_cast<int>(neighbour.rank), neighbour.memory);
+  for (const LocalRank& local_rank : local_ranks) {
+    if (local_rank.rank != engine.root_rank) {
+      engine.local_ranks.emplace(static_cast<int>(local_rank.rank), local_rank.memory);
     }
   }
   int all = 1;
   MPI_Comm_size(engine.root, &all);
-  engine.all_are_neighbours = processes == all;
+  engine.all_are_local = processes == all;
 }
 
 // How often the system has given this thread's core to another.
@@ -86,13 +86,13 @@ void Engine::end(const std::string& why) const {
 void Engine::end_stalled(const std::string& why, int waits_for) const {
   int rank = waits_for;
   if (rank == kAnyRank) {
-    for (const auto& [other, unused] : neighbours) {
+    for (const auto& [other, unused] : local_ranks) {
       const auto what = doing_of(*this, other);
       if (!what || what->waits_for != kWaitsForNobody) continue;
       rank = rank == kAnyRank ? other : std::min(rank, other);
     }
   }
-  for (std::size_t steps = 0; steps <= neighbours.size() && rank >= 0; ++steps) {
+  for (std::size_t steps = 0; steps <= local_ranks.size() && rank >= 0; ++steps) {
     const auto what = doing_of(*this, rank);
     if (!what) break;
     if (what->waits_for == kWaitsForNobody) {
@@ -110,24 +110,24 @@ void look_at_this_machine(Engine& engine) {
   MPI_Comm_size(local, &processes);
   engine.cores_are_scarce = processes > sysconf(_SC_NPROCESSORS_ONLN);  // bound to some or not
   engine.switches = lost_cores();
-  if (processes > 1) share_with_neighbours(engine, local, processes);
+  if (processes > 1) share_with_local_ranks(engine, local, processes);
   MPI_Comm_free(&local);
 }
 
-void Patience::pause(bool on_their_way, std::optional<std::uint32_t> rings_seen) {
+void Backoff::pause(bool on_their_way, std::optional<std::uint32_t> rings_seen) {
   ++looks_;
   if (looks_ <= kSpins) {
     constexpr int kLooksBetween = 64;
     if (looks_ % kLooksBetween == 0) notice_others();
     return;
   }
-  const bool can_be_woken = rings_seen && !on_their_way && !engine_.neighbours.empty();
+  const bool can_be_woken = rings_seen && !on_their_way && !engine_.local_ranks.empty();
   const int yields = can_be_woken ? kYieldsBeforeSleep : on_their_way ? kYieldsOnTheWay : kYields;
   if (!is_crowded_ && looks_ <= kSpins + yields) {
     sched_yield();
     notice_others();
   } else if (can_be_woken) {
-    sleep_until_rung(*rings_seen, engine_.all_are_neighbours ? long_sleep_ : kShortSleep);
+    sleep_until_rung(*rings_seen, engine_.all_are_local ? long_sleep_ : kShortSleep);
     long_sleep_ = std::min(2 * long_sleep_, kLongestSleep);
   } else {
     std::this_thread::sleep_for(short_sleep_);
@@ -135,7 +135,7 @@ void Patience::pause(bool on_their_way, std::optional<std::uint32_t> rings_seen)
   }
 }
 
-void Patience::notice_others() {
+void Backoff::notice_others() {
   constexpr std::chrono::milliseconds kSlice{1};  // few looks take as long
   constexpr std::chrono::milliseconds kRemembered{100};
   const Clock::time_point now = Clock::now();

@@ -46,9 +46,9 @@ struct Engine {
   // MPI communicators, `root` first, the others in the order in which they were made; all live to
   // the end.
   std::vector<std::shared_ptr<Port>> ports;
-  // By rank in `root`: processes of this machine that share memory.
-  std::unordered_map<int, SharedMemory> neighbours;
-  bool all_are_neighbours = false;
+  // By rank in `root`: the node-local ranks, processes of this machine that share memory.
+  std::unordered_map<int, SharedMemory> local_ranks;
+  bool all_are_local = false;
 
   void finish_some();
   // Lets go of the buffers of finished sends. O(1) per message in total.
@@ -66,11 +66,11 @@ struct Engine {
 // `root`.
 void look_at_this_machine(Engine& engine);
 
-// Tells neighbours whom this process waits for, as long as it lives.
+// Tells the node-local ranks whom this process waits for, as long as it lives.
 class TellWaiting {
  public:
   // `rank` is one of the root communicator, or kAnyRank.
-  TellWaiting(const Engine& engine, int rank) : tells_(!engine.neighbours.empty()) {
+  TellWaiting(const Engine& engine, int rank) : tells_(!engine.local_ranks.empty()) {
     if (tells_) tell_waiting(rank);
   }
   ~TellWaiting() {
@@ -89,9 +89,9 @@ class TellWaiting {
 // ends look, it takes long to sleep. A rank that does not get its core back soon sleeps earlier for
 // some time: others have work for the core, and whoever was woken comes before those who never
 // slept.
-class Patience {
+class Backoff {
  public:
-  explicit Patience(Engine& engine)
+  explicit Backoff(Engine& engine)
       : engine_(engine),
         last_look_(Clock::now()),
         is_crowded_(last_look_ < engine.crowded_until),
@@ -100,7 +100,7 @@ class Patience {
                                        : 0) {}
 
   // How often others have rung for this process. To be read before one looks.
-  std::uint32_t rings() const { return engine_.neighbours.empty() ? 0 : internal::rings(); }
+  std::uint32_t rings() const { return engine_.local_ranks.empty() ? 0 : internal::rings(); }
 
   void pause(bool on_their_way = false, std::optional<std::uint32_t> rings_seen = std::nullopt);
 

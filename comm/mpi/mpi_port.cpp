@@ -61,7 +61,7 @@ void Port::send(int to, int context, Tag tag, Buffer&& message) {
     start_send(to, kTagPiece, std::move(message), piece);
     return;
   }
-  if (engine_.neighbours.count(root_rank(to)) > 0) {
+  if (engine_.local_ranks.count(root_rank(to)) > 0) {
     const std::size_t bytes = message.size();
     if (const auto place = lend(message)) {
       const SharedMessage announcement{mpi_tag, *place, bytes};
@@ -83,8 +83,8 @@ void Port::start_send(int to, int mpi_tag, Buffer&& message, std::size_t piece) 
               communicator_, &outgoing.requests.emplace_back());
     begin += count;
   } while (begin < outgoing.buffer.size());
-  const auto neighbour = engine_.neighbours.find(root_rank(to));
-  if (neighbour != engine_.neighbours.end()) ring(neighbour->second);
+  const auto local_rank = engine_.local_ranks.find(root_rank(to));
+  if (local_rank != engine_.local_ranks.end()) ring(local_rank->second);
 }
 
 void Port::pull() {
@@ -126,10 +126,10 @@ void Port::push(int source, std::int64_t tag, Transfer&& incoming) {
 void Port::pull_shared(MPI_Message& handle, int source) {
   SharedMessage announcement{};
   MPI_Mrecv(&announcement, sizeof announcement, MPI_BYTE, &handle, MPI_STATUS_IGNORE);
-  const auto neighbour = engine_.neighbours.find(root_rank(source));
+  const auto local_rank = engine_.local_ranks.find(root_rank(source));
   std::optional<Buffer> message;
-  if (neighbour != engine_.neighbours.end()) {
-    message = borrow(neighbour->second, announcement.place, announcement.bytes);
+  if (local_rank != engine_.local_ranks.end()) {
+    message = borrow(local_rank->second, announcement.place, announcement.bytes);
   }
   if (!message) {
     engine_.end("rank " + std::to_string(root_rank(source)) +

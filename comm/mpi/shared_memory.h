@@ -51,7 +51,7 @@ void sleep_until_rung(std::uint32_t rings_seen, std::chrono::microseconds longes
 // Nothing where this process cannot reach the other, which then has ended.
 void ring(const SharedMemory& other);
 
-// What a process tells its neighbours of itself, for messages about stalls.
+// What a process tells the node-local ranks of itself, for messages about stalls.
 inline constexpr std::int32_t kWaitsForNobody = -2;  // it works, or is lost
 struct Doing {
   Phase phase = Phase::other;
