@@ -91,7 +91,7 @@ class Sweep {
 
   Halves halve(const Rect& screen, const std::vector<Item>& items, Axis axis, int low_ranks,
                int high_ranks) const {
-    Halves halves = give_away(screen, items, axis, low_ranks, high_ranks);
+    Halves halves = assign(screen, items, axis, low_ranks, high_ranks);
     find_border(screen, items, halves);
     return halves;
   }
@@ -111,8 +111,8 @@ class Sweep {
     return before;
   }
 
-  Halves give_away(const Rect& screen, const std::vector<Item>& items, Axis axis, int low_ranks,
-                   int high_ranks) const {
+  Halves assign(const Rect& screen, const std::vector<Item>& items, Axis axis, int low_ranks,
+                int high_ranks) const {
     const int begin = axis.low(frame_), length = axis.length(frame_);
     const auto by_end = order_by(items.size(), begin, length,
                                  [&](std::size_t i) { return axis.high(items[i].box); });
@@ -128,8 +128,8 @@ class Sweep {
       return std::clamp(line, axis.low(screen), axis.high(screen));
     };
 
-    Halves given{axis, std::vector<bool>(items.size())};
-    std::vector<bool> is_given(items.size());
+    Halves halves{axis, std::vector<bool>(items.size())};
+    std::vector<bool> is_assigned(items.size());
     int low_line = axis.low(screen), high_line = axis.high(screen);
     double low_work = 0, high_work = 0;
     auto low_next = by_end.begin();
@@ -141,15 +141,15 @@ class Sweep {
       const double high_sum =
           high_work + shared + before.back() - before[high_at - axis.low(screen)];
       if (low_sum * high_ranks <= high_sum * low_ranks) {
-        while (is_given[*low_next]) ++low_next;
+        while (is_assigned[*low_next]) ++low_next;
         const Item& item = items[*low_next];
-        given.is_low[*low_next] = is_given[*low_next] = true;
+        halves.is_low[*low_next] = is_assigned[*low_next] = true;
         low_line = std::max(low_line, axis.high(item.box));
         low_work += work(item);
       } else {
-        while (is_given[*high_next]) ++high_next;
+        while (is_assigned[*high_next]) ++high_next;
         const Item& item = items[*high_next];
-        is_given[*high_next] = true;
+        is_assigned[*high_next] = true;
         high_line = std::min(high_line, axis.low(item.box));
         high_work += work(item);
       }
@@ -158,10 +158,10 @@ class Sweep {
     const auto even =
         std::lower_bound(before.begin(), before.end(),
                          (low_work + high_work + before.back()) * low_share - low_work);
-    given.even =
+    halves.even =
         axis.low(screen) + (before.back() > 0 ? static_cast<int>(even - before.begin())
                                               : static_cast<int>(axis.length(screen) * low_share));
-    return given;
+    return halves;
   }
 
   // The border with the fewest pixels on the wrong side; of borders that are as good as each other,

@@ -28,9 +28,9 @@ struct HybridPartition {
 };
 
 // After Samanta et al. 2000. Two lines sweep towards each other over the longer side of the screen:
-// the one from the low end gives the box that ends first to the low half of the ranks, that from
+// the one from the low end assigns the box that ends first to the low half of the ranks, that from
 // the high end the box that begins last to the high half, whichever half has less to do, until all
-// boxes are given away. Then the screen is cut where fewest pixels of boxes lie on the wrong side,
+// boxes are assigned. Then the screen is cut where fewest pixels of boxes lie on the wrong side,
 // and both halves go on alike with their ranks, boxes and part of the screen. What a half has to do
 // is the cost of its boxes, that of everybody's boxes as far as its line has come, and `pixel_cost`
 // for each pixel that is another's for certain and each between the lines, once they have passed

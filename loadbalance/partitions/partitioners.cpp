@@ -18,7 +18,7 @@ constexpr std::array kPartitioners = {
     Partitioner{"graph",
                 "regions of any shape whose borders few primitives cross, grown on a grid (Kurc)",
                 &internal::graph, "graph"},
-    Partitioner{"whitman", "ten quadtree leaves per rank, the fullest dealt out first (Whitman)",
+    Partitioner{"whitman", "ten quadtree leaves per rank, the fullest assigned first (Whitman)",
                 &internal::whitman, "grid"},
     Partitioner{
         "whelan",
@@ -26,7 +26,7 @@ constexpr std::array kPartitioners = {
         &internal::whelan, "bisection"},
     Partitioner{"roble", "grid cells, of which full ones are halved and empty ones merged (Roble)",
                 &internal::roble, "grid"},
-    Partitioner{"interlaced", "many square blocks dealt out in turn, whatever they cost",
+    Partitioner{"interlaced", "many square blocks assigned in turn, whatever they cost",
                 &internal::interlaced, "fixed"},
 };
 

@@ -21,7 +21,7 @@ void check_costs(const Costs& costs, geometry::Rect frame, int parts);
 // REQUIRES: every cost is finite and >= 0.
 Partition mahd(const Costs& costs, geometry::Rect frame, int parts);
 
-// Square blocks, at least 16 per part where there are pixels enough, dealt out in two dimensions:
+// Square blocks, at least 16 per part where there are pixels enough, assigned in two dimensions:
 // the owners follow each other in a row of blocks and are shifted from row to row, so that every
 // row and every column of blocks meets all owners in turn. Costs do not matter. O(blocks).
 Partition interlaced(const Costs& costs, geometry::Rect frame, int parts);
@@ -40,7 +40,7 @@ Partition whelan(const Costs& costs, geometry::Rect frame, int parts);
 
 // A quadtree over the cost grid, each cell with the number of primitives that overlap it, so that
 // large ones count more than once (Whitman 1992). The node with the highest sum is divided until
-// there are ten for each part; they are dealt out, the highest first, to the part that has least.
+// there are ten for each part; they are assigned, the highest first, to the part that has least.
 // O(boxes + cells + parts log parts).
 Partition whitman(const Costs& costs, geometry::Rect frame, int parts);
 

@@ -1,11 +1,11 @@
-#include "loadbalance/schedules/crew.h"
 #include "loadbalance/schedules/schedules.h"
+#include "loadbalance/schedules/task_runner.h"
 
 namespace delray::loadbalance::internal {
 
 RankReport interlaced_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
                                const ScheduleOptions& options, TaskFunction work) {
-  Crew crew(communicator, options, work);
+  TaskRunner runner(communicator, options, work);
   const auto ranks = static_cast<std::uint32_t>(communicator.size());
   const auto rank = static_cast<std::uint32_t>(communicator.rank());
   std::vector<TaskRange> mine;
@@ -15,8 +15,8 @@ RankReport interlaced_schedule(comm::Communicator& communicator, const TaskGrid&
       mine.push_back({task, task + 1});
     }
   }
-  crew.put(mine);
-  return crew.finish();
+  runner.put(mine);
+  return runner.finish();
 }
 
 }  // namespace delray::loadbalance::internal

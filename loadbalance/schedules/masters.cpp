@@ -4,8 +4,8 @@
 #include <deque>
 #include <optional>
 
-#include "loadbalance/schedules/crew.h"
 #include "loadbalance/schedules/tags.h"
+#include "loadbalance/schedules/task_runner.h"
 #include "parallel/arena.h"
 
 namespace delray::loadbalance::internal {
@@ -26,7 +26,7 @@ class Node {
     for (int k = tree.first_below(communicator.rank()); k < end; ++k) asking_.push_back(k);
     below_ = asking_.size();
     works_ = below_ == 0 || options.master_works;
-    crew_.emplace(communicator, options, work, works_);
+    runner_.emplace(communicator, options, work, works_);
     const TaskRange all{0, tasks.count()};
     if (is_root_) pool_.put({&all, 1});
   }
@@ -35,17 +35,17 @@ class Node {
     for (;;) {
       take_in();
       hand_out();
-      if (works_ && (crew_->run_one() || pool_.size() > 0)) continue;
+      if (works_ && (runner_->run_one() || pool_.size() > 0)) continue;
       if (!has_all_) {
         if (asked_) {
-          crew_->wait(master_, kTagTasks);
+          runner_->wait(master_, kTagTasks);
         } else {
-          crew_->wait(comm::kAnyRank, kTagRequest);
+          runner_->wait(comm::kAnyRank, kTagRequest);
         }
       } else if (below_ > 0) {
-        crew_->wait(comm::kAnyRank, kTagRequest);
+        runner_->wait(comm::kAnyRank, kTagRequest);
       } else {
-        return crew_->finish();
+        return runner_->finish();
       }
     }
   }
@@ -68,7 +68,7 @@ class Node {
       asked_ = false;
       any = true;
     }
-    if (any) crew_->served();
+    if (any) runner_->served();
   }
 
   // To those who ask, then to the own threads; what is missing is asked for.
@@ -79,16 +79,16 @@ class Node {
       asking_.pop_front();
       if (pool_.size() == 0) --below_;  // an empty message: it need not ask again
       const std::vector<TaskRange> tasks = take(tree_.workers(to));
-      crew_->send(to, kTagTasks, comm::Buffer::of(std::span<const TaskRange>(tasks)));
+      runner_->send(to, kTagTasks, comm::Buffer::of(std::span<const TaskRange>(tasks)));
     }
-    const bool is_dry = works_ && crew_->waiting() <= ahead_;
-    if (is_dry && pool_.size() > 0) crew_->put(take(1));
+    const bool is_dry = works_ && runner_->waiting() <= ahead_;
+    if (is_dry && pool_.size() > 0) runner_->put(take(1));
     if (!has_all_ && !asked_ && pool_.size() == 0 && (is_dry || !asking_.empty())) {
-      crew_->send(master_, kTagRequest, comm::Buffer());
-      ++crew_->report.requests;
+      runner_->send(master_, kTagRequest, comm::Buffer());
+      ++runner_->report.requests;
       asked_ = true;
     }
-    if (any) crew_->served();
+    if (any) runner_->served();
   }
 
   std::vector<TaskRange> take(std::uint64_t workers) {
@@ -107,7 +107,7 @@ class Node {
   std::deque<int> asking_;  // ranks below that wait for tasks
   std::size_t below_ = 0;   // ranks below that have not been told that there are no more
   TaskQueue pool_;          // to be handed out
-  std::optional<Crew> crew_;
+  std::optional<TaskRunner> runner_;
 };
 
 }  // namespace

@@ -3,48 +3,48 @@
 #include "comm/collectives.h"
 #include "loadbalance/schedules/initial_tasks.h"
 #include "loadbalance/schedules/schedules.h"
-#include "loadbalance/schedules/theft.h"
+#include "loadbalance/schedules/steal_protocol.h"
 
 namespace delray::loadbalance::internal {
 namespace {
 
-using Kind = TheftMessage::Kind;
+using Kind = StealMessage::Kind;
 
 class Neighbour {
  public:
   Neighbour(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
             TaskFunction work)
       : communicator_(communicator),
-        crew_(communicator, options, work),
-        theft_(communicator, crew_, tasks.count()),
-        ahead_(options.ahead.value_or(2 * static_cast<std::uint32_t>(crew_.threads()))) {
+        runner_(communicator, options, work),
+        protocol_(communicator, runner_, tasks.count()),
+        ahead_(options.ahead.value_or(2 * static_cast<std::uint32_t>(runner_.threads()))) {
     for (int bit = 1; bit < communicator.size(); bit *= 2) {
       const int neighbour = communicator.rank() ^ bit;
       if (neighbour < communicator.size()) neighbours_.push_back({neighbour, false, 0});
     }
-    crew_.put(initial_tasks(communicator, tasks, options));
+    runner_.put(initial_tasks(communicator, tasks, options));
   }
 
   RankReport run() {
-    while (!theft_.is_over()) {
+    while (!protocol_.is_over()) {
       serve();
-      const bool worked = crew_.run_one();
+      const bool worked = runner_.run_one();
       ask();
       if (worked) continue;
-      if (answers_to_come_ == 0) theft_.quiet();
-      if (!theft_.is_over()) theft_.wait();
+      if (answers_to_come_ == 0) protocol_.quiet();
+      if (!protocol_.is_over()) protocol_.wait();
     }
     // Who has left the run must not ask somebody who has not.
     comm::barrier(communicator_);
-    crew_.waited();
-    return crew_.finish();
+    runner_.waited();
+    return runner_.finish();
   }
 
  private:
   enum class Asked { not_yet, with_few_left, with_none_left };
   struct Other {
     int rank = 0;
-    bool hungry = false;  // it asked and got nothing
+    bool unserved = false;  // it asked and got nothing
     std::uint64_t load = 0;
   };
 
@@ -52,7 +52,7 @@ class Neighbour {
   void serve() {
     bool any = false, has_tasks = false;
     while (!has_tasks) {
-      const auto message = theft_.next();
+      const auto message = protocol_.next();
       if (!message) break;
       any = true;
       if (message->kind == Kind::ask_tasks) {
@@ -60,47 +60,47 @@ class Neighbour {
       } else if (message->kind == Kind::tasks) {
         if (message->value == 1) --answers_to_come_;
         if (message->tasks.empty()) continue;
-        crew_.put(message->tasks);
+        runner_.put(message->tasks);
         asked_ = Asked::not_yet;
         share_out();
         has_tasks = true;
       }
     }
-    if (any) crew_.served();
+    if (any) runner_.served();
   }
 
   // Half of what there is more here than there; one who has nothing gets the larger half.
   void answer(Other& to, std::uint64_t load) {
-    const std::uint64_t mine = crew_.waiting();
+    const std::uint64_t mine = runner_.waiting();
     const std::uint64_t more = mine > load ? mine - load : 0;
-    const auto tasks = crew_.give(load == 0 ? (more + 1) / 2 : more / 2);
-    to.hungry = tasks.empty();
+    const auto tasks = runner_.release(load == 0 ? (more + 1) / 2 : more / 2);
+    to.unserved = tasks.empty();
     to.load = load;
-    theft_.send(to.rank, Kind::tasks, 1, tasks);
+    protocol_.send(to.rank, Kind::tasks, 1, tasks);
   }
 
-  // Gives of what has just come to those who got nothing before; at least one task stays here.
+  // Releases of what has just come to those who got nothing before; at least one task stays here.
   void share_out() {
     for (Other& to : neighbours_) {
-      if (!to.hungry) continue;
-      const std::uint64_t mine = crew_.waiting();
+      if (!to.unserved) continue;
+      const std::uint64_t mine = runner_.waiting();
       if (mine < to.load + 2) continue;
-      const auto tasks = crew_.give((mine - to.load) / 2);
+      const auto tasks = runner_.release((mine - to.load) / 2);
       if (tasks.empty()) continue;
-      to.hungry = false;
-      theft_.send(to.rank, Kind::tasks, 0, tasks);
+      to.unserved = false;
+      protocol_.send(to.rank, Kind::tasks, 0, tasks);
     }
   }
 
   // All neighbours, once when few tasks are left and once when none are.
   void ask() {
-    const std::uint64_t waiting = crew_.waiting();
+    const std::uint64_t waiting = runner_.waiting();
     if (answers_to_come_ > 0 || waiting > ahead_) return;
     const Asked now = waiting > 0 ? Asked::with_few_left : Asked::with_none_left;
     if (asked_ >= now) return;
     asked_ = now;
     for (const Other& to : neighbours_) {
-      theft_.send(to.rank, Kind::ask_tasks, waiting);
+      protocol_.send(to.rank, Kind::ask_tasks, waiting);
       ++answers_to_come_;
     }
   }
@@ -111,8 +111,8 @@ class Neighbour {
   }
 
   comm::Communicator& communicator_;
-  Crew crew_;
-  Theft theft_;
+  TaskRunner runner_;
+  StealProtocol protocol_;
   std::uint64_t ahead_;
   std::vector<Other> neighbours_;
   Asked asked_ = Asked::not_yet;  // since tasks came last

@@ -2,14 +2,14 @@
 #include <random>
 #include <utility>
 
-#include "loadbalance/schedules/crew.h"
 #include "loadbalance/schedules/schedules.h"
+#include "loadbalance/schedules/task_runner.h"
 
 namespace delray::loadbalance::internal {
 
 RankReport random_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
                            const ScheduleOptions& options, TaskFunction work) {
-  Crew crew(communicator, options, work);
+  TaskRunner runner(communicator, options, work);
   std::vector<std::uint32_t> order(tasks.count());
   std::iota(order.begin(), order.end(), 0U);
   // Not std::shuffle, which differs between libraries: ranks must agree.
@@ -20,8 +20,8 @@ RankReport random_schedule(comm::Communicator& communicator, const TaskGrid& tas
        k += static_cast<std::size_t>(communicator.size())) {
     mine.push_back({order[k], order[k] + 1});
   }
-  crew.put(mine);
-  return crew.finish();
+  runner.put(mine);
+  return runner.finish();
 }
 
 }  // namespace delray::loadbalance::internal

@@ -11,9 +11,9 @@ namespace {
 constexpr std::array kSchedules = {
     Schedule{"static", "each rank has as many consecutive tasks", &internal::static_schedule,
              "fixed"},
-    Schedule{"interlaced", "tasks are dealt out in turn, each row shifted",
+    Schedule{"interlaced", "tasks are assigned in turn, each row shifted",
              &internal::interlaced_schedule, "fixed"},
-    Schedule{"random", "tasks are dealt out in random order", &internal::random_schedule, "fixed"},
+    Schedule{"random", "tasks are assigned in random order", &internal::random_schedule, "fixed"},
     Schedule{"demand", "a master hands out a few tasks whenever a rank asks (Badouel)",
              &internal::demand, "master"},
     Schedule{"guided", "a master hands out ever fewer rows of tasks at a time (Pandzic)",

@@ -13,7 +13,7 @@ RankReport static_schedule(comm::Communicator& communicator, const TaskGrid& tas
 // interlaced: column i of row j goes to rank (i + j) modulo ranks.
 RankReport interlaced_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
                                const ScheduleOptions& options, TaskFunction work);
-// random: the tasks are shuffled, the same way on every rank, and dealt out in turn. O(tasks).
+// random: the tasks are shuffled, the same way on every rank, and assigned in turn. O(tasks).
 RankReport random_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
                            const ScheduleOptions& options, TaskFunction work);
 
@@ -44,10 +44,10 @@ RankReport stealing(comm::Communicator& communicator, const TaskGrid& tasks,
                     const ScheduleOptions& options, TaskFunction work);
 
 // Stealing from neighbours in the hypercube (Heirich and Arvo 1997): a rank that has few tasks left
-// asks those whose numbers differ from its own in one bit, and again when it has none. They give
-// half of what they have more; those that have nothing to give remember it and share what they get
-// later, so that work spreads over any distance (lifelines: Saraswat et al. 2011).
-// 2 log(ranks) messages each time.
+// asks those whose numbers differ from its own in one bit, and again when it has none. They release
+// half of what they have more; those that have nothing to release remember it and share what they
+// get later, so that work spreads over any distance (lifelines: Saraswat et al. 2011). 2 log(ranks)
+// messages each time.
 RankReport neighbour_stealing(comm::Communicator& communicator, const TaskGrid& tasks,
                               const ScheduleOptions& options, TaskFunction work);
 

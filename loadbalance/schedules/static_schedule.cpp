@@ -1,8 +1,8 @@
 #include <stdexcept>
 
-#include "loadbalance/schedules/crew.h"
 #include "loadbalance/schedules/initial_tasks.h"
 #include "loadbalance/schedules/schedules.h"
+#include "loadbalance/schedules/task_runner.h"
 
 namespace delray::loadbalance::internal {
 
@@ -25,9 +25,9 @@ std::vector<TaskRange> initial_tasks(const comm::Communicator& communicator, con
 
 RankReport static_schedule(comm::Communicator& communicator, const TaskGrid& tasks,
                            const ScheduleOptions& options, TaskFunction work) {
-  Crew crew(communicator, options, work);
-  crew.put(initial_tasks(communicator, tasks, options));
-  return crew.finish();
+  TaskRunner runner(communicator, options, work);
+  runner.put(initial_tasks(communicator, tasks, options));
+  return runner.finish();
 }
 
 }  // namespace delray::loadbalance::internal

@@ -4,41 +4,41 @@
 #include "comm/collectives.h"
 #include "loadbalance/schedules/initial_tasks.h"
 #include "loadbalance/schedules/schedules.h"
-#include "loadbalance/schedules/theft.h"
+#include "loadbalance/schedules/steal_protocol.h"
 
 namespace delray::loadbalance::internal {
 namespace {
 
-using Kind = TheftMessage::Kind;
+using Kind = StealMessage::Kind;
 
 class Thief {
  public:
   Thief(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
         TaskFunction work)
       : communicator_(communicator),
-        crew_(communicator, options, work),
-        theft_(communicator, crew_, tasks.count()),
+        runner_(communicator, options, work),
+        protocol_(communicator, runner_, tasks.count()),
         loads_(static_cast<std::size_t>(communicator.size())) {
-    crew_.put(initial_tasks(communicator, tasks, options));
+    runner_.put(initial_tasks(communicator, tasks, options));
   }
 
   RankReport run() {
-    while (!theft_.is_over()) {
+    while (!protocol_.is_over()) {
       serve();
-      if (crew_.run_one()) continue;
+      if (runner_.run_one()) continue;
       if (answers_to_come_ == 0) {
         if (may_ask_ && communicator_.size() > 1) {
           ask_for_loads();
         } else {
-          theft_.quiet();
+          protocol_.quiet();
         }
       }
-      if (!theft_.is_over()) theft_.wait();
+      if (!protocol_.is_over()) protocol_.wait();
     }
     // Who has left the run must not ask somebody who has not.
     comm::barrier(communicator_);
-    crew_.waited();
-    return crew_.finish();
+    runner_.waited();
+    return runner_.finish();
   }
 
  private:
@@ -46,29 +46,29 @@ class Thief {
   void serve() {
     bool any = false, has_tasks = false;
     while (!has_tasks) {
-      const auto message = theft_.next();
+      const auto message = protocol_.next();
       if (!message) break;
       any = true;
       has_tasks = handle(*message);
     }
-    if (any) crew_.served();
+    if (any) runner_.served();
   }
 
   // Whether there are tasks to begin.
-  bool handle(const TheftMessage& message) {
+  bool handle(const StealMessage& message) {
     switch (message.kind) {
       case Kind::ask_load:
-        theft_.send(message.from, Kind::load, crew_.waiting());
+        protocol_.send(message.from, Kind::load, runner_.waiting());
         break;
       case Kind::ask_tasks:
-        theft_.send(message.from, Kind::tasks, 1, crew_.give(message.value));
+        protocol_.send(message.from, Kind::tasks, 1, runner_.release(message.value));
         break;
       case Kind::load:
         loads_[message.from] = message.value;
         if (--answers_to_come_ == 0) ask_for_tasks();
         break;
       case Kind::tasks:
-        crew_.put(message.tasks);
+        runner_.put(message.tasks);
         if (--answers_to_come_ == 0) may_ask_ = true;
         return !message.tasks.empty();
       default:
@@ -81,7 +81,7 @@ class Thief {
     may_ask_ = false;
     for (int rank = 0; rank < communicator_.size(); ++rank) {
       if (rank == communicator_.rank()) continue;
-      theft_.send(rank, Kind::ask_load, 0);
+      protocol_.send(rank, Kind::ask_load, 0);
       ++answers_to_come_;
     }
   }
@@ -105,14 +105,14 @@ class Thief {
           std::min(static_cast<double>(loads_[rank]), std::round(wanted * before / excess) - asked);
       if (amount < 1) continue;
       asked += amount;
-      theft_.send(rank, Kind::ask_tasks, static_cast<std::uint64_t>(amount));
+      protocol_.send(rank, Kind::ask_tasks, static_cast<std::uint64_t>(amount));
       ++answers_to_come_;
     }
   }
 
   comm::Communicator& communicator_;
-  Crew crew_;
-  Theft theft_;
+  TaskRunner runner_;
+  StealProtocol protocol_;
   std::vector<std::uint64_t> loads_;  // by rank, as last told; its own 0
   int answers_to_come_ = 0;
   bool may_ask_ = true;  // not once it has found that nobody has anything

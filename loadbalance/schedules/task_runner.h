@@ -15,31 +15,31 @@
 
 namespace delray::loadbalance::internal {
 
-// Only the rank's own thread calls it, thread 0 of the crew; the others start with it and do tasks
+// Only the rank's own thread calls it, its thread 0; the other threads start with it and do tasks
 // as long as there are any.
-class Crew {
+class TaskRunner {
  public:
   // With `works` false this rank does no tasks.
-  Crew(comm::Communicator& communicator, const ScheduleOptions& options, TaskFunction work,
-       bool works = true);
+  TaskRunner(comm::Communicator& communicator, const ScheduleOptions& options, TaskFunction work,
+             bool works = true);
   // Forgets what waits; the threads end after their present tasks.
-  ~Crew();
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  ~TaskRunner();
+  TaskRunner(const TaskRunner&) = delete;
+  TaskRunner& operator=(const TaskRunner&) = delete;
 
   int threads() const { return static_cast<int>(lanes_.size()); }
   std::uint64_t waiting() const;  // tasks that nobody has begun
   std::uint64_t begun() const;
 
   void put(std::span<const TaskRange> ranges);
-  // Takes back up to `amount` of the tasks that would be begun last.
-  std::vector<TaskRange> give(std::uint64_t amount);
+  // Releases up to `amount` of the tasks that would be begun last, for another rank.
+  std::vector<TaskRange> release(std::uint64_t amount);
 
   // Does the next task; false when none waits. Throws what a task on another thread has thrown.
   bool run_one();
   // Waits until there is such a message. Throws as run_one.
   comm::Envelope wait(int from_or_any, comm::Tag tag);
-  // The time since the last call of the crew went to messages, or to waiting.
+  // The time since the last call went to messages, or to waiting.
   void served() { mark(0, Interval::Kind::serve); }
   void waited() { mark(0, Interval::Kind::wait); }
   void send(int to, comm::Tag tag, comm::Buffer&& message);

@@ -1,15 +1,16 @@
-// What ranks that take tasks from each other say, and how they find out that all tasks are begun.
+// The messages of ranks that steal tasks from each other, and how the ranks find out that all tasks
+// are begun.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <span>
 
-#include "loadbalance/schedules/crew.h"
+#include "loadbalance/schedules/task_runner.h"
 
 namespace delray::loadbalance::internal {
 
-struct TheftMessage {
+struct StealMessage {
   enum class Kind : std::uint64_t {
     ask_load,   // the answer is load
     load,       // value: tasks that wait
@@ -28,20 +29,20 @@ struct TheftMessage {
 // for each task that it begins; when it is quiet, with no tasks that wait and no answer to come, it
 // hands its units up a binomial tree of ranks. When all have come to rank 0 all tasks are begun,
 // and no message is under way as long as a rank only asks when it holds a unit.
-class Theft {
+class StealProtocol {
  public:
-  // REQUIRES: `crew` outlives it; `tasks` is the number of tasks of all ranks.
-  Theft(comm::Communicator& communicator, Crew& crew, std::uint64_t tasks);
+  // REQUIRES: `runner` outlives it; `tasks` is the number of tasks of all ranks.
+  StealProtocol(comm::Communicator& communicator, TaskRunner& runner, std::uint64_t tasks);
 
-  void send(int to, TheftMessage::Kind kind, std::uint64_t value,
+  void send(int to, StealMessage::Kind kind, std::uint64_t value,
             std::span<const TaskRange> tasks = {});
   // The next message of the schedule's own, if one is there; handles those of the count.
-  std::optional<TheftMessage> next();
+  std::optional<StealMessage> next();
   // Waits for any message.
   void wait();
 
   // Whether this rank has begun a task, or anything at all, since it was quiet.
-  bool holds_unit() const { return units_ > 0 || crew_.begun() > counted_; }
+  bool holds_unit() const { return units_ > 0 || runner_.begun() > counted_; }
   void quiet();
   bool is_over() const { return over_; }
 
@@ -49,10 +50,10 @@ class Theft {
   void end();
 
   comm::Communicator& communicator_;
-  Crew& crew_;
+  TaskRunner& runner_;
   std::uint64_t total_;
   std::uint64_t units_ = 1;    // own and from below, to be handed up; rank 0: all that have come
-  std::uint64_t counted_ = 0;  // tasks of the crew that are in the units
+  std::uint64_t counted_ = 0;  // tasks that this rank has begun and that are in the units
   bool over_ = false;
 };
 

@@ -1,4 +1,4 @@
-#include "loadbalance/schedules/crew.h"
+#include "loadbalance/schedules/task_runner.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -17,8 +17,8 @@ constexpr std::uint64_t kMost = 8, kShare = 16;
 
 }  // namespace
 
-Crew::Crew(comm::Communicator& communicator, const ScheduleOptions& options, TaskFunction work,
-           bool works)
+TaskRunner::TaskRunner(comm::Communicator& communicator, const ScheduleOptions& options,
+                       TaskFunction work, bool works)
     : communicator_(communicator), work_(work), start_(std::chrono::steady_clock::now()) {
   constexpr int kMostThreads = 4096;
   if (options.threads < 0 || options.threads > kMostThreads || options.fan_out < 2 ||
@@ -28,11 +28,11 @@ Crew::Crew(comm::Communicator& communicator, const ScheduleOptions& options, Tas
   const int threads = options.threads > 0 ? options.threads : parallel::arena_threads();
   lanes_.resize(works ? static_cast<std::size_t>(std::max(1, threads)) : 1);
   report.rank = communicator.rank();
-  report.threads = Crew::threads();
+  report.threads = TaskRunner::threads();
   report.begin = communicator.seconds();
   for (Lane& lane : lanes_) lane.until = report.begin;
   try {
-    for (int thread = 1; thread < Crew::threads(); ++thread) {
+    for (int thread = 1; thread < TaskRunner::threads(); ++thread) {
       others_.emplace_back([this, thread] { run_thread(thread); });
     }
   } catch (...) {
@@ -41,19 +41,19 @@ Crew::Crew(comm::Communicator& communicator, const ScheduleOptions& options, Tas
   }
 }
 
-Crew::~Crew() { close(); }
+TaskRunner::~TaskRunner() { close(); }
 
-std::uint64_t Crew::waiting() const {
+std::uint64_t TaskRunner::waiting() const {
   const std::lock_guard lock(mutex_);
   return queue_.size();
 }
 
-std::uint64_t Crew::begun() const {
+std::uint64_t TaskRunner::begun() const {
   const std::lock_guard lock(mutex_);
   return begun_;
 }
 
-void Crew::put(std::span<const TaskRange> ranges) {
+void TaskRunner::put(std::span<const TaskRange> ranges) {
   {
     const std::lock_guard lock(mutex_);
     if (!failure_) queue_.put(ranges);
@@ -61,12 +61,12 @@ void Crew::put(std::span<const TaskRange> ranges) {
   changed_.notify_all();
 }
 
-std::vector<TaskRange> Crew::give(std::uint64_t amount) {
+std::vector<TaskRange> TaskRunner::release(std::uint64_t amount) {
   const std::lock_guard lock(mutex_);
   return queue_.take_back(amount);
 }
 
-bool Crew::run_one() {
+bool TaskRunner::run_one() {
   TaskRange& next = lanes_[0].next;
   if (next.count() == 0) {
     const std::lock_guard lock(mutex_);
@@ -78,7 +78,7 @@ bool Crew::run_one() {
   return true;
 }
 
-comm::Envelope Crew::wait(int from_or_any, comm::Tag tag) {
+comm::Envelope TaskRunner::wait(int from_or_any, comm::Tag tag) {
   for (;;) {
     const auto deadline =
         others_.empty() ? comm::Deadline::never() : comm::Deadline::in(kFailureCheck);
@@ -91,13 +91,13 @@ comm::Envelope Crew::wait(int from_or_any, comm::Tag tag) {
   }
 }
 
-void Crew::send(int to, comm::Tag tag, comm::Buffer&& message) {
+void TaskRunner::send(int to, comm::Tag tag, comm::Buffer&& message) {
   ++report.messages;
   report.bytes_sent += message.size();
   communicator_.send(to, tag, std::move(message));
 }
 
-RankReport Crew::finish() {
+RankReport TaskRunner::finish() {
   while (run_one()) {
   }
   {
@@ -124,14 +124,14 @@ RankReport Crew::finish() {
   return std::move(report);
 }
 
-double Crew::now(int thread) const {
+double TaskRunner::now(int thread) const {
   if (thread == 0) return communicator_.seconds();
   return report.begin +
          std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 // Intervals follow each other without a gap, and become one where nothing changes.
-void Crew::mark(int thread, Interval::Kind kind, std::uint64_t tasks) {
+void TaskRunner::mark(int thread, Interval::Kind kind, std::uint64_t tasks) {
   Lane& lane = lanes_[static_cast<std::size_t>(thread)];
   const double end = now(thread);
   if (lane.intervals.empty() || lane.intervals.back().kind != kind) {
@@ -142,13 +142,13 @@ void Crew::mark(int thread, Interval::Kind kind, std::uint64_t tasks) {
   lane.until = end;
 }
 
-void Crew::run(std::uint32_t task, int thread) {
+void TaskRunner::run(std::uint32_t task, int thread) {
   work_(task, thread);
   mark(thread, Interval::Kind::work, 1);
 }
 
 // Several at once where threads would meet at the queue too often, few beside what waits.
-TaskRange Crew::pop() {
+TaskRange TaskRunner::pop() {
   const auto threads = static_cast<std::uint64_t>(lanes_.size());
   const std::uint64_t most =
       threads == 1 ? 1 : std::clamp<std::uint64_t>(queue_.size() / (kShare * threads), 1, kMost);
@@ -157,7 +157,7 @@ TaskRange Crew::pop() {
   return tasks;
 }
 
-void Crew::run_thread(int thread) {
+void TaskRunner::run_thread(int thread) {
   try {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -179,7 +179,7 @@ void Crew::run_thread(int thread) {
   }
 }
 
-void Crew::close() {
+void TaskRunner::close() {
   {
     const std::lock_guard lock(mutex_);
     queue_.clear();
@@ -189,7 +189,7 @@ void Crew::close() {
   others_.clear();
 }
 
-void Crew::rethrow_failure() {
+void TaskRunner::rethrow_failure() {
   const std::lock_guard lock(mutex_);
   if (failure_) std::rethrow_exception(failure_);
 }
