@@ -172,7 +172,7 @@ int run(Session& session, TriangulateOptions options) {
   delaunay::Statistics phases;
   how.statistics = options.statistics.empty() ? nullptr : &phases;
   std::vector<std::uint16_t> makers;
-  how.makers = options.makers ? &makers : nullptr;
+  how.created_by = options.makers ? &makers : nullptr;
   how.progress = &session.progress;
   delaunay::Triangulation result;
   std::optional<delaunay::SimplifiedTerrain> simplified;

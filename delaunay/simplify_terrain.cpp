@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "delaunay/flip/flip.h"
+#include "delaunay/flip/flip_2d.h"
 #include "delaunay/insertion/first_triangle.h"
 #include "delaunay/insertion/insertion_order.h"
 #include "delaunay/insertion/walk.h"

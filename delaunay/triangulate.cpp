@@ -16,11 +16,11 @@ Triangulation triangulate(PointView<double> points, const Options& options) {
   }
   if (resolved.statistics != nullptr) *resolved.statistics = {};
   if (resolved.progress != nullptr) resolved.progress->start(points.size());
-  if (resolved.makers == nullptr) return method_of(resolved).triangulate(points, resolved);
-  resolved.makers->clear();
+  if (resolved.created_by == nullptr) return method_of(resolved).triangulate(points, resolved);
+  resolved.created_by->clear();
   Triangulation result = method_of(resolved).triangulate(points, resolved);
   // A thread that was alone leaves that to be said here.
-  resolved.makers->resize(result.size(), 0);
+  resolved.created_by->resize(result.size(), 0);
   return result;
 }
 

@@ -57,7 +57,7 @@ struct Options {
       nullptr;  // started with the number of points and advanced, if not null
   // If not null, gets for simplex i of the result the number of the thread that made it, below
   // `threads`.
-  std::vector<std::uint16_t>* makers = nullptr;
+  std::vector<std::uint16_t>* created_by = nullptr;
 };
 
 // The triangulation that the perturbed lifting of conflict.h defines: whatever the options are, the

@@ -18,7 +18,7 @@ struct MeshView {
   const PointCloud& points;
   int corners = 3;
   std::span<const std::uint32_t> simplices;
-  std::span<const std::uint16_t> makers = {};  // one per simplex, or none
+  std::span<const std::uint16_t> created_by = {};  // one per simplex, or none
 
   std::size_t size() const { return simplices.size() / static_cast<std::size_t>(corners); }
 };
@@ -41,15 +41,15 @@ const MeshWriter& mesh_writer_for(const std::filesystem::path& path);
 // Writes points and simplices in the format that the suffix of `path` names; "-" is standard
 // output, as PLY. Every row of `points` is a vertex of the file, used or not, so that vertex
 // numbers are rows. Coordinates read back equal, but for STL, which has 32-bit floats. Colours go
-// to PLY and VTU, intensity and class to VTU. The file appears whole or not at all. `makers`, the
-// threads that made the simplices (Options::makers), go to VTU as the cells' "thread"; other
-// formats leave them out.
+// to PLY and VTU, intensity and class to VTU. The file appears whole or not at all. `created_by`,
+// the threads that made the simplices (Options::created_by), go to VTU as the cells' "thread";
+// other formats leave them out.
 //
 // Throws std::invalid_argument for an unknown suffix, for vertices that are no rows of points, for
-// attributes or makers of which there are not as many as points or simplices, FileError (device) if
-// writing fails. O(n), formatted in parallel.
+// attributes or created_by of which there are not as many as points or simplices, FileError
+// (device) if writing fails. O(n), formatted in parallel.
 void write_mesh(const std::filesystem::path& path, const PointCloud& points,
-                const Triangulation& triangulation, std::span<const std::uint16_t> makers = {});
+                const Triangulation& triangulation, std::span<const std::uint16_t> created_by = {});
 
 // The facets that belong to one simplex only: edges (2D, counterclockwise) or triangles (3D,
 // counterclockwise from outside), dim vertices each, in the order of their simplices. O(n).

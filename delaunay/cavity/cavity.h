@@ -18,7 +18,7 @@
 #include "delaunay/cavity/regions.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/mesh/slot_pool.h"
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 #include "delaunay/predicates/conflict.h"
 #include "delaunay/predicates/sphere_tests.h"
 
@@ -39,7 +39,7 @@ enum class Insertion {
 template <class Region>
 class Cavity {
  public:
-  // `vertices` as in CurveOrder3.
+  // `vertices` as in CurveOrder3d.
   Cavity(Mesh<3>& mesh, SpaceVertex* vertices, const SphereTests& tests, SlotPool& pool)
       : mesh_(mesh),
         vertices_(vertices),
@@ -59,11 +59,11 @@ class Cavity {
   void start_at(SimplexNumber simplex) { last_simplex_ = simplex; }
   SimplexNumber last_simplex() const { return last_simplex_; }
 
-  // From now on the slots of simplices that it makes get this value in `makers`, which has one for
-  // every slot. Null: it notes nothing.
-  void note_makers(std::uint16_t* makers, std::uint16_t maker) {
-    makers_ = makers;
-    maker_ = maker;
+  // From now on the slots of simplices that it makes get `creator` in `created_by`, which has a
+  // value for every slot. Null: it notes nothing.
+  void note_creator(std::uint16_t* created_by, std::uint16_t creator) {
+    created_by_ = created_by;
+    creator_ = creator;
   }
 
   // Finds the simplex that the vertex lies in. After kEqual, `place` has that simplex.
@@ -123,8 +123,8 @@ class Cavity {
   }
 
   // A ghost in whose plane q lies conflicts as the finite simplex below it does.
-  enum class Answer { kNo, kYes, kForeign };
-  Answer ghost_answer(CornerNumber corner, const glm::dvec3& q) const;
+  enum class Conflict { kNo, kYes, kForeign };
+  Conflict ghost_conflict(CornerNumber corner, const glm::dvec3& q) const;
 
   // The same, if that is known of the vertices but the one in this corner.
   bool owns_across(CornerNumber corner) const {
@@ -162,8 +162,8 @@ class Cavity {
   const TestFourSpheres test_four_;
   Region region_;
   SimplexNumber next_ = 0, last_ = 0, last_simplex_ = 0;
-  std::uint16_t* makers_ = nullptr;  // by slot
-  std::uint16_t maker_ = 0;
+  std::uint16_t* created_by_ = nullptr;  // by slot
+  std::uint16_t creator_ = 0;
   std::vector<SimplexNumber> free_;
   std::vector<Simplex> cavity_;       // the first cavity_size_
   std::vector<SimplexNumber> slots_;  // of these
@@ -242,18 +242,18 @@ Insertion Cavity<Region>::locate(VertexNumber vertex, SimplexNumber& place) {
 
 // REQUIRES: the corner looks at a simplex of the region.
 template <class Region>
-typename Cavity<Region>::Answer Cavity<Region>::ghost_answer(CornerNumber corner,
-                                                             const glm::dvec3& q) const {
+typename Cavity<Region>::Conflict Cavity<Region>::ghost_conflict(CornerNumber corner,
+                                                                 const glm::dvec3& q) const {
   const SimplexNumber simplex = simplex_of(corner);
   const int side = tests_.orient3d(at(mesh_.vertex(corner_of(simplex, 0))),
                                    at(mesh_.vertex(corner_of(simplex, 1))),
                                    at(mesh_.vertex(corner_of(simplex, 2))), q);
-  if (side != 0) return side > 0 ? Answer::kYes : Answer::kNo;
+  if (side != 0) return side > 0 ? Conflict::kYes : Conflict::kNo;
   // Only the owner may look at what is below.
-  if (!owns_across(corner)) return Answer::kForeign;
+  if (!owns_across(corner)) return Conflict::kForeign;
   const SimplexNumber below = simplex_of(mesh_.neighbour(corner_of(simplex, 3)));
-  if (mesh_.is_dead(below)) return Answer::kYes;
-  return conflicts(below, q) ? Answer::kYes : Answer::kNo;
+  if (mesh_.is_dead(below)) return Conflict::kYes;
+  return conflicts(below, q) ? Conflict::kYes : Conflict::kNo;
 }
 
 // Takes a simplex out of the mesh. REQUIRES: room for one more in the cavity.
@@ -281,17 +281,17 @@ template <class Region>
 bool Cavity<Region>::test_facets(const glm::dvec3& q) {
   const std::size_t count = std::min<std::size_t>(facet_count_, 4);
   for (std::size_t i = count; i < 4; ++i) beyond_[i] = beyond_[0];
-  FourAnswers answers = test_four_(tests_, vertices_, mesh_, beyond_.data(), q);
-  for (; answers.undecided != 0; answers.undecided &= answers.undecided - 1) {
-    const int i = std::countr_zero(answers.undecided);
+  FourConflicts found = test_four_(tests_, vertices_, mesh_, beyond_.data(), q);
+  for (; found.undecided != 0; found.undecided &= found.undecided - 1) {
+    const int i = std::countr_zero(found.undecided);
     const bool inside = conflicts_exactly(beyond_[static_cast<std::size_t>(i)], q);
-    answers.inside = (answers.inside & ~(1U << i)) | (inside ? 1U : 0U) << i;
+    found.inside = (found.inside & ~(1U << i)) | (inside ? 1U : 0U) << i;
   }
   // The sides are finished when all are known, so that half of the branches here are none.
   std::array<CornerNumber, 4> inside;
   std::size_t inside_count = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool is_inside = (answers.inside >> i & 1U) != 0;
+    const bool is_inside = (found.inside >> i & 1U) != 0;
     boundary_[side_count_] = facets_[i];
     side_count_ += is_inside ? 0 : 1;
     inside[inside_count] = cavity_[facets_[i].removed].neighbours[facets_[i].corner];
@@ -345,12 +345,12 @@ bool Cavity<Region>::find_cavity(VertexNumber vertex, SimplexNumber place) {
         continue;
       }
       if (dead) continue;
-      const Answer answer = ghost_answer(corner, q);
-      if (answer == Answer::kNo) {
+      const Conflict found = ghost_conflict(corner, q);
+      if (found == Conflict::kNo) {
         boundary_[side_count_++] = facet;
         continue;
       }
-      if (answer == Answer::kForeign || !owns_across(corner)) return false;
+      if (found == Conflict::kForeign || !owns_across(corner)) return false;
       remove(other);
     }
     ++next;
@@ -469,8 +469,8 @@ Insertion Cavity<Region>::insert(VertexNumber vertex, SimplexNumber place) {
   } else {
     connect_by_sorting();
   }
-  if (makers_ != nullptr) {
-    for (std::size_t i = 0; i < side_count_; ++i) makers_[sides_[i].number] = maker_;
+  if (created_by_ != nullptr) {
+    for (std::size_t i = 0; i < side_count_; ++i) created_by_[sides_[i].number] = creator_;
   }
   return Insertion::kDone;
 }

@@ -13,7 +13,7 @@
 #include "delaunay/mesh/slot_pool.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/mesh/stopwatch.h"
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 #include "delaunay/predicates/sphere_tests.h"
 #include "parallel/arena.h"
 
@@ -43,7 +43,7 @@ Triangulation run(PointView<double> points, const Options& options) {
   Stopwatch watch;
 
   const PointRange range = finite_range(points, options.threads);
-  CurveOrder3 order = curve_order3(points, range, options.seed, options.threads);
+  CurveOrder3d order = curve_order_3d(points, range, options.seed, options.threads);
   const std::size_t n = points.size();
   seconds.order = watch.lap();
 
@@ -64,12 +64,13 @@ Triangulation run(PointView<double> points, const Options& options) {
   start_mesh(mesh, *start);
   if (options.progress != nullptr) options.progress->advance(start->size());
   const CavityInput input{mesh, 5, *start, order, range, tests};
-  const auto insert = options.threads > 1 ? insert_together : insert_alone;
+  const auto insert = options.threads > 1 ? insert_in_parallel : insert_alone;
   const std::uint64_t distinct = insert(input, options, options.statistics);
   watch.lap();
   const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
-  Triangulation result = extract(std::move(mesh), std::span(rows.data(), rows.size()),
-                                 options.threads, options.threads > 1 ? options.makers : nullptr);
+  Triangulation result =
+      extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads,
+              options.threads > 1 ? options.created_by : nullptr);
   result.distinct = distinct;
   seconds.extract = watch.lap();
   return result;

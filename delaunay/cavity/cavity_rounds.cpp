@@ -33,18 +33,18 @@ void collect(const CavityInserter<Region>& inserter, Statistics* seconds) {
   seconds->subdivide += inserter.subdivide_seconds();
 }
 
-class Together {
+class ParallelInsertion {
  public:
-  Together(const CavityInput& input, const Options& options, bool timed)
+  ParallelInsertion(const CavityInput& input, const Options& options, bool timed)
       : input_(input),
         vertices_(input.order.vertices.data()),
         pool_(input.used, input.mesh.size()),
         threads_(static_cast<std::size_t>(options.threads)),
-        makers_(options.makers) {
+        created_by_(options.created_by) {
     for (std::size_t t = 0; t < threads_; ++t) {
       kernels_.emplace_back(input.mesh, vertices_, input.tests, pool_, options.progress, timed);
     }
-    if (makers_ != nullptr) makers_->assign(input.mesh.size(), 0);
+    if (created_by_ != nullptr) created_by_->assign(input.mesh.size(), 0);
     const glm::dvec3 size = input.range.high * 0.5 - input.range.low * 0.5;
     std::iota(axes_.begin(), axes_.end(), 0);
     std::sort(axes_.begin(), axes_.end(), [&](int i, int j) { return size[i] > size[j]; });
@@ -84,13 +84,13 @@ class Together {
   void grow_mesh() {
     grow(input_.mesh);
     pool_.extend(input_.mesh.size());
-    if (makers_ != nullptr) makers_->resize(input_.mesh.size(), 0);
+    if (created_by_ != nullptr) created_by_->resize(input_.mesh.size(), 0);
   }
   // Before the calling thread inserts with a kernel.
-  void note_makers(Kernel& inserter) const {
-    if (makers_ == nullptr) return;
+  void note_creator(Kernel& inserter) const {
+    if (created_by_ == nullptr) return;
     const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
-    inserter.kernel().note_makers(makers_->data(), thread);
+    inserter.kernel().note_creator(created_by_->data(), thread);
   }
 
   // Cuts the region of `sample` into `parts`.
@@ -192,7 +192,7 @@ class Together {
     std::vector<std::uint8_t> has_room(parts), has_inserted(parts);
     parallel::parallel_for(0, parts, 1, [&](std::size_t t) {
       const std::uint64_t before = kernels_[t].inserted();
-      note_makers(kernels_[t]);
+      note_creator(kernels_[t]);
       has_room[t] = insert_region(kernels_[t], regions[t], starts[t], waiting, done) ? 1 : 0;
       has_inserted[t] = kernels_[t].inserted() > before ? 1 : 0;
     });
@@ -212,11 +212,11 @@ class Together {
     Kernel& inserter = kernels_.front();
     inserter.kernel().set_region({});
     inserter.kernel().start_at(some_simplex_);
-    note_makers(inserter);
+    note_creator(inserter);
     for (const VertexNumber vertex : waiting) {
       while (inserter.insert(vertex) == Insertion::kFull) {
         grow_mesh();
-        note_makers(inserter);
+        note_creator(inserter);
       }
     }
     some_simplex_ = inserter.kernel().last_simplex();
@@ -226,7 +226,7 @@ class Together {
   SpaceVertex* vertices_;
   SlotPool pool_;
   std::size_t threads_;
-  std::vector<std::uint16_t>* makers_;  // by slot; null if nobody wants to know
+  std::vector<std::uint16_t>* created_by_;  // by slot; null if nobody wants to know
   std::deque<Kernel> kernels_;
   std::array<int, 3> axes_;         // longest extent first
   SimplexNumber some_simplex_ = 0;  // finite and alive
@@ -258,14 +258,14 @@ std::uint64_t insert_alone(const CavityInput& input, const Options& options, Sta
   return inserter.inserted() + input.start.size();
 }
 
-std::uint64_t insert_together(const CavityInput& input, const Options& options,
-                              Statistics* seconds) {
-  Together together(input, options, seconds != nullptr);
+std::uint64_t insert_in_parallel(const CavityInput& input, const Options& options,
+                                 Statistics* seconds) {
+  ParallelInsertion insertion(input, options, seconds != nullptr);
   const std::vector<std::uint32_t>& rounds = input.order.rounds;
   for (std::size_t round = 0; round + 1 < rounds.size(); ++round) {
-    together.insert_round(rounds[round], rounds[round + 1]);
+    insertion.insert_round(rounds[round], rounds[round + 1]);
   }
-  return together.finish(seconds) + input.start.size();
+  return insertion.finish(seconds) + input.start.size();
 }
 
 }  // namespace delray::delaunay::internal

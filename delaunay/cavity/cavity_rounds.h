@@ -6,7 +6,7 @@
 #include <span>
 
 #include "delaunay/mesh/mesh.h"
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 #include "delaunay/predicates/sphere_tests.h"
 #include "delaunay/triangulate.h"
 
@@ -17,7 +17,7 @@ struct CavityInput {
   Mesh<3>& mesh;  // its first `used` slots hold a triangulation of the vertices `start`
   SimplexNumber used;
   std::span<const VertexNumber> start;
-  CurveOrder3& order;
+  CurveOrder3d& order;
   const PointRange& range;
   const SphereTests& tests;
 };
@@ -31,8 +31,8 @@ std::uint64_t insert_alone(const CavityInput& input, const Options& options, Sta
 // around the points of a round is cut where it has as many points on one side as on the other, and
 // so on, until there is a region for every thread (cavity.h). Points that need simplices
 // of several regions wait for a pass with other cuts, and the last of them for one thread.
-std::uint64_t insert_together(const CavityInput& input, const Options& options,
-                              Statistics* seconds);
+std::uint64_t insert_in_parallel(const CavityInput& input, const Options& options,
+                                 Statistics* seconds);
 
 // Makes room for more simplices. Errors: std::bad_alloc.
 void grow(Mesh<3>& mesh);

@@ -80,9 +80,9 @@ HWY_INLINE unsigned bits_of(const Mask& mask) {
   return bytes[0] & ((1U << kLanes) - 1);
 }
 
-HWY_INLINE FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* vertices,
-                                  const Mesh<3>& mesh, const SimplexNumber* simplices,
-                                  const glm::dvec3& point) {
+HWY_INLINE FourConflicts test_lanes(const SphereTests& tests, const SpaceVertex* vertices,
+                                    const Mesh<3>& mesh, const SimplexNumber* simplices,
+                                    const glm::dvec3& point) {
   const Doubles tag;
   const Points q = {hn::Set(tag, point.x), hn::Set(tag, point.y), hn::Set(tag, point.z)};
   const Points a = relative(load_corners(vertices, mesh, simplices, 0), q);
@@ -134,11 +134,11 @@ HWY_INLINE FourAnswers test_lanes(const SphereTests& tests, const SpaceVertex* v
   return {bits_of(inside), bits_of(too_small)};
 }
 
-FourAnswers test_four(const SphereTests& tests, const SpaceVertex* vertices, const Mesh<3>& mesh,
-                      const SimplexNumber* simplices, const glm::dvec3& q) {
-  FourAnswers all = {0, 0};
+FourConflicts test_four(const SphereTests& tests, const SpaceVertex* vertices, const Mesh<3>& mesh,
+                        const SimplexNumber* simplices, const glm::dvec3& q) {
+  FourConflicts all = {0, 0};
   for (unsigned first = 0; first < 4; first += kLanes) {
-    const FourAnswers some = test_lanes(tests, vertices, mesh, simplices + first, q);
+    const FourConflicts some = test_lanes(tests, vertices, mesh, simplices + first, q);
     all.inside |= some.inside << first;
     all.undecided |= some.undecided << first;
   }

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "delaunay/divide_and_conquer/hull_mesh.h"
-#include "delaunay/divide_and_conquer/knit.h"
-#include "delaunay/divide_and_conquer/seam_filter.h"
-#include "delaunay/divide_and_conquer/seam_pair.h"
+#include "delaunay/divide_and_conquer/merge.h"
+#include "delaunay/divide_and_conquer/merge_filter.h"
+#include "delaunay/divide_and_conquer/merge_pair.h"
 #include "delaunay/flip/four_points.h"
 #include "delaunay/mesh/extract.h"
 #include "delaunay/mesh/mesh.h"
@@ -43,15 +43,15 @@ class Divider {
         filter_({order.points.data(), order.points.size()}, order.box, options.threads),
         progress_(options.progress),
         parallel_(options.threads > 1),
-        makers_(parallel_ ? options.makers : nullptr) {
-    if (makers_ != nullptr) makers_->assign(mesh.size(), 0);
+        created_by_(parallel_ ? options.created_by : nullptr) {
+    if (created_by_ != nullptr) created_by_->assign(mesh.size(), 0);
   }
 
   // Triangulates points [first, last), whose triangles are [2 first, 2 last - 2): merging two
   // ranges needs two triangles more than they have, and those lie between them.
   Part divide(std::size_t first, std::size_t last, const CellGrid& grid) {
     if (!parallel_ || last - first <= kPointsPerTask) {
-      note_makers(first, last);
+      note_creator(first, last);
       return timed([&] { return divide_alone(first, last, grid); });
     }
     const std::uint32_t low = grid.number(points_[first]), high = grid.number(points_[last - 1]);
@@ -63,7 +63,7 @@ class Divider {
     });
     const Part whole =
         timed([&] { return merge(halves[0], halves[1], split, split_by_y(low, high)); });
-    note_seam_makers(split);
+    note_creator_of_merge(split);
     return whole;
   }
 
@@ -85,21 +85,21 @@ class Divider {
   }
 
   // All triangles of a range are the calling thread's.
-  void note_makers(std::size_t first, std::size_t last) const {
-    if (makers_ == nullptr) return;
-    const auto begin = makers_->begin() + static_cast<std::ptrdiff_t>(2 * first);
-    const auto end = makers_->begin() + static_cast<std::ptrdiff_t>(2 * last - 2);
+  void note_creator(std::size_t first, std::size_t last) const {
+    if (created_by_ == nullptr) return;
+    const auto begin = created_by_->begin() + static_cast<std::ptrdiff_t>(2 * first);
+    const auto end = created_by_->begin() + static_cast<std::ptrdiff_t>(2 * last - 2);
     std::fill(begin, end, static_cast<std::uint16_t>(parallel::arena_thread()));
   }
-  // The same of those that a merge has made: they have vertices on both sides of `split`, and lie
-  // in a row from one of the two slots before it to the other.
-  void note_seam_makers(std::size_t split) const {
-    if (makers_ == nullptr) return;
+  // The triangles that a merge has made are the calling thread's too: they have vertices on both
+  // sides of `split`, and lie in a row from one of the two slots before it to the other.
+  void note_creator_of_merge(std::size_t split) const {
+    if (created_by_ == nullptr) return;
     const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
     const Mesh<2>& mesh = hulls_.mesh;
     CornerNumber entry = mesh.neighbour(static_cast<SimplexNumber>(2 * split - 2), 2);
     while (!mesh.is_ghost(simplex_of(entry))) {
-      (*makers_)[simplex_of(entry)] = thread;
+      (*created_by_)[simplex_of(entry)] = thread;
       // The other edge with an end on either side is opposite the vertex on the apex's side.
       const CornerNumber one = next_corner(entry), other = previous_corner(entry);
       const bool is_apex_first = mesh.vertex(entry) < split;
@@ -232,8 +232,8 @@ class Divider {
   // Four points; none if three of them are on a line or all on a circle, or nearly so.
   std::optional<Part> four(VertexNumber first) {
     const glm::dvec2* p = points_ + first;
-    const SeamViewPair seen_01(p[0], p[1], PointPair(p[2], p[3]));
-    const SeamViewPair seen_23(p[2], p[3], PointPair(p[0], p[1]));
+    const EdgeViewPair seen_01(p[0], p[1], PointPair(p[2], p[3]));
+    const EdgeViewPair seen_23(p[2], p[3], PointPair(p[0], p[1]));
     unsigned left = 0, right = 0, bottom = 0, top = 0;
     for (unsigned i = 1; i < 4; ++i) {
       left = before(p[i].x, p[i].y, p[left].x, p[left].y) ? i : left;
@@ -241,7 +241,7 @@ class Divider {
       bottom = before(p[i].y, p[i].x, p[bottom].y, p[bottom].x) ? i : bottom;
       top = before(p[top].y, p[top].x, p[i].y, p[i].x) ? i : top;
     }
-    const SeamFilter::Bounds bounds =
+    const MergeFilter::Bounds bounds =
         filter_.bounds((p[right].x - p[left].x) + (p[top].y - p[bottom].y));
     const double error = std::max(bounds.cross, 0.0);
     const double determinant =
@@ -287,8 +287,8 @@ class Divider {
   Part merge(const Part& first, const Part& second, std::size_t split, bool by_y) {
     const auto spare = static_cast<SimplexNumber>(2 * split - 2);
     const auto [lower, upper] =
-        knit(hulls_, filter_, by_y ? first.top : first.right, by_y ? second.bottom : second.left,
-             extent_of(first, second), spare);
+        internal::merge(hulls_, filter_, by_y ? first.top : first.right,
+                        by_y ? second.bottom : second.left, extent_of(first, second), spare);
     // The edges of the hull that start at these two are new; those of the other extremes are not.
     const auto of_first = [&, vertex = lower.left, ghost = lower.ghost](HullVertex v) {
       return v.vertex == vertex ? HullVertex{vertex, ghost} : v;
@@ -329,10 +329,10 @@ class Divider {
 
   const glm::dvec2* points_;
   HullMesh hulls_;
-  SeamFilter filter_;
+  MergeFilter filter_;
   parallel::Progress* progress_;
   bool parallel_;
-  std::vector<std::uint16_t>* makers_;  // by slot; null if nobody wants to know
+  std::vector<std::uint16_t>* created_by_;  // by slot; null if nobody wants to know
   std::atomic<double> seconds_ = 0;
 };
 
@@ -352,7 +352,7 @@ Triangulation run(PointView<double> points, const Options& options) {
   watch.lap();
   order.points = {};
   Triangulation result = extract(std::move(mesh), {order.rows.data(), n}, options.threads,
-                                 n >= 2 && options.threads > 1 ? options.makers : nullptr);
+                                 n >= 2 && options.threads > 1 ? options.created_by : nullptr);
   seconds.extract = watch.lap();
   if (options.statistics != nullptr) *options.statistics = seconds;
   return result;

@@ -6,9 +6,9 @@
 
 namespace delray::delaunay::internal {
 
-// Triangulates halves of the points on either side of a line and knits them together (Guibas and
+// Triangulates halves of the points on either side of a line and merges them (Guibas and
 // Stolfi 1985), with ghost triangles for the hulls (Shewchuk 1996). Lines alternate between the
-// axes, so that halves meet along short seams (Dwyer 1987), and are the edges of the cells of a
+// axes, so that merge lines are short (Dwyer 1987), and are the edges of the cells of a
 // grid, so that a radix sort finds all of them. O(n) expected for points of bounded density, O(n)
 // times the depth of the cells otherwise; no input makes it quadratic.
 //

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "delaunay/dynamic/moving_mesh.h"
-#include "delaunay/dynamic/sites.h"
+#include "delaunay/dynamic/distinct_points.h"
+#include "delaunay/dynamic/dynamic_mesh.h"
 #include "delaunay/insertion/first_tetrahedron.h"
 #include "delaunay/insertion/insertion_order.h"
 #include "delaunay/mesh/arguments.h"
@@ -49,7 +49,7 @@ bool is_positive(const std::array<glm::dvec3, 4>& p) {
 
 template <int D>
 struct DynamicTriangulation<D>::State {
-  internal::Sites<D> sites;
+  internal::DistinctPoints<D> sites;
   // Per site: a simplex that once had it; kNowhere as long as it is to be inserted.
   std::vector<SimplexNumber> near;
 
@@ -57,7 +57,7 @@ struct DynamicTriangulation<D>::State {
   // are on: none if they have to be found again.
   bool meshed = false;
   std::vector<std::uint32_t> frame;
-  internal::MovingMesh<D> mesh;
+  internal::DynamicMesh<D> mesh;
   SimplexNumber last = 0;  // a live simplex
   std::uint32_t random = 1;
 

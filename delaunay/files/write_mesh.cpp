@@ -54,17 +54,17 @@ const MeshWriter& mesh_writer_for(const std::filesystem::path& path) {
 }
 
 void write_mesh(const std::filesystem::path& path, const PointCloud& points,
-                const Triangulation& triangulation, std::span<const std::uint16_t> makers) {
+                const Triangulation& triangulation, std::span<const std::uint16_t> created_by) {
   const MeshWriter& writer = mesh_writer_for(path);
   internal::check_triangulation(triangulation, points.size());
   internal::check_attributes(points);
-  if (!makers.empty() && makers.size() != triangulation.size())
-    throw std::invalid_argument("makers: one for each simplex");
+  if (!created_by.empty() && created_by.size() != triangulation.size())
+    throw std::invalid_argument("created_by: one for each simplex");
   if (triangulation.dim == 3 && !writer.tetrahedra) {
     const std::vector<std::uint32_t> facets = hull_facets(triangulation);
     writer.write(path, {points, 3, facets});
   } else {
-    writer.write(path, {points, triangulation.dim + 1, triangulation.vertices, makers});
+    writer.write(path, {points, triangulation.dim + 1, triangulation.vertices, created_by});
   }
 }
 

@@ -41,7 +41,7 @@ std::string describe(const MeshView& mesh) {
   if (!points.intensity.empty()) xml += arrays.add("Float32", "intensity", 1, n * 4);
   if (!points.classification.empty()) xml += arrays.add("UInt8", "classification", 1, n);
   xml += "</PointData>\n";
-  if (!mesh.makers.empty()) {
+  if (!mesh.created_by.empty()) {
     xml += "<CellData>\n" + arrays.add("UInt16", "thread", 1, cells * 2) + "</CellData>\n";
   }
   return xml + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
@@ -81,9 +81,9 @@ void write_vtu(const std::filesystem::path& path, const MeshView& mesh) {
   if (!points.colours.empty()) write_values(output, points.colours);
   if (!points.intensity.empty()) write_values(output, points.intensity);
   if (!points.classification.empty()) write_values(output, points.classification);
-  if (!mesh.makers.empty()) {
+  if (!mesh.created_by.empty()) {
     write_array(output, mesh.size(), 2,
-                [&](std::size_t i, std::string& row) { append_bytes(row, mesh.makers[i]); });
+                [&](std::size_t i, std::string& row) { append_bytes(row, mesh.created_by[i]); });
   }
   output.write("\n</AppendedData>\n</VTKFile>\n");
   output.close();

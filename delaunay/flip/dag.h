@@ -64,15 +64,15 @@ class Dag {
   explicit Dag(std::size_t nodes = 0, std::size_t leaves = 0)
       : nodes_(nodes, kMaximumSimplices), records_(leaves, kMaximumSimplices) {}
 
-  // The first of kCacheSize nodes for the calling thread alone, which calls itself `maker`. Errors:
-  // std::bad_alloc, also for more than kMaximumSimplices nodes.
-  NodeNumber allocate(std::uint32_t maker) {
+  // The first of kCacheSize nodes for the calling thread alone, which calls itself `thread`.
+  // Errors: std::bad_alloc, also for more than kMaximumSimplices nodes.
+  NodeNumber allocate(std::uint32_t thread) {
     NodeNumber first = 0;
     Node* ahead = nullptr;
     {
       const std::lock_guard guard(growing_);
       first = nodes_.extend(kCacheSize);
-      makers_.push_back(maker);
+      created_by_.push_back(thread);
       ahead = nodes_.ahead_of(first, kCacheSize);
     }
     if (ahead != nullptr) atomic(ahead->family).fetch_or(0, std::memory_order_relaxed);
@@ -105,7 +105,8 @@ class Dag {
     return nodes_.size() * sizeof(Node) + records_.size() * sizeof(Record);
   }
 
-  std::uint32_t maker(NodeNumber node) const { return makers_[node / kCacheSize]; }
+  // The thread that the node was allocated for.
+  std::uint32_t created_by(NodeNumber node) const { return created_by_[node / kCacheSize]; }
 
   VertexNumber vertex(CornerNumber corner) const {
     return nodes_[simplex_of(corner)].vertices[corner & 3];
@@ -214,7 +215,7 @@ class Dag {
   }
 
   std::mutex growing_;
-  std::vector<std::uint32_t> makers_;  // of each kCacheSize nodes
+  std::vector<std::uint32_t> created_by_;  // of each kCacheSize nodes
   internal::GrowingArray<Node> nodes_;
   internal::GrowingArray<Record> records_;
 };

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "delaunay/flip/flip.h"
+#include "delaunay/flip/flip_2d.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/mesh/access.h"
 #include "delaunay/mesh/array.h"

@@ -7,7 +7,7 @@
 #include <new>
 #include <vector>
 
-#include "delaunay/flip/dag_flip.h"
+#include "delaunay/flip/dag_access.h"
 #include "delaunay/mesh/mesh.h"
 
 namespace delray::delaunay::internal {
@@ -15,7 +15,7 @@ namespace delray::delaunay::internal {
 // Grants everything, uses the slots of retired tetrahedra again and lets the mesh grow.
 class ReusingAccess {
  public:
-  static constexpr bool kShakes = false;
+  static constexpr bool kMayRetry = false;
 
   // Slots from `used` on are free.
   ReusingAccess(Mesh<3>& mesh, SimplexNumber used) : mesh_(mesh), used_(used), last_(0) {}

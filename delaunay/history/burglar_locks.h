@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/flip/dag_flip.h"
+#include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
 #include "delaunay/history/thread_waits.h"
 #include "delaunay/mesh/team.h"
@@ -26,7 +26,7 @@ namespace delray::delaunay::internal {
 template <int D, bool kCounted>
 class BurglarLocks {
  public:
-  static constexpr bool kShakes = true;
+  static constexpr bool kMayRetry = true;
 
   BurglarLocks(Dag<D>& dag, Team& team, ThreadWaits& waits, std::uint32_t thread,
                std::size_t threads)
@@ -38,7 +38,7 @@ class BurglarLocks {
     for (const NodeNumber node : nodes) {
       RecordNumber record = kNoRecord;
       const std::uint32_t owner = held_.try_lock(node, record);
-      if (owner == kReplaced) return Grant::kShaken;
+      if (owner == kReplaced) return Grant::kRetry;
       if (owner == held_.owner() || (owner != 0 && robbed_[owner - 1])) {
         if (kCounted) ++counts_.already_locked;
         continue;
@@ -48,7 +48,7 @@ class BurglarLocks {
         continue;
       }
       if (kCounted) ++counts_.waits;
-      if (wait_or_rob(node, record)) return Grant::kShaken;
+      if (wait_or_rob(node, record)) return Grant::kRetry;
     }
     return Grant::kGranted;
   }

@@ -7,7 +7,7 @@
 #include "delaunay/history/dag_run.h"
 #include "delaunay/history/delaunay_repair.h"
 #include "delaunay/history/insert_in_leaf.h"
-#include "delaunay/history/insert_shaken.h"
+#include "delaunay/history/insert_with_retry.h"
 #include "delaunay/history/insertion.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/history/leaf_search.h"
@@ -49,7 +49,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       [&](Burglar& burglar, VertexNumber vertex, std::vector<NodeNumber>& suspects,
           InsertionPhases& phases) {
         const NodeNumber leaf = burglar.search.find(run.point(vertex));
-        insert_shaken(run, triangulation, leaf, vertex, burglar.access, suspects, phases);
+        insert_with_retry(run, triangulation, leaf, vertex, burglar.access, suspects, phases);
         burglar.access.commit();
       },
       [&](const Burglar& burglar) {
@@ -64,7 +64,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   Triangulation result = run.finish();
   if (repaired) return result;
   if (kCounted) ++options.statistics->synchronization.rebuilds;
-  if (options.makers != nullptr) options.makers->clear();
+  if (options.created_by != nullptr) options.created_by->clear();
   return rebuild(points, options);
 }
 

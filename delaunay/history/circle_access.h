@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "delaunay/flip/dag_flip.h"
+#include "delaunay/flip/dag_flip_2d.h"
 #include "delaunay/history/current_points.h"
 #include "delaunay/history/node_cache.h"
 #include "delaunay/mesh/team.h"
@@ -29,7 +29,7 @@ namespace delray::delaunay::internal {
 template <bool kCounted>
 class CircleAccess {
  public:
-  static constexpr bool kShakes = true;
+  static constexpr bool kMayRetry = true;
 
   CircleAccess(const DagTriangulation<2>& triangulation, Team& team, CurrentPoints& current,
                std::uint32_t thread)
@@ -43,7 +43,7 @@ class CircleAccess {
   // To be called before the first node is acquired for a vertex.
   void begin(VertexNumber vertex) { current_.set(thread_, vertex); }
 
-  // Never kRefused. kShaken if it has waited, with nothing acquired.
+  // Never kRefused. kRetry if it has waited, with nothing acquired.
   Grant acquire(std::initializer_list<NodeNumber> nodes) {
     if (kCounted) ++counts_.lock_calls;
     for (std::size_t other = 0; other < current_.threads(); ++other) {
@@ -53,7 +53,7 @@ class CircleAccess {
       for (const NodeNumber node : nodes) {
         if (!is_inside(vertex, node)) continue;
         if (kCounted) ++counts_.waits;
-        if (wait_or_rob(other, vertex)) return Grant::kShaken;
+        if (wait_or_rob(other, vertex)) return Grant::kRetry;
         break;
       }
     }

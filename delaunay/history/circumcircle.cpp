@@ -8,7 +8,7 @@
 #include "delaunay/history/dag_run.h"
 #include "delaunay/history/delaunay_repair.h"
 #include "delaunay/history/insert_in_leaf.h"
-#include "delaunay/history/insert_shaken.h"
+#include "delaunay/history/insert_with_retry.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/mesh/add_counts.h"
 
@@ -37,7 +37,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
                     root_of(triangulation.dag, triangulation.orientation, q), q);
         // Not before, because the others wait for this point from now on.
         access.begin(vertex);
-        insert_shaken(run, triangulation, leaf, vertex, access, suspects, phases);
+        insert_with_retry(run, triangulation, leaf, vertex, access, suspects, phases);
         access.commit();
       },
       [&](const CircleAccess<kCounted>& access) {

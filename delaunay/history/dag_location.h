@@ -18,7 +18,7 @@ NodeNumber root_of(const Dag<3>& dag, const Orientation<3>& orientation, const g
 
 // The leaf below `node` that contains q, its boundary included. May run while other threads insert:
 // what it returns was a leaf when it was read. Children must be as subdivide() and legalize() lay
-// them out (dag_flip.h, flip3.h). Expected O(log n) from a root if the points came in
+// them out (dag_flip_2d.h, flip_3d.h). Expected O(log n) from a root if the points came in
 // random order.
 //
 // REQUIRES: q lies in `node`, its boundary included.

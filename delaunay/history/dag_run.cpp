@@ -31,7 +31,8 @@ std::uint64_t count_fragments(const Dag<D>& dag) {
       open.pop_back();
       for (unsigned k = 0; k <= D; ++k) {
         const NodeNumber next = simplex_of(dag.neighbour(corner_of(node, k)));
-        if (seen[next] || dag.is_ghost(next) || dag.maker(next) != dag.maker(start)) continue;
+        if (seen[next] || dag.is_ghost(next) || dag.created_by(next) != dag.created_by(start))
+          continue;
         seen[next] = true;
         open.push_back(next);
       }
@@ -119,7 +120,7 @@ Triangulation DagRun<D>::leaves() const {
   if (is_flat()) return result;
   struct Share {
     std::vector<std::uint32_t> vertices;
-    std::vector<std::uint16_t> makers;
+    std::vector<std::uint16_t> created_by;
     std::uint64_t ghosts = 0;
   };
   const auto threads = static_cast<std::size_t>(options.threads);
@@ -136,8 +137,8 @@ Triangulation DagRun<D>::leaves() const {
       for (unsigned k = 0; k <= D; ++k) {
         own.vertices.push_back(rows_[dag_.vertex(corner_of(node, k))]);
       }
-      if (options.makers != nullptr) {
-        own.makers.push_back(static_cast<std::uint16_t>(dag_.maker(node)));
+      if (options.created_by != nullptr) {
+        own.created_by.push_back(static_cast<std::uint16_t>(dag_.created_by(node)));
       }
     }
     shares[i] = std::move(own);
@@ -155,9 +156,10 @@ Triangulation DagRun<D>::leaves() const {
     result.vertices.insert(result.vertices.end(), shares[i].vertices.begin(),
                            shares[i].vertices.end());
   }
-  if (options.makers != nullptr) {
+  if (options.created_by != nullptr) {
     for (const Share& share : shares) {
-      options.makers->insert(options.makers->end(), share.makers.begin(), share.makers.end());
+      options.created_by->insert(options.created_by->end(), share.created_by.begin(),
+                                 share.created_by.end());
     }
   }
   result.hull_facets = ghosts;

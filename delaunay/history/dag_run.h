@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/flip/dag_flip.h"
-#include "delaunay/flip/dag_flip3.h"
+#include "delaunay/flip/dag_flip_2d.h"
+#include "delaunay/flip/dag_flip_3d.h"
 #include "delaunay/insertion/plan.h"
 #include "delaunay/insertion/point_supply.h"
 #include "delaunay/points.h"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "delaunay/flip/dag_flip.h"
-#include "delaunay/flip/dag_flip3.h"
+#include "delaunay/flip/dag_flip_2d.h"
+#include "delaunay/flip/dag_flip_3d.h"
 
 namespace delray::delaunay::internal {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "delaunay/flip/dag_flip.h"
+#include "delaunay/flip/dag_flip_2d.h"
 #include "delaunay/history/dag_location.h"
 #include "delaunay/history/dag_run.h"
 #include "delaunay/history/sole_dag_access.h"

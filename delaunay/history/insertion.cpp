@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "delaunay/flip/flip.h"
-#include "delaunay/flip/flip3.h"
+#include "delaunay/flip/flip_2d.h"
+#include "delaunay/flip/flip_3d.h"
 #include "delaunay/flip/hierarchy.h"
 #include "delaunay/flip/reusing_access.h"
 #include "delaunay/history/dag_location.h"
@@ -94,7 +94,7 @@ class WalkedMesh<3> {
   Mesh<3> mesh_;
   ReusingAccess access_{mesh_, 5};
   std::vector<CornerNumber> suspects_;
-  Flips3<Mesh<3>, ReusingAccess> flips_{mesh_, orientation_, access_, suspects_};
+  Flips3d<Mesh<3>, ReusingAccess> flips_{mesh_, orientation_, access_, suspects_};
   std::uint32_t random_;
 };
 

@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/flip/dag_flip.h"
-#include "delaunay/flip/dag_flip3.h"
+#include "delaunay/flip/dag_flip_2d.h"
+#include "delaunay/flip/dag_flip_3d.h"
 #include "delaunay/history/dag_location.h"
 
 namespace delray::delaunay::internal {

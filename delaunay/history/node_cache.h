@@ -11,7 +11,7 @@ namespace delray::delaunay::internal {
 template <int D>
 class NodeCache {
  public:
-  NodeCache(Dag<D>& dag, std::uint32_t maker) : dag_(dag), maker_(maker) {}
+  NodeCache(Dag<D>& dag, std::uint32_t thread) : dag_(dag), thread_(thread) {}
   ~NodeCache() { abandon_rest(); }
   NodeCache(const NodeCache&) = delete;
   NodeCache& operator=(const NodeCache&) = delete;
@@ -21,7 +21,7 @@ class NodeCache {
     if (end_ - next_ >= count) return;
     if (begin_ != next_) earlier_.push_back({begin_, next_});
     abandon_rest();
-    next_ = dag_.allocate(maker_);
+    next_ = dag_.allocate(thread_);
     end_ = next_ + Dag<D>::kCacheSize;
     begin_ = next_;
   }
@@ -69,7 +69,7 @@ class NodeCache {
   }
 
   Dag<D>& dag_;
-  std::uint32_t maker_;
+  std::uint32_t thread_;
   NodeNumber begin_ = 0, next_ = 0, end_ = 0;
   std::vector<Nodes> earlier_;  // new ones, apart from [begin_, next_)
   RecordNumber next_record_ = 0, end_record_ = 0;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/flip/dag_flip.h"
+#include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
 #include "delaunay/history/thread_waits.h"
 #include "delaunay/mesh/team.h"
@@ -35,7 +35,7 @@ struct Blocking {
 template <int D, bool kCounted>
 class NodeLocks {
  public:
-  static constexpr bool kShakes = false;
+  static constexpr bool kMayRetry = false;
 
   NodeLocks(Dag<D>& dag, Team& team, Blocking& blocking, std::uint32_t thread, bool priorities)
       : dag_(dag),

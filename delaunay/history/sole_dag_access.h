@@ -6,7 +6,7 @@
 #include <initializer_list>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/flip/dag_flip.h"
+#include "delaunay/flip/dag_access.h"
 #include "delaunay/history/node_cache.h"
 
 namespace delray::delaunay::internal {
@@ -15,7 +15,7 @@ namespace delray::delaunay::internal {
 template <int D>
 class SoleDagAccess {
  public:
-  static constexpr bool kShakes = false;
+  static constexpr bool kMayRetry = false;
 
   SoleDagAccess(Dag<D>& dag, std::uint32_t thread) : dag_(dag), cache_(dag, thread) {}
 

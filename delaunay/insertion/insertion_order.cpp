@@ -14,7 +14,7 @@
 #include "delaunay/mesh/blocks.h"
 #include "delaunay/mesh/team.h"
 #include "delaunay/order/cells.h"
-#include "delaunay/order/hilbert3.h"
+#include "delaunay/order/hilbert_3d.h"
 #include "delaunay/order/radix_sort.h"
 
 namespace delray::delaunay {

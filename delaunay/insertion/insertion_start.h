@@ -10,7 +10,7 @@
 #include "delaunay/insertion/first_tetrahedron.h"
 #include "delaunay/insertion/first_triangle.h"
 #include "delaunay/mesh/mesh.h"
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 #include "delaunay/order/finite_points.h"
 #include "delaunay/points.h"
 

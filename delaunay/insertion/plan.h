@@ -17,7 +17,7 @@ struct Plan {
   std::size_t parts() const { return begins.size() - 1; }
 };
 
-// Deals the points to `parts` parts whose sizes differ by at most one. `split` is one of those of
+// Assigns the points to `parts` parts whose sizes differ by at most one. `split` is one of those of
 // splits() in methods.h (Kohout 2004, 7.8.7):
 // - random: any points;
 // - slabs: by x, so that parts are strips;

@@ -8,7 +8,7 @@
 
 namespace delray::delaunay {
 
-// For each row the lowest row with the same coordinates 0 .. dim-1; -0 equals 0. Rows are dealt
+// For each row the lowest row with the same coordinates 0 .. dim-1; -0 equals 0. Rows are put
 // into buckets by a hash, and each bucket goes through a small table that stays in the cache.
 // O(n) expected, parallel.
 //

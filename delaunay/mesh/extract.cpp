@@ -21,7 +21,7 @@ constexpr std::size_t kPiece = std::size_t{1} << (D == 2 ? 18 : 16);
 // not depend on the number of threads.
 template <int D>
 Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads,
-                      std::vector<std::uint16_t>* makers) {
+                      std::vector<std::uint16_t>* created_by) {
   constexpr std::size_t kCorners = Mesh<D>::kCorners;
   Mesh<D> own = std::move(mesh);
   Triangulation result;
@@ -35,7 +35,7 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
   const std::size_t pieces = (own.size() + kPiece<D> - 1) / kPiece<D>;
   const auto work = [&] {
     Array<VertexNumber> packed(kCorners * std::min(kPiece<D>, own.size()));
-    std::vector<std::uint16_t> own_makers;
+    std::vector<std::uint16_t> own_created_by;
     for (std::size_t piece; (piece = next_taken++) < pieces;) {
       const std::size_t first = piece * kPiece<D>, last = std::min(own.size(), first + kPiece<D>);
       std::size_t count = 0, own_ghosts = 0;
@@ -46,17 +46,17 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
           continue;
         }
         for (unsigned k = 0; k < kCorners; ++k) packed[count++] = rows[own.vertex(simplex, k)];
-        if (makers != nullptr) own_makers.push_back((*makers)[simplex]);
+        if (created_by != nullptr) own_created_by.push_back((*created_by)[simplex]);
       }
       own.discard(first, last);
       // Pieces are taken in order, so whoever has the one before is at work on it.
       for (std::size_t i; (i = next_appended) != piece;) next_appended.wait(i);
       result.vertices.insert(result.vertices.end(), packed.data(), packed.data() + count);
-      if (makers != nullptr) {
+      if (created_by != nullptr) {
         // Their slots are those of this piece and of pieces before it, which nobody reads any more.
-        std::ranges::copy(own_makers, makers->begin() + static_cast<std::ptrdiff_t>(made));
-        made += own_makers.size();
-        own_makers.clear();
+        std::ranges::copy(own_created_by, created_by->begin() + static_cast<std::ptrdiff_t>(made));
+        made += own_created_by.size();
+        own_created_by.clear();
       }
       ghosts += own_ghosts;
       ++next_appended;
@@ -69,15 +69,15 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
   } else {
     parallel::parallel_for(0, workers, 1, [&](std::size_t) { work(); });
   }
-  if (makers != nullptr) makers->resize(made);
+  if (created_by != nullptr) created_by->resize(made);
   // Of collinear points only ghosts are left, and those bound nothing.
   if (!result.vertices.empty()) result.hull_facets = ghosts;
   return result;
 }
 
 template Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads,
-                               std::vector<std::uint16_t>* makers);
+                               std::vector<std::uint16_t>* created_by);
 template Triangulation extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads,
-                               std::vector<std::uint16_t>* makers);
+                               std::vector<std::uint16_t>* created_by);
 
 }  // namespace delray::delaunay::internal

@@ -142,7 +142,7 @@ std::size_t order_cell(const Rows& all) {
   return kept;
 }
 
-// Neighbours along the curve that are dealt out together.
+// Neighbours along the curve that are assigned together.
 class Buckets {
  public:
   // Counts the points in squares of cells.
@@ -158,7 +158,7 @@ class Buckets {
         ++count[grid.square(point_at(points, row), bits_)];
       }
     });
-    deal(counts);
+    assign_squares(counts);
     places_.resize(blocks.count());
     blocks.for_each([&](std::size_t block, std::size_t, std::size_t) {
       places_[block].assign(begin_.size(), 0);
@@ -196,7 +196,7 @@ class Buckets {
   static constexpr std::size_t kMost = 2048;
 
   // Squares that follow each other along the curve share a bucket while they have few points.
-  void deal(const std::vector<Array<std::uint32_t>>& counts) {
+  void assign_squares(const std::vector<Array<std::uint32_t>>& counts) {
     const std::size_t enough = std::max(kPoints, blocks_.size() / kMost);
     const std::uint32_t squares = std::uint32_t{1} << 2 * bits_;
     bucket_of_.resize(squares);

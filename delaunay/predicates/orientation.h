@@ -11,7 +11,7 @@
 namespace delray::delaunay {
 
 template <int D>
-class Orientation;  // in space: orientation3.h
+class Orientation;  // in space: orientation_3d.h
 
 // The infinite vertex behaves as if it lay opposite to a point o just inside the first triangle: a
 // hull vertex a and the infinite vertex span the ray from a away from o. Those rays cut what is

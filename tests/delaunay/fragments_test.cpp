@@ -24,7 +24,7 @@ Triangulation of(const PointCloud& points, const Options& options) {
 
 // By joining simplices that have a facet in common.
 std::uint64_t fragments_by_facets(const Triangulation& mesh,
-                                  const std::vector<std::uint16_t>& makers) {
+                                  const std::vector<std::uint16_t>& created_by) {
   std::vector<std::size_t> root(mesh.size());
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](std::size_t i) {
@@ -40,7 +40,7 @@ std::uint64_t fragments_by_facets(const Triangulation& mesh,
         if (k != without) facet.push_back(mesh.vertices[corners * i + k]);
       std::sort(facet.begin(), facet.end());
       const auto [at, is_first] = simplex_of_facet.emplace(facet, i);
-      if (!is_first && makers[at->second] == makers[i]) root[find(i)] = find(at->second);
+      if (!is_first && created_by[at->second] == created_by[i]) root[find(i)] = find(at->second);
     }
   }
   std::uint64_t fragments = 0;
@@ -56,18 +56,19 @@ TEST(Fragments, AreSetsOfOneMakerJoinedByFacets) {
     const Triangulation mesh = of(points, options);
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
       std::mt19937 random(seed);
-      std::vector<std::uint16_t> makers(mesh.size());
-      // The first of many makers makes most.
-      for (std::uint16_t& maker : makers)
-        maker = static_cast<std::uint16_t>(random() % (seed + 1) * (random() % 2));
-      EXPECT_EQ(count_fragments(mesh, makers, points.size()), fragments_by_facets(mesh, makers))
+      std::vector<std::uint16_t> created_by(mesh.size());
+      // The first of many threads makes most.
+      for (std::uint16_t& creator : created_by)
+        creator = static_cast<std::uint16_t>(random() % (seed + 1) * (random() % 2));
+      EXPECT_EQ(count_fragments(mesh, created_by, points.size()),
+                fragments_by_facets(mesh, created_by))
           << dim << "D, seed " << seed;
     }
   }
   EXPECT_EQ(count_fragments({}, {}, 0), 0U);
 }
 
-TEST(Makers, AreNotedForEverySimplexByEveryMethod) {
+TEST(CreatedBy, AreNotedForEverySimplexByEveryMethod) {
   const parallel::AllowThreads allowed(3);
   for (const int dim : {2, 3}) {
     // Enough for several tasks of divide and conquer, and for several regions of cavities.
@@ -80,19 +81,19 @@ TEST(Makers, AreNotedForEverySimplexByEveryMethod) {
       for (const int threads : {1, 3}) {
         SCOPED_TRACE(std::to_string(dim) + "D " + std::string(method.name) + ", " +
                      std::to_string(threads) + " threads");
-        std::vector<std::uint16_t> makers = {9};  // what was there goes
+        std::vector<std::uint16_t> created_by = {9};  // what was there goes
         Statistics statistics;
         options.method = method.name;
         options.threads = threads;
-        options.makers = &makers;
+        options.created_by = &created_by;
         options.statistics = &statistics;
         const Triangulation mesh = of(points, options);
         ASSERT_EQ(hash(mesh), expected);
-        ASSERT_EQ(makers.size(), mesh.size());
-        EXPECT_LT(*std::ranges::max_element(makers), threads);
-        const std::uint64_t fragments = count_fragments(mesh, makers, points.size());
+        ASSERT_EQ(created_by.size(), mesh.size());
+        EXPECT_LT(*std::ranges::max_element(created_by), threads);
+        const std::uint64_t fragments = count_fragments(mesh, created_by, points.size());
         const std::uint64_t counted = statistics.synchronization.fragments;
-        // Makers in another order than the simplices would leave few that lie together.
+        // Creators in another order than the simplices would leave few that lie together.
         if (counted > 0) {
           EXPECT_EQ(fragments, counted);
         } else {
@@ -103,20 +104,20 @@ TEST(Makers, AreNotedForEverySimplexByEveryMethod) {
   }
 }
 
-TEST(Makers, AreNoneWithoutSimplices) {
+TEST(CreatedBy, AreNoneWithoutSimplices) {
   const PointCloud points = generate_points("uniform", 20000, 2, 3);
   PointCloud line = points;
   for (glm::dvec3& p : line.positions) p.y = p.x;
   for (const Method& method : methods()) {
     for (const int dim : method.dims) {
-      std::vector<std::uint16_t> makers = {1, 2, 3};
+      std::vector<std::uint16_t> created_by = {1, 2, 3};
       Options options;
       options.dim = dim;
       options.method = method.name;
       options.threads = 2;
-      options.makers = &makers;
+      options.created_by = &created_by;
       EXPECT_EQ(of(line, options).size(), 0U);
-      EXPECT_TRUE(makers.empty()) << method.name;
+      EXPECT_TRUE(created_by.empty()) << method.name;
     }
   }
 }

@@ -10,7 +10,7 @@
 #include "delaunay/combinations.h"
 #include "delaunay/triangulate.h"
 #include "tests/delaunay/hard_points.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 
@@ -20,7 +20,7 @@ auto hard_points_of() {
   if constexpr (D == 2) {
     return hard_points();
   } else {
-    return hard_points3();
+    return hard_points_3d();
   }
 }
 

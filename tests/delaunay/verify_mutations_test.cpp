@@ -78,8 +78,8 @@ void expect_accepted() {
     EXPECT_FALSE(verdict.simplex.has_value());
   }
 }
-TEST(VerifyMutations, AcceptsBruteForce2) { expect_accepted<2>(); }
-TEST(VerifyMutations, AcceptsBruteForce3) { expect_accepted<3>(); }
+TEST(VerifyMutations, AcceptsBruteForce2d) { expect_accepted<2>(); }
+TEST(VerifyMutations, AcceptsBruteForce3d) { expect_accepted<3>(); }
 
 // 1000 mutants of a kind, none of which may be valid.
 template <int D, class Mutate>
@@ -110,8 +110,8 @@ void expect_missing_found() {
     return true;
   });
 }
-TEST(VerifyMutations, FindsMissing2) { expect_missing_found<2>(); }
-TEST(VerifyMutations, FindsMissing3) { expect_missing_found<3>(); }
+TEST(VerifyMutations, FindsMissing2d) { expect_missing_found<2>(); }
+TEST(VerifyMutations, FindsMissing3d) { expect_missing_found<3>(); }
 
 template <int D>
 void expect_doubled_found() {
@@ -126,8 +126,8 @@ void expect_doubled_found() {
     return true;
   });
 }
-TEST(VerifyMutations, FindsDoubled2) { expect_doubled_found<2>(); }
-TEST(VerifyMutations, FindsDoubled3) { expect_doubled_found<3>(); }
+TEST(VerifyMutations, FindsDoubled2d) { expect_doubled_found<2>(); }
+TEST(VerifyMutations, FindsDoubled3d) { expect_doubled_found<3>(); }
 
 // Two vertices of a simplex, or of two simplices, exchanged.
 template <int D>
@@ -140,8 +140,8 @@ void expect_swapped_found() {
     return true;
   });
 }
-TEST(VerifyMutations, FindsSwapped2) { expect_swapped_found<2>(); }
-TEST(VerifyMutations, FindsSwapped3) { expect_swapped_found<3>(); }
+TEST(VerifyMutations, FindsSwapped2d) { expect_swapped_found<2>(); }
+TEST(VerifyMutations, FindsSwapped3d) { expect_swapped_found<3>(); }
 
 template <int D>
 void expect_replaced_found() {
@@ -153,8 +153,8 @@ void expect_replaced_found() {
     return true;
   });
 }
-TEST(VerifyMutations, FindsReplaced2) { expect_replaced_found<2>(); }
-TEST(VerifyMutations, FindsReplaced3) { expect_replaced_found<3>(); }
+TEST(VerifyMutations, FindsReplaced2d) { expect_replaced_found<2>(); }
+TEST(VerifyMutations, FindsReplaced3d) { expect_replaced_found<3>(); }
 
 // Facet i of simplex t and the vertex q beyond it: D simplices take the place of two, which turn
 // about the edge from the vertex opposite to the facet to q.
@@ -235,8 +235,8 @@ void expect_flips_found() {
   EXPECT_GT(valid, 200U);
   EXPECT_GT(ties, D == 2 ? 20U : 5U);
 }
-TEST(VerifyMutations, FindsWrongFlips2) { expect_flips_found<2>(); }
-TEST(VerifyMutations, FindsWrongFlips3) { expect_flips_found<3>(); }
+TEST(VerifyMutations, FindsWrongFlips2d) { expect_flips_found<2>(); }
+TEST(VerifyMutations, FindsWrongFlips3d) { expect_flips_found<3>(); }
 
 TEST(VerifyMutations, AcceptsNoTetrahedraInAPlaneOnly) {
   std::vector<glm::dvec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}, {1, 1, 1}, {0, 1, 1}};

@@ -167,7 +167,7 @@ class Comparison {
     std::vector<std::uint16_t> makers;
     delaunay::Options counting = how;
     counting.statistics = &row.statistics;
-    counting.makers = &makers;
+    counting.created_by = &makers;
     const delaunay::Triangulation made = triangulate(points, counting);
     row.distinct = made.distinct;
     row.simplices = made.size();

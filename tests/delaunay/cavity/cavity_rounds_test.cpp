@@ -8,7 +8,7 @@
 
 #include "delaunay/generate.h"
 #include "delaunay/triangulate.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -46,7 +46,7 @@ TEST(CavityRounds, EightRegionsMakeTheSameSimplices) {
 }
 
 TEST(CavityRounds, PointsOfFewPlacesMakeTheSameSimplices) {
-  for (const HardPoints3& kind : hard_points3()) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     // Two lines, and others that are like them, have quadratically many tetrahedra.
     if (kind.name == "near a sphere" || kind.name == "of all sizes") continue;
     expect_same(kind.make(6000, 1), kind.name, {2});

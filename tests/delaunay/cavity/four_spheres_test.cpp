@@ -9,7 +9,7 @@
 #include "tests/support/targets.h"
 
 #include "delaunay/predicates/conflict.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 #include "tests/support/targets.h"
 
 namespace delray::delaunay::internal {
@@ -49,7 +49,7 @@ Tally compare(const std::vector<glm::dvec3>& points, std::uint64_t seed) {
     if (made == 0) continue;
     std::array<SimplexNumber, 4> simplices;
     for (SimplexNumber i = 0; i < 4; ++i) simplices[i] = i < made ? i : 0;
-    const FourAnswers answers = test(tests, vertices.data(), mesh, simplices.data(), q);
+    const FourConflicts answers = test(tests, vertices.data(), mesh, simplices.data(), q);
     for (unsigned i = 0; i < 4; ++i) {
       const bool undecided = (answers.undecided >> i & 1U) != 0;
       (undecided ? tally.undecided : tally.decided) += 1;
@@ -62,7 +62,7 @@ Tally compare(const std::vector<glm::dvec3>& points, std::uint64_t seed) {
 
 TEST(FourSpheres, AnswerLikeThePredicatesOnEveryInstructionSet) {
   tests::for_each_target([] {
-    for (const HardPoints3& kind : hard_points3()) {
+    for (const HardPoints3d& kind : hard_points_3d()) {
       for (std::uint64_t seed = 0; seed < 2; ++seed) {
         SCOPED_TRACE(kind.name);
         const Tally tally = compare(kind.make(40, seed), seed);

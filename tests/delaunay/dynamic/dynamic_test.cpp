@@ -8,7 +8,7 @@
 #include "delaunay/generate.h"
 #include "delaunay/triangulate.h"
 #include "tests/delaunay/hard_points.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -75,7 +75,7 @@ TEST(DynamicTriangulation, IsTriangulateAfterEveryStep) {
 }
 
 TEST(DynamicTriangulation, IsTriangulateAfterEveryStepInSpace) {
-  for (const HardPoints3& kind : hard_points3()) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     for (std::uint64_t seed = 0; seed < 2; ++seed) {
       SCOPED_TRACE(kind.name + ", seed " + std::to_string(seed));
       grow_and_shrink<3>(kind.make(40, seed), 40, seed);

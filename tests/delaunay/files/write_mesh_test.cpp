@@ -90,9 +90,9 @@ TEST(WriteMesh, KeepsTetrahedraWhereTheFormatCan) {
 // The last array of the file: so many bytes after their number.
 TEST(WriteMesh, VtuTellsWhoMadeWhat) {
   const tests::TemporaryFolder folder;
-  const std::vector<std::uint16_t> makers = {258, 3};
+  const std::vector<std::uint16_t> created_by = {258, 3};
   for (const char* name : {"a.vtu", "a.ply"}) {
-    write_mesh(folder / name, two_tetrahedra_points(), two_tetrahedra(), makers);
+    write_mesh(folder / name, two_tetrahedra_points(), two_tetrahedra(), created_by);
     const std::string bytes = files::read_file(folder / name);
     const std::string tail("\4\0\0\0\0\0\0\0\2\1\3\0\n</AppendedData>", 28);
     const bool is_vtu = std::strcmp(name, "a.vtu") == 0;

@@ -9,7 +9,7 @@
 
 #include "delaunay/methods.h"
 #include "tests/delaunay/hard_points.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -30,7 +30,7 @@ TEST(InsertionOrder, IsAPermutation) {
 
 TEST(InsertionOrder, IsAPermutationInSpaceToo) {
   for (const Choice& order : orders()) {
-    for (const HardPoints3& kind : hard_points3()) {
+    for (const HardPoints3d& kind : hard_points_3d()) {
       for (const std::size_t n : {1, 65, 500}) {
         const auto points = kind.make(n, 1);
         std::vector<std::uint32_t> numbers = insertion_order(points, order.name, 5, 0.6);

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "delaunay/flip/flip.h"
+#include "delaunay/flip/flip_2d.h"
 #include "delaunay/mesh/access.h"
 #include "delaunay/predicates.h"
 #include "tests/delaunay/hard_points.h"

@@ -20,21 +20,21 @@ void expect_finite(SimplexNumber simplices, int threads) {
   std::vector<std::uint32_t> rows((D + 1) * std::size_t{simplices});
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<std::uint32_t>(2 * i + 1);
   std::vector<Simplex> expected;
-  std::vector<std::uint16_t> makers(simplices), expected_makers;
+  std::vector<std::uint16_t> created_by(simplices), expected_created_by;
   for (SimplexNumber t = 0; t < simplices; ++t) {
     for (unsigned k = 0; k <= D; ++k) mesh.set_vertex(corner_of(t, k), (D + 1) * t + k);
     if (t % 5 == 1) mesh.set_vertex(corner_of(t, t % (D + 1)), kInfiniteVertex);
     if (t % 5 == 2) mesh.set_vertex(corner_of(t, 0), kDeadVertex);
     EXPECT_EQ(mesh.is_ghost(t), t % 5 == 1);
     EXPECT_EQ(mesh.is_dead(t), t % 5 == 2);
-    makers[t] = static_cast<std::uint16_t>(t % 1013);
+    created_by[t] = static_cast<std::uint16_t>(t % 1013);
     if (t % 5 == 1 || t % 5 == 2) continue;
-    expected_makers.push_back(makers[t]);
+    expected_created_by.push_back(created_by[t]);
     const auto first = rows.begin() + (D + 1) * std::ptrdiff_t{t};
     expected.emplace_back(first, first + D + 1);
   }
   const Triangulation result = parallel::Arena(threads).execute(
-      [&] { return extract(std::move(mesh), rows, threads, &makers); });
+      [&] { return extract(std::move(mesh), rows, threads, &created_by); });
   EXPECT_EQ(result.dim, D);
   EXPECT_EQ(result.distinct, rows.size());
   EXPECT_EQ(result.hull_facets, simplices / 5);
@@ -42,7 +42,7 @@ void expect_finite(SimplexNumber simplices, int threads) {
   for (auto at = result.vertices.begin(); at != result.vertices.end(); at += D + 1) {
     actual.emplace_back(at, at + D + 1);
   }
-  EXPECT_EQ(makers, expected_makers);
+  EXPECT_EQ(created_by, expected_created_by);
   EXPECT_EQ(actual, expected) << D << "D, " << threads << " threads";
 }
 

@@ -8,7 +8,7 @@
 
 #include "tests/delaunay/brute_force.h"
 #include "tests/delaunay/hard_points.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -61,7 +61,7 @@ TEST(Conflict, AGhostConflictsBeyondItsEdgeAndStrictlyWithinIt) {
 
 TEST(Conflict, FollowsTheRuleForPointsOnACommonSphere) {
   int cospherical = 0;
-  for (const HardPoints3& kind : hard_points3()) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
       const std::vector<glm::dvec3> p = kind.make(5, seed);
       Mesh<3> mesh(1);

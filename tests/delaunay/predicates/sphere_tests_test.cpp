@@ -5,15 +5,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 #include "delaunay/predicates.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay::internal {
 namespace {
 
 TEST(SphereTests, HaveTheSignsOfThePredicatesForAnyPoints) {
-  for (const HardPoints3& kind : hard_points3()) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     int zeros = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       const auto p = kind.make(24, seed);

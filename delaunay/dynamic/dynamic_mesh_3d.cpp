@@ -1,6 +1,6 @@
 #include <cassert>
 
-#include "delaunay/dynamic/moving_mesh.h"
+#include "delaunay/dynamic/dynamic_mesh.h"
 #include "delaunay/insertion/first_tetrahedron.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/predicates.h"
@@ -46,12 +46,12 @@ std::array<VertexNumber, 4> vertices_of(const Mesh<3>& mesh, SimplexNumber simpl
 
 }  // namespace
 
-void MovingMesh<3>::start(const std::array<VertexNumber, 4>& tetrahedron) {
+void DynamicMesh<3>::start(const std::array<VertexNumber, 4>& tetrahedron) {
   slots_.restart(5);
   start_mesh(slots_.mesh(), tetrahedron);
 }
 
-void MovingMesh<3>::visit_none() {
+void DynamicMesh<3>::visit_none() {
   visited_.resize(mesh().size(), 0);
   if (++round_ != 0) return;
   std::ranges::fill(visited_, 0U);
@@ -59,7 +59,7 @@ void MovingMesh<3>::visit_none() {
 }
 
 // Whether this is the first visit.
-bool MovingMesh<3>::visit(SimplexNumber simplex) {
+bool DynamicMesh<3>::visit(SimplexNumber simplex) {
   if (visited_[simplex] == round_) return false;
   visited_[simplex] = round_;
   return true;
@@ -67,8 +67,8 @@ bool MovingMesh<3>::visit(SimplexNumber simplex) {
 
 // A finite simplex that contains q, or a ghost whose facet q is strictly beyond. Walks over facets
 // that have q beyond them; no such walk goes round in circles (Edelsbrunner 1990).
-SimplexNumber MovingMesh<3>::locate(std::span<const glm::dvec3> points, const glm::dvec3& q,
-                                    SimplexNumber near) const {
+SimplexNumber DynamicMesh<3>::locate(std::span<const glm::dvec3> points, const glm::dvec3& q,
+                                     SimplexNumber near) const {
   SimplexNumber here = near;
   unsigned entered = 4;
   for (unsigned k = 0; k < 4; ++k) {
@@ -94,7 +94,7 @@ SimplexNumber MovingMesh<3>::locate(std::span<const glm::dvec3> points, const gl
 }
 
 // Links the sides with each other over the edges that they have in common.
-void MovingMesh<3>::link_sides() {
+void DynamicMesh<3>::link_sides() {
   struct Edge {
     VertexNumber low, high;
     CornerNumber corner;
@@ -121,8 +121,8 @@ void MovingMesh<3>::link_sides() {
   }
 }
 
-SimplexNumber MovingMesh<3>::insert(std::span<const glm::dvec3> points, VertexNumber vertex,
-                                    SimplexNumber near) {
+SimplexNumber DynamicMesh<3>::insert(std::span<const glm::dvec3> points, VertexNumber vertex,
+                                     SimplexNumber near) {
   const glm::dvec3& q = points[vertex];
   visit_none();
   sides_.clear();
@@ -157,7 +157,7 @@ SimplexNumber MovingMesh<3>::insert(std::span<const glm::dvec3> points, VertexNu
 }
 
 // The simplices around a vertex, as cavity and sides, and its neighbours.
-void MovingMesh<3>::find_star(VertexNumber vertex, SimplexNumber simplex) {
+void DynamicMesh<3>::find_star(VertexNumber vertex, SimplexNumber simplex) {
   visit_none();
   sides_.clear();
   link_.clear();
@@ -181,7 +181,7 @@ void MovingMesh<3>::find_star(VertexNumber vertex, SimplexNumber simplex) {
 
 // Triangulates the neighbours. If they are in one plane, something beside it is needed that tells
 // above from below; false if there is nothing.
-bool MovingMesh<3>::triangulate_link(std::span<const glm::dvec3> points) {
+bool DynamicMesh<3>::triangulate_link(std::span<const glm::dvec3> points) {
   hole_vertices_ = link_;
   hole_points_.clear();
   for (const VertexNumber vertex : link_) hole_points_.push_back(points[vertex]);
@@ -194,7 +194,7 @@ bool MovingMesh<3>::triangulate_link(std::span<const glm::dvec3> points) {
     start = first_tetrahedron(hole_points_);
   }
   if (!start) return false;
-  if (!hole_) hole_ = std::make_unique<MovingMesh>();
+  if (!hole_) hole_ = std::make_unique<DynamicMesh>();
   hole_->start(*start);
   SimplexNumber near = 0;
   for (VertexNumber i = 0; i < hole_points_.size(); ++i) {
@@ -204,7 +204,7 @@ bool MovingMesh<3>::triangulate_link(std::span<const glm::dvec3> points) {
 }
 
 // Copies what the triangulation of the neighbours has within the sides.
-void MovingMesh<3>::fill() {
+void DynamicMesh<3>::fill() {
   const Mesh<3>& hole = hole_->mesh();
   std::vector<std::pair<Facet, std::uint32_t>> walls;
   for (std::uint32_t i = 0; i < sides_.size(); ++i) {
@@ -259,9 +259,9 @@ void MovingMesh<3>::fill() {
   cavity_.assign(1, number[inside.front()]);
 }
 
-std::optional<SimplexNumber> MovingMesh<3>::remove(std::span<const glm::dvec3> points,
-                                                   VertexNumber vertex, SimplexNumber near,
-                                                   std::size_t others) {
+std::optional<SimplexNumber> DynamicMesh<3>::remove(std::span<const glm::dvec3> points,
+                                                    VertexNumber vertex, SimplexNumber near,
+                                                    std::size_t others) {
   find_star(vertex, locate(points, points[vertex], near));
   const bool has_volume = triangulate_link(points);
   assert(has_volume || link_.size() == others);

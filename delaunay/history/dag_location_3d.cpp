@@ -2,7 +2,7 @@
 
 #include "delaunay/history/dag_location.h"
 #include "delaunay/history/leaf_walk.h"
-#include "delaunay/insertion/orientation3.h"
+#include "delaunay/insertion/orientation_3d.h"
 
 namespace delray::delaunay {
 namespace {

@@ -1,4 +1,5 @@
-// The tests of both sides of a seam at once: lane 0 is the left side's, lane 1 the right side's.
+// The tests of both sides of a merge line at once: lane 0 is the left side's, lane 1 the right
+// side's.
 #pragma once
 
 #include <cstdint>
@@ -35,9 +36,9 @@ struct PointPair {
   Pair x, y;
 };
 
-// Two points as the edge from a to b sees them (see SeamView).
-struct SeamViewPair {
-  SeamViewPair(const glm::dvec2& a, const glm::dvec2& b, const PointPair& p) {
+// Two points as the edge from a to b sees them (see EdgeView).
+struct EdgeViewPair {
+  EdgeViewPair(const glm::dvec2& a, const glm::dvec2& b, const PointPair& p) {
     const Pair ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
     dot = ax * bx + ay * by;
     cross = ax * by - ay * bx;

@@ -31,7 +31,7 @@ void expect_same(const std::vector<glm::dvec3>& points, const std::string& name)
   }
 }
 
-TEST(Cgal2, AgreesOnGeneratedPoints) {
+TEST(Cgal2d, AgreesOnGeneratedPoints) {
   for (const PointGenerator& generator : point_generators()) {
     for (const std::size_t n : {100, 20000}) {
       expect_same(generator.generate(n, 2, n).positions, std::string(generator.name));
@@ -39,7 +39,7 @@ TEST(Cgal2, AgreesOnGeneratedPoints) {
   }
 }
 
-TEST(Cgal2, AgreesOnHardPoints) {
+TEST(Cgal2d, AgreesOnHardPoints) {
   for (const HardPoints& kind : hard_points()) {
     for (const std::size_t n : {10, 30, 300}) {
       for (std::uint64_t seed = 0; seed < 10; ++seed) {

@@ -12,7 +12,7 @@
 #include "delaunay/predicates.h"
 #include "delaunay/triangulate.h"
 #include "tests/delaunay/brute_force.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -49,9 +49,9 @@ std::string name_of(const Options& options) {
   return options.method + ", threads " + std::to_string(options.threads);
 }
 
-TEST(Triangulate3, IsTheBruteForceTriangulationOfHardPoints) {
+TEST(Triangulate3d, IsTheBruteForceTriangulationOfHardPoints) {
   constexpr std::array<std::size_t, 8> kSizes = {1, 2, 3, 4, 5, 6, 8, 11};
-  for (const HardPoints3& kind : hard_points3()) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     for (const std::size_t n : kSizes) {
       for (std::uint64_t seed = 0; seed < (n < 8 ? 20U : 3U); ++seed) {
         const auto points = kind.make(n, seed);
@@ -65,8 +65,8 @@ TEST(Triangulate3, IsTheBruteForceTriangulationOfHardPoints) {
   }
 }
 
-TEST(Triangulate3, SimplicesArePositivelyOriented) {
-  for (const HardPoints3& kind : hard_points3()) {
+TEST(Triangulate3d, SimplicesArePositivelyOriented) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     const auto points = kind.make(80, 7);
     for (const Options& options : combinations()) {
       const Triangulation result = triangulate(view(points), options);
@@ -80,7 +80,7 @@ TEST(Triangulate3, SimplicesArePositivelyOriented) {
   }
 }
 
-TEST(Triangulate3, NothingGivesNothing) {
+TEST(Triangulate3d, NothingGivesNothing) {
   for (const Options& options : combinations()) {
     const Triangulation result = triangulate(view(std::vector<glm::dvec3>{}), options);
     EXPECT_EQ(result.size(), 0U);
@@ -89,10 +89,10 @@ TEST(Triangulate3, NothingGivesNothing) {
   }
 }
 
-TEST(Triangulate3, NamesTheRowThatIsNotFinite) {
+TEST(Triangulate3d, NamesTheRowThatIsNotFinite) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
-    auto points = hard_points3().front().make(50, 1);
+    auto points = hard_points_3d().front().make(50, 1);
     points[17].z = bad;
     points[31].x = bad;
     for (const Options& options : combinations()) {
@@ -106,8 +106,8 @@ TEST(Triangulate3, NamesTheRowThatIsNotFinite) {
   }
 }
 
-TEST(Triangulate3, CountsPhasesOnlyWhenAsked) {
-  const auto points = hard_points3().front().make(3000, 2);
+TEST(Triangulate3d, CountsPhasesOnlyWhenAsked) {
+  const auto points = hard_points_3d().front().make(3000, 2);
   for (Options options : combinations()) {
     Statistics statistics;
     options.statistics = &statistics;

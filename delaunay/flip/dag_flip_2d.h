@@ -1,14 +1,5 @@
-// Insertion by subdivision and flips (Lawson 1977) that leaves the history behind (Kohout 2004, 6).
-//
-// What may be touched when is the matter of an access policy:
-//   Grant acquire({nodes})   before an operation, for all nodes that it writes or decides by
-//   reserve(count)           so many slots will be created with consecutive numbers
-//   NodeNumber create()      a slot that is acquired already
-//   link(outside, inside)    makes two facets one; `outside` is of an older node, `inside` of a new
-//   retire(node, children)   gives a leaf its children
-//   kShakes                  whether it may answer kShaken
-// All of it is small and called some ten times a point, so it is inlined into the two loops below.
-// An operation is a subdivision or a flip; between operations the leaves are a triangulation.
+// Insertion into triangles by subdivision and flips (Lawson 1977) that leaves the history behind
+// (Kohout 2004, 6), under a policy of access (dag_access.h).
 #pragma once
 
 #include <array>
@@ -17,19 +8,11 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
+#include "delaunay/flip/dag_access.h"
 #include "delaunay/predicates/conflict.h"
 #include "delaunay/predicates/orientation.h"
 
 namespace delray::delaunay::internal {
-
-enum class Grant {
-  kGranted,
-  kRefused,  // nothing will come of it: undo everything
-  kShaken,   // others may have changed acquired nodes meanwhile: look again
-};
-
-template <int D>
-struct DagTriangulation;  // in space: dag_flip3.h
 
 template <>
 struct DagTriangulation<2> {
@@ -71,9 +54,9 @@ template <class Access>
   const Grant grant =
       access.acquire({simplex_of(around[0]), simplex_of(around[1]), simplex_of(around[2])});
   if (grant != Grant::kGranted) return grant;
-  if constexpr (Access::kShakes) {
+  if constexpr (Access::kMayRetry) {
     for (unsigned k = 0; k < 3; ++k) {
-      if (dag.neighbour(corner_of(leaf, k)) != around[k]) return Grant::kShaken;
+      if (dag.neighbour(corner_of(leaf, k)) != around[k]) return Grant::kRetry;
     }
   }
   std::array<NodeNumber, 3> children;
@@ -111,7 +94,7 @@ Grant split_edge(const DagTriangulation<2>& triangulation, CornerNumber corner, 
   if (dag.neighbour(corner) != beyond || dag.neighbour(right) != over_right ||
       dag.neighbour(left) != over_left || dag.neighbour(previous_corner(beyond)) != beyond_left ||
       dag.neighbour(next_corner(beyond)) != beyond_right) {
-    return Grant::kShaken;
+    return Grant::kRetry;
   }
   const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
   const VertexNumber first = dag.vertex(right), last = dag.vertex(left);
@@ -149,10 +132,10 @@ Grant flip(const DagTriangulation<2>& triangulation, CornerNumber corner, Access
   const Grant grant = access.acquire({simplex_of(over_right), simplex_of(over_left),
                                       simplex_of(beyond_left), simplex_of(beyond_right)});
   if (grant != Grant::kGranted) return grant;
-  if constexpr (Access::kShakes) {
+  if constexpr (Access::kMayRetry) {
     if (dag.neighbour(previous_corner(beyond)) != beyond_left ||
         dag.neighbour(next_corner(beyond)) != beyond_right) {
-      return Grant::kShaken;
+      return Grant::kRetry;
     }
   }
   const VertexNumber near = dag.vertex(corner), far = dag.vertex(beyond);
@@ -171,14 +154,14 @@ Grant flip(const DagTriangulation<2>& triangulation, CornerNumber corner, Access
 }
 
 // Flips until no leaf of the new vertex has a neighbour in conflict with it; `suspects` are such
-// leaves, the vertex in corner 2. Never kShaken. After kRefused some are left.
+// leaves, the vertex in corner 2. Never kRetry. After kRefused some are left.
 template <class Access>
 [[gnu::flatten]] Grant legalize(const DagTriangulation<2>& triangulation, Access& access,
                                 std::vector<NodeNumber>& suspects) {
   const Dag<2>& dag = triangulation.dag;
   while (!suspects.empty()) {
     const NodeNumber suspect = suspects.back();
-    if constexpr (Access::kShakes) {
+    if constexpr (Access::kMayRetry) {
       if (!dag.is_leaf(suspect)) {
         suspects.pop_back();
         continue;
@@ -189,12 +172,12 @@ template <class Access>
     const CornerNumber beyond = dag.neighbour(corner);
     Grant grant = access.acquire({simplex_of(beyond)});
     if (grant == Grant::kRefused) return grant;
-    if (grant == Grant::kShaken) continue;
-    if constexpr (Access::kShakes) {
+    if (grant == Grant::kRetry) continue;
+    if constexpr (Access::kMayRetry) {
       if (dag.neighbour(corner) != beyond) continue;
     }
     bool flips = conflict(triangulation, simplex_of(beyond), triangulation.points[vertex]);
-    if constexpr (Access::kShakes) {
+    if constexpr (Access::kMayRetry) {
       // Beside an unfinished insertion of another thread circles are no proof of anything.
       const VertexNumber first = dag.vertex(next_corner(corner)),
                          last = dag.vertex(previous_corner(corner)), far = dag.vertex(beyond);
@@ -209,7 +192,7 @@ template <class Access>
     std::array<NodeNumber, 2> made{};
     grant = flip(triangulation, corner, access, made);
     if (grant == Grant::kRefused) return grant;
-    if (grant == Grant::kShaken) continue;
+    if (grant == Grant::kRetry) continue;
     suspects.back() = made[0];
     suspects.push_back(made[1]);
   }

@@ -12,7 +12,7 @@
 
 namespace delray::delaunay {
 
-struct HardPoints3 {
+struct HardPoints3d {
   std::string name;
   std::function<glm::dvec3(std::mt19937_64&)> point;
 
@@ -24,7 +24,7 @@ struct HardPoints3 {
   }
 };
 
-inline std::vector<HardPoints3> hard_points3() {
+inline std::vector<HardPoints3d> hard_points_3d() {
   using Random = std::mt19937_64;
   using Vector = glm::dvec3;
   const auto unit = [](Random& r) { return std::uniform_real_distribution<>(0, 1)(r); };

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "delaunay/mesh/mesh.h"
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 #include "delaunay/points.h"
 #include "delaunay/predicates/orientation.h"
 #include "delaunay/predicates/sphere_tests.h"

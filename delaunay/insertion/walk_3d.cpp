@@ -1,6 +1,6 @@
 #include <array>
 
-#include "delaunay/insertion/orientation3.h"
+#include "delaunay/insertion/orientation_3d.h"
 #include "delaunay/insertion/walk.h"
 
 namespace delray::delaunay {

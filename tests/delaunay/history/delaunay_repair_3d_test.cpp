@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "delaunay/history/delaunay_repair.h"
-#include "delaunay/history/insert_shaken.h"
+#include "delaunay/history/insert_with_retry.h"
 #include "delaunay/history/sole_dag_access.h"
 #include "delaunay/methods.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -30,7 +30,7 @@ void insert(internal::DagRun<3>& run, const internal::DagTriangulation<3>& trian
 }
 
 // Flips never get stuck around a single vertex. With many, they may: then repair() says so.
-TEST(DelaunayRepair3, FlipsToTheDelaunayTriangulationOrSaysThatItCannot) {
+TEST(DelaunayRepair3d, FlipsToTheDelaunayTriangulationOrSaysThatItCannot) {
   Options options;
   options.dim = 3;
   options.method = "burglary";
@@ -38,7 +38,7 @@ TEST(DelaunayRepair3, FlipsToTheDelaunayTriangulationOrSaysThatItCannot) {
   Options plain;
   plain.dim = 3;
   std::uint64_t seed = 0, replaced = 0, stuck = 0;
-  for (const HardPoints3& kind : hard_points3()) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     for (const std::size_t n : {5, 9, 60}) {
       for (const std::size_t without : {std::size_t{1}, n / 3, n}) {
         const auto points = kind.make(n, ++seed);

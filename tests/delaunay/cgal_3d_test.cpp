@@ -10,7 +10,7 @@
 #include "delaunay/generate.h"
 #include "delaunay/methods.h"
 #include "delaunay/triangulate.h"
-#include "tests/delaunay/hard_points3.h"
+#include "tests/delaunay/hard_points_3d.h"
 
 namespace delray::delaunay {
 namespace {
@@ -36,7 +36,7 @@ void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,
   }
 }
 
-TEST(Cgal3, AgreesOnGeneratedPoints) {
+TEST(Cgal3d, AgreesOnGeneratedPoints) {
   for (const PointGenerator& generator : point_generators()) {
     for (const std::size_t n : {100, 3000}) {
       // Lines in space have quadratically many tetrahedra.
@@ -47,8 +47,8 @@ TEST(Cgal3, AgreesOnGeneratedPoints) {
   }
 }
 
-TEST(Cgal3, AgreesOnHardPoints) {
-  for (const HardPoints3& kind : hard_points3()) {
+TEST(Cgal3d, AgreesOnHardPoints) {
+  for (const HardPoints3d& kind : hard_points_3d()) {
     for (const std::size_t n : {10, 30, 150}) {
       for (std::uint64_t seed = 0; seed < 3; ++seed) {
         expect_same(kind.make(n, seed),

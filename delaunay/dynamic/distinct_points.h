@@ -1,4 +1,4 @@
-// The places that points stand at, and the rows that stand there.
+// The distinct points of a dynamic triangulation, and the rows that are equal to each.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,10 @@
 
 namespace delray::delaunay::internal {
 
-// Site numbers are used again after their last row has gone; row numbers are not.
+// A site is a distinct point with its live rows. Numbers of sites are used again after their last
+// row has gone; row numbers are not.
 template <int D>
-class Sites {
+class DistinctPoints {
  public:
   using Point = glm::vec<D, double, glm::defaultp>;
 

@@ -4,11 +4,11 @@
 #include <array>
 
 #include "delaunay/divide_and_conquer/hull_mesh.h"
-#include "delaunay/divide_and_conquer/seam_filter.h"
+#include "delaunay/divide_and_conquer/merge_filter.h"
 
 namespace delray::delaunay::internal {
 
-// Where the seam begins or ends.
+// An end of the merge line: a common tangent of the two hulls.
 struct Tangent {
   VertexNumber left, right;
   SimplexNumber ghost;
@@ -23,9 +23,9 @@ struct Tangent {
 // The triangulation on the left of the line is given by the vertex of its hull closest to the line,
 // that on the right likewise. Of any two points of both |dx| + |dy| is at most `extent`. `spare`
 // and `spare` + 1 are free slots of the mesh, which become the ghosts of the tangents. Returns the
-// lower tangent and the upper one. O(edges of the hulls around the seam + edges that are made and
-// removed).
-std::array<Tangent, 2> knit(HullMesh hulls, const SeamFilter& filter, HullVertex from_left,
-                            HullVertex from_right, double extent, SimplexNumber spare);
+// lower tangent and the upper one. O(edges of the hulls along the merge line + edges that are made
+// and removed).
+std::array<Tangent, 2> merge(HullMesh hulls, const MergeFilter& filter, HullVertex from_left,
+                             HullVertex from_right, double extent, SimplexNumber spare);
 
 }  // namespace delray::delaunay::internal

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "delaunay/history/insert_shaken.h"
+#include "delaunay/history/insert_with_retry.h"
 #include "delaunay/history/sole_dag_access.h"
 #include "delaunay/methods.h"
 #include "tests/delaunay/hard_points.h"
@@ -17,7 +17,7 @@ namespace {
 class CarefulAccess : public internal::SoleDagAccess<2> {
  public:
   using SoleDagAccess<2>::SoleDagAccess;
-  static constexpr bool kShakes = true;
+  static constexpr bool kMayRetry = true;
 };
 
 void insert_without_flips(internal::DagRun<2>& run,

@@ -1,4 +1,4 @@
-// The tests that knitting two triangulations together needs, about points seen from one edge.
+// The tests that merging two triangulations needs, about points seen from one edge.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace delray::delaunay::internal {
 // A point p as the edge from a to b sees it: (a - p) * conj(b - p), whose angle is the one under
 // which p sees the edge (predicates.h, kIncircleError). Comparing two of these is the incircle
 // test.
-struct SeamView {
-  SeamView() = default;
-  SeamView(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
+struct EdgeView {
+  EdgeView() = default;
+  EdgeView(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
     const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
     dot = ax * bx + ay * by;
     cross = ax * by - ay * bx;
@@ -29,10 +29,10 @@ struct SeamView {
   double dot, cross, spread;
 };
 
-class SeamFilter {
+class MergeFilter {
  public:
   // Looks at all points once. Several threads are those of the arena that the caller is in.
-  SeamFilter(std::span<const glm::dvec2> points, const Box2d& box, int threads) {
+  MergeFilter(std::span<const glm::dvec2> points, const Box2d& box, int threads) {
     const double largest = std::max(
         {std::abs(box.low.x), std::abs(box.low.y), std::abs(box.high.x), std::abs(box.high.y)});
     if (largest > kLargest) {
@@ -47,7 +47,7 @@ class SeamFilter {
 
   // Whether c lies strictly to the right of the line from a to b.
   bool right_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) const {
-    const SeamView seen(a, b, c);
+    const EdgeView seen(a, b, c);
     const double error = kCrossError * seen.spread + underflow_;
     if (std::abs(seen.cross) > error) return seen.cross < 0;
     if (seen.spread < exact_cross_) return seen.cross < 0;
@@ -56,7 +56,7 @@ class SeamFilter {
 
   // Whether p lies strictly to the left of the line from a to b.
   bool above(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p,
-             const SeamView& seen) const {
+             const EdgeView& seen) const {
     const double error = kCrossError * seen.spread + underflow_;
     if (std::abs(seen.cross) > error) return seen.cross > 0;
     if (seen.spread < exact_cross_) return seen.cross > 0;
@@ -64,8 +64,8 @@ class SeamFilter {
   }
 
   // Whether q is in conflict with the triangle a, b, p. REQUIRES: p is above.
-  bool inside(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p, const SeamView& seen_p,
-              const glm::dvec2& q, const SeamView& seen_q) const {
+  bool inside(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p, const EdgeView& seen_p,
+              const glm::dvec2& q, const EdgeView& seen_q) const {
     const double determinant = seen_p.dot * seen_q.cross - seen_p.cross * seen_q.dot;
     const double spreads = seen_p.spread * seen_q.spread;
     const double error = kIncircleError * spreads + underflow_;

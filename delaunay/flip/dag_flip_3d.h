@@ -1,4 +1,4 @@
-// Insertion into tetrahedra that leaves the history behind; as dag_flip.h does with triangles.
+// Insertion into tetrahedra that leaves the history behind; as dag_flip_2d.h does with triangles.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/flip/dag_flip.h"
-#include "delaunay/flip/flip3.h"
-#include "delaunay/insertion/orientation3.h"
+#include "delaunay/flip/dag_flip_2d.h"
+#include "delaunay/flip/flip_3d.h"
+#include "delaunay/insertion/orientation_3d.h"
 
 namespace delray::delaunay::internal {
 
@@ -19,18 +19,18 @@ struct DagTriangulation<3> {
   Orientation<3> orientation;
 };
 
-// See Flips3. Suspects are corners of the new vertex.
+// See Flips3d. Suspects are corners of the new vertex.
 template <class Access>
 Grant subdivide(const DagTriangulation<3>& triangulation, NodeNumber leaf, VertexNumber vertex,
                 Access& access, std::vector<CornerNumber>& suspects) {
-  return Flips3(triangulation.dag, triangulation.orientation, access, suspects)
+  return Flips3d(triangulation.dag, triangulation.orientation, access, suspects)
       .subdivide(leaf, vertex);
 }
 
 template <class Access>
 Grant legalize(const DagTriangulation<3>& triangulation, Access& access,
                std::vector<CornerNumber>& suspects) {
-  return Flips3(triangulation.dag, triangulation.orientation, access, suspects).legalize();
+  return Flips3d(triangulation.dag, triangulation.orientation, access, suspects).legalize();
 }
 
 }  // namespace delray::delaunay::internal

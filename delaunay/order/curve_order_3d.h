@@ -21,7 +21,7 @@ static_assert(sizeof(SpaceVertex) == 32);
 
 // Vertex v lies at vertices[v + 1]: the infinite vertex, whose number plus 1 is 0, has a place of
 // its own there.
-struct CurveOrder3 {
+struct CurveOrder3d {
   Array<SpaceVertex> vertices;
   std::vector<std::uint32_t> rounds;  // where the rounds begin, and the number of points
 };
@@ -32,7 +32,7 @@ PointRange finite_range(const PointView<double>& points, int threads = 1);
 
 // Random rounds of growing size, each along a Hilbert curve (Amenta, Choi and Rote 2003): radix
 // sort, O(n). With -0 made 0.
-CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& range,
-                         std::uint64_t seed, int threads = 1);
+CurveOrder3d curve_order_3d(const PointView<double>& points, const PointRange& range,
+                            std::uint64_t seed, int threads = 1);
 
 }  // namespace delray::delaunay::internal

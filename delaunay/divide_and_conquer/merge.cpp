@@ -1,20 +1,21 @@
-#include "delaunay/divide_and_conquer/knit.h"
+#include "delaunay/divide_and_conquer/merge.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "delaunay/divide_and_conquer/seam_pair.h"
+#include "delaunay/divide_and_conquer/merge_pair.h"
 
 namespace delray::delaunay::internal {
 namespace {
 
-// Sides of the seam, as bits.
+// Sides of the merge line, as bits.
 constexpr unsigned kLeft = 1, kRight = 2;
 
-// The edge of a hull that is next on one side of the seam.
+// The edge of a hull that is next on one side of the merge line.
 template <unsigned kSide>
-struct Front {
-  // The corners of its ghost with the edge's end that the seam has come to, and with the other.
+struct HullFront {
+  // The corners of its ghost with the edge's end that the merge line has come to, and with the
+  // other.
   static constexpr unsigned kNear = kSide == kLeft ? 1 : 0, kFar = 1 - kNear;
 
   SimplexNumber ghost;
@@ -24,8 +25,8 @@ struct Front {
   VertexNumber behind;     // the vertex of that triangle, or `next`
   CornerNumber apex = 0;   // and its corner
 
-  // `vertex` is where the seam starts; there may be no edge.
-  Front(const Mesh<2>& mesh, SimplexNumber first, VertexNumber vertex)
+  // `vertex` is where the merge line starts; there may be no edge.
+  HullFront(const Mesh<2>& mesh, SimplexNumber first, VertexNumber vertex)
       : ghost(first), next(vertex), behind(vertex) {
     if (ghost != kNoGhost) load(mesh);
   }
@@ -69,12 +70,12 @@ struct Front {
 
   // Flips edges away that are not Delaunay any more. REQUIRES: `next` is above the edge from a to
   // b. `first` says whether it is known that the first one goes.
-  void retreat(HullMesh& hulls, const SeamFilter& filter, const glm::dvec2& a, const glm::dvec2& b,
+  void retreat(HullMesh& hulls, const MergeFilter& filter, const glm::dvec2& a, const glm::dvec2& b,
                bool first) {
     const glm::dvec2* points = hulls.points;
     if (first) flip(hulls);
-    for (SeamView seen(a, b, points[next]); is_backed != 0;) {
-      const SeamView seen_behind(a, b, points[behind]);
+    for (EdgeView seen(a, b, points[next]); is_backed != 0;) {
+      const EdgeView seen_behind(a, b, points[behind]);
       if (!filter.inside(a, b, points[next], seen, points[behind], seen_behind)) break;
       flip(hulls);
       seen = seen_behind;
@@ -82,7 +83,7 @@ struct Front {
   }
 
   // Makes the ghost the triangle over `base`, whose other end is `opposite`, and goes on to the
-  // edge after it. Returns the vertex that the seam has come to.
+  // edge after it. Returns the vertex that the merge line has come to.
   VertexNumber advance(HullMesh& hulls, VertexNumber opposite, CornerNumber& base) {
     const VertexNumber vertex = next;
     const CornerNumber following = hulls.mesh.neighbour(ghost, kNear);
@@ -97,11 +98,11 @@ struct Front {
 
 }  // namespace
 
-std::array<Tangent, 2> knit(HullMesh hulls, const SeamFilter& filter, HullVertex from_left,
-                            HullVertex from_right, double extent, SimplexNumber spare) {
+std::array<Tangent, 2> merge(HullMesh hulls, const MergeFilter& filter, HullVertex from_left,
+                             HullVertex from_right, double extent, SimplexNumber spare) {
   const glm::dvec2* points = hulls.points;
   Mesh<2>& mesh = hulls.mesh;
-  const SeamFilter::Bounds bounds = filter.bounds(extent);
+  const MergeFilter::Bounds bounds = filter.bounds(extent);
   const double surely_above = std::max(bounds.cross, 0.0);
   const auto right_of = [&](VertexNumber a, VertexNumber b, VertexNumber c) {
     const glm::dvec2 ac = points[a] - points[c], bc = points[b] - points[c];
@@ -142,28 +143,28 @@ std::array<Tangent, 2> knit(HullMesh hulls, const SeamFilter& filter, HullVertex
 
   // The facet that the next triangle is built on, with `left` and `right` at its ends.
   CornerNumber base = corner_of(lower, 2);
-  Front<kLeft> front_left(mesh, after_left, left);
-  Front<kRight> front_right(mesh, before_right, right);
+  HullFront<kLeft> front_left(mesh, after_left, left);
+  HullFront<kRight> front_right(mesh, before_right, right);
   for (;;) {
     const glm::dvec2 &a = points[left], &b = points[right];
     const auto view_next = [&] {
-      return SeamViewPair(a, b, PointPair(points[front_left.next], points[front_right.next]));
+      return EdgeViewPair(a, b, PointPair(points[front_left.next], points[front_right.next]));
     };
-    SeamViewPair seen = view_next();
+    EdgeViewPair seen = view_next();
     const unsigned present = front_left.present | front_right.present;
     unsigned use = bits_of(seen.cross > surely_above) & present;
     if (const unsigned sure = bits_of(absolute(seen.cross) > bounds.cross); (present & ~sure) != 0)
         [[unlikely]] {
       const auto above = [&](VertexNumber next, unsigned side) {
         const glm::dvec2& p = points[next];
-        if ((present & ~sure & side) != 0 && filter.above(a, b, p, SeamView(a, b, p))) use |= side;
+        if ((present & ~sure & side) != 0 && filter.above(a, b, p, EdgeView(a, b, p))) use |= side;
       };
       above(front_left.next, kLeft);
       above(front_right.next, kRight);
     }
     if (use == 0) break;
 
-    const SeamViewPair seen_behind(
+    const EdgeViewPair seen_behind(
         a, b, PointPair(points[front_left.behind], points[front_right.behind]));
     const Pair inside = seen.dot * seen_behind.cross - seen.cross * seen_behind.dot;
     // Where it overflows it is not a number, and nothing is sure.
@@ -180,7 +181,7 @@ std::array<Tangent, 2> knit(HullMesh hulls, const SeamFilter& filter, HullVertex
     unsigned left_loses = ~use | static_cast<unsigned>(right_inside > 0);
     if (use == (kLeft | kRight) && !(std::abs(right_inside) > bounds.circle)) [[unlikely]] {
       const glm::dvec2 &p = points[front_left.next], &q = points[front_right.next];
-      left_loses = filter.inside(a, b, p, SeamView(a, b, p), q, SeamView(a, b, q)) ? 1 : 0;
+      left_loses = filter.inside(a, b, p, EdgeView(a, b, p), q, EdgeView(a, b, q)) ? 1 : 0;
     }
     if ((use >> 1 & left_loses & 1) != 0) {
       right = front_right.advance(hulls, left, base);

@@ -1,4 +1,4 @@
-#include "delaunay/order/curve_order3.h"
+#include "delaunay/order/curve_order_3d.h"
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "delaunay/mesh/blocks.h"
-#include "delaunay/order/hilbert3.h"
+#include "delaunay/order/hilbert_3d.h"
 
 namespace delray::delaunay::internal {
 namespace {
 
-glm::dvec3 point_at3(const PointView<double>& points, std::size_t row) {
+glm::dvec3 point_at_3d(const PointView<double>& points, std::size_t row) {
   return {points(row, 0) + 0.0, points(row, 1) + 0.0, points(row, 2) + 0.0};
 }
 
@@ -64,9 +64,9 @@ struct Found {
 // REQUIRES: first < last.
 Found find_range(const PointView<double>& points, std::size_t first, std::size_t last) {
   Found found;
-  found.low = found.high = point_at3(points, first);
+  found.low = found.high = point_at_3d(points, first);
   for (std::size_t row = first; row < last; ++row) {
-    const glm::dvec3 p = point_at3(points, row);
+    const glm::dvec3 p = point_at_3d(points, row);
     found.low = min(found.low, p);
     found.high = max(found.high, p);
     for (int k = 0; k < 3; ++k) {
@@ -114,8 +114,8 @@ PointRange finite_range(const PointView<double>& points, int threads) {
                               " has a coordinate that is not finite");
 }
 
-CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& range,
-                         std::uint64_t seed, int threads) {
+CurveOrder3d curve_order_3d(const PointView<double>& points, const PointRange& range,
+                            std::uint64_t seed, int threads) {
   const std::size_t n = points.size();
   // Each round is some times larger than all before it. In small ones the walks are long, but in
   // large ones the curve alone would visit degenerate sets in a bad order, and the simplices at its
@@ -142,7 +142,7 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
   const Blocks blocks(n, threads);
   Array<std::uint64_t> keys(n);  // from the highest bits: round, place, row
   const auto make_key = [&](std::size_t row) {
-    const glm::dvec3 p = (point_at3(points, row) * (0.25 * before) - low) * scale;
+    const glm::dvec3 p = (point_at_3d(points, row) * (0.25 * before) - low) * scale;
     std::array<std::uint32_t, 3> cell;
     for (int k = 0; k < 3; ++k) {
       cell[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(std::min(p[k], cells - 1));
@@ -163,13 +163,13 @@ CurveOrder3 curve_order3(const PointView<double>& points, const PointRange& rang
   const int place_end = row_bits + 3 * bits;
   radix_sort(keys, row_bits, place_end + std::bit_width(static_cast<unsigned>(rounds - 1)), blocks);
 
-  CurveOrder3 result;
+  CurveOrder3d result;
   result.vertices = Array<SpaceVertex>(n + 1);
   result.vertices[0] = {glm::dvec3(0), 0, 0};
   blocks.for_each([&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto row = static_cast<std::uint32_t>(keys[i] & ((std::uint64_t{1} << row_bits) - 1));
-      result.vertices[i + 1] = {point_at3(points, row), row, 0};
+      result.vertices[i + 1] = {point_at_3d(points, row), row, 0};
     }
   });
   for (int round = 0; round < rounds; ++round) {

@@ -45,7 +45,7 @@ std::vector<CornerNumber> wrong_facets(const DagTriangulation<3>& triangulation,
 std::uint64_t flip_all(const DagTriangulation<3>& triangulation, std::vector<CornerNumber>& open) {
   NotingAccess access(triangulation.dag, 0);
   std::vector<CornerNumber> suspects;
-  Flips3 flips(triangulation.dag, triangulation.orientation, access, suspects);
+  Flips3d flips(triangulation.dag, triangulation.orientation, access, suspects);
   std::uint64_t made = 0;
   while (!open.empty()) {
     const CornerNumber corner = open.back();

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "delaunay/flip/dag_flip.h"
-#include "delaunay/flip/dag_flip3.h"
+#include "delaunay/flip/dag_flip_2d.h"
+#include "delaunay/flip/dag_flip_3d.h"
 #include "delaunay/history/dag_location.h"
 #include "delaunay/history/dag_run.h"
 #include "delaunay/insertion/insertion_phases.h"
@@ -33,7 +33,7 @@ Grant subdivide_exactly(const DagTriangulation<3>& triangulation, NodeNumber lea
   return subdivide(triangulation, leaf, vertex, access, suspects);
 }
 
-// Cuts what contains the vertex; kShaken also if that is no leaf any more.
+// Subdivides the leaf that contains the vertex; kRetry also if it is no leaf any more.
 template <int D, class Access>
 Grant open_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber leaf,
                 VertexNumber vertex, Access& access, std::vector<NodeNumber>& suspects,
@@ -41,7 +41,7 @@ Grant open_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNu
   const Dag<D>& dag = triangulation.dag;
   const Grant grant = access.acquire({leaf});
   if (grant != Grant::kGranted) return grant;
-  if (!dag.is_leaf(leaf)) return Grant::kShaken;
+  if (!dag.is_leaf(leaf)) return Grant::kRetry;
   phases.located();
   const VertexNumber equal = run.equal_vertex(leaf, run.point(vertex));
   if (equal != kInfiniteVertex) {
@@ -51,12 +51,12 @@ Grant open_leaf(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNu
   return subdivide_exactly(triangulation, leaf, vertex, access, suspects);
 }
 
-// REQUIRES: the node contains the point; the access policy shakes and never refuses; `suspects` is
-// empty and will be again.
+// REQUIRES: the node contains the point; the access policy may say kRetry and never refuses;
+// `suspects` is empty and will be again.
 template <int D, class Access>
-void insert_shaken(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber node,
-                   VertexNumber vertex, Access& access, std::vector<NodeNumber>& suspects,
-                   InsertionPhases& phases) {
+void insert_with_retry(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber node,
+                       VertexNumber vertex, Access& access, std::vector<NodeNumber>& suspects,
+                       InsertionPhases& phases) {
   do {
     node = descend(triangulation.dag, triangulation.orientation, node, run.point(vertex));
   } while (open_leaf(run, triangulation, node, vertex, access, suspects, phases) !=

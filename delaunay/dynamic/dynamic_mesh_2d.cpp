@@ -1,18 +1,18 @@
-#include "delaunay/dynamic/moving_mesh.h"
+#include "delaunay/dynamic/dynamic_mesh.h"
 #include "delaunay/dynamic/refill.h"
-#include "delaunay/flip/flip.h"
+#include "delaunay/flip/flip_2d.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/mesh/start_mesh.h"
 
 namespace delray::delaunay::internal {
 
-void MovingMesh<2>::start(const std::array<VertexNumber, 3>& triangle) {
+void DynamicMesh<2>::start(const std::array<VertexNumber, 3>& triangle) {
   slots_.restart(4);
   start_mesh(slots_.mesh(), triangle);
 }
 
-SimplexNumber MovingMesh<2>::insert(std::span<const glm::dvec2> points, VertexNumber vertex,
-                                    SimplexNumber near) {
+SimplexNumber DynamicMesh<2>::insert(std::span<const glm::dvec2> points, VertexNumber vertex,
+                                     SimplexNumber near) {
   slots_.reserve(2);
   const Place place = walk(mesh(), points, near, points[vertex], random_);
   subdivide(slots_.mesh(), place.simplex, vertex, slots_, suspects_);
@@ -20,9 +20,9 @@ SimplexNumber MovingMesh<2>::insert(std::span<const glm::dvec2> points, VertexNu
   return place.simplex;
 }
 
-std::optional<SimplexNumber> MovingMesh<2>::remove(std::span<const glm::dvec2> points,
-                                                   VertexNumber vertex, SimplexNumber near,
-                                                   std::size_t others) {
+std::optional<SimplexNumber> DynamicMesh<2>::remove(std::span<const glm::dvec2> points,
+                                                    VertexNumber vertex, SimplexNumber near,
+                                                    std::size_t others) {
   const Place place = walk(mesh(), points, near, points[vertex], random_);
   CornerNumber corner = corner_of(place.simplex, 0);
   while (mesh().vertex(corner) != vertex) corner = next_corner(corner);

@@ -19,8 +19,8 @@
 #include <initializer_list>
 #include <vector>
 
-#include "delaunay/flip/dag_flip.h"
-#include "delaunay/insertion/orientation3.h"
+#include "delaunay/flip/dag_access.h"
+#include "delaunay/insertion/orientation_3d.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/predicates/conflict.h"
 
@@ -59,13 +59,13 @@ struct Turned {
 };
 
 // Inserts vertices into `Simplices`, which is a Mesh<3> or a Dag<3>, under a policy of access (see
-// dag_flip.h, and the same of a mesh).
+// dag_access.h, and the same of a mesh).
 template <class Simplices, class Access>
-class Flips3 {
+class Flips3d {
  public:
   // `suspects` holds corners of the vertex that is being inserted.
-  Flips3(Simplices& simplices, const Orientation<3>& orientation, Access& access,
-         std::vector<CornerNumber>& suspects)
+  Flips3d(Simplices& simplices, const Orientation<3>& orientation, Access& access,
+          std::vector<CornerNumber>& suspects)
       : simplices_(simplices), orientation_(orientation), access_(access), suspects_(suspects) {}
 
   // Cuts a simplex that contains the vertex, its boundary included, with all that share the facet
@@ -75,7 +75,7 @@ class Flips3 {
   // REQUIRES: the simplex is acquired; the vertex is not equal to one of its vertices.
   Grant subdivide(SimplexNumber simplex, VertexNumber vertex);
 
-  // Flips until no simplex of the vertex has a neighbour in conflict with it. Never kShaken. After
+  // Flips until no simplex of the vertex has a neighbour in conflict with it. Never kRetry. After
   // kRefused some suspects are left.
   Grant legalize();
 
@@ -178,7 +178,7 @@ class Flips3 {
 };
 
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::subdivide(SimplexNumber simplex, VertexNumber vertex) {
+Grant Flips3d<Simplices, Access>::subdivide(SimplexNumber simplex, VertexNumber vertex) {
   const Turned whole = turn(corner_of(simplex, 3));
   const glm::dvec3& q = orientation_.point(vertex);
   std::array<unsigned, 4> on = {};  // the corners whose opposite facets the vertex lies on
@@ -197,7 +197,7 @@ Grant Flips3<Simplices, Access>::subdivide(SimplexNumber simplex, VertexNumber v
 }
 
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::subdivide_inside(SimplexNumber simplex, VertexNumber vertex) {
+Grant Flips3d<Simplices, Access>::subdivide_inside(SimplexNumber simplex, VertexNumber vertex) {
   const Turned whole = turn(corner_of(simplex, 3));
   const auto& outer = whole.outer;
   const Grant grant = access_.acquire(
@@ -210,7 +210,7 @@ Grant Flips3<Simplices, Access>::subdivide_inside(SimplexNumber simplex, VertexN
 }
 
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::subdivide_facet(CornerNumber opposite, VertexNumber vertex) {
+Grant Flips3d<Simplices, Access>::subdivide_facet(CornerNumber opposite, VertexNumber vertex) {
   const Turned near = turn(opposite);
   Grant grant = access_.acquire({simplex_of(near.outer[3])});
   if (grant != Grant::kGranted) return grant;
@@ -233,7 +233,7 @@ Grant Flips3<Simplices, Access>::subdivide_facet(CornerNumber opposite, VertexNu
 }
 
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::subdivide_edge(Turned first, VertexNumber vertex) {
+Grant Flips3d<Simplices, Access>::subdivide_edge(Turned first, VertexNumber vertex) {
   std::vector<Turned> ring = {first};
   for (;;) {
     const Grant grant = access_.acquire({simplex_of(ring.back().outer[2])});
@@ -260,10 +260,10 @@ Grant Flips3<Simplices, Access>::subdivide_edge(Turned first, VertexNumber verte
 }
 
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::legalize() {
+Grant Flips3d<Simplices, Access>::legalize() {
   while (!suspects_.empty()) {
     const CornerNumber suspect = suspects_.back();
-    if constexpr (Access::kShakes) {
+    if constexpr (Access::kMayRetry) {
       if (!simplices_.is_leaf(simplex_of(suspect))) {
         pop();
         continue;
@@ -272,7 +272,7 @@ Grant Flips3<Simplices, Access>::legalize() {
     const CornerNumber beyond = simplices_.neighbour(suspect);
     Grant grant = access_.acquire({simplex_of(beyond)});
     if (grant == Grant::kRefused) return grant;
-    if (grant == Grant::kShaken) continue;
+    if (grant == Grant::kRetry) continue;
     const glm::dvec3& q = orientation_.point(simplices_.vertex(suspect));
     if (!conflict(simplices_, orientation_, simplex_of(beyond), q)) {
       pop();
@@ -286,7 +286,7 @@ Grant Flips3<Simplices, Access>::legalize() {
 }
 
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::flip(Turned& near, CornerNumber beyond) {
+Grant Flips3d<Simplices, Access>::flip(Turned& near, CornerNumber beyond) {
   const Turned far = turn(beyond);
   // Whether the facets of `far` at the three edges of the common facet face the new vertex.
   int smallest = 1;
@@ -312,7 +312,7 @@ Grant Flips3<Simplices, Access>::flip(Turned& near, CornerNumber beyond) {
 // Facet (a, b, c) between `near` and `far` gives way to an edge from the new vertex to the one
 // beyond.
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::flip_2_3(const Turned& near, const Turned& far) {
+Grant Flips3d<Simplices, Access>::flip_2_3(const Turned& near, const Turned& far) {
   const Grant grant = access_.acquire({simplex_of(near.outer[0]), simplex_of(near.outer[1]),
                                        simplex_of(near.outer[2]), simplex_of(far.outer[0]),
                                        simplex_of(far.outer[1]), simplex_of(far.outer[2])});
@@ -329,7 +329,7 @@ Grant Flips3<Simplices, Access>::flip_2_3(const Turned& near, const Turned& far)
 
 // Edge (0, 1) of `near`, if it has only three tetrahedra around it, gives way to a facet.
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::flip_3_2(const Turned& near, const Turned& far) {
+Grant Flips3d<Simplices, Access>::flip_3_2(const Turned& near, const Turned& far) {
   const CornerNumber third_corner = near.outer[2];
   if (simplex_of(third_corner) != simplex_of(far.across(near.vertices[2]))) {
     pop();
@@ -359,7 +359,7 @@ Grant Flips3<Simplices, Access>::flip_3_2(const Turned& near, const Turned& far)
 // Edge (0, 1) of `near`, if it has only four tetrahedra around it, crosses the edge from the new
 // vertex to the one beyond and gives way to it. Two of the four may be ghosts.
 template <class Simplices, class Access>
-Grant Flips3<Simplices, Access>::flip_4_4(const Turned& near, const Turned& far) {
+Grant Flips3d<Simplices, Access>::flip_4_4(const Turned& near, const Turned& far) {
   const SimplexNumber near_side = simplex_of(near.outer[2]),
                       far_side = simplex_of(far.across(near.vertices[2]));
   Grant grant = access_.acquire({near_side, far_side});

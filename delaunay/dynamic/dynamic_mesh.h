@@ -56,10 +56,10 @@ class Slots {
 // For all functions: `points` are the positions of the vertices, `near` is a live simplex, better
 // close than not.
 template <int D>
-class MovingMesh;
+class DynamicMesh;
 
 template <>
-class MovingMesh<2> {
+class DynamicMesh<2> {
  public:
   const Mesh<2>& mesh() const { return slots_.mesh(); }
   SimplexNumber used() const { return slots_.used(); }
@@ -89,7 +89,7 @@ class MovingMesh<2> {
 // triangulation without the vertex that lie in the hole have no other vertices, and a simplex in
 // conflict with none of all points is in conflict with none of some (Devillers and Teillaud 2003).
 template <>
-class MovingMesh<3> {
+class DynamicMesh<3> {
  public:
   const Mesh<3>& mesh() const { return slots_.mesh(); }
   SimplexNumber used() const { return slots_.used(); }
@@ -129,7 +129,7 @@ class MovingMesh<3> {
   std::vector<SimplexNumber> cavity_;
   std::vector<Side> sides_;
   std::vector<VertexNumber> link_;
-  std::unique_ptr<MovingMesh> hole_;         // the triangulation of the neighbours
+  std::unique_ptr<DynamicMesh> hole_;        // the triangulation of the neighbours
   std::vector<glm::dvec3> hole_points_;      // its points
   std::vector<VertexNumber> hole_vertices_;  // and their numbers here
 };
