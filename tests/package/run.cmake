@@ -8,9 +8,22 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR}/build -G Ninja -DCMAKE_CXX_
     -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
+# One component, without what others need.
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/points -B ${WORK_DIR}/points -G Ninja -DCMAKE_CXX_COMPILER=${CXX}
+    -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/points)
+run(${WORK_DIR}/points/points)
+# The same without CMake.
+find_program(pkg_config pkg-config REQUIRED)
+file(GLOB_RECURSE descriptions ${WORK_DIR}/prefix/*/delray-delaunay.pc)
+cmake_path(GET descriptions PARENT_PATH descriptions)
+run(sh -c "PKG_CONFIG_PATH='${descriptions}' && export PKG_CONFIG_PATH && '${CXX}' '${SOURCE_DIR}/points/points.cpp' $('${pkg_config}' --cflags --libs delray-delaunay) -o '${WORK_DIR}/points/by_pkg_config'")
+run(${WORK_DIR}/points/by_pkg_config)
 run(${WORK_DIR}/prefix/bin/delray --version)
 set(share ${WORK_DIR}/prefix/share)
-run(${CMAKE_COMMAND} -E compare_files ${SOURCE_DIR}/../../LICENSE ${share}/doc/delray/LICENSE)
+foreach(text IN ITEMS LICENSE THIRD_PARTY.md)
+  run(${CMAKE_COMMAND} -E compare_files ${SOURCE_DIR}/../../${text} ${share}/doc/delray/${text})
+endforeach()
 foreach(page man/man1/delray.1 bash-completion/completions/delray zsh/site-functions/_delray
              fish/vendor_completions.d/delray.fish)
   file(SIZE ${share}/${page} size)
