@@ -19,7 +19,7 @@ struct Triangulation {
   std::size_t size() const { return vertices.size() / (static_cast<std::size_t>(dim) + 1); }
 };
 
-// Identity of a set of simplices (interface.md): the sum modulo 2^128 of the XXH3 128-bit hashes of
+// Identity of a set of simplices: the sum modulo 2^128 of the XXH3 128-bit hashes of
 // the simplices, each hashed as its vertices in ascending order as little-endian uint64.
 struct Hash128 {
   std::uint64_t high = 0, low = 0;
