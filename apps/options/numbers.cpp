@@ -28,6 +28,13 @@ CLI::Validator positive_number() {
   return numbers([](double value) { return value > 0.0; }, "above 0", "above 0");
 }
 
+CLI::Validator positive_float() {
+  using Limits = std::numeric_limits<float>;
+  constexpr double kLeast = Limits::min(), kMost = Limits::max();
+  return numbers([](double value) { return kLeast <= value && value <= kMost; },
+                 fmt::format("from {:.2g} to {:.2g}", kLeast, kMost), "above 0");
+}
+
 CLI::Validator non_negative_number() {
   return numbers([](double value) { return value >= 0.0; }, "from 0 on", "0 or more");
 }

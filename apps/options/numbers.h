@@ -8,6 +8,7 @@
 namespace delray::apps {
 
 CLI::Validator positive_number();      // above 0, finite
+CLI::Validator positive_float();       // the same as a float: neither 0 nor infinite then
 CLI::Validator non_negative_number();  // 0 or more, finite
 CLI::Validator number_between(double least, double most);
 

@@ -68,7 +68,7 @@ void add_light_options(CLI::App& command, LightOptions& options) {
       .add_option("--light-strength", options.strength,
                   "Factor of the light that --light adds (default: 1)")
       ->group(group::kPicture)
-      ->check(positive_number());
+      ->check(positive_float());
 }
 
 void check_light(const CLI::App& command, const LightOptions& options) {

@@ -65,7 +65,7 @@ void add_practice_options(CLI::App& command, Practice& practice) {
           "Stop below this noise: the standard deviation of values on the screen, which are 0 to "
           "1, such as 0.01; --spp is the maximum then (default: 256, or none with --time)")
       ->group(group::kRaytracer)
-      ->check(positive_number());
+      ->check(positive_float());
   command
       .add_option("--preview-every", practice.preview_every,
                   "Seconds between previews: the picture so far, written to the output file "
@@ -128,7 +128,7 @@ void add_practice_options(CLI::App& command, Practice& practice) {
                   "Distance of what is sharp, along the view, in units of the scene (default: that "
                   "of the point looked at)")
       ->group(group::kRaytracer)
-      ->check(positive_number());
+      ->check(positive_float());
   command.add_option("--seed", practice.seed, "Seed of all random numbers (default: 0)")
       ->group(group::kRaytracer)
       ->transform(any_count());

@@ -331,7 +331,7 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
                   "Ambient occlusion radius in units of the scene, for --integrator ao (default: "
                   "unlimited)")
       ->group(group::kRaytracer)
-      ->check(positive_number());
+      ->check(positive_float());
   command
       .add_flag("--no-shadows", request.no_shadows,
                 "Trace no shadow rays, for --integrator direct: light passes through everything")

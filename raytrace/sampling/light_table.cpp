@@ -383,14 +383,13 @@ float LightTable::pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, con
   if (found->light != kNone) {
     const Light& light = lights_[found->light];
     if (!(glm::dot(glm::cross(light.edge_u, light.edge_v), way) < 0.0F)) return 0.0F;
-    return raytrace::pdf(shape_of(light), from, position) * emitters_.probability(found->light);
+    return raytrace::pdf(shape_of(light), from, position) * chance_of(found->light);
   }
   const auto emitter = static_cast<std::uint32_t>(
       lights_.size() + 1 + static_cast<std::size_t>(found - instances_.begin()));
   const glm::vec3 normal = glm::cross(vector(found->transform, mesh.triangles[slot].ab),
                                       vector(found->transform, mesh.triangles[slot].ac));
-  const float pdf =
-      emitters_.probability(emitter) * mesh.table.probability(slot) * area_pdf(normal, way);
+  const float pdf = chance_of(emitter) * mesh.table.probability(slot) * area_pdf(normal, way);
   return std::isfinite(pdf) ? pdf : 0.0F;
 }
 
@@ -400,7 +399,7 @@ void LightTable::pdf_of_sky(const shading::Vectors16& directions, shading::Float
     return;
   }
   sky_.pdf(directions, pdfs);
-  const float chance = emitters_.probability(static_cast<std::uint32_t>(lights_.size()));
+  const float chance = chance_of(static_cast<std::uint32_t>(lights_.size()));
   for (float& pdf : pdfs.lane) pdf *= chance;
 }
 

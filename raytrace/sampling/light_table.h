@@ -107,6 +107,11 @@ class LightTable {
   };
 
   void add_glowing(const scenes::Scene& scene, const shading::Shader& shader);
+  // How likely `sample` draws an emitter: 0 where none has power, such as a sky that is a black
+  // picture.
+  float chance_of(std::uint32_t emitter) const {
+    return empty() ? 0.0F : emitters_.probability(emitter);
+  }
   std::uint32_t lamp_of(const GlowingInstance& instance, const glm::vec3& emission) const;
   void weigh(const scenes::Scene& scene);
   LightSample draw_light(std::uint32_t light, const glm::vec3& from, float chance,

@@ -84,6 +84,15 @@ TEST_P(Light, NoneAddsNothingAndDefaultIsWhatBareScenesGet) {
   EXPECT_NEAR(half / bare, 0.5, 1e-3);
 }
 
+TEST_P(Light, ABlackPictureIsNoLight) {
+  write_light(folder_, 0.0F);
+  const std::string options = "--background transparent " + GetParam();
+  EXPECT_EQ(mean(picture_of(options + "--light light.exr", folder_)), 0.0);
+  EXPECT_EQ(mean(picture_of(options + "--light light.exr --ranks 2", folder_)), 0.0);
+  write_light(folder_, 1e-30F);  // so little that nothing of it is left on the way
+  EXPECT_LT(mean(picture_of(options + "--light light.exr --light-strength 1e-20", folder_)), 1e-30);
+}
+
 INSTANTIATE_TEST_SUITE_P(Renderers, Light,
                          testing::Values("", "--engine raytrace --integrator direct ",
                                          "--engine raytrace ", kPath));
@@ -133,6 +142,7 @@ TEST(LightOptions, WithoutEffectAreRefused) {
   for (const std::string options :
        {"--light-rotation 90", "--light default --light-rotation 90", "--light-strength 2",
         "--light none --light-strength 2", "--light light.exr --light-strength 0",
+        "--light light.exr --light-strength 1e-300", "--light default --light-strength 1e39",
         "--light light.exr --engine raytrace --integrator ao", "--light light.exr -o light.exr"}) {
     EXPECT_EQ(run("delray render floor.obj -o a.png" + kView + options, folder.path()).exit_code, 2)
         << options;

@@ -210,7 +210,8 @@ TEST(Practice, OptionsWithoutEffectAreRefused) {
         "-o a.png --checkpoint-every 3", "-o a.png --crop 60,0,30,10", "-o a.png --crop 1,2,3",
         "-o a.png --tone sepia", "-o a.png --show smell", "-o a.png --show rays --denoise",
         "-o a.png --turntable 3 --checkpoint a.film", "-o a.png --reach 1", "-o a.png --no-shadows",
-        "-o a.png --isa mmx", "-o a.png --time 0"}) {
+        "-o a.png --isa mmx", "-o a.png --time 0", "-o a.png --noise 1e-300",
+        "-o a.png --integrator ao --reach 1e-300", "-o a.png --aperture 1 --focus 1e300"}) {
     EXPECT_EQ(run(kBall + options, folder.path()).exit_code, 2) << options;
   }
   EXPECT_EQ(run("delray render gen:cornell -o a.png --denoise", folder.path()).exit_code, 2);

@@ -221,6 +221,22 @@ TEST(LightTable, GlowGoesByWhatTheTextureShows) {
   EXPECT_NEAR(estimate(table, shader, from, down) / expected, 1.0, 0.02);
 }
 
+TEST(LightTable, OfABlackPictureThereIsNothingToDraw) {
+  scenes::Scene scene;
+  add(scene, quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  scenes::Texture texture;
+  texture.width = 4;
+  texture.height = 2;
+  texture.radiance.assign(8, glm::vec3(0.0F));
+  scene.textures.push_back(texture);
+  scene.environment.texture = 0;
+  const shading::Shader shader = shading::make_shader(scene);
+  const LightTable table(scene, shader);
+  EXPECT_TRUE(table.empty());
+  EXPECT_EQ(pdf_of_sky(table, {0, 1, 0}), 0.0F);
+  EXPECT_EQ(draw(table, shader, {0, 0, 1}, 1, 0).weight, glm::vec3(0.0F));
+}
+
 TEST(LightTable, WithoutLightsThereIsNothingToDraw) {
   scenes::Scene scene;
   add(scene, quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
