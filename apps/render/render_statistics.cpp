@@ -206,12 +206,12 @@ double imbalance_of(const Ranks& ranks) {
   return sum > 0 ? most * static_cast<double>(ranks.size()) / sum : 1.0;
 }
 
-Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 // As --camera takes it, unless it is orthographic: its height tells that.
-Json json_of(const scenes::Camera& camera) {
-  Json told = {{"eye", json_of(camera.eye)},
-               {"at", json_of(camera.at)},
+Json json_of(const scenes::Camera& camera, const glm::dvec3& origin) {
+  Json told = {{"eye", json_of(glm::dvec3(camera.eye) + origin)},
+               {"at", json_of(glm::dvec3(camera.at) + origin)},
                {"up", json_of(camera.up)},
                {"fov", camera.vertical_fov}};
   if (camera.orthographic()) told["height"] = camera.height;
@@ -240,7 +240,7 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
               {"triangles", prepared.triangles},
               {"vertices", prepared.vertices},
               {"instances", prepared.scene.instances.size()}}},
-            {"camera", json_of(prepared.camera)},
+            {"camera", json_of(prepared.camera, prepared.scene.origin)},
             {"options",
              options_of(request, static_cast<int>(s.ranks.size()), frames.launched.threads)},
             {"image",

@@ -1,14 +1,11 @@
 #include "scenes/files/finish.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "scenes/geometry/origin.h"
 
 namespace delray::scenes::internal {
 namespace {
-
-// Coordinates further from the origin than this many sizes of the scene are coarse in single
-// precision: a step is a 1600th of the size.
-constexpr float kFar = 1e4F;
 
 std::uint64_t drop_degenerate(Mesh& mesh) {
   const auto same = [&mesh](std::uint32_t a, std::uint32_t b) {
@@ -38,23 +35,24 @@ void drop_empty_meshes(Scene& scene) {
 void finish(const Source& source, Scene& scene) {
   std::uint64_t degenerate = 0;
   for (Mesh& mesh : scene.meshes) degenerate += drop_degenerate(mesh);
-  if (degenerate > 0) {
-    source.warn(std::to_string(degenerate) + " triangles with two corners in one place left out");
-  }
   drop_empty_meshes(scene);
   if (scene.instances.empty()) {
-    source.fail("", kNoTriangles);
+    source.fail("", degenerate == 0   ? kNoTriangles
+                    : degenerate == 1 ? "its 1 triangle has two corners in one place"
+                                      : "its " + std::to_string(degenerate) +
+                                            " triangles have two corners in one place");
+  }
+  if (degenerate > 0) {
+    source.warn(std::to_string(degenerate) + " triangles with two corners in one place left out");
   }
   if (scene.materials.empty()) scene.materials.emplace_back();
 
   const geometry::Box3 box = bounds(scene);
-  const glm::vec3 furthest = glm::max(glm::abs(box.low), glm::abs(box.high));
-  const float distance = std::max({furthest.x, furthest.y, furthest.z});
-  if (!(distance <= static_cast<float>(kLargestCoordinate))) {
+  const glm::dvec3 low = glm::dvec3(box.low) + scene.origin;
+  const glm::dvec3 high = glm::dvec3(box.high) + scene.origin;
+  const double distance = reach_of({low, high});
+  if (!(distance <= double{static_cast<float>(kLargestCoordinate)})) {
     source.fail("", "a placed coordinate is not finite or larger than 1e18");
-  }
-  if (distance > kFar * glm::length(box.size())) {
-    source.warn("the scene is far from the origin for its size; its coordinates are coarse");
   }
 }
 

@@ -16,6 +16,7 @@
 #include "scenes/files/readers.h"
 #include "scenes/files/vertex_values.h"
 #include "scenes/geometry/noise.h"
+#include "scenes/geometry/origin.h"
 #include "scenes/geometry/polygon.h"
 #include "scenes/geometry/weld.h"
 
@@ -77,6 +78,7 @@ class ObjReader {
 
   Scene run() {
     read_vertices();
+    choose_origin();
     read_faces();
     if (scene_.meshes.empty()) source_.fail("", kNoTriangles);
     if (left_out_ > 0) source_.warn(std::to_string(left_out_) + " points and lines left out");
@@ -104,7 +106,7 @@ class ObjReader {
       Words words(line);
       const std::string_view key = words.next();
       if (key == "v") {
-        positions_.emplace_back(read_coordinates<3>(source_, lines, words));
+        places_.push_back(read_coordinates<3>(source_, lines, words));
         read_vertex_colour(words);
       } else if (key == "vt") {
         const float u = static_cast<float>(read_coordinates<1>(source_, lines, words).x);
@@ -117,11 +119,18 @@ class ObjReader {
         read_materials(words.rest());
       }
     }
-    const auto most = std::max({positions_.size(), uvs_.size(), normals_.size()});
+    const auto most = std::max({places_.size(), uvs_.size(), normals_.size()});
     if (most >= kNone) source_.fail("", "a mesh is too large");
-    all_ = {static_cast<std::int64_t>(positions_.size()), static_cast<std::int64_t>(uvs_.size()),
+    all_ = {static_cast<std::int64_t>(places_.size()), static_cast<std::int64_t>(uvs_.size()),
             static_cast<std::int64_t>(normals_.size())};
-    if (!colours_.empty()) colours_.resize(positions_.size(), glm::vec4(1));
+    if (!colours_.empty()) colours_.resize(places_.size(), glm::vec4(1));
+  }
+
+  void choose_origin() {
+    source_.require_memory(places_.size() * sizeof(glm::vec3));
+    scene_.origin = origin_of(box_of(places_));
+    positions_ = relative_to(scene_.origin, places_);
+    std::vector<glm::dvec3>().swap(places_);
   }
 
   // Three more numbers are a colour; one is a weight, which polygons do not use.
@@ -130,7 +139,7 @@ class ObjReader {
     for (int k = 0; k < 3; ++k) {
       if (!parse(words.next(), colour[k])) return;
     }
-    colours_.resize(positions_.size() - 1, glm::vec4(1));
+    colours_.resize(places_.size() - 1, glm::vec4(1));
     colours_.push_back(linear_colour(colour));
   }
 
@@ -268,6 +277,7 @@ class ObjReader {
   std::map<std::string, std::uint32_t, std::less<>> materials_;  // numbers by name
   std::set<std::string, std::less<>> named_;                     // by mtllib
   std::set<std::filesystem::path> libraries_;                    // that were
+  std::vector<glm::dvec3> places_;                               // positions as the file gives them
   std::vector<glm::vec3> positions_, normals_;
   std::vector<glm::vec4> colours_;  // of positions, if any has one
   std::vector<glm::vec2> uvs_;

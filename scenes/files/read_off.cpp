@@ -2,6 +2,7 @@
 #include "scenes/files/growth_watch.h"
 #include "scenes/files/readers.h"
 #include "scenes/files/vertex_values.h"
+#include "scenes/geometry/origin.h"
 #include "scenes/geometry/polygon.h"
 
 namespace delray::scenes::internal {
@@ -77,14 +78,19 @@ Scene read_off(const Source& source) {
   const std::int64_t vertices = lines.count(counts, "vertices");
   const std::int64_t faces = lines.count(counts, "faces");
   if (vertices >= kNone) lines.fail("a mesh is too large");
-  Mesh mesh;
+  std::vector<glm::dvec3> places;
   GrowthWatch watch(source);
   for (std::int64_t i = 0; i < vertices; ++i) {
     watch.step();
     Words words =
         lines.next_line("vertex " + std::to_string(i) + " of " + std::to_string(vertices));
-    mesh.positions.emplace_back(read_coordinates<3>(source, lines.lines(), words));
+    places.push_back(read_coordinates<3>(source, lines.lines(), words));
   }
+  source.require_memory(places.size() * sizeof(glm::vec3));
+  const glm::dvec3 origin = origin_of(box_of(places));
+  Mesh mesh;
+  mesh.positions = relative_to(origin, places);
+  std::vector<glm::dvec3>().swap(places);
   std::vector<std::uint32_t> corners;
   std::int64_t left_out = 0;
   for (std::int64_t i = 0; i < faces; ++i) {
@@ -95,7 +101,7 @@ Scene read_off(const Source& source) {
   }
   if (left_out == faces) source.fail("", kNoTriangles);
   if (left_out > 0) source.warn(std::to_string(left_out) + " points and lines left out");
-  return scene_of(std::move(mesh));
+  return scene_of(std::move(mesh), origin);
 }
 
 }  // namespace delray::scenes::internal

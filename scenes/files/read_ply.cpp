@@ -15,6 +15,7 @@
 #include "scenes/files/readers.h"
 #include "scenes/files/texture_files.h"
 #include "scenes/files/vertex_values.h"
+#include "scenes/geometry/origin.h"
 #include "scenes/geometry/polygon.h"
 #include "scenes/geometry/weld.h"
 
@@ -146,6 +147,7 @@ class PlyReader {
       }
     }
     if (!has_polygons_) source_.fail("", kNoTriangles);
+    const glm::dvec3 origin = place_vertices();
     if (left_out_ > 0) source_.warn(std::to_string(left_out_) + " points and lines left out");
     normalize_or_clear(mesh_.normals);
     if (!corner_uvs_.empty()) give_corners_their_uvs();
@@ -154,7 +156,7 @@ class PlyReader {
       triangulate_polygon({corner, size}, mesh_.positions, mesh_.triangles);
       corner += size;
     }
-    Scene scene = scene_of(std::move(mesh_));
+    Scene scene = scene_of(std::move(mesh_), origin);
     add_texture(scene);
     return scene;
   }
@@ -173,6 +175,8 @@ class PlyReader {
       if (!used) continue;
       has[known->slot] = true;
       scale[known->slot] = 1 / full_scale(property.value);
+      single_precision_ |=
+          known->slot == kX && property.value == PlyType::f32 && header_.coding != PlyCoding::text;
     }
     if (!has[kX] || !has[kY]) source_.fail("header", "the vertices have no x or no y");
     const bool normals = has[kNx] && has[kNy] && has[kNz], uvs = has[kU] && has[kV];
@@ -190,7 +194,7 @@ class PlyReader {
       }
       const glm::dvec3 p(v[kX], v[kY], v[kZ]);
       if (const char* wrong = wrong_with(p)) body_.fail(wrong);
-      mesh_.positions.emplace_back(p);
+      places_.push_back(p);
       if (normals) mesh_.normals.emplace_back(v[kNx], v[kNy], v[kNz]);
       if (uvs) mesh_.uvs.push_back(usable_uv(v[kU], v[kV]));
       if (colours) {
@@ -199,6 +203,17 @@ class PlyReader {
                            has[kA] ? v[kA] * scale[kA] : 1.0}));
       }
     }
+  }
+
+  // Returns the origin.
+  glm::dvec3 place_vertices() {
+    source_.require_memory(places_.size() * sizeof(glm::vec3));
+    const geometry::Box3d box = box_of(places_);
+    if (single_precision_) warn_if_coarse(source_, reach_of(box), glm::length(box.size()));
+    const glm::dvec3 origin = origin_of(box);
+    mesh_.positions = relative_to(origin, places_);
+    std::vector<glm::dvec3>().swap(places_);
+    return origin;
   }
 
   // v of PLY grows upwards.
@@ -308,6 +323,8 @@ class PlyReader {
   const Source& source_;
   PlyHeader header_;
   PlyBody body_;
+  std::vector<glm::dvec3> places_;  // positions as the file gives them
+  bool single_precision_ = false;   // of these
   Mesh mesh_;
   std::vector<std::uint32_t> corners_, sizes_;  // of all polygons
   std::vector<glm::vec2> corner_uvs_;           // of corners_, if any face has them

@@ -9,6 +9,7 @@
 #include "scenes/files/growth_watch.h"
 #include "scenes/files/readers.h"
 #include "scenes/files/vertex_values.h"
+#include "scenes/geometry/origin.h"
 #include "scenes/geometry/weld.h"
 
 namespace delray::scenes::internal {
@@ -16,13 +17,15 @@ namespace {
 
 constexpr std::size_t kStlHeader = 84, kFacet = 50;  // bytes
 
-void add_triangle(Mesh& mesh) {
-  const auto last = static_cast<std::uint32_t>(mesh.positions.size());
+// Of `corners` so far.
+void add_triangle(std::size_t corners, Mesh& mesh) {
+  const auto last = static_cast<std::uint32_t>(corners);
   mesh.triangles.emplace_back(last - 3, last - 2, last - 1);
 }
 
-Mesh read_text_stl(const Source& source) {
+Scene read_text_stl(const Source& source) {
   Mesh mesh;
+  std::vector<glm::dvec3> places;
   Lines lines(source.content);
   GrowthWatch watch(source);
   std::string_view line;
@@ -33,7 +36,7 @@ Mesh read_text_stl(const Source& source) {
     Words words(line);
     const std::string_view key = words.next();
     if (key == "vertex") {
-      mesh.positions.emplace_back(read_coordinates<3>(source, lines, words));
+      places.push_back(read_coordinates<3>(source, lines, words));
       ++vertices;
     } else if (key == "facet") {
       vertices = 0;
@@ -42,13 +45,16 @@ Mesh read_text_stl(const Source& source) {
         source.fail(lines.place(),
                     "the facet has " + std::to_string(vertices) + " vertices, not 3");
       }
-      add_triangle(mesh);
+      add_triangle(places.size(), mesh);
     } else if (key == "solid" || key == "endsolid") {
       ended = key == "endsolid";
     }
   }
   if (!ended) source.fail(lines.place(), "the file ends before its endsolid");
-  return mesh;
+  source.require_memory(places.size() * sizeof(glm::vec3));
+  const glm::dvec3 origin = origin_of(box_of(places));
+  mesh.positions = relative_to(origin, places);
+  return scene_of(std::move(mesh), origin);
 }
 
 // Colours of facets while they are read.
@@ -81,7 +87,7 @@ class FacetColours {
   bool blue_first_ = false, any_ = false;
 };
 
-Mesh read_binary_stl(const Source& source, std::uint32_t count) {
+Scene read_binary_stl(const Source& source, std::uint32_t count) {
   Mesh mesh;
   if (count > kNone / 3) source.fail("byte 80", "a mesh is too large");
   source.require_memory(count * (3 * (sizeof(glm::vec3) + sizeof(glm::vec4)) + sizeof(glm::uvec3)));
@@ -98,13 +104,17 @@ Mesh read_binary_stl(const Source& source, std::uint32_t count) {
       mesh.positions.push_back(p);
     }
     mesh.colours.insert(mesh.colours.end(), 3, colour_of(facet));
-    add_triangle(mesh);
+    add_triangle(mesh.positions.size(), mesh);
   }
   if (!colour_of.any()) mesh.colours.clear();
-  return mesh;
+  const geometry::Box3d box = box_of(mesh.positions);
+  warn_if_coarse(source, reach_of(box), glm::length(box.size()));
+  const glm::dvec3 origin = origin_of(box);
+  make_relative_to(origin, mesh.positions);
+  return scene_of(std::move(mesh), origin);
 }
 
-Mesh read_facets(const Source& source) {
+Scene read_facets(const Source& source) {
   const std::string_view content = source.content;
   if (content.size() >= kStlHeader) {
     std::uint32_t count = 0;
@@ -124,10 +134,10 @@ Mesh read_facets(const Source& source) {
 }  // namespace
 
 Scene read_stl(const Source& source) {
-  Mesh mesh = read_facets(source);
-  if (mesh.triangles.empty()) source.fail("", kNoTriangles);
-  weld(mesh);
-  return scene_of(std::move(mesh));
+  Scene scene = read_facets(source);
+  if (scene.meshes[0].triangles.empty()) source.fail("", kNoTriangles);
+  weld(scene.meshes[0]);
+  return scene;
 }
 
 }  // namespace delray::scenes::internal

@@ -5,6 +5,7 @@
 
 #include "image/srgb.h"
 #include "scenes/files/source.h"
+#include "scenes/geometry/origin.h"
 
 namespace delray::scenes::internal {
 namespace {
@@ -46,6 +47,13 @@ glm::vec<N, double> read_coordinates(const Source& source, const Lines& lines, W
 template glm::dvec1 read_coordinates<1>(const Source&, const Lines&, Words&);
 template glm::dvec3 read_coordinates<3>(const Source&, const Lines&, Words&);
 
+void warn_if_coarse(const Source& source, double reach, double diagonal) {
+  if (!(reach > kCoarse * diagonal)) return;
+  source.warn(
+      "the scene is far from the origin for its size, and the file keeps its coordinates in single "
+      "precision: they are coarse");
+}
+
 glm::vec4 linear_colour(const glm::dvec4& srgb) {
   const double alpha = std::isfinite(srgb.a) ? std::clamp(srgb.a, 0.0, 1.0) : 1.0;
   return {linear_channel(srgb.r), linear_channel(srgb.g), linear_channel(srgb.b), alpha};
@@ -59,8 +67,9 @@ Material plain_material(bool has_colours) {
   return material;
 }
 
-Scene scene_of(Mesh mesh) {
+Scene scene_of(Mesh mesh, const glm::dvec3& origin) {
   Scene scene;
+  scene.origin = origin;
   scene.materials.push_back(plain_material(!mesh.colours.empty()));
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({0, glm::mat4x3(1.0F)});

@@ -19,6 +19,10 @@ const char* wrong_with(const glm::dvec3& p);
 template <int N>
 glm::vec<N, double> read_coordinates(const Source& source, const Lines& lines, Words& words);
 
+// Warns where coordinates that the file keeps in single precision reach so far from 0 that their
+// steps show in a scene of this diagonal.
+void warn_if_coarse(const Source& source, double reach, double diagonal);
+
 // sRGB, as programs that write colours of vertices show them, from 0 to 1; alpha stays as it is.
 // What is not finite is 0, or alpha 1.
 glm::vec4 linear_colour(const glm::dvec4& srgb);
@@ -38,7 +42,7 @@ void normalize_or_clear(std::vector<T>& directions) {
 // What things are made of that have no material: grey, or white under the colours of vertices.
 Material plain_material(bool has_colours);
 
-// A scene of one mesh with a plain material.
-Scene scene_of(Mesh mesh);
+// A scene of one mesh, relative to `origin`, with a plain material.
+Scene scene_of(Mesh mesh, const glm::dvec3& origin);
 
 }  // namespace delray::scenes::internal

@@ -3,7 +3,7 @@
 namespace delray::scenes::internal {
 namespace {
 
-Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 glm::vec3 direction(const JsonView& json, const glm::vec3& otherwise) {
   const glm::dvec3 v = json.vector<3>(otherwise);
@@ -27,10 +27,11 @@ Json extras_of(const Scene& scene) {
   }
   for (const Light& light : scene.lights) {
     if (light.kind != Light::Kind::area) continue;
-    extras["area_lights"].push_back({{"radiance", json_of(light.colour)},
-                                     {"position", json_of(light.position)},
-                                     {"edge_u", json_of(light.edge_u)},
-                                     {"edge_v", json_of(light.edge_v)}});
+    extras["area_lights"].push_back(
+        {{"radiance", json_of(light.colour)},
+         {"position", json_of(glm::dvec3(light.position) + scene.origin)},
+         {"edge_u", json_of(light.edge_u)},
+         {"edge_v", json_of(light.edge_v)}});
   }
   if (extras.is_null()) return extras;
   return {{"delray", extras}};
@@ -52,7 +53,7 @@ void read_extras(const JsonView& extras, Scene& scene) {
     Light light;
     light.kind = Light::Kind::area;
     light.colour = radiance(lights[i]["radiance"]);
-    light.position = lights[i]["position"].vector<3>({0, 0, 0});
+    light.position = lights[i]["position"].vector<3>({0, 0, 0}) - scene.origin;
     light.edge_u = lights[i]["edge_u"].vector<3>({0, 0, 0});
     light.edge_v = lights[i]["edge_v"].vector<3>({0, 0, 0});
     scene.lights.push_back(light);

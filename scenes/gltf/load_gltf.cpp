@@ -8,6 +8,7 @@
 #include "scenes/gltf/gltf_extras.h"
 #include "scenes/gltf/gltf_material.h"
 #include "scenes/gltf/gltf_mesh.h"
+#include "scenes/gltf/gltf_origin.h"
 
 namespace delray::scenes::internal {
 namespace {
@@ -74,6 +75,11 @@ class Placer {
         if (stack.back().node == kNone) children[i].fail("is missing");
       }
     }
+    place_instances(document_.source, worlds_, scene_);
+    for (auto& [node, world] : others_) {
+      world[3] -= glm::dvec4(scene_.origin, 0.0);
+      place_others(node, world);
+    }
   }
 
  private:
@@ -110,9 +116,14 @@ class Placer {
     const std::uint32_t mesh = node["mesh"].reference(meshes_.size());
     if (mesh != kNone) {
       for (const std::uint32_t part : mesh_parts(mesh)) {
-        scene_.instances.push_back({part, glm::mat4x3(glm::dmat4x3(world))});
+        scene_.instances.push_back({part});
+        worlds_.push_back(world);
       }
     }
+    if (node["camera"] || node["extensions"]) others_.push_back({node, world});
+  }
+
+  void place_others(const JsonView& node, const glm::dmat4& world) {
     const JsonView cameras = root_["cameras"];
     const std::uint32_t camera = node["camera"].reference(cameras.size());
     if (camera != kNone) place_camera(cameras[camera], node["name"].text(), world);
@@ -188,6 +199,8 @@ class Placer {
   std::vector<std::vector<std::uint32_t>> meshes_;  // the scene's meshes of each mesh of the file
   std::vector<bool> mesh_is_read_;
   std::uint32_t default_material_ = kNone;
+  std::vector<glm::dmat4> worlds_;                       // of the scene's instances
+  std::vector<std::pair<JsonView, glm::dmat4>> others_;  // nodes with cameras and lights
 };
 
 // Their depths are told apart best between the nearest and the farthest that there is.

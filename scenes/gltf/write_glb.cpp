@@ -290,6 +290,8 @@ class Writer {
 
   void add_scene() {
     Scene rest;  // what has no place in glTF proper
+    rest.origin = scene_.origin;
+    if (scene_.z_up) rest.origin = {rest.origin.x, rest.origin.z, -rest.origin.y};
     rest.environment = scene_.environment;
     rest.environment.up = upright(scene_.environment.up, scene_.z_up);
     for (Light light : scene_.lights) {
@@ -297,6 +299,11 @@ class Writer {
         *v = upright(*v, scene_.z_up);
       }
       rest.lights.push_back(light);
+    }
+    if (rest.origin != glm::dvec3(0)) {
+      const glm::dvec3& o = rest.origin;
+      document_["nodes"].push_back({{"translation", {o.x, o.y, o.z}}, {"children", top_nodes_}});
+      top_nodes_ = {document_["nodes"].size() - 1};
     }
     Json json = {{"nodes", top_nodes_}};
     if (Json extras = internal::extras_of(rest); !extras.is_null()) json["extras"] = extras;

@@ -170,12 +170,22 @@ TEST(Load, GuessesWhichWayIsUp) {
       load_quietly(folder.write("a.off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 1\n3 0 1 2\n")).z_up);
 }
 
-TEST(Load, WarnsOfCoordinatesThatAreCoarse) {
+TEST(Load, SaysWhyNothingIsLeft) {
   const tests::TemporaryFolder folder;
-  std::vector<std::string> warnings;
-  load(folder.write("a.off", "OFF 3 1 0\n1e6 0 0\n1000001 0 0\n1e6 1 0\n3 0 1 2\n"), warnings);
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("far from the origin"), std::string::npos);
+  const auto reason = [&](const std::string& obj) {
+    try {
+      load_quietly(folder.write("a.obj", obj));
+    } catch (const files::FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(reason("v 1 0 0\nv 2 0 0\nv 1 0 0\nf 1 2 3\n")
+                  .ends_with("its 1 triangle has two corners in one place"));
+  EXPECT_TRUE(reason("v 1 0 0\nv 2 0 0\nv 1 0 0\nf 1 2 3\nf 3 2 1\n")
+                  .ends_with("its 2 triangles have two corners in one place"));
+  EXPECT_NE(reason("v 1 0 0\nv 2 0 0\nv 3 0 0\nl 1 2 3\n").find("no triangles in the file"),
+            std::string::npos);
 }
 
 TEST(Load, GltfTransformsNamesAndMaterials) {
