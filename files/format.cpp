@@ -17,40 +17,6 @@
 namespace delray::files {
 namespace {
 
-using Named = std::pair<std::string_view, Format>;
-
-constexpr std::array kSuffixes = {
-    Named{".ply", Format::ply},          Named{".obj", Format::obj},
-    Named{".off", Format::off},          Named{".stl", Format::stl},
-    Named{".gltf", Format::gltf},        Named{".glb", Format::glb},
-    Named{".las", Format::las},          Named{".laz", Format::las},
-    Named{".vtu", Format::vtu},          Named{".node", Format::node},
-    Named{".ele", Format::node},         Named{".xyz", Format::text},
-    Named{".json", Format::json_points}, Named{".csv", Format::text},
-    Named{".txt", Format::text},         Named{".pts", Format::text},
-    Named{".asc", Format::text},         Named{".tsv", Format::text},
-    Named{".png", Format::image},        Named{".jpg", Format::image},
-    Named{".jpeg", Format::image},       Named{".tif", Format::image},
-    Named{".tiff", Format::image},       Named{".exr", Format::image},
-    Named{".hdr", Format::image},        Named{".bmp", Format::image},
-    Named{".tga", Format::image},        Named{".pgm", Format::image},
-    Named{".ppm", Format::image},        Named{".webp", Format::image},
-};
-
-constexpr std::array kMagic = {
-    Named{"LASF", Format::las},
-    Named{"glTF", Format::glb},
-    Named{"\x89PNG", Format::image},
-    Named{"\xff\xd8\xff", Format::image},
-    Named{std::string_view("II*\0", 4), Format::image},
-    Named{std::string_view("MM\0*", 4), Format::image},
-    Named{std::string_view("II+\0", 4), Format::image},
-    Named{std::string_view("MM\0+", 4), Format::image},
-    Named{"\x76\x2f\x31\x01", Format::image},
-    Named{"#?RADIANCE", Format::image},
-    Named{"#?RGBE", Format::image},
-};
-
 constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -192,7 +158,7 @@ Format xml_format(std::string_view start) {
 }
 
 Format format_of_content(std::string_view start, std::uint64_t size) {
-  for (const auto& [magic, format] : kMagic) {
+  for (const auto& [magic, format] : kFormatStarts) {
     if (start.starts_with(magic)) return format;
   }
   if (start.starts_with("\xef\xbb\xbf")) start.remove_prefix(3);  // UTF-8 byte order mark
@@ -247,7 +213,7 @@ std::string_view name(Format format) {
   if (format == Format::json_points) return "json";
   if (format == Format::text) return "text";
   if (format == Format::image) return "image";
-  for (const auto& [suffix, known] : kSuffixes) {
+  for (const auto& [suffix, known] : kFormatSuffixes) {
     if (known == format) return suffix.substr(1);
   }
   return "unknown";
@@ -255,7 +221,7 @@ std::string_view name(Format format) {
 
 std::string suffixes(Format format) {
   std::string list;
-  for (const auto& [suffix, known] : kSuffixes) {
+  for (const auto& [suffix, known] : kFormatSuffixes) {
     if (known == format) list += (list.empty() ? "" : " ") + std::string(suffix);
   }
   return list;
@@ -263,7 +229,7 @@ std::string suffixes(Format format) {
 
 Format format_of_suffix(const std::filesystem::path& path) {
   const std::string suffix = lower(path.extension().string());
-  for (const auto& [known, format] : kSuffixes) {
+  for (const auto& [known, format] : kFormatSuffixes) {
     if (known == suffix) return format;
   }
   return Format::unknown;

@@ -1,6 +1,7 @@
 // What kind of file a file is: by its content, then by its suffix.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -24,6 +25,46 @@ enum class Format {
   json_points,  // [[x, y(, z)], ...]
   text,         // rows of numbers: xyz, csv, txt ...
   image,        // anything that OpenImageIO might read
+};
+
+// What a format is known by: a suffix, in lower case with its dot, or the bytes that its files
+// begin with.
+struct FormatSign {
+  std::string_view text;
+  Format format;
+};
+// Of several suffixes of a format the usual one comes first.
+inline constexpr std::array kFormatSuffixes = {
+    FormatSign{".ply", Format::ply},          FormatSign{".obj", Format::obj},
+    FormatSign{".off", Format::off},          FormatSign{".stl", Format::stl},
+    FormatSign{".gltf", Format::gltf},        FormatSign{".glb", Format::glb},
+    FormatSign{".las", Format::las},          FormatSign{".laz", Format::las},
+    FormatSign{".vtu", Format::vtu},          FormatSign{".node", Format::node},
+    FormatSign{".ele", Format::node},         FormatSign{".xyz", Format::text},
+    FormatSign{".json", Format::json_points}, FormatSign{".csv", Format::text},
+    FormatSign{".txt", Format::text},         FormatSign{".pts", Format::text},
+    FormatSign{".asc", Format::text},         FormatSign{".tsv", Format::text},
+    FormatSign{".png", Format::image},        FormatSign{".jpg", Format::image},
+    FormatSign{".jpeg", Format::image},       FormatSign{".tif", Format::image},
+    FormatSign{".tiff", Format::image},       FormatSign{".exr", Format::image},
+    FormatSign{".hdr", Format::image},        FormatSign{".bmp", Format::image},
+    FormatSign{".tga", Format::image},        FormatSign{".pgm", Format::image},
+    FormatSign{".ppm", Format::image},        FormatSign{".webp", Format::image},
+};
+
+// Formats without a mark of their own are recognized by what they hold.
+inline constexpr std::array kFormatStarts = {
+    FormatSign{"LASF", Format::las},
+    FormatSign{"glTF", Format::glb},
+    FormatSign{"\x89PNG", Format::image},
+    FormatSign{"\xff\xd8\xff", Format::image},
+    FormatSign{std::string_view("II*\0", 4), Format::image},
+    FormatSign{std::string_view("MM\0*", 4), Format::image},
+    FormatSign{std::string_view("II+\0", 4), Format::image},
+    FormatSign{std::string_view("MM\0+", 4), Format::image},
+    FormatSign{"\x76\x2f\x31\x01", Format::image},
+    FormatSign{"#?RADIANCE", Format::image},
+    FormatSign{"#?RGBE", Format::image},
 };
 
 // The lower-case usual suffix without the dot ("ply"), or "unknown".

@@ -1,9 +1,12 @@
-// The readers that the tables of read_points.h and read_mesh.h are made of, one file each.
+// The readers behind the tables of read_points.h and read_mesh.h, one file each.
 #pragma once
+
+#include <array>
 
 #include "delaunay/files/input.h"
 #include "delaunay/points.h"
 #include "delaunay/read_mesh.h"
+#include "delaunay/read_points.h"
 
 namespace delray::delaunay {
 
@@ -17,6 +20,27 @@ PointCloud read_las_points(const Input& input);
 PointCloud read_json_points(const Input& input);
 PointCloud read_node_points(const Input& input);
 PointCloud read_vtu_points(const Input& input);
+
+// The table: which reader reads which format.
+inline constexpr std::array kPointReaders = {
+    PointReader{files::Format::text, "XYZ",
+                "points as rows of numbers: x y [z], or columns named in a first line",
+                ".xyz .csv .txt .tsv .asc .pts", &read_text_points},
+    PointReader{files::Format::ply, "PLY", "points, ASCII or binary, or the vertices of faces",
+                ".ply", &read_ply_points},
+    PointReader{files::Format::obj, "OBJ", "points, or the vertices of a Wavefront model", ".obj",
+                &read_obj_points},
+    PointReader{files::Format::off, "OFF", "points, or the vertices of an object file", ".off",
+                &read_off_points},
+    PointReader{files::Format::las, "LAS", "LiDAR points, versions 1.0 to 1.4, not compressed",
+                ".las", &read_las_points},
+    PointReader{files::Format::json_points, "JSON", "points as [[x, y], ...] or [[x, y, z], ...]",
+                ".json", &read_json_points},
+    PointReader{files::Format::node, "NODE", "points of Triangle and TetGen", ".node",
+                &read_node_points},
+    PointReader{files::Format::vtu, "VTU", "the points of an unstructured grid that delray wrote",
+                ".vtu", &read_vtu_points},
+};
 
 PointMesh read_ply_mesh(const Input& input);
 PointMesh read_obj_mesh(const Input& input);

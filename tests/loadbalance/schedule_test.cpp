@@ -239,7 +239,7 @@ TEST(Schedules, ThatAdaptLeaveASlowRankLess) {
     const Simulated result = run_simulated(schedule, 8, grid, options, log, {}, 1, slowness);
     log.expect_each_once();
     const std::uint64_t slow = result.reports[5].tasks;
-    if (name == "static" || name == "interlaced" || name == "random") {
+    if (std::string(schedule.group) == "fixed") {
       EXPECT_EQ(slow, 100U);
       EXPECT_GT(result.seconds, 0.99);
       for (const RankReport& report : result.reports) EXPECT_EQ(report.messages, 0U);
@@ -288,7 +288,7 @@ TEST(Schedules, RethrowWhatATaskThrowsAndEndAllRanks) {
 }
 
 TEST(Schedules, AreFoundByName) {
-  EXPECT_EQ(schedules().size(), 8U);
+  EXPECT_GE(schedules().size(), 8U);  // those of the report
   for (const Schedule& schedule : schedules()) {
     EXPECT_EQ(find_schedule(schedule.name), &schedule);
   }
