@@ -8,6 +8,7 @@
 
 namespace delray::apps {
 
+// A shell that command lines are completed for.
 struct Shell {
   const char* name;
   const char* description;  // how to use the script

@@ -11,6 +11,7 @@
 
 namespace delray::apps {
 
+// Ranks and threads of a command, and how long they wait for each other.
 struct Launch {
   int ranks = 0;       // 0: not given
   int threads = 0;     // workers per rank; 0: cores / ranks

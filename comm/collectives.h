@@ -47,6 +47,7 @@ std::vector<Buffer> gather(Communicator& communicator, int root, Buffer&& messag
 // (Bruck et al. 1997).
 std::vector<Buffer> all_gather(Communicator& communicator, Buffer&& message);
 
+// A message with its other end, for exchange.
 struct Parcel {
   int rank = 0;  // the receiver on the way out, the sender on the way in
   Buffer message;

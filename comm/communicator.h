@@ -26,6 +26,7 @@ inline constexpr int kAnyRank = -1;
 inline constexpr Tag kAnyTag = -1;
 inline constexpr Tag kReservedTags = 1 << 12;
 
+// What is known of a message before it is received.
 struct Envelope {
   int source = 0;
   Tag tag = 0;

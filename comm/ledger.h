@@ -12,6 +12,7 @@
 
 namespace delray::comm {
 
+// A message, an amount of work, or a mark of one rank.
 struct Event {
   enum class Kind : std::uint8_t { send, receive, work, mark };
   Kind kind = Kind::mark;

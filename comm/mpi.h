@@ -12,6 +12,7 @@
 
 namespace delray::comm {
 
+// How messages travel between MPI processes, and how long a rank waits for one.
 struct MpiOptions {
   // A rank that waits longer than this for one message ends all, with exit code 5 and a line that
   // names the rank that the wait is for in the end, and its phase where it runs on this machine.

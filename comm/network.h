@@ -29,6 +29,7 @@ struct Network {
   double jitter = 0;
 };
 
+// A network of the table of presets.
 struct NamedNetwork {
   const char* name;
   const char* description;

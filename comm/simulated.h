@@ -16,6 +16,7 @@ namespace delray::comm {
 // order of arrival occurs that MPI allows: first in, first out between two ranks, else any.
 Network any_order();
 
+// Properties of the simulated ranks.
 struct SimulationOptions {
   // Rank k needs slowness[k] times as long for its work and overheads; 1 where the vector ends.
   std::vector<double> slowness;

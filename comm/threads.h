@@ -9,6 +9,7 @@
 
 namespace delray::comm {
 
+// When ranks of one process are taken for stalled.
 struct ThreadsOptions {
   // A rank that waits longer than this for one message is taken for stalled.
   std::chrono::nanoseconds timeout = std::chrono::nanoseconds::max();

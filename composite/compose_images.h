@@ -11,6 +11,7 @@
 
 namespace delray::composite {
 
+// How images are composited and travel, and to which rank.
 struct ImageOptions {
   Operator how = Operator::nearest;
   std::string_view scheme = "radix-k";  // with radices, if any: see choose_scheme

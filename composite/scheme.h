@@ -11,6 +11,7 @@
 
 namespace delray::composite {
 
+// What schemes go by.
 struct ComposeOptions {
   int samples_per_pixel = 1;  // ranges are cut at multiples of it
   // What a scheme that takes_radices goes by, each >= 1: radix-k the sizes of its groups, round by

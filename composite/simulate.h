@@ -46,6 +46,7 @@ struct MachineModel {
   LayerCosts costs;
 };
 
+// Counts and predicted times of a scheme.
 struct Simulated {
   Counts compose, gather;
   double compose_seconds = 0, gather_seconds = 0;

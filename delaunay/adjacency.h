@@ -9,6 +9,7 @@
 
 namespace delray::delaunay {
 
+// Which simplices lie beside each other, and one at each point.
 struct Adjacency {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 

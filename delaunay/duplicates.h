@@ -10,8 +10,10 @@
 
 namespace delray::delaunay {
 
+// Which z a place gets that several points of different z share.
 enum class Duplicates { first, min, max, mean };  // which z the place gets
 
+// An entry of the table of policies for such places.
 struct DuplicatesName {
   std::string_view name;
   std::string_view description;
@@ -20,6 +22,7 @@ struct DuplicatesName {
 std::span<const DuplicatesName> duplicates_policies();
 std::optional<Duplicates> duplicates_policy(std::string_view name);  // none for an unknown name
 
+// How many places and rows they concern.
 struct DuplicatesCount {
   std::size_t places = 0;  // (x, y) with more than one z
   std::size_t rows = 0;    // rows that stand at such places

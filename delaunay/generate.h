@@ -10,6 +10,7 @@
 
 namespace delray::delaunay {
 
+// An entry of the table of point sets.
 struct PointGenerator {
   std::string_view name;         // "gauss"
   std::string_view description;  // one line

@@ -11,6 +11,7 @@
 
 namespace delray::delaunay {
 
+// Which rows of the points the vertices of a mesh are.
 struct PointMatch {
   // For each vertex the lowest row of the points with its coordinates 0 .. dim-1. Valid if the next
   // two are empty.
@@ -26,6 +27,7 @@ struct PointMatch {
   std::size_t unused = 0;    // distinct points that are no vertex
 };
 
+// How vertices and points are compared.
 struct Matching {
   int dim = 2;             // 2 or 3; -0 equals 0
   bool as_floats = false;  // points are rounded to 32-bit floats before, vertices are such

@@ -11,11 +11,13 @@
 
 namespace delray::delaunay {
 
+// A name and description of a location, split, order or deadlock strategy.
 struct Choice {
   std::string_view name;
   std::string_view description;
 };
 
+// An entry of the table of methods, with what goes with it.
 struct Method {
   std::string_view name;
   std::string_view description;

@@ -9,6 +9,7 @@
 
 namespace delray::delaunay {
 
+// A vertex and its share.
 struct NaturalNeighbour {
   std::uint32_t row;
   double weight;

@@ -23,6 +23,7 @@ enum class Stage {
   kBigInteger,    // integers of any size
 };
 
+// A sign, and the stage that found it.
 struct Decision {
   int sign;
   Stage stage;

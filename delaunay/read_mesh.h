@@ -12,6 +12,7 @@
 
 namespace delray::delaunay {
 
+// A mesh as its file has it.
 struct PointMesh {
   PointCloud points;
   // Vertex numbers are rows of `points`, in range; their order is the file's. `distinct` and

@@ -10,6 +10,7 @@
 
 namespace delray::delaunay {
 
+// The points that were kept, and their triangulation.
 struct SimplifiedTerrain {
   std::vector<std::uint32_t> kept;  // rows, ascending
   // triangulate() of the kept points: vertices are rows of all points, `distinct` counts all places

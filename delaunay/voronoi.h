@@ -12,6 +12,7 @@
 
 namespace delray::delaunay {
 
+// Vertices and edges of a Voronoi diagram.
 struct Voronoi {
   // Vertex i is the circumcentre of simplex i; z is 0 in 2D. Simplices on a common sphere have
   // theirs in the same place, to within rounding.

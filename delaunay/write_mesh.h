@@ -23,6 +23,7 @@ struct MeshView {
   std::size_t size() const { return simplices.size() / static_cast<std::size_t>(corners); }
 };
 
+// An entry of the table of mesh formats that are written.
 struct MeshWriter {
   files::Format format;
   std::string_view name;         // "PLY"

@@ -9,6 +9,7 @@
 
 namespace delray::delaunay {
 
+// An entry of the table of point formats that are written.
 struct PointWriter {
   std::string_view name;         // "CSV"
   std::string_view description;  // one line

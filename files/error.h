@@ -7,12 +7,14 @@
 
 namespace delray::files {
 
+// Why a file cannot be used, and the exit code that the program ends with.
 enum class Cause {
   input,   // the content of a file or stream is not what it should be: exit code 3
   device,  // reading or writing failed: disk full, no such file to write to: exit code 1
   memory,  // takes more memory than the program may have (MemoryBudget): exit code 1
 };
 
+// The one exception for bad input and failing devices: names the file and the place in it.
 class FileError : public std::runtime_error {
  public:
   // `file` is the name as the user gave it ("-" for a stream), `place` a line, byte or element

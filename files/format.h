@@ -11,6 +11,7 @@
 
 namespace delray::files {
 
+// The formats that the readers and writers of all layers know.
 enum class Format {
   unknown,
   ply,
@@ -70,6 +71,7 @@ inline constexpr std::array kFormatStarts = {
 // The lower-case usual suffix without the dot ("ply"), or "unknown".
 std::string_view name(Format format);
 
+// A format, and whether the file holds a surface or bare points.
 struct FileKind {
   Format format = Format::unknown;
   // PLY, OBJ and OFF hold bare points as well as meshes; true if this one has at least one face.

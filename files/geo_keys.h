@@ -7,6 +7,7 @@
 
 namespace delray::files {
 
+// The coordinate system as GeoTIFF keys tell it; LAS files have them, too.
 struct GeoKeys {
   bool known = false;           // whether the kind of coordinates is told at all
   bool geographic = false;      // longitude and latitude in degrees

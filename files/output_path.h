@@ -9,6 +9,7 @@
 
 namespace delray::files {
 
+// Where an output goes once links are followed.
 struct OutputPath {
   std::filesystem::path path;  // behind all links of its last name and its folders
   // A device, FIFO, socket or "-": there is nothing to replace, so its content is written into it.

@@ -9,6 +9,7 @@
 
 namespace delray::image {
 
+// Where the pixels of an elevation picture lie on the ground.
 struct GeoTiff {
   // Columns: what a step to the next column adds to the coordinates, what one to the next row adds,
   // and the coordinates of the centre of pixel (0, 0).

@@ -37,6 +37,7 @@ struct Attribute {
   bool operator==(const Attribute&) const = default;
 };
 
+// A picture with all that its file says.
 struct Picture {
   ImageF image;
   std::vector<Channel> channels;
@@ -85,6 +86,7 @@ struct RawChannels {
 RawChannels read_float_channels(const std::filesystem::path& path,
                                 const files::MemoryBudget& memory = {});
 
+// What a picture file gets besides colours, and how exact it is.
 struct WriteOptions {
   bool half = false;                  // EXR: 16-bit colour; depth and channels stay 32-bit
   std::span<const Channel> channels;  // EXR only

@@ -8,6 +8,7 @@
 
 namespace delray::image {
 
+// An entry of the table of curves from linear light to what a screen shows.
 struct ToneCurve {
   const char* name;
   const char* description;

@@ -10,6 +10,7 @@
 
 namespace delray::loadbalance {
 
+// How evenly a partition shares out the costs.
 struct Balance {
   std::vector<double> loads;  // by owner
   double alone = 0;           // what one owner of the whole frame would have to do

@@ -14,6 +14,7 @@ namespace delray::loadbalance {
 // region.
 inline constexpr int kNobody = -1, kEverybody = -2;
 
+// Prices and limits of the hybrid partition.
 struct HybridOptions {
   // Of a pixel that is seen by another than its owner, to both.
   double pixel_cost = 0.25;
@@ -22,6 +23,7 @@ struct HybridOptions {
   double largest_box = 0.1;
 };
 
+// Owners of boxes and of the screen, found together.
 struct HybridPartition {
   std::vector<int> owners;  // of box i
   Partition regions;        // at most one for each owner

@@ -23,6 +23,7 @@ struct Partition {
   std::vector<Region> regions;
 };
 
+// An entry of the table of partitions.
 struct Partitioner {
   const char* name;
   const char* description;

@@ -17,6 +17,7 @@
 
 namespace delray::loadbalance {
 
+// How a schedule hands out tasks.
 struct ScheduleOptions {
   // Of this rank; 0: as many as its arena has. One on the simulated machine.
   int threads = 0;
@@ -59,6 +60,8 @@ struct ScheduleCounts {
   double begin = 0, end = 0;                   // Communicator::seconds at the call and the return
   double busy = 0, idle = 0;                   // seconds at tasks and waiting, summed over threads
 };
+
+// What a rank did under a schedule: counts, and the times of its threads.
 struct RankReport : ScheduleCounts {
   std::vector<Interval> timeline;  // by thread, then time
 };
@@ -68,6 +71,7 @@ struct RankReport : ScheduleCounts {
 // 0 may call Communicator::work. Loops over parallel/ inside of it do not use the rank's arena.
 using TaskFunction = parallel::FunctionRef<void(std::uint32_t task, int thread)>;
 
+// An entry of the table of schedules.
 struct Schedule {
   const char* name;
   const char* description;

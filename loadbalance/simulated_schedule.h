@@ -10,6 +10,7 @@
 
 namespace delray::loadbalance {
 
+// A run of a schedule on the simulated machine.
 struct SimulatedSchedule {
   std::vector<RankReport> ranks;
   std::vector<int> owners;  // of task i: the rank that did it

@@ -10,6 +10,7 @@
 
 namespace delray::parallel {
 
+// A step that every item of a pipeline passes.
 struct PipelineStage {
   std::string name;
   // One item at a time, in ascending order; otherwise several items at once, in any order.
@@ -19,6 +20,7 @@ struct PipelineStage {
   std::function<void(std::size_t item, std::size_t slot)> run;
 };
 
+// How long the stages of a pipeline worked.
 struct PipelineTimes {
   std::vector<double> stages;  // seconds, summed over items
   double seconds = 0;          // from the first item's start to the last one's end

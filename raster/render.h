@@ -63,6 +63,7 @@ enum class Groups : std::uint8_t { one, two };
 // which are drawn as they come.
 enum class Redistribution : std::uint8_t { at_end, immediate };
 
+// What a frame shows, how well, and how it is shared out.
 struct RenderOptions {
   int width = 1024, height = 768;
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
@@ -107,6 +108,7 @@ struct Phases {
   void operator+=(const Phases& other);
 };
 
+// What a rank did for a frame.
 struct RankStatistics {
   int rank = 0;
   double busy = 0;                          // transform + bin + rasterize + shade
@@ -129,6 +131,7 @@ struct PartitionStatistics {
   std::vector<double> loads;  // by owner, as the costs foretell
 };
 
+// What a frame took.
 struct Statistics {
   Phases phases;                      // summed over ranks
   std::vector<RankStatistics> ranks;  // ascending
@@ -150,6 +153,7 @@ struct Statistics {
 // Depths are distances along the view axis, in the scene's units.
 using Picture = std::variant<image::Image8, image::ImageF>;
 
+// A frame.
 struct Result {
   Picture picture;        // on rank 0; of size 0 elsewhere
   Statistics statistics;  // on rank 0; empty elsewhere

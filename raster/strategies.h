@@ -22,6 +22,7 @@ class FrameSteps {
   virtual Picture compose() = 0;
 };
 
+// An entry of the table of strategies.
 struct Strategy {
   const char* name;
   const char* description;

@@ -9,6 +9,7 @@
 
 namespace delray::raytrace {
 
+// How far and how strongly a picture is smoothed.
 struct DenoiseOptions {
   int levels = 4;         // each looks twice as far as the one before: 2 pixels, 4, 8 ...
   float strength = 2.1F;  // differences up to so many standard deviations are taken for noise

@@ -20,6 +20,7 @@ struct WaitingList {
   bool hungry = false;                    // the rank has nothing else to do
 };
 
+// An entry of the table of distributions of a scene.
 struct Distribution {
   const char* name;
   const char* description;

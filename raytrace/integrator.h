@@ -10,6 +10,7 @@
 
 namespace delray::raytrace {
 
+// An entry of the table of integrators.
 struct Integrator {
   const char* name;
   const char* description;

@@ -12,6 +12,7 @@
 
 namespace delray::raytrace {
 
+// When a picture that grows pass by pass is done.
 struct ProgressiveOptions {
   RenderOptions frame;  // its samples are the most that a pixel gets; its part is set by the passes
   geometry::Rect window;  // of the frame, as a part of it; empty: all of it

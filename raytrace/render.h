@@ -36,6 +36,7 @@ struct Part {
   std::span<const std::uint8_t> squares;
 };
 
+// What a frame shows, how well, and how it is shared out.
 struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 1;  // per pixel; 1: in its centre
@@ -79,6 +80,8 @@ struct RankCounts {
                 clusters_fetched_bytes = 0, clusters_dropped = 0, clusters_moved = 0,
                 geometry_bytes = 0;
 };
+
+// What a rank did for a frame.
 struct RankStatistics : RankCounts {
   std::vector<loadbalance::Interval> timeline;  // by thread, then time, on the rank's clock
 };
@@ -90,6 +93,7 @@ struct PartitionStatistics {
   bool kept = false;      // from the last frame
 };
 
+// What a frame took.
 struct Statistics {
   double build_seconds = 0.0, frame_seconds = 0.0;
   double trace_seconds = 0.0, gather_seconds = 0.0;  // of rank 0; shading is part of trace

@@ -18,6 +18,7 @@
 
 namespace delray::raytrace {
 
+// How a scene is distributed.
 struct ShareOptions {
   // Which ranks clusters go to: neighbours to one, so that a ray changes rank seldom, or dealt out
   // at random, so that every rank has some of what the picture shows (Jevans 1989).

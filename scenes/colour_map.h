@@ -7,6 +7,7 @@
 
 namespace delray::scenes {
 
+// An entry of the table of colour maps.
 struct ColourMap {
   const char* name;
   const char* description;

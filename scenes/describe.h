@@ -10,12 +10,14 @@
 
 namespace delray::scenes {
 
+// Size and kind of a texture.
 struct TextureDescription {
   std::string name;
   int width = 0, height = 0;
   bool srgb = true;
 };
 
+// What a scene holds: counts, names and bounds.
 struct Description {
   std::uint64_t meshes = 0, instances = 0;
   std::uint64_t triangles = 0, vertices = 0;                // of all instances

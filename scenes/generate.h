@@ -18,6 +18,7 @@ struct ScenePart {
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
 };
 
+// An entry of the table of generated scenes.
 struct Generator {
   const char* name;
   const char* description;

@@ -15,6 +15,7 @@
 
 namespace delray::scenes {
 
+// Limits of a file that is read.
 struct LoadOptions {
   files::MemoryBudget memory;  // for all that the file unpacks to, and those that it names
   // Whether buffers, textures and materials may lie outside of the scene's folder.

@@ -84,6 +84,7 @@ struct Material {
   bool textured() const;  // has any
 };
 
+// Texels, or linear light of an environment, and how places beyond the border are looked up.
 struct Texture {
   std::string name;
   int width = 0, height = 0;
@@ -96,6 +97,7 @@ struct Texture {
   std::vector<glm::vec3> radiance{};
 };
 
+// A point, directional or area light.
 struct Light {
   enum class Kind : std::uint8_t {
     point,        // radiant intensity `colour` at `position`
@@ -117,6 +119,7 @@ struct Environment {
   glm::vec3 zenith{0.0F}, horizon{0.0F}, ground{0.0F};  // radiance
 };
 
+// Everything that is rendered.
 struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;

@@ -84,6 +84,7 @@ inline float acos(float x) {
   return atan2(std::sqrt((1.0F - x) * (1.0F + x)), x);
 }
 
+// Sine and cosine of one angle.
 struct SinCos {
   float sin, cos;
 };

@@ -20,6 +20,7 @@ namespace delray::shading {
 void directions_to(const glm::vec3& eye, const glm::vec3& otherwise, const Vectors16& positions,
                    Vectors16& views);
 
+// Colours and alphas of a block of points.
 struct Shaded {
   Vectors16 colour;  // linear RGB radiance, as shade() gives it: not multiplied by alpha
   Floats16 alpha;

@@ -10,6 +10,7 @@
 
 namespace delray::shading {
 
+// A material with what its points have in common.
 struct BatchMaterial {
   // Where the specular lobe is one and the same, and whether all of its channels are equal.
   enum class Specular : std::uint8_t { grey, coloured, varying };
@@ -31,6 +32,7 @@ struct BatchMaterial {
   alignas(64) float grazing[kBlockPoints], grazing_step[kBlockPoints];
 };
 
+// A light as blocks of points look at it.
 struct BatchLight {
   scenes::Light::Kind kind = scenes::Light::Kind::directional;
   bool dark = false;  // nothing comes from it anywhere

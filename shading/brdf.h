@@ -30,6 +30,7 @@ inline constexpr float kLeastSum = 1e-6F;
 // A reflectance that is divided by counts as at least this.
 inline constexpr float kLeastReflectance = 1e-20F;
 
+// How a surface reflects at one point.
 struct Lobes {
   glm::vec3 diffuse{0.0F};   // albedo
   glm::vec3 specular{0.0F};  // reflectance at normal incidence

@@ -95,6 +95,7 @@ HWY_INLINE F acos(F x) {
   return atan2(hn::Sqrt((set(1.0F) - x) * (set(1.0F) + x)), x);
 }
 
+// Sines and cosines of a vector of angles.
 struct SinCosLanes {
   F sin, cos;
 };
@@ -120,6 +121,7 @@ HWY_INLINE SinCosLanes sin_cos(F x) {
           hn::Xor(hn::IfThenElse(odd, s, c), sign_of_cos)};
 }
 
+// Three vectors of floats: x, y, z or red, green, blue of the lanes.
 struct F3 {
   F x, y, z;
 };

@@ -18,6 +18,7 @@ using LaneMask = std::uint32_t;
 inline constexpr LaneMask kAllLanes = (1U << kBlockPoints) - 1;
 inline LaneMask first_lanes(int count) { return (1U << count) - 1; }
 
+// A number a lane.
 struct alignas(64) Floats16 {
   float lane[kBlockPoints] = {};
   float& operator[](int i) { return lane[i]; }

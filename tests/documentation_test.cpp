@@ -116,3 +116,26 @@ TEST(Documentation, IndexHasEveryPage) {
     EXPECT_NE(index.find(name + ")"), std::string::npos) << name;
   }
 }
+
+// A public type is one that begins in the first column of a header directly in a library's folder.
+TEST(Documentation, EveryPublicTypeHasAComment) {
+  static const std::regex type(R"((struct|class|enum class) (alignas\(\d+\) )?\w+.*\{.*)");
+  int types = 0;
+  for (const auto& folder : fs::directory_iterator(kTree)) {
+    if (!fs::exists(folder.path() / "CMakeLists.txt") || folder.path().filename() == "tests") {
+      continue;
+    }
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.path().extension() != ".h") continue;
+      std::ifstream header(entry.path());
+      std::string before;
+      for (std::string line; std::getline(header, line); before = line) {
+        if (!std::regex_match(line, type)) continue;
+        ++types;
+        const bool told = before.starts_with("//") || before.starts_with("template");
+        EXPECT_TRUE(told) << entry.path() << ": " << line;
+      }
+    }
+  }
+  EXPECT_GT(types, 100);
+}
