@@ -30,6 +30,7 @@ struct UsageError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+// A run of the program: who speaks, what was asked for, and the wish to stop.
 struct Session {
   bool quiet = false;
   bool verbose = false;
