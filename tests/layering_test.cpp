@@ -73,7 +73,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"raytrace/distributed", {"integrators", "scene"}},
     {"scenes/files", {"geometry"}},
     {"scenes/generators", {"geometry"}},
-    {"scenes/gltf", {"files"}},
+    {"scenes/gltf", {"files", "geometry"}},
 };
 
 // "folder/sub-folder" of a path in the tree, nothing where it lies directly in the folder.
@@ -203,4 +203,24 @@ TEST(Layering, ArchitectureTellsTheSameArrows) {
     EXPECT_EQ(names, arrows().at(folder)) << folder;
   }
   EXPECT_EQ(told.size(), arrows().size());
+}
+
+// The rows "| `folder/` | `one/` what it holds; `two/` ... |" name every sub-folder with sources.
+TEST(Layering, ArchitectureNamesEverySubFolder) {
+  static const std::regex row(R"(\| `([a-z]+)/` \|([^|]*)\|)"), name("`([a-z_]+)/`");
+  std::ifstream page(fs::path(DELRAY_SOURCE_DIR) / "docs/architecture.md");
+  Names told, there;
+  std::smatch match;
+  for (std::string line; std::getline(page, line);) {
+    if (!std::regex_match(line, match, row)) continue;
+    const std::string folder = match[1], cell = match[2];
+    for (std::sregex_iterator at(cell.begin(), cell.end(), name), end; at != end; ++at) {
+      told.insert(folder + "/" + (*at)[1].str());
+    }
+  }
+  for_each_source([&](const std::string& folder, const Names&, const fs::path& file) {
+    const std::string part = sub_folder(in_tree(file));
+    if (!part.empty() && folder != "tests" && folder != "bench") there.insert(part);
+  });
+  EXPECT_EQ(told, there);
 }
