@@ -90,7 +90,7 @@ std::vector<std::string> inputs_of(const RenderRequest& request) {
 // Nobody wants to know of these after an hour.
 void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) {
   for (const std::string& path :
-       {request.output, request.statistics, request.practice.checkpoint}) {
+       {request.output, request.statistics, request.sampling.checkpoint}) {
     files::check_writable(path);
   }
   if (!is_video(request.output)) return;
@@ -100,7 +100,7 @@ void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) 
 
 void refuse_overwriting(const RenderRequest& request, const std::vector<std::string>& inputs) {
   std::vector<OutputFile> outputs = {{"--stats", request.statistics},
-                                     {"--checkpoint", request.practice.checkpoint}};
+                                     {"--checkpoint", request.sampling.checkpoint}};
   if (!request.is_animation() || is_video(request.output)) {
     outputs.push_back({"-o", request.output});
   } else {
@@ -123,7 +123,7 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
   check(session, request.launch);
   ProgressBar bar(session, "render");
   std::optional<StopOnTermination> stop;
-  if (!request.practice.checkpoint.empty()) stop.emplace();
+  if (!request.sampling.checkpoint.empty()) stop.emplace();
   parallel::Progress* const progress = &session.progress;
   std::optional<VideoFrames> video;        // of rank 0
   std::shared_ptr<const Prepared> shared;  // by the ranks of this process

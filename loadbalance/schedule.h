@@ -84,7 +84,9 @@ struct Schedule {
   // not. REQUIRES: the same grid and options on all ranks, but for threads and initial.
   RankReport (*run)(comm::Communicator& communicator, const TaskGrid& tasks,
                     const ScheduleOptions& options, TaskFunction work);
-  const char* group;  // of schedules that work alike; reports show these in one colour
+  const char* group;        // of schedules that work alike; reports show these in one colour
+  bool has_master = false;  // some ranks hand out tasks: ScheduleOptions::master_works
+  bool begins_with_shares = false;  // ScheduleOptions::initial
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -11,7 +11,7 @@ namespace {
 
 using Ways = std::vector<RenderOptions>;
 
-void add_sort_last(RenderOptions options, Ways& ways) {
+void add_compositing(RenderOptions options, Ways& ways) {
   const Shade shade = options.shade;
   for (const composite::Scheme& scheme : composite::schemes()) {
     options.scheme = scheme.name;
@@ -26,7 +26,7 @@ void add_sort_last(RenderOptions options, Ways& ways) {
   }
 }
 
-void add_sort_first(RenderOptions options, Ways& ways) {
+void add_partitions_and_schedules(RenderOptions options, Ways& ways) {
   for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
     options.partition = partitioner.name;
     for (const Travel travel : {Travel::geometry, Travel::numbers})
@@ -44,7 +44,7 @@ void add_sort_first(RenderOptions options, Ways& ways) {
   }
 }
 
-void add_sort_middle(RenderOptions options, Ways& ways) {
+void add_partitions_and_groups(RenderOptions options, Ways& ways) {
   for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
     for (const Groups groups : {Groups::one, Groups::two})
       for (const Redistribution redistribution :
@@ -63,12 +63,12 @@ Ways combinations(const RenderOptions& base) {
   for (const Strategy& strategy : strategies()) {
     RenderOptions options = base;
     options.strategy = strategy.name;
-    if (options.strategy == "sort-last") {
-      add_sort_last(options, ways);
-    } else if (options.strategy == "sort-first") {
-      add_sort_first(options, ways);
-    } else if (options.strategy == "sort-middle") {
-      add_sort_middle(options, ways);
+    if (strategy.composites) {
+      add_compositing(options, ways);
+    } else if (strategy.schedules) {
+      add_partitions_and_schedules(options, ways);
+    } else if (strategy.groups) {
+      add_partitions_and_groups(options, ways);
     } else {
       for (const Travel travel : {Travel::geometry, Travel::numbers}) {
         options.travel = travel;
@@ -81,16 +81,17 @@ Ways combinations(const RenderOptions& base) {
 
 std::string name_of(const RenderOptions& options) {
   const std::string travel = options.travel == Travel::numbers ? "/numbers" : "/geometry";
-  if (options.strategy == "sort-last")
-    return "sort-last/" + options.scheme + "/" +
+  const Strategy& strategy = *find_strategy(options.strategy);
+  if (strategy.composites)
+    return options.strategy + "/" + options.scheme + "/" +
            (options.shade == Shade::composited ? "composited" : options.codec);
-  if (options.strategy == "sort-first")
-    return "sort-first/" + options.partition + travel +
+  if (strategy.schedules)
+    return options.strategy + "/" + options.partition + travel +
            (options.regions_per_rank > 1 ? "/regions" + std::to_string(options.regions_per_rank)
                                          : "") +
            (options.schedule.empty() ? "" : "/" + options.schedule);
-  if (options.strategy == "sort-middle")
-    return "sort-middle/" + options.partition +
+  if (strategy.groups)
+    return options.strategy + "/" + options.partition +
            (options.groups == Groups::two ? "/two-groups" : "/one-group") +
            (options.redistribution == Redistribution::at_end ? "/at-end" : "/immediate");
   return options.strategy + travel;

@@ -13,7 +13,7 @@ namespace delray::raster {
 // as size and lighting, is that of `base`. None of them changes the picture.
 std::vector<RenderOptions> combinations(const RenderOptions& base);
 
-// "sort-first/mahd/numbers/stealing".
+// "sort-first/mahd/numbers/stealing". REQUIRES: a strategy of the table.
 std::string name_of(const RenderOptions& options);
 
 }  // namespace delray::raster

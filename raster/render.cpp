@@ -34,7 +34,8 @@ void check(const RenderOptions& options, int ranks) {
   const auto known = [](bool found, const char* kind, const std::string& name) {
     if (!found) throw std::invalid_argument("there is no " + std::string(kind) + " '" + name + "'");
   };
-  known(find_strategy(options.strategy) != nullptr, "strategy", options.strategy);
+  const Strategy* strategy = find_strategy(options.strategy);
+  known(strategy != nullptr, "strategy", options.strategy);
   known(composite::find_scheme(options.scheme) != nullptr, "compositing scheme", options.scheme);
   known(composite::find_codec(options.codec) != nullptr, "codec", options.codec);
   known(loadbalance::find_partitioner(options.partition) != nullptr, "partition",
@@ -48,21 +49,20 @@ void check(const RenderOptions& options, int ranks) {
                                 " samples");
   if (!options.schedule.empty()) {
     known(loadbalance::find_schedule(options.schedule) != nullptr, "schedule", options.schedule);
-    if (options.strategy != "sort-first" || options.block < 1)
+    if (!strategy->schedules || options.block < 1)
       throw std::invalid_argument("schedules hand out sort-first's blocks of at least a pixel");
   }
   if (options.regions_per_rank < 1 || !(options.keep_factor >= 1))
     throw std::invalid_argument(
         "a rank has at least one region, kept up to a factor of at least 1");
   if (options.shade == Shade::composited &&
-      (options.strategy != "sort-last" || options.lighting != Lighting::phong))
+      (!strategy->composites || options.lighting != Lighting::phong))
     throw std::invalid_argument("only sort-last shades after compositing, and only with phong");
   if (options.blend == Blend::by_cell &&
-      (options.strategy != "sort-last" || options.shade == Shade::composited))
+      (!strategy->composites || options.shade == Shade::composited))
     throw std::invalid_argument("only sort-last blends by cell, and after shading");
   if (options.geometry_ranks < 0 ||
-      (options.geometry_ranks > 0 &&
-       (options.groups != Groups::two || options.strategy != "sort-middle")))
+      (options.geometry_ranks > 0 && (options.groups != Groups::two || !strategy->groups)))
     throw std::invalid_argument("ranks for geometry are of two groups, with sort-middle");
   if (options.groups == Groups::two && ranks > 1 && options.geometry_ranks >= ranks)
     throw std::invalid_argument("of " + std::to_string(ranks) + " ranks " +

@@ -9,18 +9,31 @@ namespace delray::raster {
 namespace {
 
 constexpr std::array kStrategies = {
-    Strategy{"sort-last",
-             "each rank draws its own primitives; the images of all ranks are composited",
-             sort_last, sort_last_steps},
     Strategy{
-        "sort-first",
-        "primitives go to the ranks whose regions of the screen they touch, before they are drawn",
-        sort_first},
-    Strategy{"sort-middle",
-             "triangles go to the ranks whose regions of the screen they touch, once transformed",
-             sort_middle},
-    Strategy{"hybrid", "each primitive is drawn by one rank; pixels go to the ranks that own them",
-             hybrid},
+        .name = "sort-last",
+        .description = "each rank draws its own primitives; the images of all ranks are composited",
+        .render = sort_last,
+        .steps = sort_last_steps,
+        .composites = true},
+    Strategy{.name = "sort-first",
+             .description = "primitives go to the ranks whose regions of the screen they touch, "
+                            "before they are drawn",
+             .render = sort_first,
+             .partitions = true,
+             .travels = true,
+             .schedules = true},
+    Strategy{.name = "sort-middle",
+             .description = "triangles go to the ranks whose regions of the screen they touch, "
+                            "once transformed",
+             .render = sort_middle,
+             .partitions = true,
+             .groups = true},
+    Strategy{
+        .name = "hybrid",
+        .description = "each primitive is drawn by one rank; pixels go to the ranks that own them",
+        .render = hybrid,
+        .partitions = true,
+        .travels = true},
 };
 
 }  // namespace

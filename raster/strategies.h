@@ -31,6 +31,12 @@ struct Strategy {
   // The same in steps; null where ranks exchange messages before they draw, or where what one frame
   // took decides how the next is shared out.
   std::unique_ptr<FrameSteps> (*steps)(Rank& rank) = nullptr;
+  // Which of RenderOptions it looks at:
+  bool composites = false;  // scheme, codec, blend; Shade::composited
+  bool partitions = false;  // partition, costs, regions_per_rank, keep_factor
+  bool travels = false;     // travel
+  bool schedules = false;   // schedule, block, master_works
+  bool groups = false;      // groups, geometry_ranks, redistribution
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -8,16 +8,27 @@ namespace delray::raytrace {
 namespace {
 
 constexpr Distribution kDistributions[] = {
-    {"replicated", "every rank has the whole scene", nullptr, true},
-    {"object", "ranks fetch the parts of the scene that they need, and cache them (Badouel, Wald)",
-     meet_by_object},
-    {"ray",
-     "rays go to the ranks that have the parts of the scene that they may hit (Caspary, Jevans)",
-     meet_by_ray},
-    {"ring", "rays go around all ranks; parts of the scene move to less loaded neighbours (Kim)",
-     nullptr},
-    {"hybrid", "rays or parts of the scene are sent, whichever the queues favour (Nebel)",
-     meet_by_either},
+    {.name = "replicated",
+     .description = "every rank has the whole scene",
+     .meet = nullptr,
+     .replicated = true},
+    {.name = "object",
+     .description =
+         "ranks fetch the parts of the scene that they need, and cache them (Badouel, Wald)",
+     .meet = meet_by_object,
+     .fetches = true},
+    {.name = "ray",
+     .description = "rays go to the ranks that have the parts of the scene that they may hit "
+                    "(Caspary, Jevans)",
+     .meet = meet_by_ray},
+    {.name = "ring",
+     .description =
+         "rays go around all ranks; parts of the scene move to less loaded neighbours (Kim)",
+     .meet = nullptr},
+    {.name = "hybrid",
+     .description = "rays or parts of the scene are sent, whichever the queues favour (Nebel)",
+     .meet = meet_by_either,
+     .fetches = true},
 };
 
 }  // namespace

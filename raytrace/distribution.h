@@ -28,6 +28,7 @@ struct Distribution {
   Meeting (*meet)(const WaitingList& waiting);
   // Whether every rank has the whole scene, and nothing of this takes place.
   bool replicated = false;
+  bool fetches = false;  // clusters of other ranks, into ShareOptions::cache_bytes
 };
 
 // The table: command line, tests and benchmarks iterate over it.

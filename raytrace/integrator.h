@@ -19,6 +19,10 @@ struct Integrator {
   // kTaskSide, where tiles allow.
   int side = kTaskSide;
   bool lit = true;  // what it shows depends on light
+  // Which of TraceOptions it looks at besides depth and seed:
+  bool reaches = false;           // reach
+  bool may_omit_shadows = false;  // shadows
+  bool scatters = false;          // diffuse_depth
 };
 
 std::span<const Integrator> integrators();

@@ -37,15 +37,17 @@ class Every {
 // All that samples depend on but the scene, exactly.
 std::string settings_of(const RenderRequest& request, const scenes::Camera& camera,
                         std::uint64_t triangles) {
-  const Practice& p = request.practice;
+  const SamplingOptions& p = request.sampling;
+  const raytrace::TraceOptions& trace = request.raytrace.trace;
   return fmt::format(
       "{} triangles {} {}x{} spp {} depth {} diffuse {} reach {:a} shadows {} build {} isa {} seed "
       "{} noise "
       "{:a} scattered {} window {} {} {} {} "
       "eye {:a} {:a} "
       "{:a} at {:a} {:a} {:a} up {:a} {:a} {:a} fov {:a} near {:a} lens {:a} {:a} height {:a}",
-      request.integrator, triangles, request.width, request.height, request.samples, request.depth,
-      request.diffuse_depth, request.reach, !request.no_shadows, request.build, request.isa, p.seed,
+      request.raytrace.integrator, triangles, request.width, request.height,
+      request.raytrace.samples, trace.depth, trace.diffuse_depth, request.reach, trace.shadows,
+      static_cast<int>(request.raytrace.build.quality), request.raytrace.build.isa, trace.seed,
       p.noise, p.noise > 0.0 || p.seconds > 0.0, p.window.x0, p.window.y0, p.window.x1, p.window.y1,
       camera.eye.x, camera.eye.y, camera.eye.z, camera.at.x, camera.at.y, camera.at.z, camera.up.x,
       camera.up.y, camera.up.z, camera.vertical_fov, camera.near, camera.aperture, camera.focus,
@@ -89,48 +91,48 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
                      const Prepared& prepared, const RenderRequest& request,
                      const scenes::Camera& camera, const raytrace::RenderOptions& frame,
                      const Preview& preview) {
-  const Practice& practice = request.practice;
+  const SamplingOptions& sampling = request.sampling;
   const bool root = communicator.rank() == 0;
   raytrace::ProgressiveOptions options;
   options.frame = frame;
-  options.window = practice.window;
-  options.noise = static_cast<float>(practice.noise);
-  if (practice.seconds > 0.0) options.seconds = practice.seconds;
-  options.film = practice.channels || practice.denoise || practice.show != "colour";
-  options.features = practice.channels || practice.denoise || shows_features(practice.show);
+  options.window = sampling.window;
+  options.noise = static_cast<float>(sampling.noise);
+  if (sampling.seconds > 0.0) options.seconds = sampling.seconds;
+  options.film = sampling.channels || sampling.denoise || sampling.show != "colour";
+  options.features = sampling.channels || sampling.denoise || shows_features(sampling.show);
 
   std::string mark;
   std::optional<raytrace::Film> saved;
-  if (!practice.checkpoint.empty()) {
+  if (!sampling.checkpoint.empty()) {
     comm::all_or_none(communicator, comm::Phase::load, [&] {
       if (!root) return;
       mark = mark_of(request, camera, prepared);
-      if (!practice.resume) return;
+      if (!sampling.resume) return;
       const geometry::Rect all{0, 0, frame.width, frame.height};
-      const geometry::Rect window = practice.window.empty() ? all : practice.window;
-      saved = raytrace::load_checkpoint(practice.checkpoint,
+      const geometry::Rect window = sampling.window.empty() ? all : sampling.window;
+      saved = raytrace::load_checkpoint(sampling.checkpoint,
                                         {mark, raytrace::grown(window, all), frame.samples},
                                         request.scene.file.limits.budget());
     });
   }
   if (saved) options.resume = &*saved;
   const auto save = [&](const raytrace::Film& film) {
-    raytrace::save_checkpoint(practice.checkpoint, mark, film);
+    raytrace::save_checkpoint(sampling.checkpoint, mark, film);
   };
-  Every preview_due(practice.preview_every > 0.0 && preview ? practice.preview_every : -1.0);
-  Every checkpoint_due(practice.checkpoint.empty() ? -1.0 : practice.checkpoint_every);
-  if (!practice.checkpoint.empty() || practice.preview_every > 0.0) {
+  Every preview_due(sampling.preview_every > 0.0 && preview ? sampling.preview_every : -1.0);
+  Every checkpoint_due(sampling.checkpoint.empty() ? -1.0 : sampling.checkpoint_every);
+  if (!sampling.checkpoint.empty() || sampling.preview_every > 0.0) {
     options.after_pass = [&](const raytrace::Film& film) {
       if (checkpoint_due.due()) save(film);
       if (preview_due.due()) {
-        preview(raytrace::cut(raytrace::mean(film), film.window(), practice.window));
+        preview(raytrace::cut(raytrace::mean(film), film.window(), sampling.window));
       }
     };
   }
-  if (!practice.checkpoint.empty()) {
+  if (!sampling.checkpoint.empty()) {
     options.on_interruption = [&](const raytrace::Film& film) {
       save(film);
-      spdlog::info("{}: {} samples a pixel are kept; go on with --resume", practice.checkpoint,
+      spdlog::info("{}: {} samples a pixel are kept; go on with --resume", sampling.checkpoint,
                    film.total_samples() / std::max<std::uint64_t>(1, film.pixels().size()));
     };
   }
@@ -140,7 +142,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   RayFrame done;
   done.statistics = std::move(result.statistics);
   if (!root) return done;
-  if (!practice.checkpoint.empty()) save(result.film);
+  if (!sampling.checkpoint.empty()) save(result.film);
   done.extras.passes = result.passes;
   done.extras.out_of_time = result.out_of_time;
   done.extras.samples = result.film.pixels().empty()
@@ -151,20 +153,20 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
     done.extras.noisy = noisy_part(result.film, options.noise);
     if (done.extras.noisy > 0.0) {
       spdlog::info("{:.3g} % of the picture is noisier than --noise {}: {} ended sampling",
-                   100.0 * done.extras.noisy, practice.noise,
+                   100.0 * done.extras.noisy, sampling.noise,
                    result.out_of_time
                        ? "--time"
                        : fmt::format("a maximum of {} samples per pixel (--spp)", frame.samples));
     }
   }
-  if (practice.channels) done.extras.channels = channels_of(result, practice.window);
+  if (sampling.channels) done.extras.channels = channels_of(result, sampling.window);
   done.picture = std::move(result.image);
-  if (practice.denoise) {
-    raytrace::denoise(done.picture, result.features, variance_of(result.film, practice.window));
+  if (sampling.denoise) {
+    raytrace::denoise(done.picture, result.features, variance_of(result.film, sampling.window));
   }
-  if (practice.show != "colour") {
-    const double most = show(practice.show, result, practice.window, done.picture);
-    if (most > 0.0) spdlog::info("{}: 99 % are below {:.6g}", practice.show, most);
+  if (sampling.show != "colour") {
+    const double most = show(sampling.show, result, sampling.window, done.picture);
+    if (most > 0.0) spdlog::info("{}: 99 % are below {:.6g}", sampling.show, most);
   }
   return done;
 }

@@ -1,4 +1,4 @@
-// One frame by rays, pass by pass, with all that the options ask for in practice.
+// One frame by rays, pass by pass, with all that the sampling options ask for.
 #pragma once
 
 #include <functional>

@@ -12,6 +12,7 @@
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "parallel/arena.h"
+#include "raster/strategies.h"
 #include "raytrace/checkpoint.h"
 #include "scenes/framing.h"
 #include "scenes/generate.h"
@@ -30,74 +31,44 @@ bool has_sky(const scenes::Environment& environment) {
          environment.zenith + environment.horizon + environment.ground != glm::vec3(0.0F);
 }
 
-void set_lens(const Practice& practice, scenes::Camera& camera) {
-  camera.aperture = static_cast<float>(practice.aperture);
-  camera.focus = static_cast<float>(practice.focus);
+void set_lens(const SamplingOptions& sampling, scenes::Camera& camera) {
+  camera.aperture = static_cast<float>(sampling.aperture);
+  camera.focus = static_cast<float>(sampling.focus);
 }
 
 raster::RenderOptions raster_options(const RenderRequest& request) {
-  raster::RenderOptions options;
+  const Sharing& sharing = request.sharing;
+  raster::RenderOptions options = request.raster;
   options.width = request.width;
   options.height = request.height;
   options.float_pixels = wants_floats(request);
-  options.lighting =
-      request.lighting == "gouraud" ? raster::Lighting::gouraud : raster::Lighting::phong;
-  options.strategy = request.strategy;
-  options.codec = request.codec;
-  options.shade = request.shade == "immediate"    ? raster::Shade::immediate
-                  : request.shade == "composited" ? raster::Shade::composited
-                                                  : raster::Shade::deferred;
-  options.blend = request.blend == "by-cell" ? raster::Blend::by_cell : raster::Blend::by_owner;
-  options.supersampling = request.supersampling;
-  options.costs =
-      request.costs == "measured" ? raster::CostSource::measured : raster::CostSource::model;
-  options.regions_per_rank = request.regions_per_rank;
-  options.keep_factor = request.keep_factor;
-  options.schedule = request.schedule;
-  options.master_works = request.master == "works";
-  options.block = request.block;
-  options.groups = request.groups == "two" ? raster::Groups::two : raster::Groups::one;
-  options.geometry_ranks = request.geometry_ranks;
-  options.redistribution = request.redistribution == "at-end" ? raster::Redistribution::at_end
-                                                              : raster::Redistribution::immediate;
+  options.partition = sharing.partition;
+  options.costs = sharing.measured_costs ? raster::CostSource::measured : raster::CostSource::model;
+  options.regions_per_rank = sharing.regions_per_rank;
+  options.keep_factor = sharing.keep_factor;
+  options.schedule = sharing.schedule;
+  options.master_works = sharing.master_works;
+  options.block = sharing.block;
   options.report_partition = !request.statistics.empty();
-  options.travel = request.travel == "numbers" ? raster::Travel::numbers : raster::Travel::geometry;
-  options.scheme = request.scheme;
-  options.partition = request.partition;
-  return options;
-}
-
-raytrace::BuildOptions build_options(const RenderRequest& request) {
-  using Quality = raytrace::BuildOptions::Quality;
-  raytrace::BuildOptions options;
-  options.quality = request.build == "low"    ? Quality::low
-                    : request.build == "high" ? Quality::high
-                                              : Quality::medium;
-  if (request.isa != "best") options.isa = request.isa;
   return options;
 }
 
 raytrace::RenderOptions raytrace_options(const RenderRequest& request,
                                          parallel::Progress* progress) {
-  raytrace::RenderOptions options;
+  const Sharing& sharing = request.sharing;
+  raytrace::RenderOptions options = request.raytrace;
   options.width = request.width;
   options.height = request.height;
-  options.samples = request.samples;
-  options.trace.depth = request.depth;
-  options.trace.diffuse_depth = request.diffuse_depth;
-  options.trace.shadows = !request.no_shadows;
   if (request.reach > 0) options.trace.reach = static_cast<float>(request.reach);
   options.trace.background = raytrace::TraceOptions::Background::transparent;
-  options.trace.seed = request.practice.seed;
-  options.integrator = request.integrator;
-  options.schedule = request.schedule;
-  options.master_works = request.master == "works";
-  options.tile = request.block;
-  options.partition = request.partition;
+  options.partition = sharing.partition;
   options.costs =
-      request.costs == "measured" ? raytrace::CostSource::seconds : raytrace::CostSource::rays;
-  options.regions_per_rank = request.regions_per_rank;
-  options.keep_factor = request.keep_factor;
+      sharing.measured_costs ? raytrace::CostSource::seconds : raytrace::CostSource::rays;
+  options.regions_per_rank = sharing.regions_per_rank;
+  options.keep_factor = sharing.keep_factor;
+  options.schedule = sharing.schedule;
+  options.master_works = sharing.master_works;
+  options.tile = sharing.block;
   options.progress = progress;
   return options;
 }
@@ -112,30 +83,32 @@ bool has_parts(const RenderRequest& request) {
   }
 }
 
+bool is_replicated(const RenderRequest& request) {
+  return raytrace::find_distribution(request.data)->replicated;
+}
+
 // Whether no rank need ever have the whole scene.
 bool comes_in_parts(const RenderRequest& request) {
-  return request.kind == Engine::raytrace && request.data != "replicated" && has_parts(request);
+  return request.engine == Engine::raytrace && !is_replicated(request) && has_parts(request);
 }
 
 raytrace::ShareOptions share_options(const RenderRequest& request) {
   constexpr double kMebibyte = 1 << 20;
-  raytrace::ShareOptions options;
-  options.build = build_options(request);
-  options.deal = request.deal == "random" ? raytrace::ShareOptions::Deal::random
-                                          : raytrace::ShareOptions::Deal::neighbours;
+  raytrace::ShareOptions options = request.share;
+  options.build = request.raytrace.build;
   options.cache_bytes = static_cast<std::uint64_t>(request.cache_mebibytes * kMebibyte);
   return options;
 }
 
 bool has_tracer(const RenderRequest& request) {
-  return request.kind == Engine::raytrace && request.data == "replicated";
+  return request.engine == Engine::raytrace && is_replicated(request);
 }
 
 // Measured with one rank, peak and file included.
 std::uint64_t bytes_per_pixel(const RenderRequest& request) {
   const bool floats = wants_floats(request);
-  if (request.kind == Engine::raster) return floats ? 48 : 12;
-  if (request.practice.channels || request.practice.denoise) return 140;
+  if (request.engine == Engine::raster) return floats ? 48 : 12;
+  if (request.sampling.channels || request.sampling.denoise) return 140;
   return floats ? 48 : 33;
 }
 
@@ -143,10 +116,11 @@ std::uint64_t bytes_per_pixel(const RenderRequest& request) {
 void require_memory_for_pictures(const RenderRequest& request) {
   const std::uint64_t layer = wants_floats(request) ? sizeof(image::RgbaF) + sizeof(float)
                                                     : sizeof(image::Rgba8) + sizeof(float);
-  const bool layers = request.kind == Engine::raster && request.strategy == "sort-last";
+  const bool layers = request.engine == Engine::raster &&
+                      raster::find_strategy(request.raster.strategy)->composites;
   const auto others =
       static_cast<std::uint64_t>(layers ? std::max(0, request.launch.ranks - 1) : 0);
-  const geometry::Rect& window = request.practice.window;
+  const geometry::Rect& window = request.sampling.window;
   const auto pixels = static_cast<std::uint64_t>(
       window.empty() ? std::int64_t{request.width} * request.height : window.area());
   request.scene.file.limits.budget().require(
@@ -160,7 +134,9 @@ void require_memory_for_embree(const RenderRequest& request, const scenes::Scene
   std::uint64_t triangles = 0;
   for (const scenes::Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
   request.scene.file.limits.budget().require(
-      triangles * (request.build == "low" ? kBytesPerTriangleQuick : kBytesPerTriangle),
+      triangles * (request.raytrace.build.quality == raytrace::BuildOptions::Quality::low
+                       ? kBytesPerTriangleQuick
+                       : kBytesPerTriangle),
       request.scene.file.path, fmt::format("Embree's structures of {} triangles", triangles));
 }
 
@@ -168,7 +144,7 @@ void require_memory_for_embree(const RenderRequest& request, const scenes::Scene
 void require_memory_for_textures(const RenderRequest& request, const scenes::Scene& scene) {
   std::uint64_t texels = 0;
   for (const scenes::Texture& texture : scene.textures) texels += texture.texels.size();
-  const bool copied = request.kind == Engine::raytrace && !has_tracer(request);
+  const bool copied = request.engine == Engine::raytrace && !has_tracer(request);
   const std::uint64_t levels = texels / 3, copies = copied ? texels : 0;
   request.scene.file.limits.budget().require((levels + copies) * sizeof(image::Rgba8),
                                              request.scene.file.path, "textures");
@@ -209,14 +185,14 @@ void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& 
     pivot = (glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5;
   }
   prepared.cameras = animation_cameras(request, scene, prepared.camera, pivot);
-  for (scenes::Camera& camera : prepared.cameras) set_lens(request.practice, camera);
-  set_lens(request.practice, prepared.camera);
+  for (scenes::Camera& camera : prepared.cameras) set_lens(request.sampling, camera);
+  set_lens(request.sampling, prepared.camera);
   if (!prepared.cameras.empty()) prepared.camera = prepared.cameras.front();
 }
 
 // Says so where nothing but what glows lights a scene, which rasterizers do not see.
 void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
-  if (request.kind != Engine::raster || !scene.lights.empty() || has_sky(scene.environment) ||
+  if (request.engine != Engine::raster || !scene.lights.empty() || has_sky(scene.environment) ||
       !scenes::glow_lights(scene)) {
     return;
   }
@@ -252,16 +228,16 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
   require_memory_for_textures(request, prepared.scene);
   require_memory_for_pictures(request);
   prepared.texture_hash = texture_hash(prepared.scene);
-  if (!request.practice.checkpoint.empty())
+  if (!request.sampling.checkpoint.empty())
     prepared.fingerprint = fingerprint_of(request, prepared);
-  if (request.kind == Engine::raster) {
+  if (request.engine == Engine::raster) {
     prepared.shader = std::make_shared<const shading::Shader>(shading::take_shader(prepared.scene));
-  } else if (request.data != "replicated") {
+  } else if (!is_replicated(request)) {
     prepared.shader = std::make_shared<const shading::Shader>(shading::make_shader(prepared.scene));
   } else {
     require_memory_for_embree(request, prepared.scene);
     prepared.tracer = std::make_unique<const raytrace::Tracer>(raytrace::make_tracer(
-        prepared.scene, shading::take_shader(prepared.scene), build_options(request)));
+        prepared.scene, shading::take_shader(prepared.scene), request.raytrace.build));
   }
   prepared.build_seconds = watch.lap();
 }
@@ -321,7 +297,7 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
 FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
                              const RenderRequest& request, parallel::Progress* progress)
     : prepared_(prepared), request_(request), progress_(progress) {
-  if (request.kind == Engine::raster) {
+  if (request.engine == Engine::raster) {
     raster_.emplace(prepared.scene, prepared.shader);
     return;
   }

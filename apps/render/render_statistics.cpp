@@ -12,80 +12,15 @@ double median(std::vector<double> values) {
 }
 
 Json options_of(const RenderRequest& request, int ranks, int threads) {
-  Json options = {{"size", request.size},
-                  {"engine", request.engine},
-                  {"frames", request.frames},
-                  {"turntable", request.turntable},
-                  {"camera_path", request.camera_path},
-                  {"background", request.background},
-                  {"light", request.light.light},
-                  {"light_rotation", request.light.rotation},
-                  {"light_strength", request.light.strength},
-                  {"camera", request.camera.camera},
-                  {"view", request.camera.view},
-                  {"color_by", request.scene.colour_by},
-                  {"ranks", ranks},
-                  {"threads", threads}};
-  if (request.kind == Engine::raster) {
-    options["strategy"] = request.strategy;
-    options["shading"] = request.lighting;
-    options["shade"] = request.shade;
-    options["samples"] = request.supersampling;
-    if (request.strategy == "sort-last") {
-      options["compose"] = request.scheme;
-      options["codec"] = request.codec;
-      options["blend"] = request.blend;
-    } else {
-      options["partition"] = request.partition;
-      options["travel"] = request.travel;
-      options["costs"] = request.costs;
-      options["regions"] = request.regions_per_rank;
-      options["keep"] = request.keep_factor;
-      options["schedule"] = request.schedule;
-      options["master"] = request.master;
-      options["block"] = request.block;
-    }
-    if (request.strategy == "sort-middle") {
-      options["groups"] = request.groups;
-      options["geometry_ranks"] = request.geometry_ranks;
-      options["redistribute"] = request.redistribution;
-    }
-  } else {
-    options["integrator"] = request.integrator;
-    options["spp"] = request.samples;
-    options["depth"] = request.depth;
-    options["diffuse_depth"] = request.diffuse_depth;
-    options["reach"] = request.reach;
-    options["shadows"] = !request.no_shadows;
-    options["build"] = request.build;
-    options["isa"] = request.isa;
-    options["schedule"] = request.schedule;
-    options["master"] = request.master;
-    options["block"] = request.block;
-    options["partition"] = request.partition;
-    options["costs"] = request.costs;
-    options["regions"] = request.regions_per_rank;
-    options["keep"] = request.keep_factor;
-    options["data"] = request.data;
-    options["deal"] = request.deal;
-    options["cache"] = request.cache_mebibytes;
-    const Practice& practice = request.practice;
-    options["seed"] = practice.seed;
-    options["time"] = practice.seconds;
-    options["noise"] = practice.noise;
-    options["preview_every"] = practice.preview_every;
-    options["checkpoint"] = practice.checkpoint;
-    options["checkpoint_every"] = practice.checkpoint_every;
-    options["resume"] = practice.resume;
-    options["crop"] = practice.crop;
-    options["aovs"] = practice.channels;
-    options["denoise"] = practice.denoise;
-    options["exposure"] = practice.exposure;
-    options["tone"] = practice.tone;
-    options["show"] = practice.show;
-    options["aperture"] = practice.aperture;
-    options["focus"] = practice.focus;
-  }
+  Json options = chosen_options(request);
+  options["light"] = request.light.light;
+  options["light_rotation"] = request.light.rotation;
+  options["light_strength"] = request.light.strength;
+  options["camera"] = request.camera.camera;
+  options["view"] = request.camera.view;
+  options["color_by"] = request.scene.colour_by;
+  options["ranks"] = ranks;
+  options["threads"] = threads;
   return options;
 }
 
@@ -221,10 +156,10 @@ Json json_of(const scenes::Camera& camera, const glm::dvec3& origin) {
 
 // Of the picture, or of the part of it that is rendered.
 int width_of(const RenderRequest& request) {
-  return request.kind == Engine::raster ? request.width : request.practice.window.width();
+  return request.engine == Engine::raster ? request.width : request.sampling.window.width();
 }
 int height_of(const RenderRequest& request) {
-  return request.kind == Engine::raster ? request.height : request.practice.window.height();
+  return request.engine == Engine::raster ? request.height : request.sampling.window.height();
 }
 
 }  // namespace

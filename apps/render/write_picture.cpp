@@ -47,18 +47,18 @@ void add_metadata_option(CLI::App& command, Session& session) {
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,
                            const scenes::Camera& camera, Picture& picture) {
   const scenes::View view = scenes::make_view(camera, request.width, request.height);
-  const Practice& practice = request.practice;
-  if (practice.show != "colour") return;
+  const SamplingOptions& sampling = request.sampling;
+  if (sampling.show != "colour") return;
   std::visit(
       [&](auto& pixels) {
         put_behind(pixels, prepared.background, prepared.shading(), view,
-                   {practice.window.x0, practice.window.y0});
+                   {sampling.window.x0, sampling.window.y0});
       },
       picture);
-  if (practice.exposure == 0.0 && practice.tone == "linear") return;
+  if (sampling.exposure == 0.0 && sampling.tone == "linear") return;
   image::map_tones(std::get<image::ImageF>(picture),
-                   shading::exp2(static_cast<float>(practice.exposure)),
-                   image::tone_curve(practice.tone));
+                   shading::exp2(static_cast<float>(sampling.exposure)),
+                   image::tone_curve(sampling.tone));
 }
 
 std::string write_picture(const Session& session, const std::string& path, const Picture& picture,

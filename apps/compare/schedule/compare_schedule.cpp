@@ -54,10 +54,10 @@ class Comparison {
       : session_(session), request_(request), prepared_(prepared), steps_(progress) {
     options_.width = request.render.width;
     options_.height = request.render.height;
-    options_.samples = request.render.samples;
-    options_.trace.depth = request.render.depth;
+    options_.samples = request.render.raytrace.samples;
+    options_.trace.depth = request.render.raytrace.trace.depth;
     options_.trace.background = raytrace::TraceOptions::Background::transparent;
-    options_.integrator = request.render.integrator;
+    options_.integrator = request.render.raytrace.integrator;
     options_.tile = request.tile;
     options_.progress = steps_.inside();
     blocks_ = {{0, 0, options_.width, options_.height}, request.tile, request.tile};

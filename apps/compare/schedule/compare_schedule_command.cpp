@@ -29,7 +29,7 @@ int run(Session& session, const CLI::App& command, ScheduleRequest request) {
   if (request.tile % raytrace::kTaskSide != 0)
     throw UsageError("--tile: " + std::to_string(request.tile) + " is no multiple of " +
                      std::to_string(raytrace::kTaskSide));
-  request.render.kind = Engine::raytrace;
+  request.render.engine = Engine::raytrace;
   return run_scene_comparison(
       session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {
         const auto comparison = std::make_shared<const ScheduleComparison>(
@@ -51,18 +51,7 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
   add_scene_comparison_options(*command, *request,
                                "(default: 2,4,8,16,32,64,128,256); all are simulated, and those up "
                                "to the number of cores also run");
-  command
-      ->add_option("--integrator", request->render.integrator,
-                   "What is computed along rays (default: whitted; --list describes them)")
-      ->group(group::kRaytracer);
-  command->add_option("--spp", request->render.samples, "Samples per pixel (default: 1)")
-      ->group(group::kRaytracer)
-      ->transform(count_between(1, 65536));
-  command
-      ->add_option("--depth", request->render.depth,
-                   "Maximum reflections and refractions (default: 8)")
-      ->group(group::kRaytracer)
-      ->transform(count_between(0, 64));
+  add_options({"--integrator", "--spp", "--depth"}, *command, request->render);
   command
       ->add_option("--tile", request->tile,
                    "Side in pixels of the tiles that ranks share, a multiple of 16 (default: 16)")
@@ -79,7 +68,6 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
           "--network", request->network,
           "Network that the counts are for and the report shows (default: 10-gigabit-ethernet)")
       ->group(group::kSharing);
-  choose_from(*command, "--integrator", names_in(raytrace::integrators()));
   choose_from(*command, "--schedule", names_in(loadbalance::schedules()));
   choose_from(*command, "--network", names_in(comm::networks()));
   add_comparison_options(*command, *request, "Measure three frames of each",

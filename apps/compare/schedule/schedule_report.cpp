@@ -383,8 +383,8 @@ Html figures(const ScheduleRequest& request, const ScheduleComparison& compariso
          paragraph(fmt::format(
              "Counts are of the simulated machine over {}. Integrator {}, {} ray{} "
              "per pixel, tiles of {} pixels, size {}.",
-             request.network, request.render.integrator, request.render.samples,
-             request.render.samples == 1 ? "" : "s", request.tile, request.render.size));
+             request.network, request.render.raytrace.integrator, request.render.raytrace.samples,
+             request.render.raytrace.samples == 1 ? "" : "s", request.tile, request.render.size));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Options of `delray render` for rays in practice: how long to trace and how well, what to keep
+// Options of `delray render` for ray tracing: how long to trace and how well, what to keep
 // meanwhile, which part of the picture, and what is made of it in the end.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace delray::apps {
 
 struct RenderRequest;
 
-struct Practice {
+struct SamplingOptions {
   double seconds = 0.0;  // 0: no limit
   double noise = 0.0;    // 0: all samples
   double preview_every = 0.0;
@@ -26,18 +26,16 @@ struct Practice {
   std::string show = "colour", tone = "linear";
   double exposure = 0.0;
   double aperture = 0.0, focus = 0.0;
-  std::uint64_t seed = 0;
 
   // Set by check:
   geometry::Rect window;  // of the frame
 };
 
-void add_practice_options(CLI::App& command, Practice& practice);
+// What they are where they were not given: samples by noise or time, and the window by --crop. The
+// request's size is known. Throws UsageError.
+void complete_sampling(const CLI::App& command, RenderRequest& request);
 
-// Refuses all of them: the engine is no ray tracer. Throws UsageError.
-void refuse_practice(const CLI::App& command);
-
-// Completes and checks; the request's size is known. Throws UsageError.
-void check_practice(const CLI::App& command, RenderRequest& request);
+// Throws UsageError for what is missing.
+void check_sampling(const RenderRequest& request);
 
 }  // namespace delray::apps

@@ -1,0 +1,398 @@
+// Each option of `delray render`, described once: what it sets, what it takes, its help, its key in
+// statistics, and which capability of a strategy, schedule, integrator or distribution it needs.
+#include "apps/render/option_table.h"
+
+#include <fmt/format.h>
+
+#include "apps/options/help.h"
+#include "apps/options/numbers.h"
+#include "composite/codec.h"
+#include "loadbalance/partition.h"
+#include "loadbalance/schedule.h"
+#include "raster/strategies.h"
+#include "raytrace/distribution.h"
+#include "raytrace/integrator.h"
+
+namespace delray::apps {
+namespace {
+
+const raster::Strategy& strategy_of(const RenderRequest& request) {
+  return *raster::find_strategy(request.raster.strategy);
+}
+const raytrace::Integrator& integrator_of(const RenderRequest& request) {
+  return raytrace::integrator(request.raytrace.integrator);
+}
+// Null: none, as the rasterizer has by default.
+const loadbalance::Schedule* schedule_of(const RenderRequest& request) {
+  return loadbalance::find_schedule(request.sharing.schedule);
+}
+
+bool is_raster(const RenderRequest& request) { return request.engine == Engine::raster; }
+bool is_raytrace(const RenderRequest& request) { return request.engine == Engine::raytrace; }
+
+// Whether the rasterizer runs with a strategy that has a capability.
+using Capability = bool raster::Strategy::*;
+std::function<bool(const RenderRequest&)> strategy_that(Capability can) {
+  return [can](const RenderRequest& r) { return is_raster(r) && strategy_of(r).*can; };
+}
+// Or the ray tracer.
+std::function<bool(const RenderRequest&)> ray_tracer_or_strategy_that(Capability can) {
+  return [can](const RenderRequest& r) { return is_raytrace(r) || strategy_of(r).*can; };
+}
+
+// Why an option has no effect: where it is the other engine's, where the rasterizer's strategy
+// lacks a capability, and for reasons of its own; empty where it has one.
+using Why = std::function<std::string(const RenderRequest&)>;
+Why unless_raster(Why why = {}) {
+  return [why](const RenderRequest& r) -> std::string {
+    if (!is_raster(r)) return "--engine raytrace";
+    return why ? why(r) : "";
+  };
+}
+Why unless_raytrace(Why why = {}) {
+  return [why](const RenderRequest& r) -> std::string {
+    if (!is_raytrace(r)) return "--engine raster";
+    return why ? why(r) : "";
+  };
+}
+Why unless_strategy(Capability can, Why why = {}) {
+  return [can, why](const RenderRequest& r) -> std::string {
+    if (is_raster(r) && !(strategy_of(r).*can)) return "--strategy " + r.raster.strategy;
+    return why ? why(r) : "";
+  };
+}
+Why unless_integrator(bool raytrace::Integrator::*can) {
+  return unless_raytrace([can](const RenderRequest& r) -> std::string {
+    return integrator_of(r).*can ? "" : "--integrator " + r.raytrace.integrator;
+  });
+}
+
+std::string why_no_codec(const RenderRequest& r) {
+  return r.raster.shade == raster::Shade::composited ? "--shade composited" : "";
+}
+std::string why_no_travel(const RenderRequest& r) {
+  return r.sharing.schedule.empty() ? "" : "--schedule: every rank has all primitives";
+}
+std::string why_no_partition(const RenderRequest& r) {
+  if (is_raster(r) || schedule_of(r)->begins_with_shares) return "";
+  return fmt::format("--schedule {}, which begins with no shares", r.sharing.schedule);
+}
+std::string why_no_costs(const RenderRequest& r) {
+  return r.sharing.partition.empty() ? "no --partition" : "";
+}
+std::string why_no_block(const RenderRequest& r) {
+  return r.sharing.schedule.empty() ? "no --schedule" : "";
+}
+std::string why_no_master(const RenderRequest& r) {
+  if (r.sharing.schedule.empty()) return "no --schedule";
+  return schedule_of(r)->has_master ? "" : "--schedule " + r.sharing.schedule;
+}
+std::string why_no_geometry_ranks(const RenderRequest& r) {
+  return r.raster.groups == raster::Groups::one ? "--groups one" : "";
+}
+std::string why_no_deal(const RenderRequest& r) {
+  return raytrace::find_distribution(r.data)->replicated ? "--data " + r.data : "";
+}
+std::string why_no_cache(const RenderRequest& r) {
+  return raytrace::find_distribution(r.data)->fetches ? "" : "--data " + r.data;
+}
+
+}  // namespace
+
+std::vector<RenderOption> picture_options() {
+  return {
+      RenderOption::of(
+          "-o,--output", [](auto& r) -> auto& { return r.output; }, group::kOutput,
+          "Picture to write: .png, .exr, .tif or .jpg; - for PNG on standard output; of an "
+          "animation .mp4 too, where ffmpeg is installed")
+          .type_name("FILE"),
+      RenderOption::of(
+          "--size", [](auto& r) -> auto& { return r.size; }, group::kPicture,
+          "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
+          .type_name("WxH")
+          .told("size"),
+      RenderOption::choice<Engine>(
+          "--engine", [](auto& r) -> auto& { return r.engine; },
+          {{"raster", Engine::raster}, {"raytrace", Engine::raytrace}}, group::kPicture,
+          "Renderer: raster, the rasterizer (default), or raytrace, the ray tracer")
+          .told("engine"),
+      RenderOption::of(
+          "--frames", [](auto& r) -> auto& { return r.frames; }, group::kOutput,
+          "Render the picture this many times and report the median time (default: 1)")
+          .transform(count_between(1, 100000))
+          .told("frames"),
+      RenderOption::of(
+          "--background", [](auto& r) -> auto& { return r.background; }, group::kPicture,
+          "What is behind the scene: environment, studio (grey, brighter above), transparent, a "
+          "colour as #rrggbb, or auto (default), which suits the scene")
+          .type_name("WHAT")
+          .one_of(background_names(),
+                  {"#rrggbb", [](const std::string& text) { return text.starts_with('#'); }})
+          .told("background"),
+  };
+}
+
+std::vector<RenderOption> animation_options() {
+  return {
+      RenderOption::of(
+          "--turntable", [](auto& r) -> auto& { return r.turntable; }, group::kCamera,
+          "Animation of so many frames once around the scene: IMAGE-0000 and on")
+          .transform(count_between(1, 1000000))
+          .excludes("--frames")
+          .told("turntable"),
+      RenderOption::of(
+          "--camera-path", [](auto& r) -> auto& { return r.camera_path; }, group::kCamera,
+          "Animation along the cameras in this file, one a line: [FRAME:] eye,at,up,fov")
+          .type_name("FILE")
+          .excludes("--frames")
+          .excludes("--turntable")
+          .excludes("--camera")
+          .excludes("--view")
+          .told("camera_path"),
+      RenderOption::of(
+          "--frames-at-once", [](auto& r) -> auto& { return r.frames_at_once; }, group::kCamera,
+          "Frames of an animation to work on at the same time (default: threads + 2, but 4 to 8)")
+          .transform(count_between(1, 64))
+          .unless([](const RenderRequest& r) -> std::string {
+            return r.is_animation() ? "" : "a single picture";
+          }),
+  };
+}
+
+std::vector<RenderOption> rasterizer_options() {
+  using raster::Strategy;
+  return {
+      RenderOption::of(
+          "--strategy", [](auto& r) -> auto& { return r.raster.strategy; }, group::kSharing,
+          "Rasterizer: whether primitives, triangles or pixels go to other ranks: sort-first, "
+          "sort-middle, sort-last (default) or hybrid")
+          .one_of(names_in(raster::strategies()))
+          .unless(unless_raster())
+          .told("strategy", is_raster),
+      RenderOption::of(
+          "--partition", [](auto& r) -> auto& { return r.sharing.partition; }, group::kSharing,
+          "How the screen is divided among ranks, for all strategies but sort-last (default: "
+          "mahd); ray tracer: the blocks that ranks begin with, for the schedules static and "
+          "stealing (default: none)")
+          .one_of(names_in(loadbalance::partitioners()))
+          .unless(unless_strategy(&Strategy::partitions, why_no_partition))
+          .told("partition", ray_tracer_or_strategy_that(&Strategy::partitions)),
+      RenderOption::of(
+          "--compose", [](auto& r) -> auto& { return r.raster.scheme; }, group::kSharing,
+          "Compositing scheme, which merges the images of all ranks, for --strategy sort-last "
+          "(default: binary-swap)")
+          .unless(unless_raster(unless_strategy(&Strategy::composites)))
+          .told("compose", strategy_that(&Strategy::composites)),
+      RenderOption::choice<raster::Lighting>(
+          "--shading", [](auto& r) -> auto& { return r.raster.lighting; },
+          {{"phong", raster::Lighting::phong}, {"gouraud", raster::Lighting::gouraud}},
+          group::kRasterizer,
+          "Lighting of surfaces: phong, at every pixel (default), or gouraud, at vertices")
+          .unless(unless_raster())
+          .told("shading", is_raster),
+      RenderOption::of(
+          "--codec", [](auto& r) -> auto& { return r.raster.codec; }, group::kSharing,
+          "Pixel encoding between ranks, for --strategy sort-last (default: dense)")
+          .one_of(names_in(composite::codecs()))
+          .unless(unless_raster(unless_strategy(&Strategy::composites, why_no_codec)))
+          .told("codec", strategy_that(&Strategy::composites)),
+      RenderOption::choice<raster::Blend>(
+          "--blend", [](auto& r) -> auto& { return r.raster.blend; },
+          {{"by-owner", raster::Blend::by_owner}, {"by-cell", raster::Blend::by_cell}},
+          group::kSharing,
+          "Transparent surfaces, for --strategy sort-last: by-owner, the rank that owns a pixel "
+          "sorts all its fragments (default, exact), or by-cell, each rank blends those in its "
+          "cell of space, and cells are merged front to back")
+          .unless(unless_raster(unless_strategy(&Strategy::composites, why_no_codec)))
+          .told("blend", strategy_that(&Strategy::composites)),
+      RenderOption::choice<raster::Shade>(
+          "--shade", [](auto& r) -> auto& { return r.raster.shade; },
+          {{"deferred", raster::Shade::deferred},
+           {"immediate", raster::Shade::immediate},
+           {"composited", raster::Shade::composited}},
+          group::kRasterizer,
+          "When pixels are shaded: immediate, as they are drawn; deferred, once all is drawn "
+          "(default); composited, once the images of all ranks are merged (sort-last)")
+          .unless(unless_raster())
+          .told("shade", is_raster),
+      RenderOption::of(
+          "--samples", [](auto& r) -> auto& { return r.raster.supersampling; }, group::kRasterizer,
+          "Samples per pixel in each direction: 1 (default), 2 or 4, which is 16 per pixel")
+          .check(one_of({"1", "2", "4"}))
+          .unless(unless_raster())
+          .told("samples", is_raster),
+      RenderOption::choice<raster::Travel>(
+          "--travel", [](auto& r) -> auto& { return r.raster.travel; },
+          {{"geometry", raster::Travel::geometry}, {"numbers", raster::Travel::numbers}},
+          group::kSharing,
+          "How primitives are sent to other ranks, for --strategy sort-first and hybrid: as "
+          "geometry (default), or as numbers, by which they are looked up in the scene")
+          .unless(unless_raster(unless_strategy(&Strategy::travels, why_no_travel)))
+          .told("travel", strategy_that(&Strategy::partitions)),
+      RenderOption::choice<bool>(
+          "--costs", [](auto& r) -> auto& { return r.sharing.measured_costs; },
+          {{"model", false}, {"measured", true}}, group::kSharing,
+          "Costs that partitions balance: model, an estimate (default), or measured, times of the "
+          "last frame")
+          .unless(unless_strategy(&Strategy::partitions, why_no_costs))
+          .told("costs", ray_tracer_or_strategy_that(&Strategy::partitions)),
+      RenderOption::of(
+          "--regions", [](auto& r) -> auto& { return r.sharing.regions_per_rank; }, group::kSharing,
+          "Regions of the screen per rank (default: 1)")
+          .transform(count_between(1, 64))
+          .unless(unless_strategy(&Strategy::partitions, why_no_costs))
+          .told("regions", ray_tracer_or_strategy_that(&Strategy::partitions)),
+      RenderOption::of(
+          "--keep", [](auto& r) -> auto& { return r.sharing.keep_factor; }, group::kSharing,
+          "Repartition when a rank exceeds this multiple of the mean load (default: 1.2)")
+          .check(number_between(1.0, 1000.0))
+          .unless(unless_strategy(&Strategy::partitions, why_no_costs))
+          .told("keep", ray_tracer_or_strategy_that(&Strategy::partitions)),
+      RenderOption::of(
+          "--block", [](auto& r) -> auto& { return r.sharing.block; }, group::kSharing,
+          "Side in pixels of the blocks that --schedule hands out (default: 64; ray tracer: a "
+          "multiple of 16, by default 16, or 32 with path)")
+          .transform(count_between(1, 4096))
+          .unless(unless_strategy(&Strategy::schedules, why_no_block))
+          .told("block", ray_tracer_or_strategy_that(&Strategy::partitions)),
+      RenderOption::choice<raster::Groups>(
+          "--groups", [](auto& r) -> auto& { return r.raster.groups; },
+          {{"one", raster::Groups::one}, {"two", raster::Groups::two}}, group::kSharing,
+          "For --strategy sort-middle: one group of ranks, each for geometry and pixels (default), "
+          "or two groups, one for geometry and one for pixels")
+          .unless(unless_raster(unless_strategy(&Strategy::groups)))
+          .told("groups", strategy_that(&Strategy::groups)),
+      RenderOption::of(
+          "--geometry-ranks", [](auto& r) -> auto& { return r.raster.geometry_ranks; },
+          group::kSharing, "Number of ranks for geometry, for --groups two (default: half of all)")
+          .transform(count_between(1, 1000000))
+          .unless(unless_raster(unless_strategy(&Strategy::groups, why_no_geometry_ranks)))
+          .told("geometry_ranks", strategy_that(&Strategy::groups)),
+      RenderOption::choice<raster::Redistribution>(
+          "--redistribute", [](auto& r) -> auto& { return r.raster.redistribution; },
+          {{"immediate", raster::Redistribution::immediate},
+           {"at-end", raster::Redistribution::at_end}},
+          group::kSharing,
+          "For --strategy sort-middle: send triangles in batches as they are transformed "
+          "(immediate, default), or all at-end")
+          .unless(unless_raster(unless_strategy(&Strategy::groups)))
+          .told("redistribute", strategy_that(&Strategy::groups)),
+  };
+}
+
+std::vector<RenderOption> raytracer_options() {
+  using raytrace::Integrator;
+  using Quality = raytrace::BuildOptions::Quality;
+  using Deal = raytrace::ShareOptions::Deal;
+  return {
+      RenderOption::of(
+          "--integrator", [](auto& r) -> auto& { return r.raytrace.integrator; }, group::kRaytracer,
+          "What is computed along rays (default: whitted; --list describes them)")
+          .one_of(names_in(raytrace::integrators()))
+          .unless(unless_raytrace())
+          .told("integrator", is_raytrace),
+      RenderOption::of(
+          "--spp", [](auto& r) -> auto& { return r.raytrace.samples; }, group::kRaytracer,
+          "Samples per pixel (default: 1)")
+          .transform(count_between(1, 65536))
+          .unless(unless_raytrace())
+          .told("spp", is_raytrace),
+      RenderOption::of(
+          "--depth", [](auto& r) -> auto& { return r.raytrace.trace.depth; }, group::kRaytracer,
+          "Maximum reflections and refractions (default: 8)")
+          .transform(count_between(0, 64))
+          .unless(unless_raytrace())
+          .told("depth", is_raytrace),
+      RenderOption::of(
+          "--diffuse-depth", [](auto& r) -> auto& { return r.raytrace.trace.diffuse_depth; },
+          group::kRaytracer,
+          "Maximum diffuse bounces, for --integrator path (default: 64, more than most paths last)")
+          .transform(count_between(0, 1024))
+          .unless(unless_integrator(&Integrator::scatters))
+          .told("diffuse_depth", is_raytrace),
+      RenderOption::of(
+          "--reach", [](auto& r) -> auto& { return r.reach; }, group::kRaytracer,
+          "Ambient occlusion radius in units of the scene, for --integrator ao (default: "
+          "unlimited)")
+          .check(positive_float())
+          .unless(unless_integrator(&Integrator::reaches))
+          .told("reach", is_raytrace),
+      RenderOption::off(
+          "--no-shadows", [](auto& r) -> auto& { return r.raytrace.trace.shadows; },
+          group::kRaytracer,
+          "Trace no shadow rays, for --integrator direct: light passes through everything")
+          .unless(unless_integrator(&Integrator::may_omit_shadows))
+          .told("shadows", is_raytrace),
+      RenderOption::choice<Quality>(
+          "--build", [](auto& r) -> auto& { return r.raytrace.build.quality; },
+          {{"low", Quality::low}, {"medium", Quality::medium}, {"high", Quality::high}},
+          group::kRaytracer,
+          "Quality of Embree's bounding volume hierarchies: low (fast to build), medium (default) "
+          "or high (fast to trace, splits triangles)")
+          .unless(unless_raytrace())
+          .told("build", is_raytrace),
+      RenderOption::choice<std::string>(
+          "--isa", [](auto& r) -> auto& { return r.raytrace.build.isa; },
+          {{"best", ""},
+           {"sse2", "sse2"},
+           {"sse4.2", "sse4.2"},
+           {"avx", "avx"},
+           {"avx2", "avx2"},
+           {"avx512", "avx512"}},
+          group::kRaytracer,
+          "Instruction set for Embree: sse2, sse4.2, avx, avx2, avx512 or best, of this processor "
+          "(default); avx2 may be faster than avx512 for incoherent rays")
+          .unless(unless_raytrace())
+          .told("isa", is_raytrace),
+      RenderOption::of(
+          "--schedule", [](auto& r) -> auto& { return r.sharing.schedule; }, group::kSharing,
+          "How ranks share the blocks of the picture (ray tracer, default: interlaced); "
+          "rasterizer: the same for --strategy sort-first (default: none, each rank keeps its "
+          "regions)")
+          .one_of(names_in(loadbalance::schedules()))
+          .unless(unless_strategy(&raster::Strategy::schedules))
+          .told("schedule", ray_tracer_or_strategy_that(&raster::Strategy::partitions)),
+      RenderOption::choice<bool>(
+          "--master", [](auto& r) -> auto& { return r.sharing.master_works; },
+          {{"works", true}, {"serves", false}}, group::kSharing,
+          "Whether ranks that hand out blocks (schedules demand, guided and hierarchical) render "
+          "some too: works, they do (default), or serves, they do not")
+          .unless(why_no_master)
+          .told("master", ray_tracer_or_strategy_that(&raster::Strategy::partitions)),
+      RenderOption::of(
+          "--data", [](auto& r) -> auto& { return r.data; }, group::kSharing,
+          "Ray tracer: distribution of the scene: replicated, all of it on every rank (default), "
+          "object, ray, ring or hybrid")
+          .one_of(names_in(raytrace::distributions()))
+          .unless(unless_raytrace())
+          .told("data", is_raytrace),
+      RenderOption::choice<Deal>(
+          "--deal", [](auto& r) -> auto& { return r.share.deal; },
+          {{"neighbours", Deal::neighbours}, {"random", Deal::random}}, group::kSharing,
+          "Which rank gets which parts of a scene that --data distributes: neighbours stay "
+          "together (default), or random")
+          .unless(unless_raytrace(why_no_deal))
+          .told("deal", is_raytrace),
+      RenderOption::of(
+          "--cache", [](auto& r) -> auto& { return r.cache_mebibytes; }, group::kSharing,
+          "MiB of other ranks' parts of the scene that a rank keeps, for --data object and hybrid "
+          "(default: a tenth of the scene)")
+          .check(number_between(1e-3, 1e9))
+          .unless(unless_raytrace(why_no_cache))
+          .told("cache", is_raytrace),
+  };
+}
+
+std::vector<RenderOption> output_options() {
+  return {
+      RenderOption::of(
+          "--stats", [](auto& r) -> auto& { return r.statistics; }, group::kOutput,
+          "Statistics as JSON to this file; - for standard output")
+          .type_name("FILE"),
+      RenderOption::of(
+          "--list", [](auto& r) -> auto& { return r.list; }, group::kOutput,
+          "List the names that options choose from, and what they mean"),
+  };
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,20 @@
+// The options of `delray render` as rows, in the order of the help page; a new one is a row here.
+#pragma once
+
+#include <vector>
+
+#include "apps/options/option_row.h"
+#include "apps/render/render_options.h"
+
+namespace delray::apps {
+
+using RenderOption = OptionRow<RenderRequest>;
+
+std::vector<RenderOption> picture_options();
+std::vector<RenderOption> animation_options();
+std::vector<RenderOption> rasterizer_options();
+std::vector<RenderOption> raytracer_options();
+std::vector<RenderOption> sampling_options();  // see sampling_options.h
+std::vector<RenderOption> output_options();
+
+}  // namespace delray::apps

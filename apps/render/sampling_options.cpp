@@ -1,0 +1,173 @@
+// How long the ray tracer samples and what becomes of it, as rows of `delray render`'s options.
+#include "apps/render/sampling_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <charconv>
+
+#include "apps/options/help.h"
+#include "apps/options/numbers.h"
+#include "apps/render/option_table.h"
+#include "apps/render/shown_channel.h"
+#include "image/io.h"
+#include "image/tone.h"
+
+namespace delray::apps {
+namespace {
+
+// Samples per pixel without --spp: where time ends the rendering, and where noise does. The noise
+// of 256 samples is a sixteenth of that of one; a tenth of it would take 25 600.
+constexpr int kMostInTime = 65536, kMostForNoise = 256;
+
+geometry::Rect parse_crop(const std::string& text, int width, int height) {
+  std::array<int, 4> n{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool fine = true;
+  for (std::size_t i = 0; i < n.size() && fine; ++i) {
+    const auto [next, error] = std::from_chars(at, end, n[i]);
+    fine = error == std::errc() && (i == 3 ? next == end : next != end && *next == ',');
+    at = next + 1;
+  }
+  fine = fine && n[0] >= 0 && n[1] >= 0 && n[2] >= 1 && n[3] >= 1 && n[2] <= width - n[0] &&
+         n[3] <= height - n[1];
+  if (fine) return {n[0], n[1], n[0] + n[2], n[1] + n[3]};
+  throw UsageError(
+      fmt::format("--crop: '{}' is not x,y,width,height within the picture of {} x {} pixels", text,
+                  width, height));
+}
+
+bool writes_exr(const RenderRequest& r) { return image::picture_suffix(r.output) == ".exr"; }
+bool shows_colour(const RenderRequest& r) { return r.sampling.show == "colour"; }
+bool is_raytrace(const RenderRequest& r) { return r.engine == Engine::raytrace; }
+
+std::string why_no_frame_alone(const RenderRequest& r) {
+  return r.is_animation() || r.frames > 1 ? "more than one frame" : "";
+}
+std::string why_no_preview(const RenderRequest& r) {
+  return r.output == "-" ? "-o -, which takes one picture" : why_no_frame_alone(r);
+}
+std::string why_no_checkpoint_every(const RenderRequest& r) {
+  return r.sampling.checkpoint.empty() ? "no --checkpoint" : "";
+}
+std::string why_no_channels(const RenderRequest& r) {
+  return writes_exr(r) ? why_no_frame_alone(r) : "files other than .exr";
+}
+std::string why_no_colour(const RenderRequest& r) { return shows_colour(r) ? "" : "--show"; }
+std::string why_no_tone(const RenderRequest& r) {
+  return shows_colour(r) && writes_exr(r) ? "EXR, which keeps the light itself" : why_no_colour(r);
+}
+std::string why_no_focus(const RenderRequest& r) {
+  return r.sampling.aperture == 0.0 ? "no --aperture" : "";
+}
+
+// A row of this table: all are the ray tracer's.
+template <class Field>
+RenderOption sampling_option(const char* name, Field field, std::string help, std::string key,
+                             std::string (*why)(const RenderRequest&) = nullptr) {
+  return RenderOption::of(name, field, group::kRaytracer, std::move(help))
+      .unless([why](const RenderRequest& r) -> std::string {
+        if (!is_raytrace(r)) return "--engine raster";
+        return why != nullptr ? why(r) : "";
+      })
+      .told(std::move(key), is_raytrace);
+}
+
+}  // namespace
+
+std::vector<RenderOption> sampling_options() {
+  return {
+      sampling_option(
+          "--time", [](auto& r) -> auto& { return r.sampling.seconds; },
+          "Seconds to sample for, however noisy the picture is then (default: no limit)", "time")
+          .check(positive_number()),
+      sampling_option(
+          "--noise", [](auto& r) -> auto& { return r.sampling.noise; },
+          "Stop below this noise: the standard deviation of values on the screen, which are 0 to "
+          "1, such as 0.01; --spp is the maximum then (default: 256, or none with --time)",
+          "noise")
+          .check(positive_float()),
+      sampling_option(
+          "--preview-every", [](auto& r) -> auto& { return r.sampling.preview_every; },
+          "Seconds between previews: the picture so far, written to the output file (default: "
+          "none)",
+          "preview_every", why_no_preview)
+          .check(positive_number()),
+      sampling_option(
+          "--checkpoint", [](auto& r) -> auto& { return r.sampling.checkpoint; },
+          "File that keeps all samples so far, now and then and when interrupted, for --resume",
+          "checkpoint", why_no_frame_alone)
+          .type_name("FILE"),
+      sampling_option(
+          "--checkpoint-every", [](auto& r) -> auto& { return r.sampling.checkpoint_every; },
+          "Seconds between checkpoints (default: 60)", "checkpoint_every", why_no_checkpoint_every)
+          .check(non_negative_number()),
+      sampling_option(
+          "--resume", [](auto& r) -> auto& { return r.sampling.resume; },
+          "Continue from the file of --checkpoint, to the same picture as without interruption",
+          "resume"),
+      sampling_option(
+          "--crop", [](auto& r) -> auto& { return r.sampling.crop; },
+          "Render only a part of the picture: x,y,width,height in pixels, from its upper left "
+          "corner",
+          "crop")
+          .type_name("RECT"),
+      sampling_option(
+          "--aovs", [](auto& r) -> auto& { return r.sampling.channels; },
+          "Also write channels of normals, albedo, ids, variance, samples and costs (.exr only)",
+          "aovs", why_no_channels),
+      sampling_option(
+          "--denoise", [](auto& r) -> auto& { return r.sampling.denoise; },
+          "Remove noise, guided by normals, albedo, depth and variance", "denoise", why_no_colour),
+      sampling_option(
+          "--show", [](auto& r) -> auto& { return r.sampling.show; },
+          fmt::format("Show this instead of colour: {}", fmt::join(shown_names(), ", ")), "show")
+          .one_of(shown_names()),
+      sampling_option(
+          "--exposure", [](auto& r) -> auto& { return r.sampling.exposure; },
+          "Exposure in stops: light is multiplied by 2 to the power of this (default: 0; not for "
+          ".exr)",
+          "exposure", why_no_tone)
+          .check(number_between(-30.0, 30.0)),
+      sampling_option(
+          "--tone", [](auto& r) -> auto& { return r.sampling.tone; },
+          "Tone curve from light to the screen: linear (default) or filmic (not for .exr)", "tone",
+          why_no_tone)
+          .one_of(names_in(image::tone_curves())),
+      sampling_option(
+          "--aperture", [](auto& r) -> auto& { return r.sampling.aperture; },
+          "Diameter of the lens in units of the scene, for depth of field (default: 0, all sharp)",
+          "aperture")
+          .check(non_negative_number()),
+      sampling_option(
+          "--focus", [](auto& r) -> auto& { return r.sampling.focus; },
+          "Distance of what is sharp, along the view, in units of the scene (default: that of the "
+          "point looked at)",
+          "focus", why_no_focus)
+          .check(positive_float()),
+      sampling_option(
+          "--seed", [](auto& r) -> auto& { return r.raytrace.trace.seed; },
+          "Seed of all random numbers (default: 0)", "seed")
+          .transform(any_count()),
+  };
+}
+
+void complete_sampling(const CLI::App& command, RenderRequest& request) {
+  SamplingOptions& sampling = request.sampling;
+  sampling.window = {0, 0, request.width, request.height};
+  if (!sampling.crop.empty()) {
+    sampling.window = parse_crop(sampling.crop, request.width, request.height);
+  }
+  if (command.count("--spp") > 0) return;
+  if (sampling.noise > 0.0) request.raytrace.samples = kMostForNoise;
+  if (sampling.seconds > 0.0) request.raytrace.samples = kMostInTime;
+}
+
+void check_sampling(const RenderRequest& request) {
+  if (request.sampling.resume && request.sampling.checkpoint.empty())
+    throw UsageError("--resume: from which file? --checkpoint FILE is missing");
+}
+
+}  // namespace delray::apps
