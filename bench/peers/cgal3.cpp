@@ -1,3 +1,6 @@
+// Converts points to CGAL's own type before the clock starts, and times the insertion alone,
+// sequential or, where CGAL is linked with oneTBB, parallel. For comparisons of results, equal
+// points are reduced to the lowest row first, and finite cells are read back as rows of the input.
 #include "bench/peers/cgal3.h"
 
 #include <CGAL/Delaunay_triangulation_3.h>

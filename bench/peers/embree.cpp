@@ -1,3 +1,6 @@
+// Copies recorded rays into Embree's single rays, packets or streams and traces them. Threads take
+// chunks of groups from a common counter; hits are thrown away, so that nothing but Embree and the
+// copying is measured.
 #include "bench/peers/embree.h"
 
 #include <embree3/rtcore.h>

@@ -1,3 +1,6 @@
+// Declares the functions of HXT that Gmsh's library exports without a header, and calls them on a
+// copy of the points. The clock runs during hxtDelaunay alone; tetrahedra with a ghost vertex are
+// not counted.
 #include "bench/peers/hxt.h"
 
 #include <gmsh.h>

@@ -1,3 +1,6 @@
+// Wraps the C interface of IceT: one tile as large as the picture, composited in the order of ranks
+// or by depth. A table says which strategies and single-image strategies of IceT there are, and
+// which of them can composite in order.
 #include "bench/peers/icet.h"
 
 #include <IceT.h>

@@ -1,3 +1,6 @@
+// A child process draws into memory with OpenGL 2 through OSMesa; the parent sends it a command
+// through a pipe and waits for the answer. The clock runs in the child, from glClear to glFinish,
+// so that pipes are not measured.
 #include "bench/peers/llvmpipe.h"
 
 #define GL_GLEXT_PROTOTYPES
