@@ -1,3 +1,6 @@
+// Computes for each material and each light, once, the parts of shading that do not depend on the
+// point: lobes of the factors, rows of the specular table at the material's roughness, whether
+// textures or colours of vertices can change the specular lobe, directions of directional lights.
 #include "shading/batch_shader.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// Light of a gradient in closed form, and of a texture by its mip levels and nine spherical
+// harmonics (Ramamoorthi and Hanrahan 2001).
+//
+// The first level of the texture that is at most 128 texels wide is projected on the harmonics
+// once, each texel weighted by its solid angle; degrees 0, 1 and 2 are multiplied by 1, 2/3 and
+// 1/4, which convolves them with the cosine. A look-up then costs nine products. Rough lobes read a
+// blurred level, and the roughest ones blend into the harmonics.
+//
+// Degenerate: a black environment returns 0 before any look-up; sums of harmonics below 0 count as
+// 0.
 #include "shading/environment.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Terms of local lighting at one point that the header does not have inline: the response to a
+// viewer, and light from the environment that is reflected diffusely, mirrored, mirrored by the
+// coat, or let through.
 #include "shading/shade.h"
 
 namespace delray::shading {

@@ -1,3 +1,6 @@
+// Copies what shading needs out of a scene, or moves its texels (take_shader). Numbers of textures
+// that do not exist become kNone, and unlit materials lose all but their colour, so that shading
+// need not check either.
 #include "shading/shader.h"
 
 #include <algorithm>

@@ -1,3 +1,9 @@
+// Looks up a material's textures at a point and multiplies its factors by them (glTF 2.0 and its
+// extensions for coats, sheens, transmission, volumes and specular colours).
+//
+// Degenerate: a normal map that gives the zero vector leaves the interpolated normal; a mesh
+// without tangents ignores normal maps; a surface that transmits light but has no thickness is seen
+// from its front on both sides.
 #include "shading/surface.h"
 
 #include <cmath>

@@ -1,3 +1,9 @@
+// Builds mip levels by a box filter, and samples them trilinearly (Williams 1983).
+//
+// A level of even size averages pairs of texels, one of odd size weights three, so that every texel
+// of the larger level counts as much as the others. Averages are taken in linear light and weighted
+// by alpha; where alpha is 0 all over, colours count alike. O(texels) to build; a sample reads four
+// texels, or eight between two levels.
 #include "shading/texture.h"
 
 #include <algorithm>

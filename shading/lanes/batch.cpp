@@ -1,3 +1,9 @@
+// shade and directions_to of shading/batch.h, compiled once for each instruction set that Highway
+// targets; the best one is chosen at run time.
+//
+// A block of 16 points goes through as vectors of lanes. The material decides which loop runs: for
+// a grey specular lobe, for a coloured one that is the same at all points, or for one that varies.
+// Materials with a coat or a sheen are composed of the functions in batch_parts.cpp.
 #include "shading/batch.h"
 
 #include <bit>

@@ -1,3 +1,9 @@
+// The functions of shading/batch.h for renderers that need the terms of shading one by one:
+// surfaces, light from the environment, the contribution of one light, coverage, texels.
+//
+// Each term is computed for a block of 16 points in vectors of lanes, compiled once for each
+// instruction set that Highway targets. Coats and sheens are added point by point, by the scalar
+// functions of shading/layers.h.
 #include <bit>
 #include <cassert>
 
