@@ -1,3 +1,5 @@
+// Runs a command by the shell, with output and errors redirected into files of the temporary
+// folder, which are read and removed.
 #include "tests/support/run_program.h"
 
 #include <sys/wait.h>
