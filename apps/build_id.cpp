@@ -1,3 +1,5 @@
+// Reads the GNU build id notes of the program and of its libdelray libraries from their headers in
+// memory.
 #include "apps/build_id.h"
 
 #include <link.h>

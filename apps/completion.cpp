@@ -1,3 +1,5 @@
+// Writes completion scripts for bash, zsh and fish from the command line as plain data. A further
+// shell is a function and an entry in kShells.
 #include "apps/completion.h"
 
 #include <fmt/format.h>

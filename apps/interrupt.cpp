@@ -1,3 +1,5 @@
+// One signal handler for both signals, with its state in atomics: it may run at any point of the
+// program and calls nothing that is not async-signal-safe.
 #include "apps/interrupt.h"
 
 #include <atomic>

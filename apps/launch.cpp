@@ -1,3 +1,5 @@
+// Starts ranks as threads or joins the processes of mpirun, which first compare build, options and
+// inputs.
 #include "apps/launch.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes the command line as roff: one section for each command, with its options and examples.
 #include "apps/manual.h"
 
 #include <fmt/format.h>

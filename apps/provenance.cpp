@@ -1,3 +1,4 @@
+// Collects the version, the processor from /proc/cpuinfo, the compiler, the system and the time.
 #include "apps/provenance.h"
 
 #include <fmt/chrono.h>

@@ -1,3 +1,4 @@
+// Maps exceptions to messages and exit codes, in one place for all subcommands.
 #include "apps/session.h"
 
 #include <spdlog/spdlog.h>

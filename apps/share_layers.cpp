@@ -1,3 +1,5 @@
+// Copies the share of a rank into a layer for each run, in memory that the run before has given
+// back.
 #include "apps/share_layers.h"
 
 #include <algorithm>

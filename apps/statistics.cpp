@@ -1,3 +1,4 @@
+// Writes JSON as ASCII, and asks the system for the peak memory of the process.
 #include "apps/statistics.h"
 
 #include <sys/resource.h>

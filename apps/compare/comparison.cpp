@@ -1,3 +1,4 @@
+// Options, checks and output that all comparisons share: a table on the terminal, JSON, a page.
 #include "apps/compare/comparison.h"
 
 #include <fmt/format.h>

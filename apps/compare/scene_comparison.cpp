@@ -1,3 +1,5 @@
+// Options of comparisons on a scene, and the run that all of them share: check, load, compare,
+// write. Also the parts of their JSON that are the same.
 #include "apps/compare/scene_comparison.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Runs the ranks of the rasterizer by turns on one thread, records their messages with the
+// processor time between them, and replays the record over a network.
 #include "apps/compare/simulated_frames.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The table of colourings and the function behind each. Numbers run through a colour map between
+// the ends of their usual range, so that outliers do not take all of the colours; materials lose
+// what would tint the result.
 #include "apps/input/colour_by.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Makes an octahedron of each point, six vertices and eight faces, in parallel over points.
 #include "apps/input/dots.h"
 
 #include <algorithm>

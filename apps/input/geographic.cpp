@@ -1,3 +1,5 @@
+// Recognizes degrees by the box of the points and scales them by the length of a degree on the
+// ellipsoid WGS 84, as a series in the latitude.
 #include "apps/input/geographic.h"
 
 #include <spdlog/spdlog.h>

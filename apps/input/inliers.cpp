@@ -1,3 +1,5 @@
+// The box of the usual range of each coordinate, widened by half of its longest side, tells inliers
+// from outliers. Degenerate: where nearly all points are equal, none is an outlier.
 #include "apps/input/inliers.h"
 
 #include "parallel/parallel_for.h"

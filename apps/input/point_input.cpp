@@ -1,3 +1,5 @@
+// Reads a point file, or makes a point of every pixel of an elevation picture that has a height.
+// Also the options of point inputs and their checks.
 #include "apps/input/point_input.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Makes one mesh of the points: the triangulation's triangles in 2D, the facets of the hull in 3D.
 #include "apps/input/relief.h"
 
 #include "delaunay/write_mesh.h"

@@ -1,3 +1,6 @@
+// Recognizes the kind of an input by its format and sends it to the right reader: scenes and
+// generated scenes as they are, points through a triangulation or as dots, meshes of points as
+// surfaces. Options that do not go with the kind are refused.
 #include "apps/input/scene_input.h"
 
 #include <fmt/format.h>

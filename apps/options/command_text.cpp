@@ -1,3 +1,5 @@
+// Reads options, names to choose from, ranges and examples out of CLI11's objects, for help, man
+// page and completion.
 #include "apps/options/command_text.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Options that limit the memory that inputs take and the files that they may name.
 #include "apps/options/input_limits.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Validators for CLI11, all of one template that rejects text that is no finite number.
 #include "apps/options/numbers.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,9 @@
+// Sends the frames of an animation through a pipeline of stages, and the first two frames alone
+// through it, to measure the stages undisturbed (Kohout 2004, 2.1, 2.2 and 3.1.1).
+//
+// A frame in the making owns a slot. Stages that exchange messages take the frames in the same
+// order on all ranks; encoding does not, and may overlap with itself. Degenerate: with one or two
+// frames nothing overlaps, and speed-ups are 1.
 #include "apps/render/animation.h"
 
 #include <fmt/format.h>

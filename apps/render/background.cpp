@@ -1,3 +1,5 @@
+// Parses the option and blends pictures over their background, in linear light, in parallel over
+// rows.
 #include "apps/render/background.h"
 
 #include <charconv>

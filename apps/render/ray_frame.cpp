@@ -1,3 +1,9 @@
+// Translates sampling options into a progressive rendering, and its result into picture, channels
+// and statistics.
+//
+// A checkpoint carries a fingerprint of the scene and of every option that samples depend on; one
+// of other settings is refused. Checkpoints and previews are made between passes, when their time
+// has come.
 #include "apps/render/ray_frame.h"
 
 #include <fmt/format.h>

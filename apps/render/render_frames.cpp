@@ -1,3 +1,8 @@
+// Prepares a scene for either engine and renders frames of it: options into the engine's own,
+// checks of memory before it is taken, cameras, lights, then one call for each frame.
+//
+// Scenes that come in parts are prepared on every rank without geometry; cameras that show all of
+// it are agreed upon by the farthest points of all ranks.
 #include "apps/render/render_frames.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Builds the JSON of a rendering from either engine's statistics by overloads; fields that only the
+// other engine has are 0 or null.
 #include "apps/render/render_statistics.h"
 
 #include <algorithm>

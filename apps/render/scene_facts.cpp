@@ -1,3 +1,5 @@
+// Hashes the beginning and the end of each array with XXH3, so that the cost hardly grows with the
+// scene.
 #include "apps/render/scene_facts.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// The table of what --show can show, the channels that it reads, and the colours for each kind:
+// directions, colours, numbers of things, amounts.
 #include "apps/render/shown_channel.h"
 
 #include <algorithm>

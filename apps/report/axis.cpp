@@ -1,3 +1,5 @@
+// Finds the range of an axis and its ticks. Degenerate: a single value gets a range around it;
+// values that are not finite, or not positive on a logarithmic axis, do not count.
 #include "apps/report/axis.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Escapes text and formats numbers for pages.
 #include "apps/report/html.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Draws a table of amounts as an SVG of shaded cells, shaded by the root of the amount.
 #include "apps/report/matrix.h"
 
 #include <fmt/format.h>

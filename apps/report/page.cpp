@@ -1,3 +1,5 @@
+// Assembles the page around its tabs, and embeds pictures as base64 and figures as JSON, so that
+// the file needs no other.
 #include "apps/report/page.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Writes a table as HTML; the page's script sorts it.
 #include "apps/report/table.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,13 @@
+// Runs every compositing scheme on the same layers, then predicts each from a model of the machine.
+//
+// Up to kMostMeasuredRanks ranks are measured as threads: schemes take turns in a random order,
+// since a machine becomes faster and slower while it is measured. More ranks are simulated: the
+// scheme's own code exchanges layers without pixels. The model of this machine is fitted to one
+// half of the schemes and predicts the other half, so that no scheme is predicted from its own
+// times. Under mpirun its processes are measured instead of threads.
+//
+// Degenerate: a stop between two runs keeps what is finished; codecs whose messages depend on what
+// pixels show are not predicted.
 #include "apps/compare/compose/compare_compose.h"
 
 #include <fmt/format.h>

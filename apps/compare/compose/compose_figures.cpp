@@ -1,3 +1,5 @@
+// Turns the rows of a comparison of compositing schemes into JSON and a table; values that were not
+// measured become null or a dash.
 #include "apps/compare/compose/compose_figures.h"
 
 #include <fmt/format.h>

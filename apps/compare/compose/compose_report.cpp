@@ -1,3 +1,5 @@
+// One function builds each tab of the page. A tab about a single run turns its recorded events into
+// a timeline of the ranks and into matrices of the bytes that they sent each other.
 #include "apps/compare/compose/compose_report.h"
 
 #include <fmt/format.h>

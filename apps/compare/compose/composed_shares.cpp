@@ -1,3 +1,6 @@
+// Draws the share of each rank as sort-last would, keeps its shape without pixels, and times one
+// run of a scheme between barriers. The first run of a scheme is recorded for its counts and not
+// timed.
 #include "apps/compare/compose/composed_shares.h"
 
 #include <algorithm>

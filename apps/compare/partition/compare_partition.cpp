@@ -1,3 +1,12 @@
+// Cuts the screen by every partition and draws frames with each, then chooses among the results.
+//
+// Ranks take turns on one thread, so that each is timed as if it had a core of its own, and their
+// recorded messages are replayed over each network. Beyond kMostMeasuredRanks the screen is cut
+// only, and the costs foretell the balance. Recommended are partitions that are even by counts and
+// quick by processor time, and of these the ones that are cut soonest.
+//
+// Degenerate: where no partition is both even and quick, the even ones win; a stop keeps what is
+// finished.
 #include "apps/compare/partition/compare_partition.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,5 @@
+// Turns the rows of a comparison of partitions into JSON and a table; rows that were not drawn have
+// null or a dash for what only frames tell.
 #include "apps/compare/partition/partition_figures.h"
 
 #include <fmt/format.h>

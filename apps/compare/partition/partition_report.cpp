@@ -1,3 +1,5 @@
+// One function builds each tab of the page; regions are drawn over a picture that the page has
+// once.
 #include "apps/compare/partition/partition_report.h"
 
 #include <fmt/format.h>

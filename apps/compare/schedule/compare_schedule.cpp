@@ -1,3 +1,12 @@
+// Measures every tile of a picture once, then lets every schedule hand out the tiles on a simulated
+// machine.
+//
+// One rank with one thread traces whole frames, which gives each tile's processor time and rays.
+// Schedules run their own code over simulated networks on the medians of these times, and on single
+// frames for the spread. Up to as many ranks as there are cores, two at least, also trace whole
+// frames.
+//
+// Degenerate: a stop keeps what is finished.
 #include "apps/compare/schedule/compare_schedule.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,4 @@
+// Turns the rows of a comparison of schedules, and the cost of every tile, into JSON and a table.
 #include "apps/compare/schedule/schedule_figures.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// One function builds the first screen, with its advice, and one each tab of the page.
 #include "apps/compare/schedule/schedule_report.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,10 @@
+// Runs every triangulation method on subsets of the points, with several numbers of threads.
+//
+// Subsets are the first of one random order. Each way runs once to count and to hash its result;
+// timed runs count nothing, and all ways take turns until another run would exceed a way's share of
+// the time.
+//
+// Degenerate: a stop keeps what is finished, fewest points first.
 #include "apps/compare/triangulate/compare_triangulate.h"
 
 #include <fmt/format.h>

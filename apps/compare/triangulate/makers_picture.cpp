@@ -1,3 +1,9 @@
+// Rasterizes triangles, or the cut of a plane through tetrahedra, into samples that hold numbers of
+// simplices, and averages the makers' colours over the samples of a pixel.
+//
+// A tetrahedron is cut where its edges pass the plane: three or four points, filled as a convex
+// polygon. Nine samples a pixel smooth the borders. Degenerate: polygons that are not finite are
+// left out; edges are not drawn where they would cover more than a quarter of the picture.
 #include "apps/compare/triangulate/makers_picture.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the sentences of the first screen: the fastest way to triangulate, by how much, why, how
+// it scales, whether all results agree, and the command to use it.
 #include "apps/compare/triangulate/triangulate_answer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Turns the rows of a comparison of triangulation methods into JSON and a table.
 #include "apps/compare/triangulate/triangulate_figures.h"
 
 #include <fmt/format.h>

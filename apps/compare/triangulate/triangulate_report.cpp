@@ -1,3 +1,5 @@
+// One function builds each tab of the page. Charts over threads and over points choose their rows
+// and what is drawn of each.
 #include "apps/compare/triangulate/triangulate_report.h"
 
 #include <fmt/format.h>

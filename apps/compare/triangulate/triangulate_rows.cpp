@@ -1,3 +1,4 @@
+// Look-ups among the rows by linear search, and words that the page uses again and again.
 #include "apps/compare/triangulate/triangulate_rows.h"
 
 #include <fmt/format.h>
