@@ -1,3 +1,5 @@
+// Enumerates the legal options from the table of methods in nested loops; an empty choice becomes
+// "none".
 #include "delaunay/combinations.h"
 
 #include <algorithm>

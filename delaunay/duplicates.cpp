@@ -1,3 +1,5 @@
+// Groups the rows by place with a hash and applies the policy to the few places that have several
+// rows.
 #include "delaunay/duplicates.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Counts connected components by depth-first search over neighbours with the same creator.
 #include "delaunay/fragments.h"
 
 #include <cassert>

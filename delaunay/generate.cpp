@@ -1,3 +1,6 @@
+// The table of point sets, one function for each: it computes point i from the row's own random
+// numbers and nothing else, so rows are generated in parallel. Sets that are meant to be exactly
+// degenerate use coordinates of few bits, so that nothing is rounded.
 #include "delaunay/generate.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// Linear interpolation by barycentric coordinates, from areas or volumes seen from the query point,
+// and natural-neighbour interpolation (Sibson 1981) as the weighted sum of natural_neighbours().
 #include "delaunay/interpolate.h"
 
 #include <array>

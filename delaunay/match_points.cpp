@@ -1,3 +1,6 @@
+// Puts vertices and points into one list and groups equal coordinates by a hash: a vertex is the
+// lowest point of its group. Two points that are different but round to the same floats make a
+// vertex ambiguous.
 #include "delaunay/match_points.h"
 
 #include <cmath>

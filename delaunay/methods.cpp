@@ -1,3 +1,6 @@
+// The table of triangulation methods with the locations, splits, orders and deadlock strategies
+// that go with each, and the rules by which "auto" is resolved: the first method that serves the
+// dimension, and the first entry of each of its lists.
 #include "delaunay/methods.h"
 
 #include <algorithm>

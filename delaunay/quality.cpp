@@ -1,3 +1,6 @@
+// Angles by atan2 of cross and dot products, which stays accurate for thin simplices, and radius
+// ratios from edge lengths, areas and volumes, of coordinates scaled so that nothing overflows.
+// Sums are combined by a parallel reduction. Flat simplices have a ratio of 0.
 #include "delaunay/quality.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Location by jump and walk (Muecke, Saias and Zhu 1999) and nearest vertices by greedy steps over
+// Delaunay edges.
+//
+// The walk starts at the nearest of about n^(1/3) vertices and leaves each simplex by a facet that
+// the point lies beyond, which never cycles in a Delaunay triangulation (Edelsbrunner 1990).
+// O(n^(1/3)) expected for evenly spread points.
+//
+// Degenerate: a point on a facet is in either simplex. Without simplices nothing contains a point,
+// and the nearest vertex is found by looking at all of them.
 #include "delaunay/query.h"
 
 #include <array>

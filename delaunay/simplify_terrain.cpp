@@ -1,3 +1,14 @@
+// Greedy insertion for simplified terrains (Puppo, Davis, De Menthon and Teng 1994; Garland and
+// Heckbert 1995).
+//
+// The triangulation starts with the hull's corners (Andrew 1979). Each triangle keeps a list of the
+// places in it and a candidate, the farthest one beyond the bound; a priority queue gives the worst
+// of all, which is inserted by flips, and the places of the changed triangles are shared out among
+// those around the new vertex. O(n log n) for usual terrains, O(n) for each kept point at worst.
+//
+// Degenerate: places on one line keep nothing. Whether a place is beyond the bound is an exact
+// predicate, so rounding may affect the order of insertions but never the bound; errors that
+// overflow count as infinite.
 #include "delaunay/simplify_terrain.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Resolves the options, checks the input, runs the method of the table and completes what it leaves
+// to its caller.
 #include "delaunay/triangulate.h"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// Widens float coordinates to double, which is exact, and triangulates those.
 #include <array>
 #include <vector>
 

@@ -1,3 +1,5 @@
+// The order-independent hash of a triangulation: hashes of the simplices, each with sorted
+// vertices, are summed modulo 2^128 by a parallel reduction. O(simplices).
 #include "delaunay/triangulation.h"
 
 #include <xxhash.h>

@@ -1,3 +1,6 @@
+// The dual of a Delaunay triangulation: circumcentres relative to the first corner, edges between
+// neighbours, rays from hull facets. In 2D a cell is listed by turning about its vertex over
+// neighbours, in 3D by a counting sort of the corners by vertex. O(n) expected.
 #include "delaunay/voronoi.h"
 
 #include "delaunay/mesh/arguments.h"

@@ -1,3 +1,13 @@
+// Incremental 3D Delaunay triangulation by cavities (Bowyer 1981, Watson 1981), from points to
+// result.
+//
+// Points are sorted into random rounds of growing size, each along a Hilbert curve (Amenta, Choi
+// and Rote 2003). A first tetrahedron starts the mesh, cavity_rounds.h inserts the other points,
+// and the live tetrahedra are copied out with rows for vertices. Expected O(n log n) for evenly
+// spread points; the mesh grows where points make more simplices than such points do.
+//
+// Degenerate: if all points lie in one plane there is no first tetrahedron and the result has no
+// simplices, but still counts the distinct points.
 #include "delaunay/cavity/cavity_insertion.h"
 
 #include <cstdint>

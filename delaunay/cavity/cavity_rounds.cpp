@@ -1,3 +1,13 @@
+// Insertion of ordered points into a 3D Delaunay mesh, by one thread or by several without locks.
+//
+// A round is inserted in up to three passes. Each pass cuts the points that are left at medians,
+// along another axis than the pass before, into one box for each thread; a kernel changes only
+// simplices whose finite vertices all lie in its box (cavity.h). Points whose cavity reaches beyond
+// the box wait for the next pass, and the last of them for a single thread. Expected O(n log n) for
+// evenly spread points; a pass adds O(points left * threads) tests against boxes.
+//
+// Degenerate: a round with too few points for two boxes is inserted by one thread, and so is the
+// rest of a round once a pass has inserted few of its points.
 #include "delaunay/cavity/cavity_rounds.h"
 
 #include <algorithm>

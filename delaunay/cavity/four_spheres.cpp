@@ -1,3 +1,12 @@
+// The insphere test of one point against four tetrahedra at once, in vector registers (Highway).
+//
+// Each lane evaluates the rounded determinant of its tetrahedron, first against the error bound of
+// the whole mesh and then against one from the extent of its points. The file is compiled for every
+// instruction set and the fastest that the machine has is chosen when the program runs. About one
+// determinant's arithmetic for four tests where registers hold four doubles.
+//
+// Degenerate: points on a common sphere are decided by the perturbation of conflict.h where nothing
+// is rounded; elsewhere signs that rounding leaves open are reported as undecided.
 #include "delaunay/cavity/four_spheres.h"
 
 #include <algorithm>

@@ -1,3 +1,15 @@
+// The merge step of divide and conquer (Guibas and Stolfi 1985), on triangulations within hulls of
+// ghosts.
+//
+// Two walks along the hulls find their lower common tangent. From there an edge between the sides
+// rises: on each side, hull edges that are no longer Delaunay are flipped away, then the better of
+// the two candidates, by the incircle test, becomes the next triangle and its far edge the new
+// base, until the upper tangent is reached. O(edges of the hulls along the merge line + edges made
+// and removed).
+//
+// Degenerate: filters decide most signs, exact predicates the rest; points on a common circle are
+// decided by the perturbation of conflict.h, so the result is unique. Sides that are a single point
+// or a chain of collinear points are legal.
 #include "delaunay/divide_and_conquer/merge.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// Insertion and removal of points in a Delaunay triangulation, for the plane and for space.
+//
+// Rows with equal coordinates share a site; only the first row of a site inserts a vertex and only
+// the last one removes it. A point is located by a walk from the nearest of about n^(1/3) random
+// vertices (Muecke, Saias and Zhu 1999); DynamicMesh changes the mesh. Expected O(n^(1/3)) for the
+// location of a point among evenly spread ones.
+//
+// Degenerate: while all sites lie on one line (3D: plane) there is no mesh, but up to D sites are
+// known that span the line or plane. The first point outside starts the mesh from all sites, and a
+// removal that makes the rest flat drops it again.
 #include "delaunay/dynamic.h"
 
 #include <algorithm>

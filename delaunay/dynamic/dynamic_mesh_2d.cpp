@@ -1,3 +1,11 @@
+// Insertion and removal of a vertex in a 2D Delaunay mesh.
+//
+// An insertion walks to the triangle, subdivides it and flips edges (Lawson 1977). A removal
+// collects the ring of triangles around the vertex and fills the hole with the Delaunay triangles
+// of the ring's vertices (refill.h). O(d^2) for a removal with d neighbours.
+//
+// Degenerate: a removal that would leave only collinear vertices changes nothing and says so; a
+// vertex of the hull has the infinite vertex in its ring.
 #include "delaunay/dynamic/dynamic_mesh.h"
 #include "delaunay/dynamic/refill.h"
 #include "delaunay/flip/flip_2d.h"

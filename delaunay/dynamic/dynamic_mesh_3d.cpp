@@ -1,3 +1,13 @@
+// Insertion and removal of a vertex in a 3D Delaunay mesh.
+//
+// An insertion replaces the tetrahedra in conflict with the point by those between it and the
+// boundary of their cavity (Bowyer 1981, Watson 1981). A removal triangulates the neighbours of the
+// vertex apart and copies the tetrahedra that lie within the hole (Devillers and Teillaud 2003),
+// matched with the hole's facets by their sorted vertices. A removal costs a triangulation of the
+// neighbours.
+//
+// Degenerate: where all neighbours lie in one plane vertices beyond the hole are added until one
+// lies outside it; if none does, the remaining vertices are coplanar and nothing is changed.
 #include <cassert>
 
 #include "delaunay/dynamic/dynamic_mesh.h"

@@ -1,3 +1,4 @@
+// Formats numbers in decimal with std::to_chars: the shortest digits that read back equal.
 #include "delaunay/files/output.h"
 
 #include <charconv>

@@ -1,3 +1,6 @@
+// Parses PLY headers (Turk 1994) line by line, decodes values of either byte order, and skips
+// elements whose rows may hold lists. Counts in the header are compared with the size of the file
+// before anybody allocates by them.
 #include "delaunay/files/ply.h"
 
 #include <algorithm>

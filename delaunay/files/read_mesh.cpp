@@ -1,3 +1,5 @@
+// The table of mesh readers. files::identify_format() chooses among them, but for .node and .ele,
+// two files known by their suffixes.
 #include "delaunay/read_mesh.h"
 
 #include <algorithm>

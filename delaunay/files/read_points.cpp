@@ -1,3 +1,5 @@
+// Chooses the reader of a point file from the table in point_readers.h, by the format that the
+// caller gives or files::identify_format() finds.
 #include "delaunay/read_points.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Finds lines by memchr and converts fields by std::from_chars. Unlike from_chars alone it accepts
+// a plus sign and reads numbers too small for a double as 0.
 #include "delaunay/files/text_rows.h"
 
 #include <charconv>

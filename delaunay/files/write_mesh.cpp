@@ -1,3 +1,5 @@
+// The table of mesh writers, chosen by suffix, and the hull facets that formats without tetrahedra
+// get instead of a 3D mesh.
 #include "delaunay/write_mesh.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Wavefront OBJ: "v x y z" and "f a b c", vertices numbered from 1.
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
 

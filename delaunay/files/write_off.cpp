@@ -1,3 +1,5 @@
+// OFF (Geomview): the keyword, the three counts with 0 for edges, then "x y z" and "3 a b c",
+// vertices numbered from 0.
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
 

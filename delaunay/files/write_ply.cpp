@@ -1,3 +1,5 @@
+// PLY (Turk 1994), binary little-endian, coordinates as double. Bare points in the plane are
+// written without z.
 #include <limits>
 
 #include "delaunay/files/mesh_writers.h"

@@ -1,3 +1,5 @@
+// The table of point writers, chosen by suffix, and the writers of plain text: XYZ, CSV and JSON.
+// PLY, OBJ and OFF are written by their mesh writers as meshes without simplices.
 #include "delaunay/write_points.h"
 
 #include <algorithm>

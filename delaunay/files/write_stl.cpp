@@ -1,3 +1,5 @@
+// Binary STL: 80 bytes of header, the number of triangles in 32 bits, then normal, three corners
+// and two zero bytes for each.
 #include <cmath>
 #include <limits>
 

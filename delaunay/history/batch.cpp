@@ -1,3 +1,13 @@
+// The batch method (Kohout 2004, 7.5): many threads locate points, one inserts them.
+//
+// Every searching thread descends the shared history for its points and puts (point, leaf) into a
+// bounded queue of its own. The inserting thread takes requests from the queues in turn, descends
+// from the noted leaf to the present one, subdivides and legalizes; when all queues are empty it
+// locates and inserts a few points itself rather than wait. Expected O(n log n) in random or brio
+// order, of which subdividing and legalizing are sequential.
+//
+// Degenerate: collinear points need no insertion. With one thread locating and inserting alternate,
+// without queues.
 #include "delaunay/history/batch.h"
 
 #include <algorithm>

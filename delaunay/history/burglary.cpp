@@ -1,3 +1,14 @@
+// The burglary method (Kohout 2004, 7.7.2): threads insert at the same time and nothing is ever
+// undone.
+//
+// Each thread locks the simplices that it needs (burglar_locks.h); where waiting would close a
+// circle of waiting threads it uses the locked simplices of the one that it would wait for. Such
+// uses may leave edges or facets that are not Delaunay, which flips repair after all threads have
+// ended. Expected O(n log n) in random or brio order, plus a test of every facet if there was such
+// a use.
+//
+// Degenerate: collinear (3D: coplanar) points need no insertion. In space flips may get stuck; then
+// the points are triangulated anew by one thread.
 #include "delaunay/history/burglary.h"
 
 #include <optional>

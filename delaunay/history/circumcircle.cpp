@@ -1,3 +1,12 @@
+// The circum-circle method (Kohout 2004, 7.7.3): threads insert at the same time and lock no
+// simplex.
+//
+// Each thread publishes the point that it inserts. A thread that needs a triangle waits while
+// another thread's point lies in its circumcircle (circle_access.h); circles of waiting threads are
+// broken as in the burglary method, and edges that this leaves wrong are flipped at the end. Each
+// triangle that is touched costs a test for each other thread.
+//
+// Degenerate: collinear points need no insertion.
 #include "delaunay/history/circumcircle.h"
 
 #include <vector>

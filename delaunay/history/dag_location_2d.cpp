@@ -1,3 +1,7 @@
+// Location in the history of a 2D triangulation. A node has two or three children around a common
+// apex, so one or two orientation tests against the edges at the apex choose the next node; the
+// layout of children is that of subdivisions and flips. A walk crosses edges between leaves
+// instead. Degenerate: a point on an edge belongs to either side.
 #include "delaunay/history/dag_location.h"
 
 #include "delaunay/history/leaf_walk.h"

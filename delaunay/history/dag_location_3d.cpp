@@ -1,3 +1,7 @@
+// Location in the history of a 3D triangulation. Children of a node are separated by facets that
+// they share, so one orientation test for each further child keeps the one that contains the point.
+// A walk crosses facets between leaves instead. Degenerate: a point on a facet belongs to either
+// side.
 #include <array>
 
 #include "delaunay/history/dag_location.h"

@@ -1,3 +1,6 @@
+// Before the insertion: points are planned for the threads and copied in that order, and the
+// history starts with the first simplex and the ghosts around it. After it: live finite leaves
+// become the result, collected by several threads and joined in order.
 #include "delaunay/history/dag_run.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Lawson's flips (1977) on the leaves of a 2D history. All edges are tested in parallel; one thread
+// flips those that are wrong and pushes the four edges around each flip on a stack until it is
+// empty. In the plane this always ends at the Delaunay triangulation, as ties on common circles are
+// decided too (conflict.h).
 #include "delaunay/history/delaunay_repair.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// Flips of facets that are not Delaunay on the leaves of a 3D history. One thread flips until
+// nothing on its stack can be flipped, then all facets are tested again: facets may remain that no
+// flip mends, and then the caller has to start anew.
 #include <optional>
 #include <vector>
 

@@ -1,3 +1,13 @@
+// Sequential incremental insertion with flips (Kohout 2004, sections 6 and 8), in the plane and in
+// space.
+//
+// A point's simplex is found by a walk from the last one, by a hierarchy of coarser triangulations
+// (Devillers 1998; 2D) or by descent through the history; it is subdivided, and flips restore the
+// Delaunay property. One template serves the two ways that keep no history, another the history.
+// Expected O(n log n) in random or brio order; along a curve alone some inputs make it quadratic.
+//
+// Degenerate: collinear (3D: coplanar) points have no first simplex, and the result none. A point
+// equal to a vertex only lowers its row.
 #include "delaunay/history/insertion.h"
 
 #include <algorithm>

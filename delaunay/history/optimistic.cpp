@@ -1,3 +1,13 @@
+// The optimistic method (Kohout 2004, 7.7.1): every thread locks the simplices that it needs and
+// keeps them to the end of an insertion.
+//
+// Locks make concurrent insertions equivalent to some sequential order. A thread that must not
+// wait, by the deadlock strategy, undoes its insertion from a journal (node_locks.h), locates the
+// point again from where it was and retries. Expected O(n log n) in random or brio order, plus the
+// insertions that are undone.
+//
+// Degenerate: collinear (3D: coplanar) points need no insertion. An insertion whose leaf another
+// thread has subdivided meanwhile is retried.
 #include "delaunay/history/optimistic.h"
 
 #include <vector>

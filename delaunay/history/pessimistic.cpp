@@ -1,3 +1,11 @@
+// The pessimistic method (Kohout 2004, 7.6): threads locate points at the same time and insert them
+// one at a time.
+//
+// A thread descends the shared history without a lock, enters the critical section, descends on
+// from that leaf to the present one, subdivides and legalizes. Expected O(n log n) in random or
+// brio order; all but the location is sequential.
+//
+// Degenerate: collinear (3D: coplanar) points need no insertion.
 #include "delaunay/history/pessimistic.h"
 
 #include <mutex>

@@ -1,3 +1,13 @@
+// Insertion orders: random, along a Hilbert curve, and the biased randomized order BRIO (Amenta,
+// Choi and Rote 2003).
+//
+// BRIO shuffles the points and sorts rounds of doubling size, the last being half of all points,
+// each by the place of the points on the curve. Places are computed once; the rounds are sorted by
+// several threads. O(n log n).
+//
+// Degenerate: equal points have one place on the curve, and their order is deterministic.
+// Coordinates are scaled so that neither the width of the bounding box nor its reciprocal
+// overflows, and a box without width maps all points to one place.
 #include "delaunay/insertion/insertion_order.h"
 
 #include <algorithm>

@@ -1,3 +1,9 @@
+// Splits points into parts of equal size for threads (Kohout 2004, 7.8.7) and orders each part.
+//
+// Strips and rings come from nested selections of the nth smallest key, which is cheaper than
+// sorting; ties go by the point's number, so that the parts do not depend on the standard library.
+// Every part begins its curve at another place, since threads that keep pace would otherwise work
+// side by side. O(n log n); the parts are ordered by several threads.
 #include "delaunay/insertion/plan.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// The stochastic visibility walk in a 2D triangulation (Devillers, Pion and Teillaud 2002): the
+// edges of a triangle are tried in random order, but not the one that the walk came through.
+// Expected O(sqrt n) from anywhere. Degenerate: a point on an edge is in either triangle, one at a
+// vertex is reported as equal, and one beyond the hull ends the walk in a ghost.
 #include "delaunay/insertion/walk.h"
 
 #include "delaunay/predicates.h"

@@ -1,3 +1,7 @@
+// The stochastic visibility walk in a 3D triangulation and its ghosts (Devillers, Pion and Teillaud
+// 2002): the facets of a tetrahedron are tried from a random one on, but not the one that the walk
+// came through. Expected O(n^(1/3)) from anywhere. Degenerate: a point on a facet is in either
+// simplex, one at a vertex is reported as equal.
 #include <array>
 
 #include "delaunay/insertion/orientation_3d.h"

@@ -1,3 +1,5 @@
+// Neighbours come from matching facets by their vertices; the star of a vertex is searched breadth
+// first over the facets that have it.
 #include "delaunay/adjacency.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The checks of simplices, places, attributes and values; the highest vertex is found by a parallel
+// reduction.
 #include "delaunay/mesh/arguments.h"
 
 #include <algorithm>

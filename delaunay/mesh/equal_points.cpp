@@ -1,3 +1,7 @@
+// Groups equal points by a parallel hash partition: rows are counted into buckets by the high bits
+// of their hash, and each bucket is searched by open addressing in a table that fits the cache.
+// O(n) expected. Degenerate: many equal points fall into one bucket, which one thread searches,
+// still in O(1) for each; -0 is hashed as 0.
 #include "delaunay/mesh/equal_points.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Copies the live finite simplices of a mesh piece by piece and returns the memory of each piece to
+// the system as soon as it is copied. Threads pack pieces at the same time and append them in
+// order, so the result does not depend on their number.
 #include "delaunay/mesh/extract.h"
 
 #include <algorithm>

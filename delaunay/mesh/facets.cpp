@@ -1,3 +1,9 @@
+// Finds the two simplices at each facet, given nothing but vertex numbers.
+//
+// Facets, as sorted vertices, are counted and scattered into buckets by their lowest vertex (a
+// parallel counting sort); within each bucket, which fits the cache, a hash table pairs equal ones.
+// O(n) expected. Degenerate: a facet of three or more simplices gets no mate and is reported; a
+// vertex of very many facets fills one bucket, which one thread pairs.
 #include "delaunay/mesh/facets.h"
 
 #include <algorithm>

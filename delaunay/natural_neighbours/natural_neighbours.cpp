@@ -1,3 +1,13 @@
+// Natural neighbours of a place and their shares (Sibson 1981).
+//
+// The simplices whose circumspheres hold the place are collected from the one that contains it
+// outward (Bowyer 1981, Watson 1981). Their vertices are the neighbours, and shares_of_area() or
+// shares_of_volume() measure what each cell would lose, in doubles where an error bound allows it
+// and in wider numbers otherwise. The cost of the location, plus O(k log k) for k such simplices.
+//
+// Degenerate: a place at a vertex has that neighbour alone. On an edge of the hull shares are
+// lengths, on a face of a 3D hull they are areas within its plane; which of these holds is decided
+// by exact predicates.
 #include "delaunay/natural_neighbours.h"
 
 #include <algorithm>

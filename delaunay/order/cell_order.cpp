@@ -1,3 +1,13 @@
+// Sorts points by the cells of a grid and drops duplicates, in memory little larger than the
+// result.
+//
+// A first pass counts the points in coarse squares; squares that follow each other along the curve
+// share a bucket until it has enough points for the second-level cache. A second pass scatters the
+// points to the buckets, and each bucket is then sorted by cell number with two counting passes on
+// the highest bits that differ. O(n) unless clusters are nested very deeply.
+//
+// Degenerate: a cell with many points is ordered by a grid over its own bounding box, recursively;
+// few points of one cell are sorted lexicographically, and of equal points the lowest row stays.
 #include "delaunay/order/cell_order.h"
 
 #include <algorithm>

@@ -1,3 +1,11 @@
+// A biased randomized insertion order in space (Amenta, Choi and Rote 2003) by one radix sort.
+//
+// Each point gets a 64-bit key of its random round, its place on a Hilbert curve and its row; keys
+// are sorted by their 11-bit digits in parallel, and the points are copied in that order. Each
+// round is several times as large as the one before. O(n).
+//
+// Degenerate: coordinates are scaled so that neither the extent nor its reciprocal overflows, and
+// an extent of 0 puts all points into one cell, in the order of their rows within a round.
 #include "delaunay/order/curve_order_3d.h"
 
 #include <algorithm>

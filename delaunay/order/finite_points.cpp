@@ -1,3 +1,5 @@
+// Bounding boxes and copies of points. A coordinate is finite if its difference to itself is 0,
+// which is tested without a branch; only if some is not are the rows searched for the first such.
 #include "delaunay/order/finite_points.h"
 
 #include <cmath>

@@ -1,3 +1,7 @@
+// Parallel radix sort from the lowest digit up (Zagha and Blelloch 1991): each block counts its
+// digits, a prefix sum over digits and blocks gives every block its places, and each block moves
+// its own entries. O(n). Digits in which all entries agree are skipped, few entries are sorted by
+// comparison.
 #include "delaunay/order/radix_sort.h"
 
 #include <algorithm>

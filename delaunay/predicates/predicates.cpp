@@ -1,3 +1,13 @@
+// The geometric predicates beyond the filters that are inlined: the filters in space and the exact
+// stages.
+//
+// All stages evaluate the same determinant template on different number types, cheapest first:
+// 128-bit integers where all differences share a power-of-two grid, double-doubles with an error
+// bound, expansions of doubles (Shewchuk 1997). Coordinates for which these could overflow or
+// underflow go to integers of any size. Costs are in predicates.h.
+//
+// Degenerate: a determinant of zero is found by the integer stage on lattices, and by expansions or
+// large integers elsewhere.
 #include "delaunay/predicates.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Derives from the bounding box and the grid of a mesh's points which stages of the tests are
+// exact, and holds their last, rare stages.
 #include "delaunay/predicates/sphere_tests.h"
 
 namespace delray::delaunay::internal {

@@ -1,3 +1,13 @@
+// Verification of triangulations: local conditions whose conjunction proves the global ones
+// (Mehlhorn et al. 1999, Delaunay 1934).
+//
+// Checked in this order: rows exist; orientation; at most two simplices at a facet, on opposite
+// sides; a convex boundary (check_hull()); every distinct point is used; empty circumspheres across
+// facets; lowest rows; the rule for ties (Devillers and Teillaud 2011). Each check runs in parallel
+// and names the first simplex that breaks it. O(n) expected.
+//
+// Degenerate: without simplices all points must be collinear (3D: coplanar). The rule for ties is
+// written anew for this file, so that an error in that of the triangulations is not repeated.
 #include "delaunay/verify.h"
 
 #include <algorithm>
