@@ -1,3 +1,6 @@
+// Measures a partition by its boxes: a RegionIndex finds the owners of each box, and every owner is
+// charged the setup of the box and its share of the rest by pixels. Degenerate: without boxes the
+// imbalance and the overlap are 1.
 #include "loadbalance/balance.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// The raster cost model (Mueller 1995) fitted to measurements, and costs corrected by the times of
+// the last frame.
+//
+// The fit solves the two normal equations of linear least squares. The correction scales each cell
+// and box by the mean, over its pixels, of measured over predicted time of the owners in the last
+// partition. The fit is O(samples); the correction looks at the regions near each cell and box.
+//
+// Degenerate: samples in one proportion leave the normal equations singular, and then the default
+// ratio of prices is kept; a price that would be negative becomes 0; owners without time or cost
+// are scaled as the average.
 #include "loadbalance/cost_model.h"
 
 #include <algorithm>

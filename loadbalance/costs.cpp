@@ -1,3 +1,6 @@
+// Spreads boxes over the cost grid: each box adds an even share of its cost to the cells that it
+// overlaps, and the cost that a straight cut through it would duplicate to the edges between them
+// (Mueller 1995). O(boxes + cells touched).
 #include "loadbalance/costs.h"
 
 #include <algorithm>

@@ -1,3 +1,14 @@
+// The hybrid partition of primitives and screen (Samanta et al. 2000).
+//
+// The ranks are halved again and again. Boxes, sorted by where they end and where they begin, go
+// one by one to the half with less work, from either end of the screen, until all are assigned; the
+// screen is then cut where fewest covered pixels lie on the wrong side. If halving along the other
+// axis leaves clearly fewer, that is taken. O(boxes + sides of the frame) per halving: counting
+// sorts replace comparisons.
+//
+// Degenerate: boxes outside the frame have no owner, boxes above a share of the cost are
+// everybody's. With an empty part of the screen or without boxes the recursion goes on, and ranks
+// may end up with neither.
 #include "loadbalance/hybrid_partition.h"
 
 #include <algorithm>

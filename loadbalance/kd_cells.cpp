@@ -1,3 +1,12 @@
+// A kd-tree over space (Bentley 1975) with cells of nearly equal weight, and its traversal from
+// front to back (Fuchs, Kedem and Naylor 1980).
+//
+// Each node sorts the centres along their longest extent and cuts at the one where the lower cells
+// have their share of the weight. The traversal visits the side with the eye first. O(n log n log
+// count) to build, O(cells) to traverse.
+//
+// Degenerate: boxes without a finite centre do not count; equal centres stay on one side, so that
+// cells may be empty; a node without centres cuts at 0 or at the nearest border of its space.
 #include "loadbalance/kd_cells.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Keeps or replaces the partition by the predicted imbalance. Rank 0 decides and broadcasts the
+// regions of every frame, since the other ranks may not have taken part in the last one.
 #include "loadbalance/kept_partition.h"
 
 #include <span>

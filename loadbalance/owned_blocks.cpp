@@ -1,3 +1,5 @@
+// Finds the owner of each block by the region that holds its middle pixel, and joins consecutive
+// blocks to ranges.
 #include "loadbalance/owned_blocks.h"
 
 #include "loadbalance/region_index.h"

@@ -1,3 +1,6 @@
+// Builds a uniform grid of buckets, stored as one list per bucket behind one another: regions are
+// counted per bucket, the counts summed up to offsets, and the numbers filled in. O(regions +
+// buckets) where regions are about equally large.
 #include "loadbalance/region_index.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Runs a schedule on the simulated machine with one thread to a rank; a task is work of a known
+// number of nanoseconds.
 #include "loadbalance/simulated_schedule.h"
 
 #include <algorithm>

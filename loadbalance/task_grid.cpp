@@ -1,3 +1,4 @@
+// Numbers the blocks of a frame row by row and clips those at its border.
 #include "loadbalance/task_grid.h"
 
 #include <stdexcept>

@@ -1,3 +1,10 @@
+// The grid as a graph, partitioned by recursive bisection (Kurc, Aykanat and Ozguc 1997).
+//
+// GridBisection halves the cells again and again so that little cost crosses the cut. Cells of one
+// owner are then joined to rectangles: into runs along a row, and each run with that of the row
+// above if both have the same ends. O(cells log parts).
+//
+// Degenerate: with more parts than cells some owners have none; regions of an owner may lie apart.
 #include <map>
 #include <span>
 #include <utility>

@@ -1,3 +1,7 @@
+// Builds the graph of a cost grid with a margin of absent cells, and coarsens it: parents add up
+// the costs of their cells and the ties that leave to the right and downward. Cells without cost
+// and edges that nothing crosses get a little of both, so that regions are compact there and such
+// cells are cut by their number.
 #include "loadbalance/partitions/grid_graph.h"
 
 #include <bit>

@@ -1,3 +1,11 @@
+// Refinement of a cut by passes of single moves (Fiduccia and Mattheyses 1982).
+//
+// A heap gives the border cell with the highest gain; it moves, once in a pass, if that keeps or
+// improves the balance, and its neighbours get new entries, since entries with an old gain are
+// skipped. A pass ends some moves after the best state and goes back to it. O(moves log moves).
+//
+// Degenerate: the last cell of a side never moves; cells of hardly any cost are not moved to mend
+// the balance.
 #include "loadbalance/partitions/grid_refinement.h"
 
 #include <algorithm>

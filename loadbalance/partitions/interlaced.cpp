@@ -1,3 +1,7 @@
+// Square blocks assigned to owners in turn, each row shifted by a number that is prime to the
+// number of owners and near its golden section, so that an owner's blocks lie apart in rows and in
+// columns. O(blocks). Degenerate: a frame with fewer pixels than blocks are wanted has blocks of
+// one pixel.
 #include <algorithm>
 #include <cstdint>
 #include <numeric>

@@ -1,3 +1,5 @@
+// Clips boxes to the frame for partitions that work on boxes, or turns cells with a cost into boxes
+// where none were given.
 #include "loadbalance/partitions/items.h"
 
 namespace delray::loadbalance::internal {

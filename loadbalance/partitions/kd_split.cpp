@@ -1,3 +1,12 @@
+// Recursive bisection by sweep lines over the edges of boxes (Samanta et al. 1999).
+//
+// Along an axis the cost on the left of the line grows and that on its right falls; both curves
+// come from prefix sums over the lines of the region, and a binary search finds where they cross,
+// each over its number of parts. The longer side is cut unless the other is clearly better.
+// O((boxes, counted in each region that they overlap, + pixels along a side) log parts).
+//
+// Degenerate: without cost a cut goes by area; a region of one pixel is not cut, so with more parts
+// than pixels some owners have none.
 #include <algorithm>
 #include <utility>
 

@@ -1,3 +1,6 @@
+// Longest processing time first (Graham 1969) with a heap of ranks, for loads and for the regions
+// of a partition. O(n log n + n log ranks). Degenerate: items without load all go to the rank that
+// has least; without any load the imbalance is 1.
 #include "loadbalance/partitions/largest_first.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Adds up each owner's cost from the cells that its regions overlap; a cell that is cut counts by
+// the share of its pixels.
 #include <stdexcept>
 #include <string>
 

@@ -1,3 +1,11 @@
+// Mesh-based adaptive hierarchical decomposition (Mueller 1995).
+//
+// A rectangle of grid cells is cut across its longer side, in pixels, at the border where a
+// summed-area table (Crow 1984) comes nearest to the share of the cost that goes with the share of
+// the parts; both sides are cut likewise. O(cells + parts log cells).
+//
+// Degenerate: without cost a cut goes by area. A single cell is not cut, so with more parts than
+// cells some owners have none.
 #include <algorithm>
 #include <cassert>
 #include <cmath>

@@ -1,3 +1,5 @@
+// The table of partitions, looked up by name, and the check of the costs that all of them make
+// first.
 #include <algorithm>
 #include <array>
 #include <cmath>

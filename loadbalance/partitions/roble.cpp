@@ -1,3 +1,13 @@
+// A regular grid of regions, corrected by one split and one merger at a time (Roble 1988).
+//
+// Each step halves the region that most primitives overlap and merges the two of the others that
+// together have fewest and form a rectangle; neighbours are found by the coordinates of their
+// common side. It ends when the merged region would have as many primitives as the one to be split,
+// or after a fixed number of steps for each part. O(boxes rows + parts (parts log parts + boxes of
+// the largest region)).
+//
+// Degenerate: without primitives the regular grid stays. With more parts than pixels some owners
+// have none.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

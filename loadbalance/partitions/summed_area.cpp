@@ -1,3 +1,5 @@
+// Builds a summed-area table (Crow 1984) row by row: the sum of the row so far plus the entry
+// above. O(cells).
 #include "loadbalance/partitions/summed_area.h"
 
 #include <cassert>

@@ -1,3 +1,11 @@
+// Median cut of the primitives' centroids (Whelan 1985).
+//
+// The longer side of a region is cut where the numbers of centroids on either side are as the
+// numbers of parts, from prefix sums over its columns or rows. O((boxes + pixels along a side) log
+// parts).
+//
+// Degenerate: without centroids a cut goes by area; a region of one pixel is not cut, so with more
+// parts than pixels some owners have none.
 #include <utility>
 
 #include "loadbalance/partitions/cut.h"

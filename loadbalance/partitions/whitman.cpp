@@ -1,3 +1,12 @@
+// An adaptive quadtree over the cost grid, with more leaves than parts (Whitman 1992).
+//
+// Cells hold the number of primitives that overlap them, from two-dimensional differences and their
+// prefix sums. A priority queue divides the node with the highest sum until there are several
+// leaves for each part, which are assigned largest first (Graham 1969). O(boxes + cells + parts log
+// parts).
+//
+// Degenerate: of nodes with equal sums the largest is divided; leaves without primitives go to the
+// part that has least. A cell is not divided, so with more parts than cells some have none.
 #include <algorithm>
 #include <queue>
 #include <tuple>

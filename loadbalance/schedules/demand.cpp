@@ -1,3 +1,5 @@
+// Demand driven (Badouel et al. 1990): the masters' protocol with a single master and batches of
+// one size.
 #include "loadbalance/schedules/masters.h"
 #include "loadbalance/schedules/schedules.h"
 

@@ -1,3 +1,8 @@
+// Guided self-scheduling (Polychronopoulos and Kuck 1987) by whole rows (Pandzic et al. 1995): the
+// masters' protocol with a single master and batches that are a fixed part of what is left.
+//
+// O(ranks log(rows / ranks)) batches. Degenerate: batches of less than a row, and all batches of
+// tasks that lie in one row, are counted in tasks.
 #include <algorithm>
 #include <stdexcept>
 

@@ -1,3 +1,5 @@
+// A tree of masters (Green and Paddon 1990): the masters' protocol with a limited fan-out, where a
+// rank that asks gets a batch for every rank that works below it.
 #include <stdexcept>
 
 #include "loadbalance/schedules/masters.h"

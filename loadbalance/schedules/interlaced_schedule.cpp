@@ -1,3 +1,5 @@
+// Tasks in turn, without messages: each row begins one rank further on, so that columns are shared
+// out as rows are.
 #include "loadbalance/schedules/schedules.h"
 #include "loadbalance/schedules/task_runner.h"
 

@@ -1,3 +1,13 @@
+// The protocol of masters that demand, guided and hierarchical scheduling share; they differ in the
+// tree and in the amounts.
+//
+// A rank alternates between taking in messages, handing out tasks and doing one task, and waits
+// only when none of these is possible. Tasks from above fill a pool; ranks below that ask are
+// served from it first come, first served, and an empty answer ends them. Two messages for each
+// batch.
+//
+// Degenerate: a single rank is the root, with all tasks and nobody to serve; a rank with nobody
+// below it always works.
 #include "loadbalance/schedules/masters.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// Work stealing between neighbours in a hypercube (Heirich and Arvo 1997), with lifelines (Saraswat
+// et al. 2011).
+//
+// A rank asks its neighbours once when few tasks are left and once more when none are. A rank that
+// is asked releases half of the difference of loads; if it has nothing to release it remembers who
+// asked and shares tasks that arrive later. 2 log(ranks) messages each time a rank asks.
+// StealProtocol finds the end.
+//
+// Degenerate: a number of ranks that is no power of two leaves some ranks with fewer neighbours; a
+// single rank has none.
 #include <algorithm>
 
 #include "comm/collectives.h"

@@ -1,3 +1,5 @@
+// Static random assignment: every rank makes the same shuffle (Fisher and Yates) from the seed and
+// takes its own entries. O(tasks).
 #include <numeric>
 #include <random>
 #include <utility>

@@ -1,3 +1,4 @@
+// The table of schedules, looked up by name, and the gathering of the ranks' reports on rank 0.
 #include <algorithm>
 #include <array>
 #include <cstring>

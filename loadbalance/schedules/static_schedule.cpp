@@ -1,3 +1,5 @@
+// Consecutive tasks, as many for each rank, or the ones that the options name; schedules with
+// stealing begin with these too.
 #include <stdexcept>
 
 #include "loadbalance/schedules/initial_tasks.h"

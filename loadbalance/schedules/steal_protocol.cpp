@@ -1,3 +1,9 @@
+// Messages of work stealing and the detection of its end by counting units.
+//
+// Each rank starts with one unit and gains one for each task that it begins. Quiet ranks hand their
+// units up a binomial tree; once rank 0 holds one for every task and every rank, all tasks are
+// begun, and it sends the end down the tree. A rank that falls quiet sends one message, with the
+// units from below added to its own.
 #include "loadbalance/schedules/steal_protocol.h"
 
 #include <cassert>

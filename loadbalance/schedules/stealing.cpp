@@ -1,3 +1,12 @@
+// Work stealing by loads (Heirich and Arvo 1997): an idle rank learns all loads and takes as much
+// as the mean from those above it.
+//
+// It asks each rank with more than the mean in proportion to its excess, with rounding errors
+// carried on, and starts anew when those tasks are done. Busy ranks answer after the task that they
+// do. 2 (ranks - 1) messages to learn the loads, each time a rank runs dry.
+//
+// Degenerate: where no other rank has a task that waits the rank gives up. A single rank asks
+// nobody.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,6 @@
+// A rank's threads and its queue of tasks. The rank's own thread does tasks between messages; the
+// others sleep on a condition variable when there are none. Threads take several at once while many
+// wait. An exception on another thread empties the queue and is rethrown on the rank's own.
 #include "loadbalance/schedules/task_runner.h"
 
 #include <algorithm>
