@@ -22,9 +22,9 @@ RankReport random_schedule(comm::Communicator& communicator, const TaskGrid& tas
 RankReport demand(comm::Communicator& communicator, const TaskGrid& tasks,
                   const ScheduleOptions& options, TaskFunction work);
 
-// Demand with batches of share * rest / ranks tasks, in whole rows of the grid as long as a batch has
-// one, so that they get smaller as the work proceeds (Pandzic et al. 1995).
-// O(ranks log(rows / ranks)) batches.
+// Demand with batches of share * rest / ranks tasks, in whole rows of the grid as long as a batch
+// has one, so that they get smaller as the work proceeds (Pandzic et al. 1995). O(ranks log(rows /
+// ranks)) batches.
 RankReport guided(comm::Communicator& communicator, const TaskGrid& tasks,
                   const ScheduleOptions& options, TaskFunction work);
 
