@@ -1,3 +1,11 @@
+// Composites the layers of all ranks by a scheme, after the ranks have agreed that they can.
+//
+// One dissemination (Hensgen, Finkel and Manber 1988) combines a bit of every rank whose layer is
+// not empty, and a hash of whatever has to be alike with its complement: a bit that is set in both
+// means that ranks differ, and all throw. Schemes then run among the ranks that have something. The
+// agreement takes ceil(log2 n) rounds of n / 8 + 16 bytes.
+//
+// Degenerate: where all layers are empty, all ranks take part; a single rank exchanges nothing.
 #include <xxhash.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Composition and gather of images in one call. Pixels in somebody else's memory are copied first,
+// so that empty ones look as layers expect them.
 #include "composite/compose_images.h"
 
 #include <algorithm>

@@ -1,3 +1,11 @@
+// Gauss-Newton on the logarithms of four factors: errors and, by differences, slopes come from
+// simulations of every sample.
+//
+// An error far off weighs as its direction alone (Huber 1964), and a light pull towards the start
+// keeps the equations solvable where samples do not tell factors apart. Four iterations of five
+// simulations a sample.
+//
+// Degenerate: without samples the start is returned; factors stay within 30 up or down.
 #include "composite/fit_machine.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Writes an uncompressed OpenEXR file from all ranks: the header gives every pixel a place, rank 0
+// writes it with the table of rows, then each rank its ranges, whole rows some at a time and pieces
+// of rows channel by channel. The file gets its name when all have written.
 #include "composite/write_parts.h"
 
 #include <fcntl.h>

@@ -1,3 +1,6 @@
+// Cuts and merges ranges of which only the covered pixels travel, in parallel over groups of
+// pixels. Full and empty groups are copied and skipped as a whole; mixed ones go through the vector
+// loops of active_pixels.cpp.
 #include "composite/layers/active.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Compresses, expands and merges the covered pixels of a group, by the bits of a mask.
+//
+// A mask is read a vector's worth of bits at a time. Compressing stores the lanes that are set next
+// to each other; expanding takes each set lane's value from the lane that a table gives for the
+// bits, without a branch, as scattered pixels cannot be predicted. Elements of 64 pixels that are
+// all covered are taken as they are. O(pixels of the group).
+//
+// Colours of four floats go one by one. Degenerate: values are never read beyond those that are
+// readable, though vectors are wider.
 #include "composite/layers/active_pixels.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// Cuts and merges the rectangle around covered pixels, in parallel over its rows. Degenerate: a
+// range without covered pixels is an empty rectangle, and its message is the rectangle alone.
 #include "composite/layers/bounds.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The table of codecs: how images travel, each with its layer.
 #include <algorithm>
 #include <array>
 

@@ -1,3 +1,9 @@
+// Finds which pixels of a range are covered, and encodes it in levels: a count for the range, a
+// count for each group, two bits for each block of 64 pixels in groups that are mixed, and a mask
+// for each block that is mixed itself.
+//
+// Degenerate: a range covered by all or by none of its pixels is the first count alone, eight
+// bytes. A message whose counts, masks and length contradict each other is refused.
 #include "composite/coverage.h"
 
 #include <cstring>

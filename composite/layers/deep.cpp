@@ -1,3 +1,5 @@
+// Stores flattened colours as pixels of either format, and instantiates the layer whose fragments
+// are colours.
 #include "composite/deep.h"
 
 #include "image/srgb.h"

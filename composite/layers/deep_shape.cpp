@@ -1,3 +1,6 @@
+// Merges sorted lists of surfaces that have no colours: two lists pixel by pixel, front to back up
+// to the first opaque surface. Groups of pixels without a surface have no memory; copies share
+// groups until one of them changes. O(surfaces of both in the groups that a message touches).
 #include "composite/deep_shape.h"
 
 #include <algorithm>

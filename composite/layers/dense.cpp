@@ -1,3 +1,5 @@
+// Copies a range's colours and depths into a message and merges them from it, in parallel over
+// blocks of pixels.
 #include "composite/dense.h"
 
 #include <cassert>

@@ -1,3 +1,4 @@
+// Blends the fragments of all pixels, in parallel over blocks of pixels.
 #include "composite/flatten.h"
 
 #include "parallel/parallel_for.h"

@@ -1,3 +1,12 @@
+// Measures what cutting and merging cost, by compositing discs of several sizes and fitting prices
+// to the times.
+//
+// Threads composite with schemes that cut and merge in turns and with schemes that do one of both,
+// all variants taking turns. Each kind of call has three prices: a call, a pixel of its range, and
+// a byte or a covered pixel. They are fitted to the medians by relative least squares with prices
+// >= 0, by coordinate descent.
+//
+// Degenerate: amounts that do not occur get the price 0.
 #include "composite/layer_costs.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Compresses the message of an active layer in blocks, in parallel: differences between successive
+// 32-bit values, their bytes sorted by significance, then LZ4. A block that does not become smaller
+// travels as it is. Degenerate: a message that declares more bytes than LZ4 could have compressed
+// into it is refused before memory is taken.
 #include "composite/layers/lz4.h"
 
 #include <lz4.h>

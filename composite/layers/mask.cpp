@@ -1,3 +1,6 @@
+// Bit masks of pixels in groups that take memory once a bit is set, read and changed 64 pixels at a
+// time at any offset; and the masks of images one rank after the other, with those pixels that no
+// lower rank hides.
 #include "composite/mask.h"
 
 #include <algorithm>

@@ -1,3 +1,11 @@
+// 2-3-4 binary swap (Nonaka, Ono and Fujita 2018) of n ranks and A pixels.
+//
+// Ranks form p / 2 groups of two, three or four neighbours, where p is the largest power of two up
+// to n. All of a group send one half of the image to its first rank, the other to its second; those
+// two then swap with their likes of other groups. floor(log2 n) rounds. A rank merges up to three
+// halves in the first; third and fourth ranks own nothing.
+//
+// Degenerate: n = 1 has no round, n = 2 and 3 the first alone.
 #include <bit>
 
 #include "composite/schemes/exchange.h"

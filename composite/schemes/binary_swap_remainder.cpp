@@ -1,3 +1,11 @@
+// Binary swap (Ma, Painter, Hansen and Krogh 1994) where an odd rank joins the last pair (Moreland
+// 2018; the 3-2 elimination of Rabenseifner and Traeff 2004).
+//
+// In each round partners exchange halves of the range that both hold. Where the number of ranks
+// with the same range is odd, the last one sends a half to either of the pair before it, and is
+// done. floor(log2 n) rounds; ranks that swap to the end send about as much as with a power of two.
+//
+// Degenerate: n = 1 has no round; a power of two has no odd ranks.
 #include "composite/schemes/exchange.h"
 #include "composite/schemes/schemes.h"
 

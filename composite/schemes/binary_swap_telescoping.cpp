@@ -1,3 +1,12 @@
+// Binary swap (Ma, Painter, Hansen and Krogh 1994) in groups of 2^k ranks (Moreland, Kendall,
+// Peterka and Huang 2011).
+//
+// The first group is the largest power of two up to n, the next one that of what is left, and so
+// on. Each swaps on its own; then each, from the smallest, sends the pieces that its members hold
+// to the members of the next larger group that hold the same pixels. The largest group, of p, takes
+// log2 p rounds and one to merge what the next one sends.
+//
+// Degenerate: a power of two is one group.
 #include <bit>
 #include <numeric>
 

@@ -1,3 +1,10 @@
+// Compositing on a medium that all ranks listen to (Cox and Hanrahan 1994).
+//
+// Ranks take turns in ascending order. One multicasts its image, rank 0 merges it, and later ranks
+// forget what it hides before their own turn comes. n rounds; what is hidden by then does not
+// travel.
+//
+// Degenerate: rank 0 sends too, for others to prune by, and owns all in the end.
 #include <algorithm>
 #include <numeric>
 #include <vector>

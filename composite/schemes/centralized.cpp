@@ -1,3 +1,6 @@
+// Every rank sends its whole image to rank 0, which merges them one after the other in rank order:
+// one round, (n - 1) A pixels for rank 0 to receive and composite. Nothing is done in parallel.
+// Degenerate: n = 1 sends nothing.
 #include "composite/schemes/exchange.h"
 #include "composite/schemes/schemes.h"
 

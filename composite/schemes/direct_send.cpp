@@ -1,3 +1,8 @@
+// Direct-send (Hsu 1993): every rank owns an n-th of the image, which all others send it, in one
+// round.
+//
+// A rank sends n - 1 messages and composites A (1 - 1/n) pixels. Degenerate: with fewer pixels than
+// ranks some own nothing.
 #include "composite/schemes/exchange.h"
 #include "composite/schemes/schemes.h"
 

@@ -1,3 +1,5 @@
+// Sends and merges ranges message by message; direct-send within a group; binary swap as a sequence
+// of exchanges of two. Degenerate: empty ranges send nothing, and groups of one return their range.
 #include "composite/schemes/exchange.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Collects the pieces that ranks own on one rank: each tells its ranges and sends their pixels,
+// rank after rank. The root replaces its pixels by them. One round. Degenerate: ranks that own
+// nothing send an empty list.
 #include <stdexcept>
 #include <string>
 

@@ -1,3 +1,13 @@
+// Compositing on a mesh of r x c ranks (Lee 1996), A pixels.
+//
+// Ranks of a column exchange strips of the image, then ranks of a row exchange regions of the
+// strip. In round s a rank sends to the s-th after it in the ring, so that each has one message a
+// round: r + c - 2 rounds, A (1 - 1/n) pixels for a rank to send and to composite. Pieces of higher
+// ranks wait until those of lower ones are merged, for a rank merges neighbouring intervals of
+// ranks only.
+//
+// Degenerate: the mesh has as many columns as the nearest divisor of n to the wish; of a prime, one
+// or n.
 #include <cmath>
 #include <utility>
 #include <vector>

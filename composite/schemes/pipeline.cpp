@@ -1,3 +1,11 @@
+// Compositing down a chain of ranks, in pieces (PixelFlow: Molnar, Eyles and Poulton 1992).
+//
+// A rank merges a piece that comes from the next higher rank into its own and sends the result to
+// the next lower one, while the higher one works on the piece after it. n - 2 + P rounds for P
+// pieces; all but the last rank composite A.
+//
+// Degenerate: an image below two pieces' worth of pixels travels whole, and ranks work one after
+// the other.
 #include "composite/schemes/exchange.h"
 #include "composite/schemes/schemes.h"
 

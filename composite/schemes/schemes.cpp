@@ -1,3 +1,4 @@
+// The table of compositing schemes, and the names with radices behind a colon that choose from it.
 #include <algorithm>
 #include <array>
 #include <charconv>

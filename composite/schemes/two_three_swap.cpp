@@ -1,3 +1,12 @@
+// 2-3 swap (Yu, Wang and Ma 2008): binary swap for any number n of ranks, by a tree of groups.
+//
+// A group consists of two or three smaller ones, and all leaves are at depth floor(log2 n). The
+// members of a group of s hold an s-th of the image each. When groups join, pieces shrink and
+// change hands in the order in which they lie, so that little moves; pixels from the own group
+// replace, those from others merge. A rank finds out who owns what in O(n) steps, as groups of one
+// size look alike.
+//
+// Degenerate: n = 1 has no round; a power of two has groups of two alone.
 #include <algorithm>
 #include <bit>
 #include <map>
