@@ -1,3 +1,6 @@
+// Agreement on a failure: an all-reduce finds the lowest rank that has an exception, and only then
+// is that exception encoded by its kind and text, broadcast and thrown by every rank. O(log n)
+// rounds.
 #include "comm/agree_on_failure.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Wraps the stages of a pipeline: a stage that throws records its exception and lets later items
+// pass without work, and the collective stage makes all ranks agree on a failure before each item.
 #include "comm/agreed_pipeline.h"
 
 #include <cassert>

@@ -1,3 +1,4 @@
+// Takes the memory of large messages from the pool of blocks, that of small ones from the heap.
 #include "comm/buffer.h"
 
 #include "comm/in_process/block_pool.h"

@@ -1,3 +1,6 @@
+// Reads the thread's processor time on entering each call, charges the difference to the last
+// return as work, and reads it again on leaving, so that the time of the communicator itself is
+// charged to nobody (direct execution: Covington et al. 1988).
 #include "comm/charged.h"
 
 #include <exception>

@@ -1,3 +1,19 @@
+// Collective operations over point-to-point messages, each O(log n) rounds unless said otherwise.
+//
+// - barrier: dissemination, a message to the rank 1, 2, 4 ... further on (Hensgen, Finkel and
+//   Manber 1988).
+// - broadcast: a binomial tree.
+// - gather: every message goes straight to the root, O(n) there.
+// - all_gather: messages are collected in blocks of doubling size (Bruck et al. 1997).
+// - exchange: headers are routed by the binary digits of their distance (Bruck et al. 1997), then
+//   messages go straight to their receivers.
+// - all_reduce: recursive doubling on a power of two of ranks, the others folded in first (Thakur,
+//   Rabenseifner and Gropp 2005).
+// - reduce: a binomial tree to rank 0 that makes the same combinations, then one message to the
+//   root.
+// - exclusive_scan: partial sums over doubling distances (Hillis and Steele 1986).
+//
+// Degenerate: a single rank sends nothing, but its parcels to itself.
 #include "comm/collectives.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Multicast in its general form, one message for each receiver, and the names of phases and of
+// work.
 #include "comm/communicator.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// Words the two exceptions that name a rank, and recognizes exhausted memory in its several forms.
 #include "comm/failure.h"
 
 #include <cstdio>

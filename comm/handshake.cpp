@@ -1,3 +1,6 @@
+// Compares hashes of all facts by one all-reduce of minima: a hash and its complement, whose
+// minimum is the complement of the maximum, so all are equal if both bounds agree. Only if they
+// differ does rank 0 broadcast its facts, and every rank looks for its first difference.
 #include "comm/handshake.h"
 
 #include <unistd.h>

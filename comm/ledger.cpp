@@ -1,3 +1,6 @@
+// Adds up events by phase and round. A rank counts a round for each change of phase or round that
+// is followed by a message; over all ranks the distinct pairs of phase and round that had messages
+// are counted.
 #include "comm/ledger.h"
 
 #include <set>

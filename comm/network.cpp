@@ -1,3 +1,5 @@
+// The table of networks: latency, processor overhead and bandwidth of common links, derived beside
+// the figures.
 #include "comm/network.h"
 
 #include <algorithm>

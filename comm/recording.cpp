@@ -1,3 +1,6 @@
+// Passes each call on and appends what happened to the journal, timed by the communicator's clock.
+// A receive from any source probes first, to learn the sender; a multicast is one event for each
+// receiver, marked as repeated.
 #include "comm/recording.h"
 
 #include <exception>

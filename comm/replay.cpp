@@ -1,3 +1,5 @@
+// Runs a ledger on the simulated machine: every rank repeats its events with messages that have a
+// size but no content, and sends that were one multicast are joined again.
 #include "comm/replay.h"
 
 #include "comm/simulated.h"

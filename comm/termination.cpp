@@ -1,3 +1,11 @@
+// Termination detection by four counters (Mattern 1987), along a binomial tree of ranks.
+//
+// The root starts a wave, ranks pass it down, and each idle rank returns the sums of its subtree
+// once its children's have come. The end is found when the messages received by the end of one wave
+// are as many as those sent by the end of the next. 2 (n - 1) messages per wave.
+//
+// Degenerate: a single rank needs two waves without messages, done in one call of idle() if no
+// message of its own waits for it.
 #include "comm/termination.h"
 
 #include <utility>

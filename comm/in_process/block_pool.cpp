@@ -1,3 +1,11 @@
+// A pool with segregated free lists, four sizes to each power of two.
+//
+// A block is taken from the list of its size or of one up to twice as large, else cut from the
+// shared memory, else allocated. Blocks lent to other processes are collected when the next block
+// is taken. Constant time, but for the blocks that are lent.
+//
+// Degenerate: once memory is shared, blocks of the heap are no longer kept; beyond a limit they are
+// freed at once.
 #include "comm/in_process/block_pool.h"
 
 #include <bit>

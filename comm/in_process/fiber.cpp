@@ -1,3 +1,6 @@
+// Stackful coroutines by Boost.Context, with a guard page below each stack. Every switch also
+// exchanges the list of exceptions that are being handled and tells the sanitizers of the new
+// stack.
 #include "comm/in_process/fiber.h"
 
 #include <cxxabi.h>

@@ -1,3 +1,5 @@
+// Records the first failure under a lock, with a flag beside it that is cheap to read, and decides
+// which exceptions reach the caller as they were thrown.
 #include "comm/in_process/first_failure.h"
 
 #include <stdexcept>

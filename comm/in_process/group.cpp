@@ -1,3 +1,5 @@
+// Splits a group: the last rank that posts sorts all requests by colour, key and rank and makes a
+// group of each colour. O(n log n).
 #include "comm/in_process/group.h"
 
 #include <algorithm>

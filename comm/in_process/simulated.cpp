@@ -1,3 +1,13 @@
+// A sequential discrete-event simulation of ranks that are fibers on one thread, under the LogGP
+// model (Alexandrov, Ionescu, Schauser and Scheiman 1995).
+//
+// A set orders the ranks that can go on by virtual time, ties by random numbers from the seed. A
+// rank runs until it must wait: for a message from any source it waits until no other rank can send
+// an earlier one, and where ranks share a bus or cores it takes its turn in the order of time.
+// O(log ranks + log messages) per message.
+//
+// Degenerate: when no rank can go on and some have not returned, they are deadlocked and the first
+// of them is reported.
 #include "comm/simulated.h"
 
 #include <algorithm>

@@ -1,3 +1,13 @@
+// Ranks as threads, with one inbox each that is guarded by a mutex; a message is moved into the
+// queue of its receiver.
+//
+// A rank that waits polls for a short while if there are cores enough, then sleeps on a condition
+// variable, and a sender wakes it only for the message that it waits for. A counter of running
+// ranks finds deadlocks: whoever brings it to zero reports one. O(1) per message, besides the
+// search of the receiver's queue.
+//
+// Degenerate: a rank that waits with a deadline counts as running. A rank that computes without end
+// is noticed only by the time-out of those who wait for it.
 #include "comm/threads.h"
 
 #include <algorithm>

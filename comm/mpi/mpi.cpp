@@ -1,3 +1,13 @@
+// The communicator over MPI: receiving, waiting, splitting and ending, on top of the queues of
+// mpi_port.h.
+//
+// A rank that waits pulls everything that has come into queues and backs off between attempts. A
+// split needs one all_gather and no collective of MPI: ranks agree on a context number, which
+// becomes part of the tags. At the end every rank takes in messages until a non-blocking barrier
+// says that all sends are complete (Hoefler, Siebert and Lumsdaine 2010).
+//
+// Degenerate: without context numbers left a split makes an MPI communicator; a rank that leaves by
+// an exception of its own skips the barrier, as others would wait in vain.
 #include "comm/mpi.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Messages between MPI processes: small ones as they are, large ones between processes of a machine
+// by their place in shared memory, and those above the size of a piece in pieces after an
+// announcement. All use non-blocking sends and matched probes, so no call waits for another rank.
 #include "comm/mpi/mpi_port.h"
 
 #include <algorithm>

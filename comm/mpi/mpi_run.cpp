@@ -1,3 +1,5 @@
+// Starts and ends a program under MPI: detects launchers by their environment variables, maps
+// exceptions to exit codes, and reports the phase when the process is told to end.
 #include "comm/mpi.h"
 
 #include <sys/uio.h>

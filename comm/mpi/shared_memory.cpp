@@ -1,3 +1,12 @@
+// Shared memory without a name (memfd_create), reached by others through /proc. A random token at
+// its beginning tells whether the file is the one that was meant.
+//
+// A message is handed over by setting a flag in front of its block, which the receiver clears.
+// Waiting processes sleep on a futex over a count of rings. Constant time per message, besides
+// mapping the memory of a process once.
+//
+// Degenerate: where address space is scarce the message is copied through the file; where the
+// system forbids any of this there is no shared memory and MPI copies.
 #include "comm/mpi/shared_memory.h"
 
 #include <fcntl.h>
