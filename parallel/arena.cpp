@@ -1,3 +1,5 @@
+// Arenas are oneTBB task arenas with one place kept for the caller; AllowThreads is a
+// global_control of oneTBB.
 #include "parallel/arena.h"
 
 #include <tbb/global_control.h>

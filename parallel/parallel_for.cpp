@@ -1,3 +1,6 @@
+// Loops as tasks of oneTBB, or of plain threads under ThreadSanitizer. Blocks of reductions come
+// from halving the range, which depends on the range and the grain alone; a range within one grain
+// runs on the caller without the scheduler.
 #include "parallel/parallel_for.h"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,11 @@
+// A pipeline over oneTBB's parallel_pipeline, or plain threads under ThreadSanitizer, with times
+// and predictions (Kohout 2004, 2.1 and 2.2).
+//
+// Each stage is a filter, in order or parallel. A last filter in order makes items leave as they
+// entered, so item i + slots cannot enter before item i has left, and i modulo slots is a slot of
+// its own. Loops of a stage run isolated, in a task context of their own.
+//
+// Degenerate: without items nothing runs; with one slot items pass one after the other.
 #include "parallel/pipeline.h"
 
 #include <tbb/parallel_pipeline.h>

@@ -1,3 +1,5 @@
+// Processor time by clock_gettime. The quick form adds the time that has passed since the system
+// was asked last to what it said then, and never goes back.
 #include "parallel/processor_time.h"
 
 #include <time.h>

@@ -1,3 +1,4 @@
+// Threads take task numbers from an atomic counter until none are left or one has thrown.
 #include "parallel/threads/plain_threads.h"
 
 #include <algorithm>
