@@ -1,3 +1,5 @@
+// Hashes parts of a file at even distances, the last one at its end; a small file is hashed as a
+// whole.
 #include "files/fingerprint.h"
 
 #include <xxhash.h>

@@ -1,3 +1,6 @@
+// Recognizes formats by magic bytes, then by structure (binary STL by its size, JSON, XML, the
+// first line with content), then by suffix, then as rows of numbers. PLY and OFF files say in their
+// headers whether they have faces; an OBJ file is searched for the first one.
 #include "files/format.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Looks up two keys in a GeoKeyDirectory, and names of kinds of coordinate systems in well-known
+// text.
 #include "files/geo_keys.h"
 
 #include <algorithm>
