@@ -1,3 +1,5 @@
+// Compares pictures bit by bit in a parallel reduction and draws their amplified difference.
+// Degenerate: two NaN of different bits differ, but by 0.
 #include "image/compare.h"
 
 #include <bit>

@@ -1,3 +1,4 @@
+// Hashes the pixels in memory order as one piece; depth is not part of them.
 #include "image/hash.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,6 @@
+// Pictures in files: chooses the format, buffers streams, replaces files atomically and makes alpha
+// straight for formats that store it so. OpenImageIO is behind a codec that is loaded on first use;
+// PNG files are encoded without it.
 #include "image/io.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,14 @@
+// Per-pixel merging in vector registers (Highway): the z-test and the over operator (Porter and
+// Duff 1984).
+//
+// The z-test compares a vector of depths and selects colours by the same mask. In 8 bits the over
+// operator multiplies even and odd bytes apart in 16 bits, divides by 255 by shifts, exactly
+// rounded, and adds with saturation. The file is compiled for each instruction set; the best that
+// the machine has is chosen when the program runs, with the same bytes on all. O(n) at memory
+// speed.
+//
+// Degenerate: equal depths go to the side that the caller names; remainders of a vector are done
+// pixel by pixel with equal results.
 #include "image/operators.h"
 
 #include <cassert>

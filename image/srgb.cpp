@@ -1,3 +1,5 @@
+// Conversion of whole pictures between linear light and sRGB codes, in parallel, and the proof at
+// compile time that each bucket of the encoding table holds the start of at most one code.
 #include "image/srgb.h"
 
 #include "parallel/parallel_for.h"

@@ -1,3 +1,6 @@
+// The table of tone curves, among them a rational fit of the ACES reference rendering (Narkowicz
+// 2016), applied to straight colour: light is divided by alpha before and multiplied after.
+// Degenerate: negative and NaN channels become 0, light without coverage counts as opaque.
 #include "image/tone.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The entry point of the codec's library: the table of its functions.
 #include "image/openimageio/codec.h"
 
 // Found by its name: openimageio::kEntry.

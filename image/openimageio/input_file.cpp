@@ -1,3 +1,6 @@
+// Opens a picture by its magic bytes or suffix and checks what its header claims before anything is
+// allocated. Sizes of formats that OpenImageIO unpacks on opening are read from the raw bytes
+// before. Exceptions and messages of OpenImageIO become FileError.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>

@@ -1,3 +1,6 @@
+// Reads pictures, textures and raw channels through OpenImageIO: finds colour, alpha and depth
+// among the channels and converts them as io.h says. Degenerate: a file without R, G and B takes
+// its first other channel as grey; pixels outside the display window are dropped.
 #include <algorithm>
 #include <string_view>
 

@@ -1,3 +1,5 @@
+// Writes EXR, TIFF and JPEG through OpenImageIO, without the time of writing, so that equal
+// pictures give equal files.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
