@@ -1,5 +1,5 @@
 // Counts and times a scheme without pixels: its own code runs for all ranks on a simulated machine,
-// on hollow layers, and a tally notes what each rank sends and composites.
+// on layers without pixels, and a tally notes what each rank sends and composites.
 //
 // Compositing ends with the last rank; the gather begins when all have ended. One thread; time and
 // memory in proportion to the messages and to what they cover. Degenerate: a single rank sends

@@ -1,11 +1,10 @@
 // A distributed framebuffer (OSPRay's: Usher, Wald, Amstutz et al. 2019): direct-send of tiles as
 // soon as they are drawn.
 //
-// A rank has up to 16 tiles, fewer where they would have less than 4096 pixels. It sends a tile's
-// number, then its pixels, and takes whatever has come in between. A tile's images are merged from
-// its owner's rank outwards whatever the order in which they come, so that the result is always the
-// same; those that come early wait. One round, A (1 - 1/n) pixels for a rank to send and to
-// composite.
+// A rank has several tiles, fewer where they would be small. It sends a tile's number, then its
+// pixels, and takes whatever has come in between. A tile's images are merged from its owner's rank
+// outwards whatever the order in which they come, so that the result is always the same; those that
+// come early wait. One round, A (1 - 1/n) pixels for a rank to send and to composite.
 //
 // Degenerate: a tile without pixels is neither sent nor waited for; one in which a rank has nothing
 // is a number alone.

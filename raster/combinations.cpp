@@ -1,3 +1,5 @@
+// Walks the tables of strategies, schemes, codecs, partitions and schedules and combines what each
+// strategy looks at.
 #include "raster/combinations.h"
 
 #include "composite/codec.h"

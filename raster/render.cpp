@@ -1,3 +1,8 @@
+// One frame on a rank: checks options and camera, runs the strategy, and gathers statistics; whole
+// or in steps that may overlap with those of other frames.
+//
+// Degenerate: a single rank's depths are distances already; a share is drawn by a communicator that
+// nobody else is in.
 #include "raster/render.h"
 
 #include <algorithm>

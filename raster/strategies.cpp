@@ -1,3 +1,4 @@
+// The table of strategies: their functions, and which options each looks at.
 #include "raster/strategies.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 // viewer, and the lobes and responses that follow from it. Papers: see the header.
 //
 // Schlick's term is linear in the reflectances at normal and at grazing incidence, so an entry
-// keeps two numbers and serves every colour. An entry is the mean over 256 half vectors that the
-// viewer sees, one from each cell of a grid. The table is made at the first use (kRoughnesses x
-// kCosines entries); a look-up is bilinear in the roughness and in the root of the cosine.
+// keeps two numbers and serves every colour. An entry is the mean over half vectors that the viewer
+// sees, one from each cell of a grid. The table is made at the first use (kRoughnesses x kCosines
+// entries); a look-up is bilinear in the roughness and in the root of the cosine.
 //
 // Degenerate: the row of roughness 0 is a mirror's, in closed form; viewers at the horizon count as
 // slightly above it (kLeastSeen); unlit surfaces get lobes that reflect nothing.

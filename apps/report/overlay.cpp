@@ -1,5 +1,5 @@
 // Draws rectangles and the borders between their groups as an SVG over a picture. Borders are found
-// on a grid of cells of two pixels and strung together into lines: O(areas + cells).
+// on a grid of small cells and strung together into lines: O(areas + cells).
 #include "apps/report/overlay.h"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // Maps ranges of the order that schemes see to pieces of the image, and cuts and merges piece by
 // piece (Moreland, Kendall, Peterka and Huang 2011).
 //
-// Each hand gets up to eight pieces, fewer where they would have less than 4096 pixels. A range
-// finds its pieces by binary search. Degenerate: in small images a hand has one piece, which is the
-// order that there was.
+// Each hand gets several pieces, fewer where they would be small. A range finds its pieces by
+// binary search. Degenerate: in small images a hand has one piece, which is the order that there
+// was.
 #include "composite/layers/interlaced.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// One reduction tells whether all ranks hold the same random name and say that nothing has changed:
+// the maximum of the names equals the complement of the maximum of their complements. A third
+// maximum is the new name. Degenerate: a name of 0 is that of a rank that remembers nothing, and
+// never holds.
 #include "raster/distribute/agreement.h"
 
 #include <algorithm>

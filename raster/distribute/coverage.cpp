@@ -1,3 +1,11 @@
+// Estimates how much of what surfaces cover is seen, on a grid of squares.
+//
+// Samples that lie at random in a square form layers; of n layers (1 - exp(-n)) / n of the first is
+// seen on average. Small triangles are spread evenly over the squares that their group's box
+// touches; large ones are tested at some points of each square. O(squares touched); one reduction
+// over ranks, in single precision.
+//
+// Degenerate: an empty box adds nothing, and nothing covered counts as all seen.
 #include "raster/distribute/coverage.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Sets up a run of triangles without drawing them, and adds up their boxes and rounded areas. A
+// cluster's vertices are transformed once for all groups that follow each other in it.
 #include "raster/distribute/extent.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Packs the rows of a rank's regions, colours before depths, into one message for rank 0, which
+// copies them to their places. Degenerate: a rank without pixels sends nothing.
 #include "raster/distribute/gather_regions.h"
 
 #include <cstring>

@@ -1,3 +1,12 @@
+// Sends groups of primitives to the ranks that need them, and remembers who has which (Mueller
+// 1995: only what comes into a region is sent).
+//
+// The owner of a group lists the ranks that hold it and the frame in which each needed it last. A
+// rank that is not listed is sent the group; one that has not needed it for kFramesKept frames is
+// told to forget it. A message holds what to forget, then what is new. O(groups x holders) a frame,
+// messages for changes only.
+//
+// Degenerate: ranks that do not remember the same frames forget all and begin anew.
 #include "raster/distribute/group_traffic.h"
 
 #include <algorithm>

@@ -1,3 +1,11 @@
+// Shares out screen and primitives together (Samanta et al. 2000): bounds groups, exchanges their
+// boxes and costs, computes the same partition on every rank, and sends each group to its owner.
+//
+// A group that everybody draws goes to the ranks whose regions it touches, and the ranges of such
+// groups are exchanged, since their pixels need not travel. O(groups) for each rank, and a message
+// of 16 bytes a visible group to all ranks.
+//
+// Degenerate: without a visible group nobody draws anything.
 #include "raster/distribute/hybrid_shares.h"
 
 #include <algorithm>

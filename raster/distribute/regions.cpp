@@ -1,3 +1,10 @@
+// Draws a list into regions of the frame and finishes their tiles: clusters first, then, tile by
+// tile and in parallel, triangles that touch many tiles, blended ones, and whatever the caller
+// makes of the tile.
+//
+// Threads take tiles in order from a counter. Memory of a thread belongs to one drawing and forgets
+// its triangles for the next. Degenerate: tiles in which nothing is drawn have no visibility
+// memory; the caller sees an empty view.
 #include "raster/distribute/regions.h"
 
 #include <algorithm>

@@ -1,3 +1,11 @@
+// Cuts space into a cell for each rank by a kd-tree over clusters of triangles, and blends what a
+// rank sees in its own cell (Ma, Painter, Hansen and Krogh 1994).
+//
+// All ranks compute the same cells without a message. A rank draws the clusters that touch its
+// cell; of the surfaces at a sample those count whose point, moved into the box of its cluster,
+// lies in the cell. O(clusters log clusters log ranks) to cut, once a scene.
+//
+// Degenerate: points on a border belong to one cell only; boxes that are infinite touch every cell.
 #include "raster/distribute/scene_cells.h"
 
 #include "composite/codec.h"

@@ -1,3 +1,13 @@
+// Cuts the screen by the costs of groups of primitives, and keeps a partition for as long as it
+// does.
+//
+// A group's cost is a price for its triangles and one for the part of its samples that is expected
+// to be seen (coverage.cpp); large triangles add theirs to the grid, square by square. Where costs
+// are measured, prices are fitted to what ranks did in the last frame and regions are scaled to
+// what they took. O(triangles) to bound, in parallel.
+//
+// Degenerate: where nothing has changed for any rank, the last boxes and cuts serve again, and
+// nothing but the agreement travels.
 #include "raster/distribute/screen_partition.h"
 
 #include <algorithm>

@@ -1,3 +1,8 @@
+// Collects the surfaces that a tile shows as fragments, packs them into messages, and merges what
+// several ranks saw: the nearest by depth and primitive, or all of them sorted by position and
+// blended.
+//
+// Degenerate: samples at which nobody saw anything become empty; a message may have no tile.
 #include "raster/distribute/tile_fragments.h"
 
 #include <algorithm>

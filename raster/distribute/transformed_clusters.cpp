@@ -1,3 +1,12 @@
+// Packs triangles of a cluster with the vertices that they use, transformed and with gouraud lit,
+// and makes meshes and clusters of them again on the rank that gets them.
+//
+// Vertices are renumbered within a section, whose header tells attributes and material. Sections
+// that follow each other with the same header become one mesh; copying is parallel over sections.
+// O(triangles + vertices).
+//
+// Degenerate: triangles whose lit vertices are more than a cluster may have go into two sections;
+// positions that are not finite give an infinite box.
 #include "raster/distribute/transformed_clusters.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Packs pieces of meshes with the vertices that they use, renumbered by binary search in a sorted
+// list, or as ranges of primitive numbers where the receiver has the scene.
 #include "raster/distribute/travel.h"
 
 #include <algorithm>

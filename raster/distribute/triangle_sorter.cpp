@@ -1,3 +1,9 @@
+// Finds the ranks that a cluster's triangles go to in sort-middle (Molnar et al. 1994): by the
+// cluster's bounds where these touch one rank's regions only, else by the box of each triangle that
+// is set up.
+//
+// A cluster that touches this rank's regions alone is not transformed here. O(triangles x owners).
+// Degenerate: clusters that are outside, or show hidden sides only, go nowhere.
 #include "raster/distribute/triangle_sorter.h"
 
 #include <algorithm>

@@ -1,3 +1,10 @@
+// Clips a triangle at the near plane and the guard band, plane by plane (Sutherland & Hodgman
+// 1974), in double precision.
+//
+// An edge is cut from its inner end to its outer one, so that both triangles at the edge compute
+// the same point. Vertices that were inside keep their snapped position. Five planes, O(1).
+//
+// Degenerate: a coordinate that is not finite gives nothing, as do fewer than three corners.
 #include "raster/pipeline/clip.h"
 
 #include <algorithm>

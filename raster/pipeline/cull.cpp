@@ -1,3 +1,11 @@
+// Bounds a cluster's box on the screen by interval arithmetic, and tells by its cone of normals
+// (Shirman and Abi-Ezzi 1993) whether it shows hidden sides only.
+//
+// Both allow for rounding and for snapping to subpixels, so that what is dropped would not have
+// been drawn. O(1).
+//
+// Degenerate: a box that reaches before the near plane, or is not a number, may touch all of the
+// frame; clusters without a cone, or with triangles that are thinner than some subpixels, are kept.
 #include "raster/pipeline/cull.h"
 
 #include <algorithm>

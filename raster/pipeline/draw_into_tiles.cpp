@@ -1,3 +1,11 @@
+// Draws clusters into tiles in batches, so that triangles that are set up never leave the cache.
+//
+// A thread takes the next batch of clusters, culls, transforms and sets them up, sorts the
+// fragments, windows and triangles by tile by counting, then draws them into each tile that it can
+// lock; tiles of other threads come later. Clusters come nearest draws first, so that the farthest
+// depths of blocks hide what follows. Large and blended triangles wait for the end.
+//
+// Degenerate: a frame of one cluster is one batch; tiles that nobody wants are skipped.
 #include "raster/pipeline/draw_into_tiles.h"
 
 #include <algorithm>

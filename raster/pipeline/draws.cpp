@@ -1,3 +1,6 @@
+// Cuts runs of primitives into draws and clusters, ascending by primitive, so that a triangle's
+// number in the list orders ties of depth as its number in the scene does. Degenerate: a list of
+// too many clusters for 32 bits is refused.
 #include "raster/pipeline/draws.h"
 
 #include <algorithm>

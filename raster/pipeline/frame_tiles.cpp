@@ -1,3 +1,9 @@
+// Finds the tiles of regions, and tells from the farthest depths of blocks what is hidden before it
+// is drawn (hierarchical Z-buffer: Greene et al. 1993).
+//
+// The values of a cluster's blocks are merged by fours, so that a triangle of up to two by two
+// blocks needs a single one. Degenerate: boxes of many blocks or tiles are not looked up, and count
+// as seen.
 #include "raster/pipeline/frame_tiles.h"
 
 #include <algorithm>

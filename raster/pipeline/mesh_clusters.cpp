@@ -1,3 +1,11 @@
+// Cuts a mesh greedily into runs of consecutive triangles, closed when they have too many triangles
+// or vertices, and bounds each by a box, a cone of normals and the least height of its triangles.
+//
+// Vertices are numbered through a small hash table with open addressing. Blocks of many clusters
+// are made in parallel, when they are first asked for. O(triangles).
+//
+// Degenerate: triangles with two corners at one place do not count for the cone; others without
+// area, or normals too far apart, leave none; positions that are not finite give an infinite box.
 #include "raster/pipeline/mesh_clusters.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Decides for a draw what set-up needs to know: whether alpha cuts holes or blends, which side is
+// hidden, and whether cones of normals hold where it is placed. Degenerate: a transform that is
+// skew or scales unevenly has no cones, nor has an orthographic view.
 #include "raster/pipeline/prepared_draw.h"
 
 #include <algorithm>

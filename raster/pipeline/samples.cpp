@@ -1,3 +1,5 @@
+// Averages the samples of pixels in linear light, and brings the samples of a pixel together or
+// apart. Sums of 8-bit colours are whole numbers, so that their order makes no difference.
 #include "raster/pipeline/samples.h"
 
 #include <array>

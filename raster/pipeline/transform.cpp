@@ -1,3 +1,8 @@
+// Transforms, projects and snaps the vertices of a cluster by vectors. The operations and their
+// order are the same in scalars and on every instruction set, so that a vertex has one position.
+//
+// Degenerate: what is not a number, before the near plane or beyond the guard band is marked as
+// outside, for clipping.
 #include "raster/pipeline/transform.h"
 
 #include <algorithm>

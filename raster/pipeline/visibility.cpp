@@ -1,3 +1,13 @@
+// Rasterizes triangles into a tile of keys, depth above primitive number, of which the least stays:
+// edge functions (Pineda 1988) over vectors of pixels, with the farthest depth of each block to
+// reject early (Greene et al. 1993).
+//
+// As the key orders ties too, the order of triangles makes no difference. Large triangles go block
+// by block: outside, inside or tested; smaller ones row by row in their box or window. Farthest
+// depths are refreshed after large triangles, and after some dozens of small ones. O(pixels of the
+// boxes).
+//
+// Degenerate: triangles without area cover nothing; fragments behind a pixel's key change nothing.
 #include "raster/pipeline/visibility.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Collects the pixels of blended triangles before what is opaque, and sorts them by pixel and depth
+// (A-buffer: Carpenter 1984).
 #include "raster/shading/blended.h"
 
 #include <algorithm>

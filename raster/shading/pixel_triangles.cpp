@@ -1,3 +1,10 @@
+// Sets up the homogeneous barycentrics of a cluster's triangles (Olano and Greer 1997) as planes
+// over the screen, by vectors, one lane a triangle; and planes of four values from those of their
+// corners.
+//
+// Close to a triangle's origin floats give what the higher precision of make_barycentrics does.
+// Degenerate: triangles that reach farther are computed by it one by one; those with a corner
+// outside are left to the caller.
 #include "raster/shading/pixel_triangles.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Makes planes of vertex attributes and evaluates them at sixteen pixels at a time, with the
+// operations of point_at in their order.
+//
+// An attribute divided by depth is linear on the screen: a plane's value over that of 1 is the
+// attribute (Olano and Greer 1997). Where all lanes show one triangle on one row, planes are not
+// gathered.
+//
+// Degenerate: normals without a direction become those of the triangle; tangents without one count
+// as missing.
 #include "raster/shading/point_planes.h"
 
 #include <algorithm>

@@ -1,3 +1,8 @@
+// Gathers what shading looks up for one triangle: attributes of its corners in the world, planes of
+// them over the screen, and points at pixels.
+//
+// Degenerate: normals, tangents and triangles without a direction get a substitute; triangles whose
+// planes would lose their digits are interpolated with bounded shares.
 #include "raster/shading/seen_triangle.h"
 
 #include <cmath>

@@ -1,3 +1,12 @@
+// Gouraud shading of a tile (Gouraud 1971): the distinct vertices of the triangles that it shows
+// are lit in blocks of sixteen, across clusters; radiances then become planes, evaluated row by
+// row.
+//
+// A vertex whose normal points away from the side that is seen is lit once more with its normal
+// turned. Textures and alpha are applied by pixel. O(triangles + vertices shown + pixels).
+//
+// Degenerate: triangles without normals or with planes that would lose digits are shaded pixel by
+// pixel.
 #include "raster/shading/shade_gouraud.h"
 
 #include <algorithm>

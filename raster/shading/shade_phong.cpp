@@ -1,3 +1,9 @@
+// Phong shading of a tile (Phong 1975): attributes of the triangles that it shows become planes,
+// which are evaluated and shaded at sixteen pixels at a time.
+//
+// Pixels of a block are shaded kind by kind: one material, with or without colours of vertices.
+// Attributes that no draw has take no time. Degenerate: triangles with planes that would lose
+// digits are shaded pixel by pixel.
 #include "raster/shading/shade_phong.h"
 
 #include <algorithm>

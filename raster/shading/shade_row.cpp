@@ -1,3 +1,11 @@
+// Evaluates planes of colours along a row, encodes them and stores them, by vectors.
+//
+// Long runs of one triangle go by vectors of pixels. Rows of many short runs go by vectors of a
+// pixel's four values, which are transposed before they are divided. 8-bit sRGB is looked up, or
+// where vectors are long computed by a polynomial and looked up only where rounding might decide:
+// both give image::encode_srgb exactly.
+//
+// Degenerate: pixels that show nothing become transparent black.
 #include "raster/shading/shade_row.h"
 
 #include <algorithm>

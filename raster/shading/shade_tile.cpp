@@ -1,3 +1,8 @@
+// Shades a tile's pixels one by one (deferred shading: Deering et al. 1988), and the triangles and
+// vertices that were seen lately are kept in hash tables of a thread. The faster functions for
+// tiles give the same colours.
+//
+// Degenerate: for a point at the viewer's own place the view axis stands in.
 #include "raster/shading/shade_tile.h"
 
 #include <algorithm>

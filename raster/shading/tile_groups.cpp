@@ -1,3 +1,6 @@
+// Groups the triangles that a tile shows by cluster, as bit masks of their places, and numbers them
+// in that order. A table over clusters finds a group without hashing; clearing resets the entries
+// in use only.
 #include "raster/shading/tile_groups.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Compares each pixel's triangle with the one to the left and the one above, by vectors, and keeps
+// the answers as bits. A triangle is added to the groups where a run of it starts that does not
+// continue the row above.
 #include "raster/shading/tile_runs.h"
 
 #include <bit>

@@ -1,3 +1,9 @@
+// Collects what the triangles of a tile use, cluster by cluster, and writes the tile's rows.
+//
+// Vertices that are scattered in memory are asked for a group ahead of their use. A group that uses
+// most of its cluster's vertices takes all of them; else those in use are renumbered. Degenerate:
+// triangles that are clipped are set up one by one, and what cannot be shaded by vectors is shaded
+// pixel by pixel.
 #include "raster/shading/tile_triangles.h"
 
 #include <algorithm>

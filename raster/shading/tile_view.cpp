@@ -1,3 +1,6 @@
+// Shades what a tile shows: opaque pixels by the tile's lighting, then blended ones front to back
+// (Carpenter 1984), layer by layer over all pixels at once, up to the first surface that nothing is
+// seen through.
 #include "raster/shading/tile_view.h"
 
 #include <numeric>

@@ -1,3 +1,5 @@
+// Brings positions and normals of a cluster's vertices into the world by vectors. Degenerate: a
+// normal without a direction is marked, and becomes (0, 0, 1).
 #include "raster/shading/world_vertices.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Records several runs of one scheme and keeps the one of median time. Pictures of the ranks are
-// reduced to about 320 pixels across before they are gathered.
+// reduced before they are gathered.
 #include "apps/compare/compose/shown_scheme.h"
 
 #include <algorithm>

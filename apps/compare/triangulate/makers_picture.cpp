@@ -2,8 +2,8 @@
 // simplices, and averages the makers' colours over the samples of a pixel.
 //
 // A tetrahedron is cut where its edges pass the plane: three or four points, filled as a convex
-// polygon. Nine samples a pixel smooth the borders. Degenerate: polygons that are not finite are
-// left out; edges are not drawn where they would cover more than a quarter of the picture.
+// polygon. Several samples a pixel smooth the borders. Degenerate: polygons that are not finite are
+// left out; edges are not drawn where they would cover much of the picture.
 #include "apps/compare/triangulate/makers_picture.h"
 
 #include <algorithm>
