@@ -1,3 +1,8 @@
+// Binds a camera to a frame of pixels, and bounds boxes in pixels by their projected corners.
+//
+// The bound is widened by what rounding of single-precision directions can move a pixel by, so it
+// never misses one. Degenerate: a box that reaches beside or behind the eye gets all pixels, and so
+// does any box where the lens has a size; a camera at its own target takes 1 for the distance.
 #include "scenes/camera.h"
 
 #include <algorithm>

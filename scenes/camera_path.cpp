@@ -1,3 +1,10 @@
+// Parses cameras, turns them about an axis (Rodrigues' rotation) and interpolates them between
+// keys.
+//
+// Between keys each number follows a cubic Hermite curve whose slopes are differences of the
+// neighbouring keys over their times (Catmull and Rom 1974). Degenerate: beyond the first and last
+// key the curve goes on straight; an `up` without length turns nothing; fields of view are kept
+// between 0 and 180 degrees.
 #include "scenes/camera_path.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Colour maps as stops at equal steps, interpolated in sRGB codes, which follow perception more
+// closely than light does.
 #include "scenes/colour_map.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The table of generated scenes, and the parser of their names. Scenes are ordered for locality
+// after they are made; parts are not, since their generators number triangles in such an order
+// already.
 #include "scenes/generate.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// The table of scene readers, and the steps of loading: read, identify, parse, drop what is
+// degenerate, order for locality, find the up axis.
 #include "scenes/load.h"
 
 #include <algorithm>

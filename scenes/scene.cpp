@@ -1,3 +1,4 @@
+// Counts and bounds over all instances, by parallel reductions over instances and vertices.
 #include "scenes/scene.h"
 
 #include "parallel/parallel_for.h"

@@ -1,3 +1,5 @@
+// Drops triangles with two corners in one place and meshes that this leaves empty, renumbers the
+// instances, and refuses a scene that is empty or whose placed coordinates are too large.
 #include "scenes/files/finish.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Remembers textures by name, and by a hash of their bytes, so that a picture under several names
+// is decoded once. A texture that cannot be read becomes a warning, unless there was no memory for
+// it.
 #include "scenes/files/texture_files.h"
 
 #include <xxhash.h>

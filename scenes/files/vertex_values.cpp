@@ -1,3 +1,5 @@
+// Checks coordinates, decodes sRGB colours of vertices by the table where a value is a code of 8
+// bits, and makes scenes of a single mesh.
 #include "scenes/files/vertex_values.h"
 
 #include <algorithm>

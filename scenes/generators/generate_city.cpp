@@ -1,3 +1,10 @@
+// A city of blocks: footprints are halved at random until each fits a building, which are higher in
+// the middle as a rule.
+//
+// The plan is made first. A bisection on the size of a window then brings the number of triangles
+// nearest to the wanted one, since that number falls as windows grow, and blocks are built in
+// parallel from random streams of their own. O(triangles). Degenerate: for few triangles there is
+// one block, and a facade has at least one window.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,6 @@
+// The Cornell box (Goral et al. 1984), with the lamp a little below the ceiling in a frame of its
+// own, so that neither surface hides the other. Rectangles are divided evenly; the lamp's frame is
+// not.
 #include <algorithm>
 #include <array>
 #include <cmath>

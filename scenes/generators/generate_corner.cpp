@@ -1,3 +1,4 @@
+// A heap of overlapping glass spheres in one corner of the picture, as instances of one mesh.
 #include <algorithm>
 #include <cmath>
 

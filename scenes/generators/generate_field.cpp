@@ -1,3 +1,6 @@
+// Instances of four models on a jittered grid: a rock displaced by noise, a fluted column, a tube
+// around a trefoil knot and a tree of single-triangle leaves. The number of instances grows with
+// the triangles up to its limit, then their detail. O(triangles of the models).
 #include <algorithm>
 #include <cmath>
 

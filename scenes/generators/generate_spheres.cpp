@@ -1,3 +1,6 @@
+// Spheres of glass, metal and other materials over a chequered plane, after Whitted (1980). Small
+// ones are placed by rejection sampling, so that none touches another, and are fewer where no place
+// is found.
 #include <algorithm>
 #include <array>
 #include <cmath>

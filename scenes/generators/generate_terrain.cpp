@@ -1,3 +1,10 @@
+// A fractal height field: octaves of gradient noise (Perlin 2002), each damped where those before
+// it are steep, as erosion does (Quilez 2008).
+//
+// Vertices and cells are numbered in strips of a few rows, so that neighbours lie together in
+// memory and a part of the terrain is a run of strips. A part evaluates the noise beyond its border
+// for normals, so that parts join without a seam. O(triangles * octaves), parallel. Degenerate:
+// with more parts than strips some parts are empty.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,5 @@
+// Quads, grids, and spheres as octahedra whose rings are cut into as many vertices as their
+// distance from the pole asks for, normalized.
 #include "scenes/generators/shapes.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Completes a scene for rendering: normals where meshes lack them, tangents under normal maps, and
+// a key light with a sky where nothing lights the scene. Surfaces that glow count as light only if
+// their power would light the box of the scene visibly.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,6 @@
+// Gradient noise (Perlin 2002) with its derivative, by linear interpolation with quintic weights of
+// one linear function for each corner of the cell; gradients come from a hash of the corner. Sine
+// and cosine by Taylor series within an eighth of a turn.
 #include "scenes/geometry/noise.h"
 
 #include <cmath>

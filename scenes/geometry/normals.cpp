@@ -1,3 +1,13 @@
+// Vertex normals with creases, weighted by area.
+//
+// Vertices of equal position are found by a hash table. Around each position the triangles form a
+// graph, connected across edges that bend by the crease angle or less; union-find joins them, and
+// every component gets the sum of its area vectors as its normal and, if there are several, a copy
+// of the vertex. O(vertices + triangles), parallel over positions.
+//
+// Degenerate: triangles without area are connected to none and add nothing; a sum of 0 becomes (0,
+// 0, 1). Edges of more than two triangles connect those that follow each other in the order of the
+// mesh.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -1,3 +1,11 @@
+// Orders triangles by a k-d tree over their centres (Bentley 1975).
+//
+// Runs of triangles are measured first: if their boxes are compact already, or would hardly become
+// smaller, the order stays. Otherwise triangles are halved at multiples of a cluster and later of a
+// vector along the longest side of their box, level by level until every thread has a part, then
+// part by part. Vertices are numbered by first use. O(triangles log triangles).
+//
+// Degenerate: centres that are not finite count as 0, and equal ones keep the order of the mesh.
 #include "scenes/geometry/order.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Chooses the centre of the box as origin where the box reaches many of its diagonals away from 0,
+// and subtracts it in double precision.
 #include "scenes/geometry/origin.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Tangents along growing u on each triangle, summed over the triangles of a vertex and made
+// orthogonal to its normal. Vertices are split first where texture space is mirrored. O(vertices +
+// triangles), besides the splits. Degenerate: triangles without area in texture space add nothing,
+// and a sum along the normal is replaced by any orthogonal direction.
 #include <cassert>
 #include <cmath>
 

@@ -1,3 +1,5 @@
+// Finds equal vertices by a hash over the bits of all attributes, in a table with open addressing.
+// Degenerate: 0 and -0 differ, and equal NaN are equal, as bits are what is compared.
 #include "scenes/geometry/weld.h"
 
 #include <bit>

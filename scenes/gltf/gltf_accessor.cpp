@@ -1,3 +1,6 @@
+// Accessors: typed elements at regular distances in a buffer view, with sparse replacements. Bounds
+// are checked before anything is allocated; an accessor without data is all zeros, and its size is
+// limited by that of the file.
 #include <algorithm>
 #include <array>
 #include <cmath>

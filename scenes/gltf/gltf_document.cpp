@@ -1,3 +1,5 @@
+// Splits the binary container into chunks, parses the JSON within the memory budget, refuses
+// unknown required extensions, and reads buffers from the container, from files or from base64.
 #include "scenes/gltf/gltf_document.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes and reads the environment and area lights as JSON; positions are those of the file, so the
+// scene's origin is added and subtracted.
 #include "scenes/gltf/gltf_extras.h"
 
 namespace delray::scenes::internal {

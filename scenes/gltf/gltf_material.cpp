@@ -1,3 +1,5 @@
+// Reads materials with their extensions and numbers the kinds of texture coordinates that each one
+// uses. Factors are clamped to what the renderers take; what is not supported becomes a warning.
 #include "scenes/gltf/gltf_material.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Reads the attributes of a primitive, plain or compressed, turns strips and fans into triangles
+// and drops unused vertices. Degenerate: repeated vertices in strips make no triangles; a primitive
+// whose positions or indices have no data is left out.
 #include "scenes/gltf/gltf_mesh.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Compares how far vertices, nodes and the placed scene reach from 0 with the scene's diagonal, and
+// moves meshes to their own centres if any of these is far.
 #include "scenes/gltf/gltf_origin.h"
 
 #include <algorithm>

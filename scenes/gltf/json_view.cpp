@@ -1,3 +1,5 @@
+// Access to JSON values with defaults: an absent value gives the default, one of the wrong type, or
+// a number that is not finite or too large, is bad input that names its place.
 #include "scenes/gltf/json_view.h"
 
 #include <algorithm>

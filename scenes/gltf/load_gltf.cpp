@@ -1,3 +1,9 @@
+// Loads a glTF scene: walks the nodes depth first with an explicit stack, reads each mesh once, and
+// places cameras and lights after the origin is chosen.
+//
+// A node with two parents is bad input, which also ends cycles. Transforms are multiplied in double
+// precision. Degenerate: rotations of length 0 are left out; without scenes all nodes without a
+// parent are shown.
 #include "scenes/gltf/load_gltf.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Writes binary glTF in one pass over the scene: JSON and binary data grow side by side and are
+// joined behind a header. Instances, lights and cameras are turned to y up, and bright colours are
+// divided by a power of two, which keeps all their bits.
 #include "scenes/write_glb.h"
 
 #include <algorithm>
