@@ -1,4 +1,4 @@
-// What a recorded run would take on another network.
+// Predicting the time of a recorded run on another network.
 #pragma once
 
 #include <vector>

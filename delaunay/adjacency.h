@@ -1,4 +1,4 @@
-// Which simplices of a triangulation lie beside which, and around which vertices.
+// Adjacency of a triangulation: the neighbours of each simplex, and the simplices at each vertex.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How the simplices that threads made lie together.
+// Connected parts of a triangulation that were made by one thread each.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Which points the vertices of a mesh are, by their coordinates.
+// Matching the vertices of a mesh with points, by their coordinates.
 #pragma once
 
 #include <array>

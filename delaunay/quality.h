@@ -1,4 +1,4 @@
-// How well shaped the simplices of a triangulation are.
+// Shape measures of the simplices of a triangulation: angles and radius ratios.
 #pragma once
 
 #include <array>

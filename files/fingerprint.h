@@ -1,4 +1,4 @@
-// Whether two machines have the same file: found out without reading all of it.
+// Fingerprints of files: whether two machines have equal ones, without reading all of them.
 #pragma once
 
 #include <cstdint>

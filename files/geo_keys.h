@@ -1,4 +1,4 @@
-// What coordinates mean: GeoTIFF keys and well-known text, in which LAS and TIFF files say it.
+// Kinds of coordinates, as GeoTIFF keys and well-known text tell them in LAS and TIFF files.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How two pictures of the same size differ.
+// Comparing two pictures of one size.
 #pragma once
 
 #include <cstdint>

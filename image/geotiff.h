@@ -1,4 +1,4 @@
-// Where the pixels of a TIFF file lie on the ground.
+// Georeferencing of TIFF files: the places of pixels on the ground.
 #pragma once
 
 #include <filesystem>

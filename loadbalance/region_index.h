@@ -1,4 +1,4 @@
-// Which regions a box touches, without looking at all of them.
+// An index of regions by place: finds those that a box touches without a look at all of them.
 #pragma once
 
 #include <cstdint>

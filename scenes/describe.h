@@ -1,4 +1,4 @@
-// What is in a scene, counted.
+// A description of a scene: counts, names and bounds.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How an MPI process ends when it cannot go on.
+// The end of all ranks of an MPI run when one cannot go on, and the phase that it was in.
 #pragma once
 
 #include <string>

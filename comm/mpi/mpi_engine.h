@@ -1,4 +1,4 @@
-// What the communicators that come from one MPI communicator share, and how they wait.
+// State and waiting that the communicators which come from one MPI communicator share.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What travels through MPI instead of a message, and in which tags.
+// Announcements that MPI carries in place of long and of shared messages, and the layout of tags.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How an insertion may touch the history's leaves: the access policy that tells the methods apart.
+// Access to the history's leaves during an insertion: the policies that tell the methods apart.
 //
 // A policy is a class with
 //   Grant acquire({nodes})   before an operation, for all nodes that it writes or decides by

@@ -1,4 +1,4 @@
-// What every method that works on a history does before and after it inserts points.
+// Start and end of a run on a history, alike for all methods that work on one.
 #pragma once
 
 #include <array>

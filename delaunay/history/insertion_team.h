@@ -1,4 +1,4 @@
-// What all methods with threads of their own over a history do alike.
+// The loop over points that methods with threads of their own over a history share.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How one thread finds the leaves that its points lie in.
+// Finding the leaves of the history that one thread's points lie in.
 #pragma once
 
 #include <string_view>

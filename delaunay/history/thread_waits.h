@@ -1,4 +1,4 @@
-// Which thread waits for which simplex, and whether one more would close a circle.
+// The record of which thread waits for which simplex, to find circles of waiting threads.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What an insertion in space starts with.
+// The first tetrahedron of an insertion in space, and counting the distinct points of flat input.
 #pragma once
 
 #include <algorithm>

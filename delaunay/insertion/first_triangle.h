@@ -1,4 +1,4 @@
-// What an insertion starts with.
+// The first triangle of an insertion in the plane, and counting the distinct points of flat input.
 #pragma once
 
 #include <algorithm>

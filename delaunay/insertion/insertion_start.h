@@ -1,4 +1,4 @@
-// What insertion in any dimension starts with.
+// Checked points and the first simplex of an insertion, in either dimension.
 #pragma once
 
 #include <array>

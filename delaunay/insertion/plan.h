@@ -1,4 +1,4 @@
-// Which thread inserts which points, in which order.
+// The plan of an insertion: which thread inserts which points, in which order.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How an insertion may touch a mesh: the policy that tells sequential from parallel methods.
+// Access to a mesh during an insertion: the policy of a thread that is alone with it.
 #pragma once
 
 #include "delaunay/mesh/mesh.h"

@@ -1,4 +1,4 @@
-// Which points are equal.
+// Finding points with equal coordinates.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the verifier looks at, and what it has to say.
+// A mesh as the verifier sees it, and the objections that it may raise.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where to cut a stretch of columns or rows in two.
+// Choosing the border at which a stretch of columns or rows is cut in two.
 #pragma once
 
 #include <algorithm>

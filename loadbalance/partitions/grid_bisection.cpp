@@ -1,6 +1,6 @@
 // Multilevel bisection of a set of grid cells (Karypis and Kumar 1998).
 //
-// Cells are coarsened by fours until few are left. Those are divided in up to six ways, by greedy
+// Cells are coarsened by fours until few are left. The few are divided in up to six ways, by greedy
 // graph growing from the corners of the set and by sweeps along rows and columns, each is refined,
 // and the one with the least crossing cost is kept. The cut is projected back level by level and
 // refined at its border. O(cells) where the set is in few pieces.

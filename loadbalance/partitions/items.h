@@ -1,4 +1,4 @@
-// What partitions over boxes share out.
+// Boxes as partitions share them out: clipped to the frame, with their costs by pixel.
 #pragma once
 
 #include <vector>

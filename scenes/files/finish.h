@@ -1,4 +1,4 @@
-// What every loaded scene goes through.
+// The last step of loading a scene, alike for all formats.
 #pragma once
 
 #include "scenes/files/source.h"

@@ -1,4 +1,4 @@
-// Where a scene that lies far from 0 for its size has its origin.
+// The origin of a scene that lies far from 0 for its size.
 //
 // Coordinates of single precision have steps of some 1e-7 of themselves: those of a house in a
 // national grid are half a metre apart. Relative to a point of the scene they are as fine as near

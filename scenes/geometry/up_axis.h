@@ -1,4 +1,4 @@
-// Which way is up in files that do not say.
+// Guessing the up axis of files that do not say it.
 #pragma once
 
 #include "scenes/scene.h"
