@@ -3,10 +3,9 @@
 //
 // Points come sorted by the cells of a grid, so the highest bit in which cell numbers differ tells
 // where to cut. Up to three points, and four as a rule, are triangulated directly, larger ranges
-// recursively, and merge.h joins the halves. The triangles of points [first, last) occupy slots [2
-// first, 2 last - 2) of the mesh, so halves never share memory and large ones are divided on
-// separate threads. O(n) expected for points of bounded density, otherwise O(n) times the depth of
-// the cells.
+// recursively, and merge.h joins the halves. Every range of points has slots of the mesh to itself,
+// so halves never share memory and large ones are divided on separate threads. O(n) expected for
+// points of bounded density, otherwise O(n) times the depth of the cells.
 //
 // Degenerate: duplicates are removed before. Points on a line become a chain of ghosts, so the
 // result has no triangles. A cell with many points gets a grid of its own, and one with few is cut
