@@ -1,3 +1,6 @@
+// Writes and reads a film with a fingerprint in front and a checksum behind, and hashes scenes with
+// XXH3. Whatever a file says is checked before it is used: checksum, fingerprint and window before
+// memory is taken, then its size, every cell and every pixel.
 #include "raytrace/checkpoint.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The table of distributions of a scene over ranks: how rays and geometry meet.
 #include "raytrace/distribution.h"
 
 #include <algorithm>

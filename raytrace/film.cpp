@@ -1,3 +1,12 @@
+// Sums samples chunk by chunk, and estimates the noise that is left from how much the means of
+// chunks vary.
+//
+// Squares of a chunk's mean are weighted by its size, as a mean has the variance of a sample over
+// that size. A cell's noise is that of its noisiest quarter, or of a neighbouring cell where that
+// is larger, relative to the light there. O(pixels), parallel over rows of cells.
+//
+// Degenerate: fewer than two chunks have variance 0; fewer than kLeastChunks make noise infinite,
+// so that sampling goes on.
 #include "raytrace/film.h"
 
 #include <algorithm>

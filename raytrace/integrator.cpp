@@ -1,3 +1,4 @@
+// The table of integrators, with which options each looks at.
 #include "raytrace/integrator.h"
 
 #include <stdexcept>

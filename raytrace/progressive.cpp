@@ -1,3 +1,11 @@
+// Renders pass by pass: rank 0 chooses the cells that get another chunk of samples, tells the
+// others, and adds what comes back to the film.
+//
+// The expected time of a pass is that of the last one, by pixels and samples; it does not begin if
+// it would end too late. Features are rendered before the first pass by integrators of their own.
+//
+// Degenerate: a picture of one small chunk, of which no film is asked for, is a single call of the
+// renderer; an interruption hands out the film as it is.
 #include "raytrace/progressive.h"
 
 #include <algorithm>

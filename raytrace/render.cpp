@@ -1,3 +1,9 @@
+// One frame on a rank: checks options, has a schedule hand out tiles, traces them, and collects
+// pixels, costs and statistics on rank 0.
+//
+// Over a scene that every rank has, threads trace tiles by themselves; over one that is
+// distributed, the rank's threads work together at several tiles at a time. Degenerate: a frame
+// without pixels has no tiles; parts that are not rendered stay clear.
 #include "raytrace/render.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Cuts this rank's part of a scene into clusters, tells all ranks their boxes and sizes, and keeps
+// clusters of other ranks in a cache that drops what was not used for longest.
+//
+// Every rank builds the same tree over all boxes. Clusters dealt out at random go by a hash of
+// seed, rank and number. Structures are built in parallel, each thread with a device of its own, so
+// that memory is counted by cluster. O(triangles of the part) and one message to all.
+//
+// Degenerate: a cluster that is larger than the cache stays until another one comes; a rank may own
+// none.
 #include "raytrace/shared_scene.h"
 
 #include <algorithm>

@@ -1,3 +1,12 @@
+// Radix-k (Peterka, Goodell, Ross, Shen and Thakur 2009): rounds of direct-send in groups of k
+// ranks.
+//
+// Ranks are numbers in mixed radix: in each round those that differ in one digit exchange pieces of
+// the range that all of them hold. Numbers of ranks with large factors leave some over, who send
+// their pieces to a block of neighbours and own nothing. A member sends A (1 - 1/m) pixels and
+// composites as much, of m members, and A / P for each extra rank of its block of P.
+//
+// Degenerate: of a power of two, radices of 2 give binary swap; one radix of n gives direct-send.
 #include "composite/schemes/exchange.h"
 #include "composite/schemes/members.h"
 #include "composite/schemes/radices.h"

@@ -1,3 +1,5 @@
+// Packs clusters into messages, bounds them with slack for rounding, and builds Embree's structure
+// of what has come. Lengths in a message are checked against its size before memory is taken.
 #include "raytrace/distributed/cluster.h"
 
 #include <algorithm>

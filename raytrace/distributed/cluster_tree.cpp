@@ -1,3 +1,12 @@
+// A bounding volume hierarchy over the boxes of clusters, built by median splits along the longest
+// side of the centres.
+//
+// A query collects every box that the line meets, then sorts by where it enters; of a cluster
+// placed several times the first entry counts. Slabs are widened by what division rounds off. O(n
+// log n) to build, O(log n + crossings) to search.
+//
+// Degenerate: equal centres are ordered by number; a line in the plane of a side is decided by the
+// other axes; an empty tree crosses nothing.
 #include "raytrace/distributed/cluster_tree.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Packs the tiles of a rank into one message, what each took, then colours, then depths, and copies
+// them into the picture on rank 0. Degenerate: a rank without tiles sends a count of 0; tiles that
+// were not rendered have no pixels.
 #include "raytrace/distributed/collect_tiles.h"
 
 #include <algorithm>

@@ -1,3 +1,9 @@
+// Cuts triangles into clusters: halves at the median along the longest side of the box of their
+// centres, until a part is small enough. Meshes that are placed several times are cut by
+// themselves, so that their clusters can be instanced.
+//
+// A cluster gets the vertices that its triangles use, renumbered. O(n log n). Degenerate: equal
+// centres are ordered by number, so that every part shrinks.
 #include <algorithm>
 #include <unordered_map>
 

@@ -1,3 +1,5 @@
+// Packs rays as far as they have something to say: without a point while they have met nothing, and
+// with as many layers as there are. A message that is too short, too long or of no kind is refused.
 #include "raytrace/distributed/ray_messages.h"
 
 #include <cstddef>

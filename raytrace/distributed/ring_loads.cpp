@@ -1,3 +1,6 @@
+// Decides by counts of rays tested when to tell a load and when to give a cluster away: after
+// enough work since the last time, and to a neighbour that has done clearly less. Degenerate: a
+// neighbour that has told nothing counts as hardly loaded.
 #include "raytrace/distributed/ring_loads.h"
 
 namespace delray::raytrace {

@@ -1,3 +1,6 @@
+// Cuts the frame by what its tiles cost in the last one, and gives each rank the tiles of its
+// regions. Degenerate: a first frame, or one of another size, counts pixels as costs; an empty
+// frame has no shares.
 #include "raytrace/distributed/tile_shares.h"
 
 #include "loadbalance/owned_blocks.h"

@@ -1,3 +1,6 @@
+// One shadow ray a sample in a direction drawn by the cosine to the normal; white where it meets
+// nothing within reach. Degenerate: directions below the geometric surface count as dark, whatever
+// their rays meet.
 #include "raytrace/integrators/ao.h"
 
 #include <bit>

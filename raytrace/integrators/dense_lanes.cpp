@@ -1,3 +1,5 @@
+// Moves packed lanes behind those of a group that is partly filled, and what is left over to a
+// second one, by vectors, field by field.
 #include "raytrace/integrators/dense_lanes.h"
 
 #include <algorithm>

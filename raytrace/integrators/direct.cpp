@@ -1,3 +1,5 @@
+// Sums emission, terms of the environment and lights with shadow rays for surfaces side by side;
+// without shadows the shading of the whole block in one call.
 #include "raytrace/integrators/direct.h"
 
 #include <bit>

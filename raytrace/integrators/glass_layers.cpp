@@ -1,3 +1,6 @@
+// Evaluates panes in blocks of sixteen: points, surfaces, then Fresnel's equations and tint by
+// vectors. Lanes beyond the last pane repeat the first one. Degenerate: total reflection lets
+// nothing through.
 #include "raytrace/integrators/glass_layers.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Keeps a list of runs of lanes for each material, and gathers the fields of hits into a group by
+// vectors. O(hits).
 #include "raytrace/integrators/hits_by_material.h"
 
 #include <bit>

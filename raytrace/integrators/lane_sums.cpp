@@ -1,3 +1,5 @@
+// Adds, copies, selects and negates lanes by vectors, compiled for each instruction set that
+// Highway targets.
 #include "raytrace/integrators/lane_sums.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,13 @@
+// Path tracing (Kajiya 1986) over many samples at a time, generation by generation of rays
+// (wavefronts: Laine et al. 2013).
+//
+// All paths of a task advance by one surface together. Surfaces that were met are sorted by
+// material, so that blocks of sixteen are full; each draws a light and a direction, weighted by the
+// power heuristic (Veach 1997), and rays that go on are packed into full groups again. Russian
+// roulette ends paths that carry little. Cost: two rays for each surface that a path meets.
+//
+// Degenerate: radiance that is not finite is dropped; layers are passed by chance, and a path
+// through too many of them ends; a light without size counts in full, as no scattered ray finds it.
 #include "raytrace/integrators/path.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// Weights of lights and the environment, shadow rays and scattered rays of sixteen path vertices,
+// by vectors; lanes that go on are compressed behind each other. Degenerate: weights that are zero
+// or not finite end a path.
 #include "raytrace/integrators/path_vertices.h"
 
 #include <limits>

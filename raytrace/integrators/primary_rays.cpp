@@ -1,3 +1,6 @@
+// Rays from the camera through sixteen pixels, by vectors: perspective, orthographic, and through a
+// thin lens. Degenerate: no component of a direction is exactly 0, since a ray along an axis could
+// pass between boxes that only touch.
 #include "raytrace/integrators/primary_rays.h"
 
 #include <limits>

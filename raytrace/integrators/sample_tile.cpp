@@ -1,3 +1,8 @@
+// Cuts a tile into tasks whose rays stay in the cache, runs the integrator sample after sample, and
+// adds what it finds to the pixels.
+//
+// A first and only sample is written past the caches, a cache line at a time. Degenerate: squares
+// that a part leaves out are not rendered, and a tile without any has no pixels.
 #include "raytrace/integrators/sample_tile.h"
 
 #include <algorithm>

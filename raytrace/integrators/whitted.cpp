@@ -1,3 +1,12 @@
+// Recursive ray tracing (Whitted 1980), breadth first: all mirrored and refracted rays of a task
+// make the next batch.
+//
+// Reflectance goes by Schlick's approximation, glass by Fresnel's equations. Between a mirror and a
+// matt surface a ray and the blurred environment share the reflection. Cost: up to two rays for
+// each surface until `depth` or weight ends them, and shadow rays.
+//
+// Degenerate: inside of glass there is no environment to stand in; rays that could hardly change a
+// sample are not sent.
 #include "raytrace/integrators/whitted.h"
 
 #include <algorithm>

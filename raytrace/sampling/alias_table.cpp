@@ -1,3 +1,8 @@
+// Builds the table with two stacks (Vose 1991): columns below the mean are filled up from one above
+// it. O(n) to build, O(1) to draw.
+//
+// Degenerate: weights that do not count become 0; where all are 0 all numbers are equally likely; a
+// column without a share of its own draws the likeliest number.
 #include "raytrace/sampling/alias_table.h"
 
 #include <algorithm>

@@ -1,3 +1,14 @@
+// Evaluates and draws from the lobes below coat and sheen, by vectors: diffuse, GGX reflection, and
+// transmission through a rough interface (Walter et al. 2007), with visible normals (Heitz 2018;
+// Dupuy and Benyoub 2023).
+//
+// The diffuse lobe is drawn with its share of the albedo, reflection against transmission by what
+// either would carry. Densities and values come from the same functions, so that weights of samples
+// agree with evaluation.
+//
+// Degenerate: smooth interfaces are deltas, which evaluation never finds; media of nearly one
+// density let light straight through; the viewer is lifted above the horizon of the shading normal;
+// directions on different sides of the two normals carry nothing.
 #include "raytrace/sampling/base_bsdf.h"
 
 #undef HWY_TARGET_INCLUDE

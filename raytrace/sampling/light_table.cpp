@@ -1,3 +1,12 @@
+// Builds tables of all emitters by power, and draws from them: lights, triangles that glow, the
+// environment.
+//
+// Emitters, and triangles of a mesh that glows, are drawn from alias tables; points of a triangle
+// uniformly (Heitz 2019), of a parallelogram as rectangle.h does. A small part of the choice is
+// even, so that weak lights nearby are found. An area light that an instance covers with what it
+// emits is one emitter. O(triangles) to build, O(1) to draw.
+//
+// Degenerate: without power there is nothing to draw; points seen edge-on have no density.
 #include "raytrace/sampling/light_table.h"
 
 #include <algorithm>

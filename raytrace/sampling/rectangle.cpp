@@ -1,3 +1,7 @@
+// Draws from a rectangle uniformly in solid angle (Urena et al. 2013), O(1).
+//
+// Degenerate: solid angles too small for the digits of their sum, and parallelograms that are no
+// rectangles, are drawn from uniformly in area; a point in the plane has density 0.
 #include "raytrace/sampling/rectangle.h"
 
 #include <algorithm>

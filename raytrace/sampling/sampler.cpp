@@ -1,3 +1,9 @@
+// Random numbers by hashing: keys of pixels by Philox (Salmon et al. 2011), samples shuffled and
+// scrambled by operations on reversed bits (Laine and Karras 2011; Burley 2020), one at a time and
+// sixteen at a time with the same bits.
+//
+// The second dimension of Sobol's sequence is a product with Pascal's triangle modulo 2, five
+// shifts instead of a matrix. O(1) a number, without state.
 #include "raytrace/sampling/sampler.h"
 
 #include <Random123/philox.h>

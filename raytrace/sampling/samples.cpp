@@ -1,3 +1,5 @@
+// A regular grid where the number of samples is a square, else a rank-1 lattice by the golden
+// ratio.
 #include "raytrace/sampling/samples.h"
 
 namespace delray::raytrace {

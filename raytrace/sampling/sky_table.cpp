@@ -1,3 +1,8 @@
+// Cuts the sphere into cells, weights each by its light and that of its neighbours, into which
+// filtering reaches, and draws from an alias table, by vectors. O(cells) to build, O(1) to draw.
+//
+// Degenerate: every cell gets part of the mean, so that no direction has density 0; at borders
+// between rows rounding is corrected by the heights themselves.
 #include "raytrace/sampling/sky_table.h"
 
 #include <algorithm>

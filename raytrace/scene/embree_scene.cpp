@@ -1,3 +1,12 @@
+// Hands triangles and instances to Embree, 3 or 4, and traces single rays and packets of the
+// machine's own width.
+//
+// A ray that hits an edge is traced again with a filter that keeps the least hit by distance,
+// instance and triangle, so that the tree does not decide. A filter of shadow rays collects what
+// they pass through.
+//
+// Degenerate: vertices that end at a page are copied, as Embree reads past the last one; a shadow
+// ray through too many layers is occluded.
 #include "raytrace/scene/embree_scene.h"
 
 #include <algorithm>

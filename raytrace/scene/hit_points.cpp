@@ -1,3 +1,8 @@
+// Gathers corners of the hit triangles lane by lane, instance by instance, and computes their
+// points by vectors, as intersection.cpp does for one.
+//
+// Degenerate: triangles whose area under- or overflows are measured with their longest edge for a
+// unit; those without area get a fixed normal; lanes without a hit are left alone.
 #include "raytrace/scene/hit_points.h"
 
 #include <bit>

@@ -1,3 +1,8 @@
+// Interpolates what a mesh knows at a hit, and finds the offset of rays that leave it (after
+// Waechter and Binder 2019) and the footprint of the ray's cone (Amanatides 1984).
+//
+// Degenerate: triangles whose area under- or overflows are measured with their longest edge for a
+// unit; those without area get a fixed normal and no footprint.
 #include "raytrace/scene/intersection.h"
 
 #include <algorithm>

@@ -1,3 +1,9 @@
+// Finds triangles without a hole by the least alpha in tiles of the texture, over the box of their
+// coordinates and a margin for filtering. O(texels) for a texture; a bounded number of tiles for a
+// triangle.
+//
+// Degenerate: boxes that span too many texels take the least of the whole texture; coordinates far
+// from 0 or not finite count as too many.
 #include "raytrace/scene/solid_triangles.h"
 
 #include <algorithm>
