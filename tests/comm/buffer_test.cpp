@@ -1,3 +1,4 @@
+// Buffers: ownership, moves, copies, and memory that is used again.
 #include "comm/buffer.h"
 
 #include <gtest/gtest.h>

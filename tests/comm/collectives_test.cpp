@@ -1,3 +1,4 @@
+// Collectives against their definitions, for many numbers of ranks, on every implementation.
 #include "comm/collectives.h"
 
 #include <gtest/gtest.h>

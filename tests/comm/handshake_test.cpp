@@ -1,3 +1,4 @@
+// Ranks that differ in a fact are all told which, at a logarithmic cost.
 #include "comm/handshake.h"
 
 #include <gtest/gtest.h>

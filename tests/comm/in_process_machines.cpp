@@ -1,3 +1,4 @@
+// The machines that tests of communicators run on within one process.
 #include <gtest/gtest.h>
 
 #include "comm/simulated.h"

@@ -1,3 +1,4 @@
+// Ledgers and tallies of what goes through a communicator.
 #include "comm/recording.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Termination is detected when all work is done, and not before.
 #include "comm/termination.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Heights of points at one place, merged by each policy.
 #include "delaunay/duplicates.h"
 
 #include <gtest/gtest.h>

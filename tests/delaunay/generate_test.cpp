@@ -1,3 +1,4 @@
+// Generated points: reproducible bits, and properties that each kind promises.
 #include "delaunay/generate.h"
 
 #include <gtest/gtest.h>

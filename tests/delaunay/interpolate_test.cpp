@@ -1,3 +1,4 @@
+// Interpolation reproduces planes and Sibson's weights.
 #include "delaunay/interpolate.h"
 
 #include <gtest/gtest.h>

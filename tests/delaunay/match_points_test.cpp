@@ -1,3 +1,4 @@
+// Vertices are matched to the lowest equal row, also through floats.
 #include "delaunay/match_points.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The table of methods: resolution of "auto", and refusals.
 #include "delaunay/methods.h"
 
 #include <gtest/gtest.h>

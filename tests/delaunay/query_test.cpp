@@ -1,3 +1,4 @@
+// Location and nearest vertices against looking at all.
 #include "delaunay/query.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Simplified terrains stay within their bound, exactly.
 #include "delaunay/simplify_terrain.h"
 
 #include <gmpxx.h>

@@ -1,3 +1,4 @@
+// Floats are triangulated as the doubles that equal them.
 #include <gtest/gtest.h>
 
 #include <vector>

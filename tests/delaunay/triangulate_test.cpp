@@ -1,3 +1,4 @@
+// 2D triangulations against brute force, and their invariances.
 #include "delaunay/triangulate.h"
 #include "delaunay/combinations.h"
 

@@ -1,3 +1,4 @@
+// The hash of a triangulation.
 #include "delaunay/triangulation.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Voronoi diagrams are dual to their triangulations.
 #include "delaunay/voronoi.h"
 
 #include <gtest/gtest.h>

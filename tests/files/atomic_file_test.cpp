@@ -1,3 +1,4 @@
+// Files appear whole or not at all, and keep permissions and links.
 #include "files/atomic_file.h"
 
 #include <gtest/gtest.h>

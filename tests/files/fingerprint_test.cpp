@@ -1,3 +1,4 @@
+// Fingerprints tell files apart.
 #include "files/fingerprint.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Formats by content and by suffix.
 #include "files/format.h"
 
 #include <gtest/gtest.h>

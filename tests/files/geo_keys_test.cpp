@@ -1,3 +1,4 @@
+// Degrees and metres, from GeoTIFF keys and well-known text.
 #include "files/geo_keys.h"
 
 #include <gtest/gtest.h>

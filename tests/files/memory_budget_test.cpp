@@ -1,3 +1,4 @@
+// Memory is refused before it is taken; sizes as text.
 #include "files/memory_budget.h"
 
 #include <gtest/gtest.h>

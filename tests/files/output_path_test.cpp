@@ -1,3 +1,4 @@
+// Outputs never follow links that somebody else planted.
 #include "files/output_path.h"
 
 #include <gtest/gtest.h>

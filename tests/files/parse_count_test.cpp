@@ -1,3 +1,4 @@
+// Counts are read exactly or refused.
 #include "files/parse_count.h"
 
 #include <gtest/gtest.h>

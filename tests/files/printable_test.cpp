@@ -1,3 +1,4 @@
+// Text is escaped where a terminal would obey it.
 #include "files/printable.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Files and streams are read whole, within the memory allowed.
 #include "files/read_file.h"
 
 #include <gtest/gtest.h>

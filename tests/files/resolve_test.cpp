@@ -1,3 +1,4 @@
+// Files that files name lie in the folder or below.
 #include "files/resolve.h"
 
 #include <gtest/gtest.h>

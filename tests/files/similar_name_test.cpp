@@ -1,3 +1,4 @@
+// Edit distances, and the name that was probably meant.
 #include "files/similar_name.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Boxes: empty, huge, and of one point.
 #include "geometry/box.h"
 
 #include <gtest/gtest.h>

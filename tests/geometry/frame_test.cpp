@@ -1,3 +1,4 @@
+// Frames are orthonormal and right-handed.
 #include "geometry/frame.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Rectangles: half-open, empty, and large areas.
 #include "geometry/rect.h"
 
 #include <gtest/gtest.h>

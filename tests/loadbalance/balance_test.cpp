@@ -1,3 +1,4 @@
+// Balance against counting pixel by pixel.
 #include "loadbalance/balance.h"
 
 #include <gtest/gtest.h>

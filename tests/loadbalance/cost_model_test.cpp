@@ -1,3 +1,4 @@
+// Cost models are found again from samples, and costs follow measurements.
 #include "loadbalance/cost_model.h"
 
 #include <gtest/gtest.h>

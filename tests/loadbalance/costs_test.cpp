@@ -1,3 +1,4 @@
+// The grid of costs covers the frame, and boxes count once.
 #include "loadbalance/costs.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Hybrid partitions: coverage, even work, and borders where fewest pixels are misplaced.
 #include "loadbalance/hybrid_partition.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Cells of a k-d tree: every point once, in order along every ray.
 #include "loadbalance/kd_cells.h"
 
 #include <gtest/gtest.h>

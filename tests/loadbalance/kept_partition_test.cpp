@@ -1,3 +1,4 @@
+// Partitions are kept until a rank does too much.
 #include "loadbalance/kept_partition.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Every block belongs to one owner.
 #include "loadbalance/owned_blocks.h"
 
 #include <gtest/gtest.h>

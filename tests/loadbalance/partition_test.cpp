@@ -1,3 +1,4 @@
+// Promises of every partition of the table.
 #include "loadbalance/partition.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The index finds each region of a box once.
 #include "loadbalance/region_index.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Promises of every schedule, over threads and over every order of messages.
 #include "loadbalance/schedule.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Schedules on the simulated machine.
 #include "loadbalance/simulated_schedule.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Blocks cover the frame, and queues hand out each task once.
 #include "loadbalance/task_grid.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Loops and reductions do not depend on the number of threads.
 #include "parallel/parallel_for.h"
 
 #include <gtest/gtest.h>

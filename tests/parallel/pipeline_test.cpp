@@ -1,3 +1,4 @@
+// Pipelines keep order and slots, and end with what a stage throws.
 #include "parallel/pipeline.h"
 
 #include <gtest/gtest.h>

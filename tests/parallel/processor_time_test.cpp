@@ -1,3 +1,4 @@
+// Processor time stands still while a thread sleeps.
 #include "parallel/processor_time.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The message queue against a plain list, under random calls.
 #include "comm/in_process/message_queue.h"
 
 #include <gtest/gtest.h>

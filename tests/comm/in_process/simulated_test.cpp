@@ -1,3 +1,4 @@
+// The simulated machine: costs of its model, determinism, deadlocks and failures.
 #include "comm/simulated.h"
 
 #include <gtest/gtest.h>

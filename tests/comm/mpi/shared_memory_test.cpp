@@ -1,3 +1,4 @@
+// Shared memory that is out of reach, too large to map, or does not hold the message.
 #include "comm/mpi/shared_memory.h"
 
 #include <gtest/gtest.h>

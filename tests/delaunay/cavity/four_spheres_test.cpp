@@ -1,3 +1,4 @@
+// Four sphere tests at once against the exact predicates, on every instruction set.
 #include "delaunay/cavity/four_spheres.h"
 
 #include <gtest/gtest.h>

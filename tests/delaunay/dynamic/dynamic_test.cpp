@@ -1,3 +1,4 @@
+// Dynamic triangulations against triangulate() after every step.
 #include "delaunay/dynamic.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Mesh readers: files of other programs, bad indices, files cut off or damaged.
 #include "delaunay/read_mesh.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Point readers: every format, and the place that messages about bad files name.
 #include "delaunay/read_points.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Meshes read back equal in every format that keeps them whole.
 #include "delaunay/write_mesh.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Points read back equal in every format.
 #include "delaunay/write_points.h"
 
 #include <gtest/gtest.h>

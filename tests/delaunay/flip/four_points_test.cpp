@@ -1,3 +1,4 @@
+// The table of triangulations of four points.
 #include "delaunay/flip/four_points.h"
 
 #include <gtest/gtest.h>

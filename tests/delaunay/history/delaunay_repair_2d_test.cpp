@@ -1,3 +1,4 @@
+// Repair by flips in the plane, from triangulations that were only subdivided.
 #include "delaunay/history/delaunay_repair.h"
 
 #include <gtest/gtest.h>

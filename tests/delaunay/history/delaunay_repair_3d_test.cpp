@@ -1,3 +1,4 @@
+// Repair by flips in space, which succeeds or says that it cannot.
 #include <gtest/gtest.h>
 
 #include <optional>

@@ -1,3 +1,4 @@
+// Orders of insertion are permutations along a curve or at random.
 #include "delaunay/insertion/insertion_order.h"
 
 #include <gtest/gtest.h>

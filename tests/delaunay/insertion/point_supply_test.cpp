@@ -1,3 +1,4 @@
+// Every point goes to one thread, and idle threads take over.
 #include "delaunay/insertion/point_supply.h"
 
 #include <gtest/gtest.h>

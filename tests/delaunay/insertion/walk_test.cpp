@@ -1,3 +1,4 @@
+// Walks from every simplex, and meshes that stay linked.
 #include "delaunay/insertion/walk.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Adjacency, hull and quality of small meshes and of random ones.
 #include "delaunay/adjacency.h"
 
 #include <gtest/gtest.h>

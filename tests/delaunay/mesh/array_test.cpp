@@ -1,3 +1,4 @@
+// Arrays keep, shrink, discard and align their values.
 #include "delaunay/mesh/array.h"
 
 #include <gtest/gtest.h>

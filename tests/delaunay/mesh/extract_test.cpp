@@ -1,3 +1,4 @@
+// Extraction skips ghosts and dead slots and keeps the creators.
 #include "delaunay/mesh/extract.h"
 
 #include <gtest/gtest.h>

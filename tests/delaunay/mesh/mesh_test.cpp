@@ -1,3 +1,4 @@
+// Numbers of corners and simplices.
 #include "delaunay/mesh/mesh.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Natural neighbours against areas of Voronoi cells, at the hull and on symmetric points.
 #include "delaunay/natural_neighbours.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The order of cells keeps each distinct point once, for every number of threads.
 #include "delaunay/order/cell_order.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The order along the curve in space keeps every row once.
 #include "delaunay/order/curve_order_3d.h"
 
 #include <gtest/gtest.h>

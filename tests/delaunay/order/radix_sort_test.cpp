@@ -1,3 +1,4 @@
+// Radix sort is stable and sorts by upper halves; blocks cover all indices.
 #include "delaunay/order/radix_sort.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The rule for ties, and conflicts with ghosts.
 #include "delaunay/predicates/conflict.h"
 
 #include <gtest/gtest.h>

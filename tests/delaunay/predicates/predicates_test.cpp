@@ -1,3 +1,4 @@
+// Predicates against rational arithmetic, and the stages that decide them.
 #include "delaunay/predicates.h"
 
 #include <gmpxx.h>

@@ -1,3 +1,4 @@
+// Predicates of one mesh against those for any points.
 #include "delaunay/predicates/sphere_tests.h"
 
 #include <gtest/gtest.h>

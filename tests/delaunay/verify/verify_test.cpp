@@ -1,3 +1,4 @@
+// The verifier accepts what is right and finds every mutation.
 #include "delaunay/verify.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The graph partition follows lines that little crosses.
 #include <gtest/gtest.h>
 
 #include <algorithm>

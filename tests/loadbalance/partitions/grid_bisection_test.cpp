@@ -1,3 +1,4 @@
+// Bisection of sets of cells: shares, order and cost.
 #include "loadbalance/partitions/grid_bisection.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Sweep lines cut where the curves of cost cross.
 #include <gtest/gtest.h>
 
 #include <algorithm>

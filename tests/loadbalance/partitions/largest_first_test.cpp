@@ -1,3 +1,4 @@
+// The largest goes to the least loaded.
 #include "loadbalance/partitions/largest_first.h"
 
 #include <gtest/gtest.h>

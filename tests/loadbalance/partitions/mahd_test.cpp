@@ -1,3 +1,4 @@
+// MAHD on the report's worked example, and where there is no cost.
 #include <gtest/gtest.h>
 
 #include "loadbalance/partition.h"

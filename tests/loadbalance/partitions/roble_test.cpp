@@ -1,3 +1,4 @@
+// Roble's splits and mergers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Median cut counts centroids, whatever the sizes.
 #include <gtest/gtest.h>
 
 #include <random>

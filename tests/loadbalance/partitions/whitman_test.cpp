@@ -1,3 +1,4 @@
+// Whitman's quadtree: ten leaves a part, divided where the primitives are.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// How many ranks work below a master.
 #include "loadbalance/schedules/masters.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Plain threads run each task once.
 #include "parallel/threads/plain_threads.h"
 
 #include <gtest/gtest.h>
