@@ -1,4 +1,4 @@
-// What a message carries.
+// The bytes that a message carries.
 #pragma once
 
 #include <cassert>

@@ -1,4 +1,4 @@
-// What all ranks of a communicator do together, made of sends and receives.
+// Collective operations of all ranks of a communicator, made of sends and receives.
 //
 // Every rank calls the same collectives in the same order. Every receive names its source, so the
 // order in which messages arrive changes nothing: values are combined in one fixed order that
@@ -93,8 +93,9 @@ void reduce(Communicator& communicator, int root, std::span<T> values, const Op&
   }
 }
 
-// The same on every rank. Recursive doubling on the largest power of two, the other ranks folded in
-// first and told last (Thakur, Rabenseifner and Gropp 2005): at most 2 + log2 n rounds.
+// As reduce, with the result on every rank. Recursive doubling on the largest power of two, the
+// other ranks folded in first and told last (Thakur, Rabenseifner and Gropp 2005): at most 2 + log2
+// n rounds.
 template <class T, class Op>
 void all_reduce(Communicator& communicator, std::span<T> values, const Op& op) {
   const Buffer result =

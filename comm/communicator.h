@@ -42,7 +42,7 @@ struct Deadline {
   static Deadline in(std::chrono::nanoseconds wait) { return {wait}; }
 };
 
-// What a rank is busy with, for ledgers and timelines.
+// The phase that a rank is in, for ledgers and timelines.
 enum class Phase : std::uint8_t {
   other,
   load,
@@ -59,7 +59,7 @@ enum class Phase : std::uint8_t {
 inline constexpr int kPhases = static_cast<int>(Phase::collective) + 1;
 const char* name(Phase phase);
 
-// What `work` counts; the simulated machine turns an amount into time.
+// The units that `work` counts; the simulated machine turns an amount into time.
 enum class Work : std::uint8_t {
   seconds_e9,  // nanoseconds that the caller measured or wishes to spend
   pixels_composited,
@@ -90,7 +90,7 @@ class Communicator {
   // Hands `message` over; never blocks. A rank may send to itself. Any size, 2 GiB and more
   // included. Every message should be received before the communicator is destroyed.
   virtual void send(int to, Tag tag, Buffer&& message) = 0;
-  // The same message to several ranks: counts as a send to each, in this order, and is one unless
+  // Sends one message to several ranks: counts as a send to each, in this order, and is one unless
   // the communicator knows better. A bus that all ranks listen to carries it once
   // (Network::is_bus).
   virtual void multicast(std::span<const int> to, Tag tag, Buffer&& message);

@@ -1,4 +1,4 @@
-// What the ranks of a run did, in program order: the raw material of counts, timelines and
+// The events of a run's ranks, in program order: the raw material of counts, timelines and
 // predictions.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What messages and work cost on a machine: the models that drive the simulated one.
+// Costs of messages and work on a machine: the models that drive the simulated one.
 #pragma once
 
 #include <array>

@@ -25,8 +25,8 @@ class Query {
   // the nearest of n^(1/3) vertices (Muecke, Saias, Zhu 1999): O(n^(1/3)) expected for evenly
   // spread points.
   std::uint32_t locate(const glm::dvec3& q) const;
-  // The same from a simplex that is thought to be near: the answer to the question before. Throws
-  // std::invalid_argument for a simplex that does not exist; kNone: none is.
+  // As above, walking from a simplex that is thought to be near, such as the previous answer.
+  // Throws std::invalid_argument for a simplex that does not exist; kNone: none is.
   std::uint32_t locate(const glm::dvec3& q, std::uint32_t near) const;
 
   // The vertex nearest to q by squared distances as doubles give them, or kNone if there are no

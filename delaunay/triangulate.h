@@ -12,7 +12,7 @@
 
 namespace delray::delaunay {
 
-// What the threads of the methods with locks did about each other, summed over threads. 0 where a
+// Counts of how threads of the methods with locks met, summed over threads. 0 where a
 // method does not have it.
 struct Synchronization {
   std::uint64_t lock_calls = 0;      // each for all simplices that the next step needs
@@ -70,7 +70,7 @@ struct Options {
 // std::bad_alloc.
 Triangulation triangulate(PointView<double> points, const Options& options = {});
 
-// The same of floats, each as the double that equals it: 8 * dim bytes a point more.
+// Triangulates floats, each as the double that equals it: 8 * dim bytes a point more.
 Triangulation triangulate(PointView<float> points, const Options& options = {});
 
 }  // namespace delray::delaunay

@@ -1,4 +1,4 @@
-// What kind of file a file is: by its content, then by its suffix.
+// The format of a file: by its content, then by its suffix.
 #pragma once
 
 #include <array>
@@ -85,7 +85,7 @@ struct FileKind {
 // has no other mark). `has_faces` of an OBJ is what `start` shows. O(start).
 FileKind identify(std::string_view start, std::uint64_t size, const std::filesystem::path& path);
 
-// The same for a file or stream: reads its first megabyte, and as much of an OBJ as is needed to
+// Identifies a file or stream: reads its first megabyte, and as much of an OBJ as is needed to
 // find a face. Throws FileError (input) if it cannot be read.
 FileKind identify(const std::filesystem::path& path, const MemoryBudget& memory = {});
 

@@ -27,7 +27,7 @@ struct Balance {
 // Throws std::invalid_argument for a region of another owner. REQUIRES: costs as for make_costs.
 Balance balance(const Partition& partition, std::span<const WeightedBox> boxes, int owners);
 
-// What there is to say of a partition before anything is rendered. Afterwards imbalance() of the
+// The quality of a partition before anything is rendered. Afterwards imbalance() of the
 // ranks' busy times tells what the prediction was worth.
 struct PartitionReport {
   Partition partition;

@@ -1,4 +1,4 @@
-// What rasterization costs, from what is known before it: triangles and pixels.
+// The cost of rasterization, from what is known before it: triangles and pixels.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct RasterCostModel {
   }
 };
 
-// What somebody did and how long it took.
+// The work of one owner and how long it took.
 struct RasterSample {
   double triangles = 0, pixels = 0, seconds = 0;
 };

@@ -1,4 +1,4 @@
-// What a partition knows of the work: a grid of costs and boxes with weights, never primitives.
+// The costs that a partition is cut by: a grid of costs and boxes with weights, never primitives.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ class KeptPartition {
   // The partition for a frame with these costs: the last one, or a new one where the last would not
   // do or was for another frame. The reference stays valid until the next call. O(loads) when kept.
   const Partition& next(const Costs& costs);
-  // The same for all ranks together: rank 0, whose costs alone count, decides and cuts, and tells
+  // As above, for all ranks together: rank 0, whose costs alone count, decides and cuts, and tells
   // the others. Collective: a broadcast of the regions, kept or not.
   const Partition& next(const Costs& costs, comm::Communicator& communicator);
 
@@ -31,7 +31,8 @@ class KeptPartition {
     return partition_;
   }
 
-  // What next returned last: to scale costs to what it took with. Without regions before that.
+  // The partition that next returned last: to scale costs by the times it took. Without regions
+  // before that.
   const Partition& last() const { return partition_; }
   std::uint64_t frames() const { return frames_; }
   std::uint64_t recomputed() const { return recomputed_; }

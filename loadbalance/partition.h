@@ -10,8 +10,8 @@
 
 namespace delray::loadbalance {
 
-// What an owner has of the frame need not be a rectangle, nor in one piece: it is all regions with
-// its number.
+// A rectangle of the frame and its owner. An owner's part of the frame is all regions with its
+// number: it need not be a rectangle, nor in one piece.
 struct Region {
   geometry::Rect rect;
   int owner = 0;

@@ -49,7 +49,7 @@ struct Interval {
   double begin = 0, end = 0;  // Communicator::seconds
 };
 
-// What a rank did, counted; times measured.
+// The work of one rank, counted; times measured.
 struct ScheduleCounts {
   std::int32_t rank = 0, threads = 0;
   std::uint64_t tasks = 0;

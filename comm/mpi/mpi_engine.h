@@ -29,7 +29,7 @@ bool completed(std::vector<MPI_Request>& requests);
 
 class Port;
 
-// What the communicators that come from one MPI communicator share.
+// The state that communicators that come from one MPI communicator share.
 struct Engine {
   MpiOptions options;
   MPI_Comm root = MPI_COMM_NULL;
@@ -40,7 +40,8 @@ struct Engine {
   std::int64_t switches = 0;          // how often this thread had lost its core by then
   Clock::time_point start = Clock::now();
   Phase phase = Phase::other;
-  // What was sent, and what came but was never received. Front to back in the order of the calls.
+  // Messages that were sent, and those that came but were never received. Front to back in the
+  // order of the calls.
   std::deque<Transfer> unfinished;
   std::size_t next_sweep = 64;
   // MPI communicators, `root` first, the others in the order in which they were made; all live to
@@ -56,8 +57,8 @@ struct Engine {
 
   // Ends all ranks.
   [[noreturn]] void end(const std::string& why) const;
-  // The same, naming the rank that does not wait itself, where this machine's memory tells: of
-  // those that a chain of waiting ranks leads to, or the first that waits for nobody where any
+  // Ends all ranks and names the rank that does not wait itself, where this machine's memory tells:
+  // of those that a chain of waiting ranks leads to, or the first that waits for nobody where any
   // would do. `waits_for` is a rank of `root` or kAnyRank.
   [[noreturn]] void end_stalled(const std::string& why, int waits_for) const;
 };

@@ -126,7 +126,8 @@ class Cavity {
   enum class Conflict { kNo, kYes, kForeign };
   Conflict ghost_conflict(CornerNumber corner, const glm::dvec3& q) const;
 
-  // The same, if that is known of the vertices but the one in this corner.
+  // Whether the region owns a simplex of which all vertices but the one in this corner are known to
+  // be in it.
   bool owns_across(CornerNumber corner) const {
     if constexpr (std::is_same_v<Region, Everywhere>) return true;
     const VertexNumber vertex = mesh_.vertex(corner);
@@ -141,7 +142,7 @@ class Cavity {
   void fill(VertexNumber vertex);
   void connect();
   void connect_by_sorting();
-  // Without a branch that nobody could foresee. REQUIRES: a finite vertex; room for one more name.
+  // Branchless: the outcome is unpredictable. REQUIRES: a finite vertex; room for one more name.
   std::uint32_t place_of(VertexNumber vertex, VertexNumber* names, std::uint32_t& count) {
     std::uint32_t& local = vertices_[vertex + 1U].local;
     const std::uint32_t guess = local < count ? local : 0;

@@ -276,7 +276,7 @@ class Divider {
     return Part{at(left), at(right), at(bottom), at(top)};
   }
 
-  // Lexicographically, without branches: nobody can guess the outcome.
+  // Lexicographic order. Branchless: the outcome is unpredictable.
   static bool before(double a, double b, double c, double d) {
     return static_cast<bool>(static_cast<int>(a < c) |
                              (static_cast<int>(a == c) & static_cast<int>(b < d)));
@@ -295,7 +295,7 @@ class Divider {
   }
 
   // Merges the ranges before and after `split`: the second lies to the right of the first, or above
-  // it. What follows speaks of left and right; a quarter turn makes that of below and above.
+  // it. The merge speaks of left and right; a quarter turn makes those below and above.
   Part merge(const Part& first, const Part& second, std::size_t split, bool by_y) {
     const auto spare = static_cast<SimplexNumber>(2 * split - 2);
     const auto [lower, upper] =

@@ -53,7 +53,7 @@ class Dag {
     // 4 times the first child and one less than they are, or 4 times the record of a leaf.
     std::uint32_t family;
   };
-  // What only leaves need.
+  // The data that only leaves need.
   struct Record {
     std::array<CornerNumber, kCorners> neighbours;
     // Low half: the node; high half: 1 + the number of the thread that has locked it, or 0.
@@ -78,7 +78,7 @@ class Dag {
     if (ahead != nullptr) atomic(ahead->family).fetch_or(0, std::memory_order_relaxed);
     return first;
   }
-  // The same of records.
+  // The first of kCacheSize records for the calling thread alone.
   RecordNumber allocate_records() {
     RecordNumber first = 0;
     Record* ahead = nullptr;
@@ -143,8 +143,8 @@ class Dag {
         .store(beyond, std::memory_order_release);
   }
 
-  // The same of what may be no leaf any more, or become none meanwhile, or not be complete:
-  // kNoCorner then, or its neighbour at some time.
+  // As neighbour(), of a node that may be no leaf any more, or become none meanwhile, or not be
+  // complete: kNoCorner then, or its neighbour at some time.
   CornerNumber neighbour_if_leaf(CornerNumber corner) const {
     const NodeNumber node = simplex_of(corner);
     const RecordNumber record = record_if_leaf(node);

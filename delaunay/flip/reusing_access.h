@@ -40,7 +40,7 @@ class ReusingAccess {
   }
 
   SimplexNumber used() const { return used_; }
-  // What was created last, which is alive between insertions.
+  // The simplex created last, which is alive between insertions.
   SimplexNumber last() const { return last_; }
 
  private:

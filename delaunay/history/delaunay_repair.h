@@ -18,7 +18,7 @@ namespace delray::delaunay::internal {
 // triangulation without flat triangles.
 std::uint64_t repair(const DagTriangulation<2>& triangulation, std::size_t threads);
 
-// The same of facets. In space such flips may get stuck before they are done: then none.
+// Flips facets likewise. In space such flips may get stuck before they are done: then none.
 std::optional<std::uint64_t> repair(const DagTriangulation<3>& triangulation, std::size_t threads);
 
 }  // namespace delray::delaunay::internal

@@ -28,7 +28,7 @@ class LeafSearch {
     last_ = node;
     return node;
   }
-  // The same after what was found is no leaf any more, or could not be had.
+  // As find(), after the node that it found is no leaf any more, or could not be acquired.
   template <class Point>
   NodeNumber find_below(NodeNumber node, const Point& q) {
     // Somebody may have undone what the walk has led to.

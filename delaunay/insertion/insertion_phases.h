@@ -22,7 +22,7 @@ class InsertionPhases {
     if (progress_ != nullptr && ++points_ == kPointsPerStep) report();
     if (timed()) watch_.lap();
   }
-  // What came before is nobody's.
+  // The time up to here belongs to no phase.
   void resume() {
     if (timed()) watch_.lap();
   }

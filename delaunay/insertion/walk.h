@@ -24,7 +24,7 @@ struct Place {
 Place walk(const Mesh<2>& mesh, std::span<const glm::dvec2> points, SimplexNumber start,
            const glm::dvec2& q, std::uint32_t& random);
 
-// The same in space and among the ghosts too, which `orientation` spreads over what is outside: the
+// Walks in space, and among the ghosts too, which `orientation` spreads over what is outside: the
 // simplex contains q, its boundary included, in that sense. O(n^(1/3)) expected from anywhere.
 // REQUIRES: the mesh is Delaunay (then no such walk goes round in circles; Edelsbrunner 1990).
 Place walk(const Mesh<3>& mesh, const Orientation<3>& orientation, SimplexNumber start,

@@ -26,8 +26,8 @@ struct CurveOrder3d {
   std::vector<std::uint32_t> rounds;  // where the rounds begin, and the number of points
 };
 
-// What SphereTests want to know. Errors: std::invalid_argument that names the first row with a
-// coordinate that is not finite.
+// The range of points that SphereTests need. Errors: std::invalid_argument that names the first row
+// with a coordinate that is not finite.
 PointRange finite_range(const PointView<double>& points, int threads = 1);
 
 // Random rounds of growing size, each along a Hilbert curve (Amenta, Choi and Rote 2003): radix
