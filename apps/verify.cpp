@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/input/point_input.h"
@@ -33,6 +34,10 @@ struct Matched {
   std::vector<std::uint32_t> rows;       // of each vertex; none where they are numbered alike
   std::size_t points = 0;                // of the file
   std::size_t distinct = 0, unused = 0;  // not known of rows
+  // Of 2D: what came of comparing z, and the first vertex of a simplex with another than its point.
+  const char* heights = "";
+  std::optional<std::size_t> other_height;
+  double height = 0.0;  // of the point that vertex is
   bool by_rows() const { return rows.empty(); }
 };
 
@@ -40,24 +45,41 @@ std::string place_of(const glm::dvec3& p, int dim) {
   return dim == 2 ? fmt::format("({}, {})", p.x, p.y) : fmt::format("({}, {}, {})", p.x, p.y, p.z);
 }
 
+bool has_heights(const delaunay::PointCloud& cloud) {
+  return cloud.has_z &&
+         std::ranges::any_of(cloud.positions, [](const glm::dvec3& p) { return p.z != 0.0; });
+}
+
+// Vertices of no simplex are other rows of places with several heights, which keep their own.
+void compare_heights(const delaunay::PointMesh& mesh, const delaunay::PointCloud& points,
+                     Matched& matched) {
+  matched.heights = "equal";
+  for (const std::uint32_t v : mesh.triangulation.vertices) {
+    const double z = points.positions[matched.by_rows() ? v : matched.rows[v]].z;
+    if (mesh.points.positions[v].z == z || v >= matched.other_height.value_or(mesh.points.size()))
+      continue;
+    matched.heights = "different";
+    matched.other_height = v;
+    matched.height = z;
+  }
+}
+
 // Throws FileError where a vertex of the mesh is not a point, or might be several. Gives vertices
 // with coordinates of 32 bits those of their points.
-Matched match(const VerifyOptions& options, delaunay::PointMesh& mesh,
-              const delaunay::PointCloud& points) {
+Matched match_places(const VerifyOptions& options, delaunay::PointMesh& mesh,
+                     const delaunay::PointCloud& points) {
   Matched matched;
-  matched.points = points.size();
   const auto vertex_view = delaunay::view(mesh.points.positions);
   const auto point_view = delaunay::view(points.positions);
   const bool rounded = mesh.has_float_coordinates;
   if (!rounded && !delaunay::first_different_row(vertex_view, point_view, options.dim)) {
     return matched;
   }
-  const bool has_heights =
-      points.has_z &&
-      std::ranges::any_of(mesh.points.positions, [](const glm::dvec3& p) { return p.z != 0; });
-  const delaunay::PointMatch found = delaunay::match_points(
-      vertex_view, point_view,
-      {.dim = options.dim, .as_floats = rounded, .with_z = rounded && has_heights});
+  const delaunay::PointMatch found =
+      delaunay::match_points(vertex_view, point_view,
+                             {.dim = options.dim,
+                              .as_floats = rounded,
+                              .with_z = rounded && points.has_z && has_heights(mesh.points)});
   const auto fail = [&](std::size_t vertex, const std::string& what) {
     throw files::FileError(
         files::Cause::input, options.mesh, fmt::format("vertex {}", vertex),
@@ -78,6 +100,22 @@ Matched match(const VerifyOptions& options, delaunay::PointMesh& mesh,
   return matched;
 }
 
+Matched match(const VerifyOptions& options, delaunay::PointMesh& mesh,
+              const delaunay::PointCloud& points) {
+  const bool mesh_has_heights = has_heights(mesh.points);
+  Matched matched = match_places(options, mesh, points);
+  matched.points = points.size();
+  if (options.dim == 3) return matched;
+  if (points.has_z && mesh_has_heights) {
+    compare_heights(mesh, points, matched);
+  } else if (mesh_has_heights) {
+    matched.heights = "not compared: the points have none";
+  } else if (has_heights(points)) {
+    matched.heights = "not compared: the mesh has none";
+  }
+  return matched;
+}
+
 // With the points' rows as vertices, as `triangulate` counts them.
 std::string hash_of(const delaunay::PointMesh& mesh, const Matched& matched) {
   if (matched.by_rows()) return to_string(hash(mesh.triangulation));
@@ -87,11 +125,14 @@ std::string hash_of(const delaunay::PointMesh& mesh, const Matched& matched) {
 }
 
 std::string what_was_checked(const delaunay::PointMesh& mesh, const Matched& matched) {
+  const std::string heights =
+      *matched.heights != '\0' ? fmt::format("; heights are {}", matched.heights) : "";
   if (matched.by_rows()) {
-    return fmt::format("{} vertices, each the point of its row", mesh.points.size());
+    return fmt::format("{} vertices, each the point of its row{}", mesh.points.size(), heights);
   }
-  return fmt::format("{} vertices, each a point by its {}; {} of {} distinct points are no vertex",
-                     mesh.points.size(), matched.how, matched.unused, matched.distinct);
+  return fmt::format(
+      "{} vertices, each a point by its {}; {} of {} distinct points are no vertex{}",
+      mesh.points.size(), matched.how, matched.unused, matched.distinct, heights);
 }
 
 Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh,
@@ -106,6 +147,7 @@ Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh
         {"vertices", mesh.points.size()},
         {"matched", matched.how},
         {"unused", matched.unused},
+        {"heights", matched.heights},
         {"distinct", matched.by_rows() ? verdict.distinct : matched.distinct},
         {"simplices", mesh.triangulation.size()},
         {"hash", hash_of(mesh, matched)},
@@ -131,7 +173,7 @@ int run(const VerifyOptions& options) {
       options.dim, delaunay::view(mesh.points.positions), mesh.triangulation.vertices);
 
   const bool good = (options.canonical ? verdict.canonical : verdict.delaunay) &&
-                    !(options.complete && matched.unused > 0);
+                    !(options.complete && matched.unused > 0) && !matched.other_height;
   const std::string where = verdict.simplex ? fmt::format("simplex {}: ", *verdict.simplex) : "";
   write_statistics(options.statistics, statistics_of(options, mesh, matched, verdict));
   if (!verdict.reason.empty()) {
@@ -141,6 +183,14 @@ int run(const VerifyOptions& options) {
     } else {
       spdlog::error("{}: {}{}{}", options.mesh, where, verdict.reason, rows);
     }
+  }
+  if (matched.other_height) {
+    const std::size_t v = *matched.other_height;
+    spdlog::error("{}: vertex {}: the height is {}, that of the point {} is {}{}", options.mesh, v,
+                  mesh.points.positions[v].z, place_of(mesh.points.positions[v], 2), matched.height,
+                  options.points.duplicates.empty()
+                      ? " (of points in one place --duplicates says which counts)"
+                      : "");
   }
   if (matched.unused > 0) {
     const std::string text =
@@ -166,7 +216,12 @@ void add_verify(CLI::App& program, Session& session) {
   CLI::App* command = program.add_subcommand(
       "verify", "Check a triangulation against its points, with exact arithmetic");
   const auto options = std::make_shared<VerifyOptions>();
-  command->add_option("MESH", options->mesh, "Triangulation to check")->group(group::kInput);
+  command
+      ->add_option(
+          "MESH", options->mesh,
+          "Triangulation to check: the exit code is 0 if it is what the options demand, 4 if it is "
+          "not, 3 if a vertex is none of the points")
+      ->group(group::kInput);
   command
       ->add_option("--points", options->points.path,
                    "Points that MESH should be the triangulation of")

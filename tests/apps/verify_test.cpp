@@ -82,6 +82,45 @@ TEST(VerifyCommand, RefusesStlThatMayBeOfSeveralPoints) {
   EXPECT_NE(ran.err.find("row 1 or row 2"), std::string::npos) << ran.err;
 }
 
+TEST(VerifyCommand, ComparesHeights) {
+  const Folder folder;
+  folder.write("p.xyz", hill());
+  for (const std::string format : {"ply", "obj", "off", "vtu", "node"}) {
+    const std::string mesh = "m." + format;
+    ASSERT_EQ(run("delray triangulate p.xyz -o " + mesh, folder.path()).exit_code, 0);
+    const Ran ran = run("delray verify --points p.xyz " + mesh, folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("heights are equal"), std::string::npos) << format << ran.out;
+  }
+  folder.write("q.xyz", "0 0 3.7\n4 0 1\n4 5 2\n0 4 3\n");
+  const std::string faces = "3 0 1 3\n3 1 2 3\n";
+  const std::string rest = "4 0 1\n4 5 2\n0 4 3\n" + faces;
+  folder.write("bad.off", "OFF\n4 2 0\n0 0 999\n" + rest);
+  folder.write("rows.off", "OFF\n4 2 0\n0 4 3\n0 0 3.7\n4 0 7\n4 5 2\n3 1 2 0\n3 2 3 0\n");
+  folder.write("flat.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 5 0\n0 4 0\n" + faces);
+  const Ran bad = run("delray verify bad.off --points q.xyz --stats s.json", folder.path());
+  EXPECT_EQ(bad.exit_code, 4);
+  EXPECT_NE(bad.err.find("vertex 0: the height is 999"), std::string::npos) << bad.err;
+  EXPECT_EQ(json::parse(folder.read("s.json"))["result"]["heights"], "different");
+  const Ran rows = run("delray verify rows.off --points q.xyz", folder.path());
+  EXPECT_EQ(rows.exit_code, 4);
+  EXPECT_NE(rows.err.find("vertex 2: the height is 7"), std::string::npos) << rows.err;
+  const Ran flat = run("delray verify flat.off --points q.xyz", folder.path());
+  EXPECT_EQ(flat.exit_code, 0) << flat.err;
+  EXPECT_NE(flat.out.find("the mesh has none"), std::string::npos) << flat.out;
+}
+
+TEST(VerifyCommand, OfSeveralHeightsOneCounts) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0 1\n4 0 1\n4 5 2\n0 4 3\n0 0 2\n");
+  ASSERT_EQ(run("delray triangulate p.xyz --duplicates mean -o m.off", folder.path()).exit_code, 0);
+  const std::string verify = "delray verify m.off --points p.xyz";
+  EXPECT_EQ(run(verify + " --duplicates mean", folder.path()).exit_code, 0);
+  const Ran first = run(verify, folder.path());
+  EXPECT_EQ(first.exit_code, 4);
+  EXPECT_NE(first.err.find("--duplicates"), std::string::npos) << first.err;
+}
+
 TEST(VerifyCommand, TakesVerticesInAnyOrder) {
   const Folder folder;
   folder.write("p.xyz", "0 0\n4 0\n5 5\n0 4\n2 2\n2 2\n");
