@@ -20,7 +20,7 @@ class FileError : public std::runtime_error {
   // `file` is the name as the user gave it ("-" for a stream), `place` a line, byte or element
   // ("line 12", "byte 1040", "accessor 3"), empty where there is none.
   FileError(Cause cause, std::string file, std::string place, const std::string& what)
-      : std::runtime_error(file + (place.empty() ? "" : ": " + place) + ": " + what),
+      : std::runtime_error(without_end(file + (place.empty() ? "" : ": " + place) + ": " + what)),
         cause_(cause),
         file_(std::move(file)),
         place_(std::move(place)) {}
@@ -30,6 +30,14 @@ class FileError : public std::runtime_error {
   const std::string& place() const { return place_; }
 
  private:
+  // what() would end at a zero byte, which a name in a file may hold.
+  static std::string without_end(std::string text) {
+    for (std::size_t at = 0; (at = text.find('\0', at)) != std::string::npos;) {
+      text.replace(at, 1, "\\x00");
+    }
+    return text;
+  }
+
   Cause cause_;
   std::string file_, place_;
 };

@@ -18,7 +18,9 @@ bool lies_in(const std::filesystem::path& folder, const std::filesystem::path& p
 
 std::filesystem::path resolve(const std::filesystem::path& folder, const std::string& name,
                               Outside outside) {
-  const auto fail = [&](const std::string& what) { throw FileError(Cause::input, name, "", what); };
+  const auto fail = [&](const std::string& what) {
+    throw FileError(Cause::input, name.empty() ? "''" : name, "", what);
+  };
   if (name.empty() || name.find('\0') != std::string::npos) fail("is not the name of a file");
   std::string portable = name;
   std::replace(portable.begin(), portable.end(), '\\', '/');

@@ -79,5 +79,18 @@ TEST_F(Resolve, FindsNothingBesideWhatIsNotThere) {
   fs::current_path(here);
 }
 
+// what() of an exception would end at the zero byte.
+TEST_F(Resolve, WhatIsNoNameIsToldWithItsReason) {
+  for (const std::string& name : {std::string("\0.png", 5), std::string()}) {
+    try {
+      found(name);
+      ADD_FAILURE() << name.size();
+    } catch (const FileError& error) {
+      const std::string expected = name.empty() ? "''" : "\\x00.png";
+      EXPECT_EQ(std::string(error.what()), expected + ": is not the name of a file");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace delray::files
