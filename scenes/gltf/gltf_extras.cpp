@@ -12,9 +12,7 @@ glm::vec3 direction(const JsonView& json, const glm::vec3& otherwise) {
   return glm::length(v) > 0 ? glm::vec3(v) : otherwise;
 }
 
-glm::vec3 radiance(const JsonView& json) {
-  return glm::max(json.vector<3>({0, 0, 0}), glm::dvec3(0));
-}
+glm::vec3 radiance(const JsonView& json) { return json.non_negative_vector<3>({0, 0, 0}); }
 
 }  // namespace
 

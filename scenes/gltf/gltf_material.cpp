@@ -196,8 +196,8 @@ GltfMaterial read_material(const Reader& reader, const JsonView& json) {
   material.normal_scale = static_cast<float>(json["normalTexture"]["scale"].number(1));
   const JsonView extensions = json["extensions"];
   const double strength =
-      extensions["KHR_materials_emissive_strength"]["emissiveStrength"].number(1, 0, 1e18);
-  material.emission = nonnegative(json["emissiveFactor"].vector<3>({0, 0, 0}) * strength);
+      extensions["KHR_materials_emissive_strength"]["emissiveStrength"].non_negative(1);
+  material.emission = json["emissiveFactor"].non_negative_vector<3>({0, 0, 0}) * strength;
   material.emission_texture = reader.texture(json["emissiveTexture"], true, uvs);
   material.alpha = alpha_mode(json["alphaMode"]);
   material.alpha_cutoff = static_cast<float>(json["alphaCutoff"].number(0.5, 0, 2));

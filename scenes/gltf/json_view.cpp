@@ -45,6 +45,12 @@ double JsonView::number(double otherwise, double low, double high) const {
   return std::clamp(number(otherwise), low, high);
 }
 
+double JsonView::non_negative(double otherwise) const {
+  const double value = number(otherwise);
+  if (value < 0) fail("should not be negative");
+  return value;
+}
+
 std::uint64_t JsonView::whole(std::uint64_t otherwise) const { return json_ ? whole() : otherwise; }
 
 std::uint64_t JsonView::whole() const {

@@ -34,6 +34,7 @@ class JsonView {
 
   double number(double otherwise) const;  // finite, at most 1e18 in magnitude
   double number(double otherwise, double low, double high) const;  // clamped
+  double non_negative(double otherwise) const;                     // finite, from 0 to 1e18
   // A whole number from 0 to 2^53.
   std::uint64_t whole(std::uint64_t otherwise) const;
   std::uint64_t whole() const;
@@ -48,6 +49,13 @@ class JsonView {
     if (size() != static_cast<std::size_t>(N)) fail("needs " + std::to_string(N) + " numbers");
     glm::vec<N, double> v;
     for (int i = 0; i < N; ++i) v[i] = (*this)[static_cast<std::size_t>(i)].number(0);
+    return v;
+  }
+
+  template <int N>
+  glm::vec<N, double> non_negative_vector(const glm::vec<N, double>& otherwise) const {
+    const glm::vec<N, double> v = vector<N>(otherwise);
+    for (int i = 0; json_ && i < N; ++i) (*this)[static_cast<std::size_t>(i)].non_negative(0);
     return v;
   }
 

@@ -186,8 +186,8 @@ class Placer {
   void place_light(const JsonView& json, const glm::dmat4& world) {
     const std::string type = json["type"].text();
     Light light;
-    light.colour = glm::max(json["color"].vector<3>({1, 1, 1}), glm::dvec3(0)) *
-                   json["intensity"].number(1, 0, 1e18);
+    light.colour =
+        json["color"].non_negative_vector<3>({1, 1, 1}) * json["intensity"].non_negative(1);
     light.position = glm::dvec3(world[3]);
     light.direction = -unit_or(glm::dvec3(world[2]), {0, 0, 1});
     light.kind = type == "directional" ? Light::Kind::directional : Light::Kind::point;

@@ -4,6 +4,8 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "files/error.h"
 #include "files/read_file.h"
@@ -274,6 +276,37 @@ TEST(BrokenFile, EveryFileOfTheCorpusIsReadOrRefused) {
     ++files;
   }
   EXPECT_GT(files, 0) << corpus;
+}
+
+TEST(BrokenGltf, LightIsNeverNegative) {
+  const tests::TemporaryFolder folder;
+  const auto document = [](const std::string& light, const std::string& emission,
+                           const std::string& sky) {
+    return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0],
+      "extras": {"delray": {"environment": {"zenith": )" +
+           sky +
+           R"(}}}}],
+      "nodes": [{"mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+      "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+           R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "materials": [{"emissiveFactor": )" +
+           emission + R"(}], "extensions": {"KHR_lights_punctual": {"lights": [)" + light + "]}}}";
+  };
+  const std::string light = R"({"type": "point", "intensity": 1})";
+  const std::string negative = "should not be negative";
+  for (const auto& [content, place] : std::vector<std::pair<std::string, std::string>>{
+           {document(R"({"type": "point", "intensity": -5})", "[0, 0, 0]", "[1, 1, 1]"),
+            "lights[0].intensity"},
+           {document(R"({"type": "point", "color": [1, -1, 1]})", "[0, 0, 0]", "[1, 1, 1]"),
+            "lights[0].color[1]"},
+           {document(light, "[0, 0, -2]", "[1, 1, 1]"), "materials[0].emissiveFactor[2]"},
+           {document(light, "[0, 0, 0]", "[-1, 1, 1]"), "environment.zenith[0]"}}) {
+    const std::string why = refusal(folder, "a.gltf", content);
+    EXPECT_NE(why.find(place + ": " + negative), std::string::npos) << why;
+  }
 }
 
 }  // namespace
