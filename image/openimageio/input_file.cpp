@@ -107,11 +107,31 @@ InputFile::InputFile(const Encoded& from) : name_(from.name), budget_(from.memor
   format_ = format_of_content(start);
   if (format_.empty() && !bytes_) format_ = format_of_suffix(name_);
   check_canvas(start);
+  check_png(png_header_fault);
   open(bytes_ ? format_ : name_, reading_hints());
 }
 
 void InputFile::fail(const std::string& what) const {
   throw files::FileError(files::Cause::input, name_, "", what);
+}
+
+// Of the messages that pile up in a reader the first says what happened, the others repeat it.
+void InputFile::fail_as_damaged() const {
+  const std::string all = input_->geterror();
+  const std::string first = all.substr(0, all.find('\n'));
+  fail("is a damaged picture" + (first.empty() ? "" : ": " + first));
+}
+
+void InputFile::check_png(std::string (*fault)(OIIO::Filesystem::IOProxy&)) const {
+  if (format_ != "png") return;
+  std::string what;
+  if (bytes_) {
+    what = fault(*bytes_);
+  } else {
+    OIIO::Filesystem::IOFile file(name_, OIIO::Filesystem::IOProxy::Read);
+    what = fault(file);
+  }
+  if (!what.empty()) fail("is a damaged picture: " + what);
 }
 
 void InputFile::open(const std::string& name, const OIIO::ImageSpec& hints) {
@@ -131,8 +151,7 @@ void InputFile::open(const std::string& name, const OIIO::ImageSpec& hints) {
     fail(std::string("is a damaged picture: ") + error.what());
   }
   if (!opened) {
-    const std::string what = input_->geterror();
-    fail("is a damaged picture" + (what.empty() ? "" : ": " + what));
+    fail_as_damaged();
   }
   check_header();
 }
@@ -208,8 +227,7 @@ void InputFile::read_rows(int y, int rows, OIIO::TypeDesc type, void* values) {
   }
   // Some readers fill up what is missing, report success, and leave a message.
   if (!done || input_->has_error()) {
-    const std::string what = input_->geterror();
-    fail("is a damaged picture" + (what.empty() ? "" : ": " + what));
+    fail_as_damaged();
   }
 }
 

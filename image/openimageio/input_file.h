@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "image/openimageio/codec.h"
+#include "image/openimageio/png_faults.h"
 
 namespace delray::image::openimageio {
 
@@ -34,6 +35,7 @@ class InputFile {
   // is T's.
   template <class T, class Visit>
   void read(OIIO::TypeDesc type, Visit&& visit) {
+    check_png(png_pixels_fault);
     const int step = rows_per_block();
     std::vector<T> block(static_cast<std::size_t>(std::min(step, spec_.height)) *
                          static_cast<std::size_t>(spec_.width) *
@@ -47,6 +49,8 @@ class InputFile {
 
  private:
   void open(const std::string& name, const OIIO::ImageSpec& hints);
+  [[noreturn]] void fail_as_damaged() const;  // with the reader's reason
+  void check_png(std::string (*fault)(OIIO::Filesystem::IOProxy&)) const;  // of others nothing
   void check_canvas(std::string_view start) const;
   void check_size(std::uint64_t width, std::uint64_t height, std::uint64_t pixel_bytes) const;
   void check_header() const;

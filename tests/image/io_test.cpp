@@ -10,6 +10,7 @@
 #include <fstream>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "files/error.h"
 #include "files/read_file.h"
@@ -373,6 +374,74 @@ TEST_F(Io, DamagedBytesNeverCrash) {
         EXPECT_EQ(error.file(), path(name).string());
       }
     }
+  }
+}
+
+std::string from_hex(std::string_view digits) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
+    bytes.push_back(static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16)));
+  }
+  return bytes;
+}
+
+const std::string kPng = "89504e470d0a1a0a0000000d49484452";  // and what the header says
+
+// 5 x 3 pixels of a palette, two bits each, interlaced.
+TEST_F(Io, InterlacedPalettesAreRead) {
+  put("a.png",
+      from_hex(kPng + "00000005000000030203000001515f1dfd0000000c504c5445000000ff000000ff000000ff"
+                      "9bc013dc000000154944415478da6360008206860e8602860b0c390e00104702f5b2b6abbe"
+                      "0000000049454e44ae426082"));
+  const Texels texels = read_texels(path("a.png"));
+  ASSERT_EQ(texels.width, 5);
+  ASSERT_EQ(texels.height, 3);
+  EXPECT_EQ(texels.texels[0], (Rgba8{0, 0, 0, 255}));
+  EXPECT_EQ(texels.texels[1], (Rgba8{255, 0, 0, 255}));
+  EXPECT_EQ(texels.texels[14], (Rgba8{0, 255, 0, 255}));
+}
+
+// libpng would write to standard error.
+TEST_F(Io, DamagedPngIsOneLineAndNothingOnStandardError) {
+  const std::string end = "0000000049454e44ae426082";
+  write_image(path("whole.png"), opaque_or_clear(64, 64));
+  const std::string whole = files::read_file(path("whole.png"));
+  std::string flipped = whole;
+  flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 1);
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"has no header", whole.substr(0, 8) + "abcabcabcabcabcabcabcabcabcabc"},
+      {"ends early", whole.substr(0, whole.size() / 2)},
+      {"checksum", flipped},
+      {"no pixels", from_hex(kPng +
+                             "000000000000000008000000001ee023ce000000084944415478da03000000"
+                             "00016fddc991" +
+                             end)},
+      {"lacks pixels", from_hex(kPng +
+                                "000000040000000408000000008c9ac1a20000000d4944415478da63606462"
+                                "6601000019000b380454b4" +
+                                end)},
+      {"row of pixels", from_hex(kPng +
+                                 "00000002000000010800000000d14920560000000b4944415478da636764"
+                                 "0200001c000b6fe4ccd6" +
+                                 end)},
+      {"no palette", from_hex(kPng +
+                              "00000002000000010803000000c3fc8fb80000000b4944415478da63606000"
+                              "00000300012b094d84" +
+                              end)},
+      {"unknown kind", from_hex(kPng +
+                                "000000020000000103020000000c90d9cc0000000b4944415478da6360600000"
+                                "000300012b094d84" +
+                                end)}};
+  for (const auto& [why, content] : files) {
+    SCOPED_TRACE(why);
+    put("a.png", content);
+    testing::internal::CaptureStderr();
+    const std::string what =
+        expect_file_error(files::Cause::input, path("a.png"), [&] { read_texels(path("a.png")); });
+    EXPECT_THROW(decode_image8(std::as_bytes(std::span(content)), "t"), files::FileError);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_NE(what.find(why), std::string::npos) << what;
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
   }
 }
 
