@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 #include "files/atomic_file.h"
 #include "files/error.h"
@@ -17,8 +19,12 @@
 namespace delray::raytrace {
 namespace {
 
-constexpr std::string_view kMagic = "delray film 1\n";
-constexpr std::size_t kFingerprint = 32, kChecksum = 16;
+// A file is: the magic; the size of the values, and these, a line each, name and value with a tab
+// between them; samples of a pixel, at most; the film: window, samples, costs, sums; the checksum.
+constexpr std::string_view kMagic = "delray film 2\n";
+constexpr std::string_view kAnyMagic = kMagic.substr(0, 12);
+constexpr std::string_view kScene = "scene";
+constexpr std::size_t kChecksum = 16;
 
 static_assert(sizeof(PixelSum) == 6 * sizeof(float) && sizeof(CellCost) == 2 * sizeof(float));
 
@@ -74,6 +80,46 @@ std::string checksum(std::string_view content) {
   return result;
 }
 
+std::string text_of(const Rendering& rendering) {
+  std::string text = fmt::format("{}\t{}\n", kScene, rendering.scene);
+  for (const NamedValue& v : rendering.values) text += v.name + "\t" + v.value + "\n";
+  return text;
+}
+
+// None where it is no such text.
+std::optional<std::vector<NamedValue>> values_in(std::string_view text) {
+  std::vector<NamedValue> values;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::string_view line = text.substr(0, end);
+    const std::size_t tab = line.find('\t');
+    const bool printable =
+        std::ranges::all_of(line, [](char c) { return c == '\t' || (c >= ' ' && c <= '~'); });
+    if (tab == std::string_view::npos || !printable) return std::nullopt;
+    values.push_back({std::string(line.substr(0, tab)), std::string(line.substr(tab + 1))});
+    text.remove_prefix(end + 1);
+  }
+  return values;
+}
+
+std::string value_of(std::string_view name, const std::vector<NamedValue>& values) {
+  const auto found = std::ranges::find(values, name, &NamedValue::name);
+  return found == values.end() ? "nothing" : found->value;
+}
+
+// "--depth 8 there, 2 here; ..."; empty where nothing differs.
+std::string differences(const std::vector<NamedValue>& there, const Rendering& here) {
+  std::string text;
+  for (const NamedValue& v : here.values) {
+    const std::string other = value_of(v.name, there);
+    if (other == v.value) continue;
+    text += fmt::format("{}{} {} there, {} here", text.empty() ? "" : "; ", v.name, other, v.value);
+  }
+  if (text.empty() && value_of(kScene, there) != here.scene) return "of another scene or light";
+  return text;
+}
+
 // Whether a pixel that has got so many samples gets another chunk, or has got all.
 bool is_whole(std::uint32_t samples, int most) {
   if (samples > static_cast<std::uint32_t>(most)) return false;
@@ -109,6 +155,28 @@ const char* fault_of_cell(const Film& film, std::size_t cell, int most) {
   return nullptr;
 }
 
+// Why a film begun for so many samples cannot go on to those of the rendering; null: it can.
+std::string fault_of_samples(const Film& film, int there, const Rendering& here) {
+  if (there == here.samples) return {};
+  const std::string both = fmt::format("--spp {} there, {} here", there, here.samples);
+  if (!here.any_samples) {
+    return both +
+           ": samples lie on a grid of all of them (with path, ao, --noise or --time they "
+           "do not)";
+  }
+  std::uint32_t most = 0;
+  for (const std::uint32_t samples : film.samples()) most = std::max(most, samples);
+  if (most > static_cast<std::uint32_t>(here.samples)) {
+    return fmt::format("{}: there are {} samples per pixel already", both, most);
+  }
+  if (!is_whole(most, here.samples)) {
+    return fmt::format("{}: what would be the next {} samples ends with the first {} there", both,
+                       chunk_size(static_cast<int>(most)),
+                       static_cast<int>(most) % chunk_size(static_cast<int>(most)));
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
@@ -141,10 +209,20 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
   return hasher.digits();
 }
 
-void save_checkpoint(const std::filesystem::path& path, std::string_view fingerprint,
+bool is_checkpoint(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error) &&
+         files::read_start(path, kAnyMagic.size()) == kAnyMagic;
+}
+
+void save_checkpoint(const std::filesystem::path& path, const Rendering& rendering,
                      const Film& film) {
+  const std::string text = text_of(rendering);
+  const std::uint64_t size = text.size();
   std::string content(kMagic);
-  content += fingerprint;
+  append(content, std::span<const std::uint64_t>(&size, 1));
+  content += text;
+  append(content, std::span<const int>(&rendering.samples, 1));
   const geometry::Rect& window = film.window();
   append(content, std::span<const geometry::Rect>(&window, 1));
   append(content, film.samples());
@@ -154,45 +232,58 @@ void save_checkpoint(const std::filesystem::path& path, std::string_view fingerp
   files::write_file(path, content);
 }
 
-Film load_checkpoint(const std::filesystem::path& path, const Resumed& resumed,
+Film load_checkpoint(const std::filesystem::path& path, const Rendering& rendering,
                      const files::MemoryBudget& memory) {
   // What is no checkpoint may have no end.
-  if (files::read_start(path, kMagic.size(), memory) != kMagic) {
+  if (files::read_start(path, kAnyMagic.size(), memory) != kAnyMagic) {
     throw files::FileError(files::Cause::input, path.string(), "", "this is no checkpoint");
   }
-  return parse_checkpoint(files::read_file(path, memory), path.string(), resumed);
+  return parse_checkpoint(files::read_file(path, memory), path.string(), rendering);
 }
 
-Film parse_checkpoint(std::string_view content, const std::string& name, const Resumed& resumed) {
-  const auto fail = [&](const std::string& place, const char* why) {
-    return files::FileError(files::Cause::input, name, place, why);
+Film parse_checkpoint(std::string_view content, const std::string& name,
+                      const Rendering& rendering) {
+  const auto require = [&](bool fine, const std::string& why, const std::string& place = "") {
+    if (!fine) throw files::FileError(files::Cause::input, name, place, why);
   };
+  const std::string damaged = "the checkpoint is damaged";
   std::string_view rest = content;
-  constexpr std::size_t kLeast = kMagic.size() + kFingerprint + sizeof(geometry::Rect) + kChecksum;
-  if (!rest.starts_with(kMagic) || rest.size() < kLeast) throw fail("", "this is no checkpoint");
-  if (checksum(rest.substr(0, rest.size() - kChecksum)) != rest.substr(rest.size() - kChecksum)) {
-    throw fail("", "the checkpoint is damaged");
-  }
+  require(rest.starts_with(kAnyMagic), "this is no checkpoint");
+  require(rest.starts_with(kMagic), "the checkpoint is of another version of delray, or damaged");
+  std::uint64_t size = 0;
+  int samples = 0;
+  geometry::Rect window;
+  constexpr std::size_t kFixed =
+      kMagic.size() + sizeof size + sizeof samples + sizeof window + kChecksum;
+  require(rest.size() >= kFixed, damaged);
+  require(checksum(rest.substr(0, rest.size() - kChecksum)) == rest.substr(rest.size() - kChecksum),
+          damaged);
   rest.remove_suffix(kChecksum);
   rest.remove_prefix(kMagic.size());
-  if (rest.substr(0, kFingerprint) != resumed.fingerprint) {
-    throw fail("", "the checkpoint is of another scene or of other options");
-  }
-  rest.remove_prefix(kFingerprint);
-  geometry::Rect window;
-  take(rest, std::span<geometry::Rect>(&window, 1));
-  if (window != resumed.window) throw fail("", "the checkpoint is of another part of the picture");
+  take(rest, std::span(&size, 1));
+  require(size <= content.size() - kFixed, damaged);
+  const auto values = values_in(rest.substr(0, size));
+  rest.remove_prefix(size);
+  require(values.has_value(), damaged);
+  const std::string other = differences(*values, rendering);
+  require(other.empty(), "the checkpoint is of another rendering: " + other);
+  take(rest, std::span(&samples, 1));
+  require(samples >= 1, damaged);
+  take(rest, std::span(&window, 1));
+  require(window == rendering.window, "the checkpoint is of another part of the picture");
   Film film(window);
   const std::size_t bytes =
       film.samples().size_bytes() + film.costs().size_bytes() + film.pixels().size_bytes();
-  if (rest.size() != bytes) throw fail("", "the checkpoint is damaged");
+  require(rest.size() == bytes, damaged);
   take(rest, film.samples());
   take(rest, film.costs());
   take(rest, film.pixels());
   for (std::size_t c = 0; c < film.samples().size(); ++c) {
-    const char* const fault = fault_of_cell(film, c, resumed.samples);
-    if (fault != nullptr) throw fail(fmt::format("cell {}", c), fault);
+    const char* const fault = fault_of_cell(film, c, samples);
+    if (fault != nullptr) require(false, fault, fmt::format("cell {}", c));
   }
+  const std::string fault = fault_of_samples(film, samples, rendering);
+  require(fault.empty(), "the checkpoint is of another rendering: " + fault);
   return film;
 }
 

@@ -23,6 +23,9 @@ struct Integrator {
   bool reaches = false;           // reach
   bool may_omit_shadows = false;  // shadows
   bool scatters = false;          // diffuse_depth
+  // A pixel's samples are the same however many there are, but for a single one; else they lie on a
+  // grid of all of them unless Setting::scattered.
+  bool any_samples = false;
 };
 
 std::span<const Integrator> integrators();

@@ -40,31 +40,51 @@ class Every {
   Clock::time_point last_ = Clock::now();
 };
 
-// All that samples depend on but the scene, exactly.
-std::string settings_of(const RenderRequest& request, const scenes::Camera& camera,
-                        std::uint64_t triangles) {
-  const SamplingOptions& p = request.sampling;
-  const raytrace::TraceOptions& trace = request.raytrace.trace;
-  return fmt::format(
-      "{} triangles {} {}x{} spp {} depth {} diffuse {} reach {:a} shadows {} build {} isa {} seed "
-      "{} noise "
-      "{:a} scattered {} window {} {} {} {} "
-      "eye {:a} {:a} "
-      "{:a} at {:a} {:a} {:a} up {:a} {:a} {:a} fov {:a} near {:a} lens {:a} {:a} height {:a}",
-      request.raytrace.integrator, triangles, request.width, request.height,
-      request.raytrace.samples, trace.depth, trace.diffuse_depth, request.reach, trace.shadows,
-      static_cast<int>(request.raytrace.build.quality), request.raytrace.build.isa, trace.seed,
-      p.noise, p.noise > 0.0 || p.seconds > 0.0, p.window.x0, p.window.y0, p.window.x1, p.window.y1,
-      camera.eye.x, camera.eye.y, camera.eye.z, camera.at.x, camera.at.y, camera.at.z, camera.up.x,
-      camera.up.y, camera.up.z, camera.vertical_fov, camera.near, camera.aperture, camera.focus,
-      camera.height);
+std::string text_of(const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+const char* name_of(raytrace::BuildOptions::Quality quality) {
+  using Quality = raytrace::BuildOptions::Quality;
+  return quality == Quality::low ? "low" : quality == Quality::high ? "high" : "medium";
 }
 
-// The same whether ranks have the whole scene or parts of it.
-std::string mark_of(const RenderRequest& request, const scenes::Camera& camera,
-                    const Prepared& prepared) {
-  const std::string settings = settings_of(request, camera, prepared.triangles);
-  return raytrace::fingerprint({}, settings + " scene " + prepared.fingerprint);
+// All that samples depend on, exactly; the same whether ranks have the whole scene or parts of it.
+raytrace::Rendering rendering_of(const RenderRequest& request, const scenes::Camera& camera,
+                                 const Prepared& prepared) {
+  const SamplingOptions& p = request.sampling;
+  const raytrace::TraceOptions& trace = request.raytrace.trace;
+  const raytrace::BuildOptions& build = request.raytrace.build;
+  const geometry::Rect all{0, 0, request.width, request.height};
+  const geometry::Rect window = p.window.empty() ? all : p.window;
+  const bool scattered = p.noise > 0.0 || p.seconds > 0.0;
+  const bool any_samples = raytrace::integrator(request.raytrace.integrator).any_samples;
+  const auto text = [](const auto& value) { return fmt::format("{}", value); };
+  raytrace::Rendering rendering;
+  rendering.scene = prepared.fingerprint;
+  rendering.values = {
+      {"triangles", text(prepared.triangles)},
+      {"--integrator", request.raytrace.integrator},
+      {"--size", fmt::format("{}x{}", request.width, request.height)},
+      {"--crop", fmt::format("{},{},{},{}", window.x0, window.y0, window.width(), window.height())},
+      {"--depth", text(trace.depth)},
+      {"--diffuse-depth", text(trace.diffuse_depth)},
+      {"--reach", request.reach > 0.0 ? text(request.reach) : "unlimited"},
+      {"--no-shadows", trace.shadows ? "not given" : "given"},
+      {"--build", name_of(build.quality)},
+      {"--isa", build.isa.empty() ? "best" : build.isa},
+      {"--seed", text(trace.seed)},
+      {"--noise", p.noise > 0.0 ? text(p.noise) : "not given"},
+      {"--camera", fmt::format("{},{},{},{}", text_of(camera.eye), text_of(camera.at),
+                               text_of(camera.up), camera.vertical_fov)},
+      {"near plane of the camera", text(camera.near)},
+      {"height of the view", text(camera.height)},
+      {"--aperture", text(camera.aperture)},
+      {"--focus", text(camera.focus)}};
+  if (!any_samples)
+    rendering.values.push_back({"--noise or --time", scattered ? "given" : "not given"});
+  rendering.window = raytrace::grown(window, all);
+  rendering.samples = request.raytrace.samples;
+  rendering.any_samples = any_samples || scattered;
+  return rendering;
 }
 
 // Empty where samples are too few to tell.
@@ -107,23 +127,20 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   options.film = sampling.channels || sampling.denoise || sampling.show != "colour";
   options.features = sampling.channels || sampling.denoise || shows_features(sampling.show);
 
-  std::string mark;
+  raytrace::Rendering rendering;
   std::optional<raytrace::Film> saved;
   if (!sampling.checkpoint.empty()) {
     comm::all_or_none(communicator, comm::Phase::load, [&] {
       if (!root) return;
-      mark = mark_of(request, camera, prepared);
+      rendering = rendering_of(request, camera, prepared);
       if (!sampling.resume) return;
-      const geometry::Rect all{0, 0, frame.width, frame.height};
-      const geometry::Rect window = sampling.window.empty() ? all : sampling.window;
-      saved = raytrace::load_checkpoint(sampling.checkpoint,
-                                        {mark, raytrace::grown(window, all), frame.samples},
+      saved = raytrace::load_checkpoint(sampling.checkpoint, rendering,
                                         request.scene.file.limits.budget());
     });
   }
   if (saved) options.resume = &*saved;
   const auto save = [&](const raytrace::Film& film) {
-    raytrace::save_checkpoint(sampling.checkpoint, mark, film);
+    raytrace::save_checkpoint(sampling.checkpoint, rendering, film);
   };
   Every preview_due(sampling.preview_every > 0.0 && preview ? sampling.preview_every : -1.0);
   Every checkpoint_due(sampling.checkpoint.empty() ? -1.0 : sampling.checkpoint_every);

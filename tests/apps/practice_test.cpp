@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "image/io.h"
 #include "tests/support/run_program.h"
@@ -43,6 +45,68 @@ TEST(Practice, AnInterruptedPictureGoesOnToTheSameBytes) {
   EXPECT_EQ(
       run(kBall + picture + "--checkpoint a.film --resume --depth 2", folder.path()).exit_code, 3);
   EXPECT_EQ(run(kBall + picture + "--checkpoint none.film --resume", folder.path()).exit_code, 3);
+}
+
+// A sample does not depend on how many there are, nor on when they are asked for.
+TEST(Practice, APictureGoesOnToMoreSamplesThanItWasBegunFor) {
+  for (const std::string options :
+       {"--integrator path ", "--integrator ao ", "--integrator path --ranks 2 --data ray ",
+        "--integrator whitted --noise 0.003 ", "--integrator path --noise 0.02 "}) {
+    SCOPED_TRACE(options);
+    const Folder folder;
+    const std::string picture = options + "-o a.exr ";
+    const json whole = stats_of(picture + "--spp 44", folder);
+    const json begun = stats_of(picture + "--spp 16 --checkpoint a.film", folder);
+    EXPECT_NE(begun["image"]["hash"], whole["image"]["hash"]);
+    const json more = stats_of(picture + "--spp 44 --checkpoint a.film --resume", folder);
+    EXPECT_EQ(more["image"]["hash"], whole["image"]["hash"]);
+    EXPECT_EQ(more["sampling"]["samples"], whole["sampling"]["samples"]);
+  }
+}
+
+TEST(Practice, WhatCannotGoOnSaysWhatDiffers) {
+  const Folder folder;
+  const auto why = [&](const std::string& first, const std::string& then) {
+    std::filesystem::remove(folder / "a.film");
+    const std::string picture = kBall + "-o a.png --checkpoint a.film ";
+    EXPECT_EQ(run(picture + first, folder.path()).exit_code, 0);
+    const Ran ran = run(picture + then + " --resume", folder.path());
+    EXPECT_EQ(ran.exit_code, 3) << then;
+    return ran.err;
+  };
+  const std::string path = "--integrator path ";
+  for (const auto& [first, then, difference] : std::vector<std::array<std::string, 3>>{
+           {"--spp 16", "--spp 64", "--spp 16 there, 64 here"},
+           {path + "--spp 10", path + "--spp 64", "--spp 10 there, 64 here"},
+           {path + "--spp 16", path + "--spp 8", "--spp 16 there, 8 here"},
+           {path + "--spp 4", "--spp 4 --depth 3",
+            "--integrator path there, whitted here; --depth 8"},
+           {path + "--spp 4", path + "--spp 4 --seed 3", "--seed 0 there, 3 here"},
+           {"--spp 4", "--spp 4 --noise 0.1", "--noise not given there, 0.1 here"},
+           {"--spp 4", "--spp 4 --crop 0,0,32,32", "--crop 0,0,80,60 there, 0,0,32,32 here"},
+           {"--spp 4", "--spp 4 --light default --light-strength 2", "another scene or light"}}) {
+    const std::string text = why(first, then);
+    EXPECT_NE(text.find(difference), std::string::npos) << text;
+  }
+}
+
+TEST(Practice, ACheckpointOverwritesNothingElse) {
+  const Folder folder;
+  const std::string picture = kBall + "--spp 4 -o a.png --checkpoint ";
+  folder.write("other.png", "somebody's");
+  const Ran other = run(picture + "other.png", folder.path());
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("is no checkpoint"), std::string::npos) << other.err;
+  EXPECT_EQ(folder.read("other.png"), "somebody's");
+  folder.write("empty.film", "");
+  EXPECT_EQ(run(picture + "empty.film", folder.path()).exit_code, 0);
+  const std::string kept = folder.read("empty.film");
+  for (const std::string& before : {std::string(), mpirun(2)}) {
+    const Ran again = run(before + picture + "empty.film", folder.path());
+    EXPECT_EQ(again.exit_code, 2) << again.err;
+    EXPECT_NE(again.err.find("--resume"), std::string::npos) << again.err;
+  }
+  EXPECT_EQ(folder.read("empty.film"), kept);
 }
 
 // mpirun ends its processes by SIGTERM when it is interrupted, as is done here without it: it would
@@ -131,6 +195,15 @@ TEST(Practice, ACropIsAPartOfThePicture) {
           << x << " " << y;
     }
   }
+}
+
+TEST(Practice, ACropIsToldWithItsOwnSize) {
+  const Folder folder;
+  const Ran ran =
+      run("delray render gen:spheres:500 --engine raytrace --size 80x60 "
+          "--crop 10,20,33,17 -o a.png",
+          folder.path());
+  EXPECT_NE(ran.err.find("a.png: 33 x 17, "), std::string::npos) << ran.err;
 }
 
 TEST(Practice, ChannelsAreInTheFile) {
