@@ -256,8 +256,8 @@ void add_compose(CLI::App& program, Session& session) {
                     "Lay the parts over each other, the first in front; no depth is needed");
   command
       ->add_option("--compose", request->scheme,
-                   "Compositing scheme: which rank sends which pixels to which (default: radix-k; "
-                   "--list describes them)")
+                   "Compositing scheme: which rank sends which pixels to which (default: radix-k, "
+                   "which may be given its radices, such as radix-k:4,2; --list describes them)")
       ->group(group::kSharing);
   command->add_option("--codec", request->codec, "Pixel encoding between ranks (default: active)")
       ->group(group::kSharing);

@@ -70,14 +70,14 @@ void add_generate(CLI::App& program, Session& session) {
   generate->require_subcommand(1);
   const auto options = std::make_shared<GenerateOptions>();
   const auto add = [&](const char* name, const char* description, const char* kind,
-                       const char* count, std::uint64_t most, int (*run)(const GenerateOptions&),
-                       const char* examples) {
+                       const char* count, std::uint64_t most, const std::string& output,
+                       int (*run)(const GenerateOptions&), const char* examples) {
     CLI::App* command = generate->add_subcommand(name, description);
     command->add_option("KIND", options->kind, kind);
     command->add_option("-n", options->count, count)->transform(count_between(1, most));
     command->add_option("--seed", options->seed, "Seed of all random numbers (default: 1)")
         ->transform(any_count());
-    command->add_option("-o,--output", options->output, "File to write")
+    command->add_option("-o,--output", options->output, "File to write: " + output)
         ->type_name("FILE")
         ->group(group::kOutput);
     command->add_flag("--list", options->list, "List the kinds")->group(group::kOutput);
@@ -85,18 +85,23 @@ void add_generate(CLI::App& program, Session& session) {
     command->callback([&session, options, run] { session.run = [=] { return run(*options); }; });
     return command;
   };
-  CLI::App* points = add("points", "Generate points", "Kind of points (--list describes them)",
-                         "Number of points, such as 10000, 1e6 or 10k (default: 1000)", kMostPoints,
-                         generate_points,
-                         "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
-                         "generate points --list");
+  std::string suffixes;
+  for (const delaunay::PointWriter& writer : delaunay::point_writers()) {
+    suffixes += fmt::format("{}{}", suffixes.empty() ? "" : " ", writer.suffixes);
+  }
+  CLI::App* points =
+      add("points", "Generate points", "Kind of points (--list describes them)",
+          "Number of points, such as 10000, 1e6 or 10k (default: 1000)", kMostPoints,
+          suffixes + ", by its suffix; - for XYZ on standard output", generate_points,
+          "generate points uniform -n 1000000 --dim 2 -o points.ply\n"
+          "generate points --list");
   choose_from(*points, "KIND", names_in(delaunay::point_generators()));
   points->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
       ->check(one_of({"2", "3"}));
   CLI::App* scene =
       add("scene", "Generate a scene", "Kind of scene (--list describes them)",
           "Approximate number of triangles, such as 10000, 1e6 or 10k (default: by the kind)",
-          scenes::kMostTriangles, generate_scene,
+          scenes::kMostTriangles, "binary glTF, .glb", generate_scene,
           "generate scene terrain -n 1000000 -o terrain.glb\n"
           "generate scene field -o field.glb");
   choose_from(*scene, "KIND", names_in(scenes::generators()));

@@ -66,13 +66,15 @@ void meet(comm::Communicator& communicator, const Session& session, const std::s
 void find_launcher(Session& session) {
   session.under_mpi = comm::launched_by_mpi();
   session.first_process = comm::launched_rank() == 0;
+  session.processes = comm::launched_size();
 }
 
 void note_options(const CLI::App& program, const std::vector<std::string>& arguments,
                   Session& session) {
   const CLI::App& command = command_of(program, arguments);
   session.has_ranks = command.get_option_no_throw("--timeout") != nullptr;
-  session.options = {{"command", command.get_name()}};
+  session.command = command.get_name();
+  session.options = {{"command", session.command}};
   for (const CLI::Option* option : command.get_options()) {
     const std::string name = option->get_name();
     if (option->count() == 0 || is_own_affair(name)) continue;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <optional>
 
 #include "apps/commands.h"
@@ -29,6 +30,7 @@
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
 #include "raster/strategies.h"
+#include "raytrace/checkpoint.h"
 #include "raytrace/distribution.h"
 #include "raytrace/integrator.h"
 
@@ -47,17 +49,42 @@ int print_lists() {
   return kDone;
 }
 
+// "load 0.1, build 0.2"
+std::string listed(const Json& numbers) {
+  std::string text;
+  for (const auto& [name, value] : numbers.items()) {
+    if (value.is_number() && value.get<double>() != 0.0)
+      text += fmt::format("{}{} {:.9g}", text.empty() ? "" : ", ", name, value.get<double>());
+  }
+  return text;
+}
+
+// For -v.
+void log_details(const Json& statistics) {
+  spdlog::debug("scene: {}", listed(statistics["scene"]));
+  spdlog::debug("seconds: {}", listed(statistics["seconds"]));
+  spdlog::debug("seconds of phases: {}", listed(statistics["phases"]));
+  const std::string rays = listed(statistics["rays"]);
+  if (!rays.empty()) spdlog::debug("rays: {}", rays);
+  for (const Json& rank : statistics["ranks"]) spdlog::debug("rank: {}", listed(rank));
+}
+
 // Rank 0: background, file, statistics of a single picture.
 void finish(const RenderRequest& request, const Session& session, const Prepared& prepared,
             Frames& frames) {
   Stopwatch watch;
+  if (shows_nothing(request, frames.picture)) {
+    spdlog::warn("{}: nothing of the scene is in view", request.scene.file.path);
+  }
   put_background_behind(request, prepared, prepared.camera, frames.picture);
   const std::string hash = write_picture(session, request.output, frames.picture, frames.extras);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
   spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame",
-               request.output == "-" ? "standard output" : request.output, request.width,
-               request.height, prepared.triangles, statistics["seconds"]["frame"].get<double>());
+               request.output == "-" ? "standard output" : request.output, request.picture_width(),
+               request.picture_height(), prepared.triangles,
+               statistics["seconds"]["frame"].get<double>());
+  log_details(statistics);
 }
 
 // Rank 0: statistics of an animation, whose files are there.
@@ -73,6 +100,10 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
                                               frame_path(request.output, frames - 1));
   spdlog::info("{}: {} frames, {:.3f} s a frame", files, frames,
                animation.all.seconds / static_cast<double>(frames));
+  if (animation.empty_frames > 0) {
+    spdlog::warn("{}: nothing of the scene is in view in {} of {} frames", request.scene.file.path,
+                 animation.empty_frames, frames);
+  }
   std::string stages;
   for (std::size_t i = 0; i < animation.stages.size(); ++i)
     stages += fmt::format("{}{} {:.3f} s", i == 0 ? "" : ", ", animation.stages[i],
@@ -87,12 +118,28 @@ std::vector<std::string> inputs_of(const RenderRequest& request) {
           request.light.is_picture() ? request.light.light : ""};
 }
 
+// Hours of samples, or another file.
+void refuse_to_lose(const SamplingOptions& sampling) {
+  std::error_code error;
+  const std::string& path = sampling.checkpoint;
+  if (sampling.resume || path.empty() || !std::filesystem::is_regular_file(path, error) ||
+      std::filesystem::file_size(path, error) == 0) {
+    return;
+  }
+  throw UsageError(
+      fmt::format("--checkpoint: '{}' {}", path,
+                  raytrace::is_checkpoint(path)
+                      ? "holds samples already: go on from them with --resume, or delete it"
+                      : "is no checkpoint, and would be overwritten"));
+}
+
 // Nobody wants to know of these after an hour.
 void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) {
   for (const std::string& path :
        {request.output, request.statistics, request.sampling.checkpoint}) {
     files::check_writable(path);
   }
+  refuse_to_lose(request.sampling);
   if (!is_video(request.output)) return;
   video.emplace(request.output);
   request.frames_output = video->frames();

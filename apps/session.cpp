@@ -67,16 +67,23 @@ void add_common_options(CLI::App& command, Session& session, const std::string& 
 }
 
 int run_guarded(Session& session) {
-  spdlog::set_level(session.quiet     ? spdlog::level::err
+  // Ranks that work together would all say the same.
+  const bool silent = session.quiet || (session.has_ranks && !session.first_process);
+  spdlog::set_level(silent            ? spdlog::level::err
                     : session.verbose ? spdlog::level::debug
                                       : spdlog::level::info);
   const StopOnInterrupt stop(session.progress);
   try {
-    return session.run();
+    const int code = session.run();
+    if (session.processes > 1 && session.first_process && !session.has_ranks) {
+      spdlog::warn("each of the {} processes has done all of this: {} shares nothing with ranks",
+                   session.processes, session.command);
+    }
+    return code;
   } catch (...) {
     // All processes of mpirun are here with the same failure; one speaks, and exits with the code,
     // for mpirun ends the others when it does.
-    if (session.first_process) return report_failure();
+    if (session.first_process || !session.has_ranks) return report_failure();
     if (!has_met_ranks()) meet_ranks_with_failure(session, text_of_failure());
     return kDone;
   }

@@ -36,7 +36,9 @@ struct Session {
   bool verbose = false;
   bool under_mpi = false;
   bool first_process = true;  // the one that speaks; the only one without MPI
+  int processes = 1;          // of mpirun
   std::string command_line;
+  std::string command;              // the subcommand
   bool metadata = false;            // pictures tell how they were made: --metadata
   std::vector<comm::Fact> options;  // those that were given, but for what each rank may choose
   bool has_ranks = false;           // the subcommand runs on all processes of mpirun together

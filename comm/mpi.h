@@ -32,10 +32,12 @@ struct MpiOptions {
   const parallel::Progress* progress = nullptr;
 };
 
-// Whether a launcher (mpirun, mpiexec, srun) started this process, and as which rank (0 when none
-// did). From the environment: MPI need not be initialised.
+// Whether a launcher (mpirun, mpiexec, srun) started this process, as which rank (0 when none
+// did), and of how many (1 where that is not known). From the environment: MPI need not be
+// initialised.
 bool launched_by_mpi();
 int launched_rank();
+int launched_size();
 
 // Runs body(communicator) over MPI_COMM_WORLD. Initialises MPI (MPI_THREAD_SERIALIZED) unless
 // somebody has, and finalises it if so; at most once in a process.

@@ -75,7 +75,9 @@ double between(const std::array<double, 4>& value, const std::array<double, 4>& 
 std::optional<Camera> parse_camera(std::string_view text, const glm::dvec3& origin) {
   const std::optional<Numbers> numbers = parse_numbers(text);
   if (!numbers || !(numbers->back() > 0 && numbers->back() < 180)) return std::nullopt;
-  return camera_of(*numbers, origin);
+  const Camera camera = camera_of(*numbers, origin);
+  if (camera.eye == camera.at || camera.up == glm::vec3(0)) return std::nullopt;
+  return camera;
 }
 
 std::vector<Camera> turntable(const Camera& camera, int frames) {
@@ -140,8 +142,8 @@ std::vector<CameraKey> parse_camera_path(std::string_view text, const std::strin
     const std::optional<Camera> camera = parse_camera(trimmed(content), origin);
     if (!camera) {
       fail("'" + std::string(trimmed(content)) +
-           "' is not eye,at,up,fov: ten numbers separated by commas, the last above 0 and below "
-           "180");
+           "' is not eye,at,up,fov: ten numbers separated by commas, at another place than eye, up "
+           "other than 0,0,0, the last above 0 and below 180");
     }
     key.camera = *camera;
     keys.push_back(key);

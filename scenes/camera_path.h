@@ -13,7 +13,8 @@
 namespace delray::scenes {
 
 // "eye,at,up,fov": ten numbers between commas, the field of view vertical in degrees, between 0 and
-// 180. Eye and at are relative to `origin` in the result. Nothing for any other text.
+// 180. Eye and at are relative to `origin` in the result. Nothing for any other text, and where eye
+// and at are one place as floats or up is 0.
 std::optional<Camera> parse_camera(std::string_view text, const glm::dvec3& origin);
 
 // Once around the point that the camera looks at, about its `up`, counter-clockwise seen from

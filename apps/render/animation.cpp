@@ -84,7 +84,10 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
   const auto finish = [&](std::size_t i, Slot& slot, Picture&& picture,
                           EngineStatistics&& statistics) {
     slot.picture = std::move(picture);
-    if (first_rank) put_background_behind(request, prepared, cameras[i], slot.picture);
+    if (first_rank) {
+      if (shows_nothing(request, slot.picture)) ++animation.empty_frames;
+      put_background_behind(request, prepared, cameras[i], slot.picture);
+    }
     animation.frames.statistics = std::move(statistics);
   };
   if (renderer.has_steps(communicator.size())) {

@@ -29,6 +29,7 @@ struct Animation {
   Frames frames;  // the statistics are the last one's; the picture has gone to its file
   std::string hash;
   std::vector<std::string> stages;
+  std::size_t empty_frames = 0;   // that show nothing of the scene
   std::size_t slots = 0;          // frames in the making at the same time
   parallel::PipelineTimes all;    // frames
   parallel::PipelineTimes alone;  // the second frame, or the only one

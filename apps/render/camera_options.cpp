@@ -71,7 +71,8 @@ scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& 
     if (const scenes::Camera* own = find_camera(scene, options.camera)) return *own;
     throw UsageError(fmt::format(
         "--camera: '{}' is no camera of the scene, nor eye,at,up,fov: ten numbers separated by "
-        "commas, the field of view above 0 and below 180 degrees; {}",
+        "commas, at another place than eye, up other than 0,0,0, the field of view above 0 and "
+        "below 180 degrees; {}",
         options.camera, cameras_of(scene)));
   }
   if (!shows_all(options, scene)) return scene.cameras.front();

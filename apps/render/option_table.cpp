@@ -180,7 +180,7 @@ std::vector<RenderOption> rasterizer_options() {
       RenderOption::of(
           "--compose", [](auto& r) -> auto& { return r.raster.scheme; }, group::kSharing,
           "Compositing scheme, which merges the images of all ranks, for --strategy sort-last "
-          "(default: binary-swap)")
+          "(default: binary-swap; radix-k may be given its radices, such as radix-k:4,2)")
           .unless(unless_raster(unless_strategy(&Strategy::composites)))
           .told("compose", strategy_that(&Strategy::composites)),
       RenderOption::choice<raster::Lighting>(

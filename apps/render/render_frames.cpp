@@ -125,12 +125,11 @@ void require_memory_for_pictures(const RenderRequest& request) {
                       raster::find_strategy(request.raster.strategy)->composites;
   const auto others =
       static_cast<std::uint64_t>(layers ? std::max(0, request.launch.ranks - 1) : 0);
-  const geometry::Rect& window = request.sampling.window;
-  const auto pixels = static_cast<std::uint64_t>(
-      window.empty() ? std::int64_t{request.width} * request.height : window.area());
+  const auto pixels = static_cast<std::uint64_t>(request.picture_width()) *
+                      static_cast<std::uint64_t>(request.picture_height());
   request.scene.file.limits.budget().require(
       pixels * (bytes_per_pixel(request) + others * layer), request.output,
-      fmt::format("{} x {} pixels", request.width, request.height));
+      fmt::format("{} x {} pixels", request.picture_width(), request.picture_height()));
 }
 
 // What Embree builds for a triangle that is stored: 65 to 87 bytes were measured.

@@ -47,6 +47,9 @@ struct RenderRequest {
   double reach = 0;                 // of ambient occlusion; 0: without end
   SamplingOptions sampling;
 
+  // Of the pictures that come out: the frame, or a crop of it.
+  int picture_width() const { return sampling.window.empty() ? width : sampling.window.width(); }
+  int picture_height() const { return sampling.window.empty() ? height : sampling.window.height(); }
   bool is_animation() const { return turntable > 0 || !camera_path.empty(); }
 
   // Set by check:

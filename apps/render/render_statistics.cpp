@@ -156,14 +156,6 @@ Json json_of(const scenes::Camera& camera, const glm::dvec3& origin) {
   return told;
 }
 
-// Of the picture, or of the part of it that is rendered.
-int width_of(const RenderRequest& request) {
-  return request.engine == Engine::raster ? request.width : request.sampling.window.width();
-}
-int height_of(const RenderRequest& request) {
-  return request.engine == Engine::raster ? request.height : request.sampling.window.height();
-}
-
 }  // namespace
 
 Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
@@ -181,7 +173,9 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"options",
              options_of(request, static_cast<int>(s.ranks.size()), frames.launched.threads)},
             {"image",
-             {{"width", width_of(request)}, {"height", height_of(request)}, {"hash", hash}}},
+             {{"width", request.picture_width()},
+              {"height", request.picture_height()},
+              {"hash", hash}}},
             {"seconds",
              {{"load", prepared.load_seconds + frames.launched.load_seconds},
               {"build", prepared.build_seconds + frames.launched.build_seconds},

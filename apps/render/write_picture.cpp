@@ -2,6 +2,7 @@
 #include "apps/render/write_picture.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/options/help.h"
 #include "image/hash.h"
@@ -42,6 +43,15 @@ void add_metadata_option(CLI::App& command, Session& session) {
                 "Write the command line, with its paths, and the number of samples into the "
                 "picture (default: only what equal pictures have in common)")
       ->group(group::kOutput);
+}
+
+bool shows_nothing(const RenderRequest& request, const Picture& picture) {
+  if (request.sampling.show != "colour") return false;
+  return std::visit(
+      [](const auto& pixels) {
+        return std::ranges::all_of(pixels.colour.span(), [](const auto& c) { return c.a == 0; });
+      },
+      picture);
 }
 
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,

@@ -15,6 +15,9 @@ namespace delray::apps {
 // Adds --metadata.
 void add_metadata_option(CLI::App& command, Session& session);
 
+// Whether a picture of colours, which has no background yet, shows nothing of the scene.
+bool shows_nothing(const RenderRequest& request, const Picture& picture);
+
 // In place: the background behind it and, for files of 8 bits, light mapped to what a screen shows.
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,
                            const scenes::Camera& camera, Picture& picture);

@@ -5,6 +5,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -174,6 +175,13 @@ int launched_rank() {
     if (const char* value = std::getenv(variable)) return std::atoi(value);
   }
   return 0;
+}
+
+int launched_size() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    if (const char* value = std::getenv(variable)) return std::max(1, std::atoi(value));
+  }
+  return 1;
 }
 
 void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& body,

@@ -128,5 +128,20 @@ TEST(Help, NamesWhatIsLegal) {
   EXPECT_NE(ran.out.find("\n  --exaggeration X "), std::string::npos);
 }
 
+TEST(Help, TellsSuffixesExitCodesAndRadices) {
+  const Folder folder;
+  const std::vector<std::pair<std::string, std::string>> told = {
+      {"generate points", ".ply"},       {"generate points", ".csv"}, {"generate scene", ".glb"},
+      {"verify", "exit code"},           {"render", "radix-k:4,2"},   {"compose", "radix-k:4,2"},
+      {"compare compose", "radix-k:4,2"}};
+  for (const auto& [command, what] : told) {
+    std::string page;  // without what follows its entries: examples have suffixes, too
+    for (const Entry& entry : entries_of(run("delray " + command + " --help", folder.path()).out)) {
+      page += entry.description + "\n";
+    }
+    EXPECT_NE(page.find(what), std::string::npos) << command << page;
+  }
+}
+
 }  // namespace
 }  // namespace delray::tests

@@ -88,6 +88,40 @@ TEST(Ranks, WithOtherFilesAreToldFromEachOther) {
   EXPECT_EQ(run(both("here"), folder.path()).exit_code, 0);
 }
 
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++found;
+  return found;
+}
+
+TEST(Ranks, WarnOnce) {
+  const Folder folder;
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+  const Ran ran = run(mpirun(3) + "delray render a.obj -o a.png --size 32x24", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(count(ran.err, "1 points and lines left out"), 1U) << ran.err;
+}
+
+TEST(Ranks, CommandsWithoutThemSaySo) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0\n1 0\n0 1\n");
+  const std::string note = "each of the 2 processes has done all of this";
+  const Ran ran = run(mpirun(2) + "delray triangulate p.xyz -o m.ply", folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(count(ran.err, note), 1U) << ran.err;
+  for (const std::string& alone : {std::string(), mpirun(1)}) {
+    const Ran one = run(alone + "delray triangulate p.xyz -o m.ply", folder.path());
+    EXPECT_EQ(count(one.err, "processes"), 0U) << one.err;
+  }
+  // Each may have a file of its own: none fails in silence.
+  const Ran lost =
+      run(mpirun(2) + "sh -c '[ $OMPI_COMM_WORLD_RANK = 0 ] || exec \"$0\" info none' " +
+              DELRAY_PROGRAM,
+          folder.path());
+  EXPECT_EQ(lost.exit_code, 3) << lost.err;
+  EXPECT_NE(lost.err.find("none"), std::string::npos) << lost.err;
+}
+
 TEST(Ranks, TimeoutIsForRanksThatWaitForOthers) {
   const Folder folder;
   EXPECT_EQ(run(kCornell + "--timeout 5", folder.path()).exit_code, 2);

@@ -327,6 +327,41 @@ TEST(RenderCommand, GlbRendersLikeTheGeneratedScene) {
       statistics("delray render gen:spheres:2000 -o b.png --size 80x60", folder)["image"]["hash"]);
 }
 
+TEST(RenderCommand, APictureOfNothingSaysSo) {
+  const Folder folder;
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const std::string engine : {"raster", "raytrace"}) {
+    const std::string render = "delray render a.obj -o a.png --size 40x30 --engine " + engine;
+    const std::string warning = "warning: a.obj: nothing of the scene is in view";
+    EXPECT_EQ(run(render, folder.path()).err.find(warning), std::string::npos);
+    const Ran away = run(render + " --camera 0,0,5,0,0,9,0,1,0,45", folder.path());
+    EXPECT_EQ(away.exit_code, 0);
+    EXPECT_NE(away.err.find(warning), std::string::npos) << away.err;
+  }
+  folder.write("path.txt", "0,0,5,0,0,0,0,1,0,45\n0,0,5,0,0,9,0,1,0,45\n");
+  const Ran path =
+      run("delray render a.obj -o f.png --size 40x30 --camera-path path.txt", folder.path());
+  EXPECT_NE(path.err.find("nothing of the scene is in view in 1 of 2 frames"), std::string::npos)
+      << path.err;
+  EXPECT_EQ(
+      run("delray render a.obj -o a.png --camera 0,0,0,0,0,0,0,1,0,45", folder.path()).exit_code,
+      2);
+  EXPECT_EQ(
+      run("delray render a.obj -o a.png --camera 0,0,5,0,0,0,0,0,0,45", folder.path()).exit_code,
+      2);
+}
+
+TEST(RenderCommand, VerboseTellsMore) {
+  const Folder folder;
+  const std::string render = "delray render gen:spheres:500 -o a.png --size 40x30 ";
+  const std::string plain = run(render, folder.path()).err;
+  const std::string more = run(render + "-v", folder.path()).err;
+  for (const std::string what : {"scene: ", "seconds: ", "seconds of phases: ", "rank: "}) {
+    EXPECT_NE(more.find(what), std::string::npos) << more;
+    EXPECT_EQ(plain.find(what), std::string::npos) << plain;
+  }
+}
+
 TEST(RenderCommand, RanksUnderMpirunAreWrongUsage) {
   const Folder folder;
   EXPECT_EQ(

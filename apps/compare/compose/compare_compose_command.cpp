@@ -85,8 +85,10 @@ void add_compare_compose(CLI::App& compare, Session& session) {
                  "Deal out pixels in turn, so that ranks get equal shares of uneven pictures")
       ->group(group::kSharing);
   command
-      ->add_option("--compose", request->schemes,
-                   "Compositing schemes to compare, separated by blanks (default: all)")
+      ->add_option(
+          "--compose", request->schemes,
+          "Compositing schemes to compare, separated by blanks (default: all; radix-k may be given "
+          "its radices, such as radix-k:4,2)")
       ->group(group::kSharing);
   choose_scheme(*command);
   choose_from(*command, "--codec", names_in(composite::codecs()));
