@@ -2,7 +2,7 @@
 // the figures.
 #include "comm/network.h"
 
-#include <algorithm>
+#include "files/find_named.h"
 
 namespace delray::comm {
 namespace {
@@ -42,10 +42,7 @@ const std::array kNetworks = {
 std::span<const NamedNetwork> networks() { return kNetworks; }
 
 const NamedNetwork* find_network(std::string_view name) {
-  const auto at =
-      std::find_if(kNetworks.begin(), kNetworks.end(),
-                   [name](const NamedNetwork& network) { return network.name == name; });
-  return at == kNetworks.end() ? nullptr : &*at;
+  return files::find_named(networks(), name);
 }
 
 }  // namespace delray::comm

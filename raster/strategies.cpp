@@ -1,9 +1,9 @@
 // The table of strategies: their functions, and which options each looks at.
 #include "raster/strategies.h"
 
-#include <algorithm>
 #include <array>
 
+#include "files/find_named.h"
 #include "raster/distribute/rank.h"
 
 namespace delray::raster {
@@ -42,9 +42,7 @@ constexpr std::array kStrategies = {
 std::span<const Strategy> strategies() { return kStrategies; }
 
 const Strategy* find_strategy(std::string_view name) {
-  const auto* found = std::find_if(kStrategies.begin(), kStrategies.end(),
-                                   [&](const Strategy& s) { return s.name == name; });
-  return found == kStrategies.end() ? nullptr : found;
+  return files::find_named(strategies(), name);
 }
 
 }  // namespace delray::raster

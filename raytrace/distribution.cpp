@@ -1,8 +1,7 @@
 // The table of distributions of a scene over ranks: how rays and geometry meet.
 #include "raytrace/distribution.h"
 
-#include <algorithm>
-
+#include "files/find_named.h"
 #include "raytrace/distributed/distributions.h"
 
 namespace delray::raytrace {
@@ -37,9 +36,7 @@ constexpr Distribution kDistributions[] = {
 std::span<const Distribution> distributions() { return kDistributions; }
 
 const Distribution* find_distribution(std::string_view name) {
-  const auto* at = std::find_if(std::begin(kDistributions), std::end(kDistributions),
-                                [&](const Distribution& d) { return d.name == name; });
-  return at == std::end(kDistributions) ? nullptr : at;
+  return files::find_named(distributions(), name);
 }
 
 }  // namespace delray::raytrace

@@ -1,5 +1,4 @@
 // The table of codecs: how images travel, each with its layer.
-#include <algorithm>
 #include <array>
 
 #include "composite/codec.h"
@@ -7,6 +6,7 @@
 #include "composite/layers/active.h"
 #include "composite/layers/bounds.h"
 #include "composite/layers/lz4.h"
+#include "files/find_named.h"
 
 namespace delray::composite {
 namespace {
@@ -24,10 +24,6 @@ constexpr std::array kCodecs = {
 
 std::span<const Codec> codecs() { return kCodecs; }
 
-const Codec* find_codec(std::string_view name) {
-  const auto at = std::find_if(kCodecs.begin(), kCodecs.end(),
-                               [name](const Codec& codec) { return codec.name == name; });
-  return at == kCodecs.end() ? nullptr : &*at;
-}
+const Codec* find_codec(std::string_view name) { return files::find_named(codecs(), name); }
 
 }  // namespace delray::composite

@@ -23,6 +23,7 @@
 #include "delaunay/insertion/first_tetrahedron.h"
 #include "delaunay/insertion/insertion_order.h"
 #include "delaunay/mesh/arguments.h"
+#include "delaunay/mesh/xorshift.h"
 #include "delaunay/predicates.h"
 
 namespace delray::delaunay {
@@ -33,13 +34,6 @@ constexpr SimplexNumber kNowhere = kDeadVertex;
 // A mesh has at most 2 triangles, and as a rule less than 7 tetrahedra, to a point.
 template <int D>
 constexpr std::size_t kMaximumRows = kMaximumSimplices / (D == 2 ? 2 : 8);
-
-std::uint32_t next_random(std::uint32_t& state) {
-  state ^= state << 13;
-  state ^= state >> 17;
-  state ^= state << 5;
-  return state;
-}
 
 // Whether a point is outside what the frame, up to D points of which that holds, spans.
 bool is_independent(std::span<const glm::dvec2> frame, const glm::dvec2& q) {
@@ -105,7 +99,7 @@ struct DynamicTriangulation<D>::State {
     const auto sites_end = static_cast<std::uint32_t>(sites.size());
     auto samples = static_cast<std::size_t>(std::cbrt(static_cast<double>(sites_end)));
     for (; samples > 0; --samples) {
-      const std::uint32_t site = next_random(random) % sites_end;
+      const std::uint32_t site = internal::next_random(random) % sites_end;
       const SimplexNumber simplex = near[site];
       if (!sites.is_used(site) || simplex >= mesh.used() || mesh.mesh().is_dead(simplex)) continue;
       if (const double d = distance(at(site)); d < least) {

@@ -4,18 +4,11 @@
 // vertex is reported as equal, and one beyond the hull ends the walk in a ghost.
 #include "delaunay/insertion/walk.h"
 
+#include "delaunay/mesh/xorshift.h"
 #include "delaunay/predicates.h"
 
 namespace delray::delaunay {
 namespace {
-
-// Marsaglia's xorshift (2003): a choice of two needs no better.
-std::uint32_t next_random(std::uint32_t& state) {
-  state ^= state << 13;
-  state ^= state >> 17;
-  state ^= state << 5;
-  return state;
-}
 
 constexpr CornerNumber kNowhere = 0xffffffffU;
 
@@ -38,7 +31,7 @@ Place walk(const Mesh<2>& mesh, std::span<const glm::dvec2> points, SimplexNumbe
   // Out of a ghost the walk came without knowing the side.
   if (infinite != kNowhere) opposite = kNowhere;
   for (;;) {
-    const CornerNumber first = corner_of(here, next_random(random) % 3);
+    const CornerNumber first = corner_of(here, internal::next_random(random) % 3);
     CornerNumber corner = first;
     CornerNumber exit = kNowhere;
     do {

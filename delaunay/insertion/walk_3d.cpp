@@ -6,6 +6,7 @@
 
 #include "delaunay/insertion/orientation_3d.h"
 #include "delaunay/insertion/walk.h"
+#include "delaunay/mesh/xorshift.h"
 
 namespace delray::delaunay {
 
@@ -16,13 +17,10 @@ Place walk(const Mesh<3>& mesh, const Orientation<3>& orientation, SimplexNumber
   for (;;) {
     std::array<VertexNumber, 4> vertices;
     for (unsigned k = 0; k < 4; ++k) vertices[k] = mesh.vertex(corner_of(here, k));
-    // Marsaglia's xorshift (2003).
-    random ^= random << 13;
-    random ^= random >> 17;
-    random ^= random << 5;
+    const std::uint32_t first = internal::next_random(random);
     unsigned exit = 4;
     for (unsigned i = 0; i < 4 && exit == 4; ++i) {
-      const unsigned k = (random + i) & 3;
+      const unsigned k = (first + i) & 3;
       if (k != entered && orientation.with(q, k, vertices) < 0) exit = k;
     }
     if (exit == 4) {

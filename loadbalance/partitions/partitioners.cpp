@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "files/find_named.h"
 #include "loadbalance/partitions/partitioners.h"
 
 namespace delray::loadbalance {
@@ -53,10 +54,7 @@ void internal::check_costs(const Costs& costs, geometry::Rect frame, int parts) 
 }
 
 const Partitioner* find_partitioner(std::string_view name) {
-  const auto at =
-      std::find_if(kPartitioners.begin(), kPartitioners.end(),
-                   [name](const Partitioner& partitioner) { return partitioner.name == name; });
-  return at == kPartitioners.end() ? nullptr : &*at;
+  return files::find_named(partitioners(), name);
 }
 
 }  // namespace delray::loadbalance

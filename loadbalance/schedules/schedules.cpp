@@ -1,9 +1,9 @@
 // The table of schedules, looked up by name, and the gathering of the ranks' reports on rank 0.
-#include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "comm/collectives.h"
+#include "files/find_named.h"
 #include "loadbalance/schedules/schedules.h"
 
 namespace delray::loadbalance {
@@ -58,9 +58,7 @@ constexpr std::array kSchedules = {
 std::span<const Schedule> schedules() { return kSchedules; }
 
 const Schedule* find_schedule(std::string_view name) {
-  const auto at = std::find_if(kSchedules.begin(), kSchedules.end(),
-                               [name](const Schedule& schedule) { return schedule.name == name; });
-  return at == kSchedules.end() ? nullptr : &*at;
+  return files::find_named(schedules(), name);
 }
 
 std::vector<RankReport> gather_reports(comm::Communicator& communicator, const RankReport& mine) {
