@@ -10,24 +10,24 @@ namespace {
 constexpr Distribution kDistributions[] = {
     {.name = "replicated",
      .description = "every rank has the whole scene",
-     .meet = nullptr,
+     .decide = nullptr,
      .replicated = true},
     {.name = "object",
      .description =
          "ranks fetch the parts of the scene that they need, and cache them (Badouel, Wald)",
-     .meet = meet_by_object,
+     .decide = distribute_object,
      .fetches = true},
     {.name = "ray",
      .description = "rays go to the ranks that have the parts of the scene that they may hit "
                     "(Caspary, Jevans)",
-     .meet = meet_by_ray},
+     .decide = distribute_ray},
     {.name = "ring",
      .description =
          "rays go around all ranks; parts of the scene move to less loaded neighbours (Kim)",
-     .meet = nullptr},
+     .decide = nullptr},
     {.name = "hybrid",
      .description = "rays or parts of the scene are sent, whichever the queues favour (Nebel)",
-     .meet = meet_by_either,
+     .decide = distribute_hybrid,
      .fetches = true},
 };
 

@@ -9,15 +9,15 @@
 
 namespace delray::raytrace {
 
-// What a rank that has put rays aside for a cluster of another rank may do.
-enum class Meeting : std::uint8_t { wait, send_rays, fetch_cluster };
+// Options of a rank that has put rays aside for a cluster of another rank.
+enum class RoutingDecision : std::uint8_t { wait, send_rays, fetch_cluster };
 
-// What there is to know for that.
+// Rays that wait for one cluster, as the decision sees them.
 struct WaitingList {
   std::uint32_t cluster = 0;
   std::uint64_t rays = 0, ray_bytes = 0;  // that wait
   std::uint64_t cluster_bytes = 0;        // that would travel instead
-  bool hungry = false;                    // the rank has nothing else to do
+  bool idle = false;                      // the rank has nothing else to do
 };
 
 // An entry of the table of distributions of a scene.
@@ -25,7 +25,7 @@ struct Distribution {
   const char* name;
   const char* description;
   // Null: rays go round all ranks instead, each of which tests them against what it has.
-  Meeting (*meet)(const WaitingList& waiting);
+  RoutingDecision (*decide)(const WaitingList& waiting);
   // Whether every rank has the whole scene, and nothing of this takes place.
   bool replicated = false;
   bool fetches = false;  // clusters of other ranks, into ShareOptions::cache_bytes

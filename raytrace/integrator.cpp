@@ -6,7 +6,7 @@
 
 #include "raytrace/integrators/ao.h"
 #include "raytrace/integrators/direct.h"
-#include "raytrace/integrators/feature_walks.h"
+#include "raytrace/integrators/feature_integrators.h"
 #include "raytrace/integrators/path.h"
 #include "raytrace/integrators/whitted.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "raytrace/integrators/walk.h"
+#include "raytrace/integrators/wavefront_integrator.h"
 
 namespace delray::raytrace {
 
@@ -14,7 +14,7 @@ namespace delray::raytrace {
 struct Integrator {
   const char* name;
   const char* description;
-  std::unique_ptr<Walk> (*make)(const Setting& setting);
+  std::unique_ptr<WavefrontIntegrator> (*make)(const FrameContext& context);
   // Pixels of this rank's scene are walked through in squares of this side, a multiple of
   // kTaskSide, where tiles allow.
   int side = kTaskSide;

@@ -16,7 +16,7 @@
 #include "loadbalance/partition.h"
 #include "parallel/arena.h"
 #include "raytrace/distributed/collect_tiles.h"
-#include "raytrace/distributed/ray_traffic.h"
+#include "raytrace/distributed/distributed_tracer.h"
 #include "raytrace/distributed/serving_communicator.h"
 #include "raytrace/distributed/tile_shares.h"
 #include "raytrace/integrators/sample_tile.h"
@@ -68,7 +68,7 @@ std::uint64_t sum(const RayCounts& rays) { return rays.primary + rays.shadow + r
 struct Traced {
   std::vector<TilePixels> tiles;
   loadbalance::RankReport report;
-  TrafficCounts traffic = {};
+  RoutingCounts routing = {};
   double busy = 0.0;  // seconds of processor time
 };
 
@@ -78,14 +78,14 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
   // Ranks of one process may have one progress in common.
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
   struct alignas(64) OfThread {
-    std::unique_ptr<Walk> walk;
+    std::unique_ptr<WavefrontIntegrator> integrator;
     std::vector<TilePixels> tiles;
   };
   std::vector<OfThread> by_thread(static_cast<std::size_t>(how.threads));
   const auto trace_tile = [&](std::uint32_t tile, int thread) {
     OfThread& mine = by_thread[thread];
-    if (!mine.walk) mine.walk = frame.walks.take();
-    const TilePixels& done = mine.tiles.emplace_back(sample_tile(frame, tile, *mine.walk));
+    if (!mine.integrator) mine.integrator = frame.integrators.take();
+    const TilePixels& done = mine.tiles.emplace_back(sample_tile(frame, tile, *mine.integrator));
     if (thread == 0) communicator.work(comm::Work::rays, sum(done.rays));
     if (progress != nullptr) progress->advance();
   };
@@ -107,19 +107,19 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedSc
              const Distribution& distribution, loadbalance::ScheduleOptions how) {
   parallel::Progress* const progress = frame.options.progress;
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
-  RayTraffic traffic(communicator, scene, distribution, frame);
-  ServingCommunicator serving(communicator, traffic);
+  DistributedTracer tracer(communicator, scene, distribution, frame);
+  ServingCommunicator serving(communicator, tracer);
   how.threads = 1;
   Traced traced;
   traced.report = loadbalance::find_schedule(frame.options.schedule)
                       ->run(serving, frame.tiles.grid(), how, [&](std::uint32_t tile, int) {
-                        traffic.add(tile);
+                        tracer.add(tile);
                         if (progress != nullptr) progress->advance();
                       });
-  traffic.finish();
-  traced.tiles = std::move(traffic.tiles());
-  traced.traffic = traffic.counts();
-  traced.busy = traffic.busy();
+  tracer.finish();
+  traced.tiles = std::move(tracer.tiles());
+  traced.routing = tracer.counts();
+  traced.busy = tracer.busy();
   return traced;
 }
 
@@ -127,12 +127,12 @@ RankStatistics statistics_of(Traced& traced, const comm::Totals& totals) {
   RankStatistics mine;
   for (const TilePixels& tile : traced.tiles) mine.rays += tile.rays;
   mine.busy = traced.busy;
-  mine.rays_sent = traced.traffic.rays_sent;
-  mine.answers_sent = traced.traffic.answers_sent;
-  mine.tests = traced.traffic.tests;
-  mine.clusters_fetched = traced.traffic.clusters_fetched;
-  mine.clusters_fetched_bytes = traced.traffic.cluster_bytes;
-  mine.clusters_moved = traced.traffic.clusters_moved;
+  mine.rays_sent = traced.routing.rays_sent;
+  mine.answers_sent = traced.routing.answers_sent;
+  mine.tests = traced.routing.tests;
+  mine.clusters_fetched = traced.routing.clusters_fetched;
+  mine.clusters_fetched_bytes = traced.routing.cluster_bytes;
+  mine.clusters_moved = traced.routing.clusters_moved;
   mine.tasks = traced.tiles.size();
   mine.idle = traced.report.idle;
   mine.requests = traced.report.requests;
@@ -214,14 +214,14 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   const geometry::Rect whole{0, 0, width, height};
   const geometry::Rect window = options.part.window.empty() ? whole : options.part.window;
   const shading::BatchShader shader = shading::make_batch_shader(memory_->shader());
-  const Setting setting{shader,
-                        memory_->lights(),
-                        view,
-                        options.trace,
-                        options.samples,
-                        options.scattered,
-                        scenes::pixels_of(view, memory_->bounds())};
-  Walks walks(integrator(options.integrator), setting);
+  const FrameContext context{shader,
+                             memory_->lights(),
+                             view,
+                             options.trace,
+                             options.samples,
+                             options.scattered,
+                             scenes::pixels_of(view, memory_->bounds())};
+  IntegratorPool pool(integrator(options.integrator), context);
   const int side = tile_side(options);
   const bool root = communicator.rank() == 0;
   Result result;
@@ -230,7 +230,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
     if (!options.part.squares.empty()) image::clear(result.image);
   }
   const TiledFrame frame{
-      tracer, options, setting, walks, {window, side, side}, root ? &result.image : nullptr};
+      tracer, options, context, pool, {window, side, side}, root ? &result.image : nullptr};
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
   Statistics& statistics = result.statistics;

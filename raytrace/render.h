@@ -41,7 +41,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 1;  // per pixel; 1: in its centre
   TraceOptions trace;
-  bool scattered = false;  // Setting::scattered
+  bool scattered = false;  // FrameContext::scattered
   std::string integrator = "whitted";
   Part part;
   // Of loadbalance::schedules(): tiles are handed out to ranks and threads.

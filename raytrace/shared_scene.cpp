@@ -70,14 +70,15 @@ SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Sc
   shading::Shader shader = shading::make_shader(scene);
   std::vector<ClusterData> mine;
   {
-    const std::vector<Placement> placements = place(scene, shader, options.build.share_meshes);
-    const std::uint64_t all = stored_triangles(placements);
+    const std::vector<GeometryInstance> instances =
+        make_instances(scene, shader, options.build.share_meshes);
+    const std::uint64_t all = stored_triangles(instances);
     const auto ranks = static_cast<std::uint64_t>(communicator.size());
     const auto rank = static_cast<std::uint64_t>(communicator.rank());
     const std::uint32_t most = options.most_triangles > 0
                                    ? options.most_triangles
                                    : triangles_of_cluster(all, communicator.size());
-    mine = cut_clusters(placements, all * rank / ranks, all * (rank + 1) / ranks, most);
+    mine = cut_clusters(instances, all * rank / ranks, all * (rank + 1) / ranks, most);
   }
   LightTable lights(scene, shader);
   return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
@@ -89,11 +90,12 @@ SharedScene SharedScene::make(comm::Communicator& communicator, scenes::ScenePar
   geometry::Box3 box = scenes::bounds(part.scene);
   std::vector<ClusterData> mine;
   {
-    const std::vector<Placement> placements = place(part.scene, shader, options.build.share_meshes);
+    const std::vector<GeometryInstance> instances =
+        make_instances(part.scene, shader, options.build.share_meshes);
     const std::uint32_t most = options.most_triangles > 0
                                    ? options.most_triangles
                                    : triangles_of_cluster(part.triangles, communicator.size());
-    mine = cut_clusters(placements, 0, stored_triangles(placements), most, part.first_triangle);
+    mine = cut_clusters(instances, 0, stored_triangles(instances), most, part.first_triangle);
   }
   box = comm::all_reduce_value(communicator, box, [](geometry::Box3 a, const geometry::Box3& b) {
     a.include(b);
@@ -125,8 +127,8 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   std::vector<geometry::Box3> boxes;
   for (const ClusterData& cluster : mine) {
     const std::vector<geometry::Box3> more = boxes_of(cluster);
-    const bool instanced = std::any_of(cluster.placements.begin(), cluster.placements.end(),
-                                       [](const Placement& p) { return p.instanced; });
+    const bool instanced = std::any_of(cluster.instances.begin(), cluster.instances.end(),
+                                       [](const GeometryInstance& p) { return p.instanced; });
     known.push_back(
         {cluster.bytes(), static_cast<std::uint32_t>(more.size()), instanced ? 1U : 0U});
     boxes.insert(boxes.end(), more.begin(), more.end());
@@ -175,7 +177,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
     const EmbreeDevice device = thread == 0 ? device_ : EmbreeDevice(build_);
     for (std::size_t i = thread; i < mine.size(); i += threads) {
       ready[i] = std::make_shared<const Cluster>(std::move(mine[i]), build_, device);
-      degenerate[i] = count_degenerate(ready[i]->placements());
+      degenerate[i] = count_degenerate(ready[i]->instances());
     }
   });
   for (std::size_t i = 0; i < ready.size(); ++i) {

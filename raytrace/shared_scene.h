@@ -53,7 +53,7 @@ class SharedScene {
   std::uint32_t clusters() const { return static_cast<std::uint32_t>(owners_.size()); }
   int owner(std::uint32_t cluster) const { return owners_[cluster]; }
   std::uint64_t packed_bytes(std::uint32_t cluster) const { return packed_bytes_[cluster]; }
-  // Whether any placement of the whole scene is an Embree instance, or can be seen through.
+  // Whether any instance of the whole scene is an Embree instance, or can be seen through.
   bool has_instances() const { return has_instances_; }
 
   // The cluster where it is at hand, on this rank; null where not. A use of what came from another

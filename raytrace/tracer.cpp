@@ -32,18 +32,18 @@ Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
 Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader,
                    const BuildOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  std::vector<Placement> placements = place(scene, shader, options.share_meshes);
-  const std::uint64_t degenerate = count_degenerate(placements);
-  EmbreeScene embree(placements, options);
+  std::vector<GeometryInstance> instances = make_instances(scene, shader, options.share_meshes);
+  const std::uint64_t degenerate = count_degenerate(instances);
+  EmbreeScene embree(instances, options);
   LightTable lights(scene, shader);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::size_t bytes = 0;
   for (const scenes::Mesh& mesh : scene.meshes) bytes += bytes_of(mesh);
   const bool large = bytes > kManyBytes;
-  for (const Placement& placement : placements) bytes += bytes_of(placement.moved);
+  for (const GeometryInstance& instance : instances) bytes += bytes_of(instance.moved);
   bytes += embree.memory();
   return {std::move(shader),
-          std::move(placements),
+          std::move(instances),
           std::move(embree),
           std::move(lights),
           degenerate,

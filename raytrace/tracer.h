@@ -6,7 +6,7 @@
 
 #include "raytrace/sampling/light_table.h"
 #include "raytrace/scene/embree_scene.h"
-#include "raytrace/scene/placement.h"
+#include "raytrace/scene/geometry_instance.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 
@@ -16,7 +16,7 @@ namespace delray::raytrace {
 // process may share one.
 struct Tracer {
   shading::Shader shader;
-  std::vector<Placement> placements;
+  std::vector<GeometryInstance> instances;
   EmbreeScene embree;
   LightTable lights;
   std::uint64_t degenerate = 0;  // triangles that can never be hit

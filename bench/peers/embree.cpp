@@ -176,7 +176,7 @@ void BareEmbree::State::loop(std::span<const RecordedGroup> rays, bool shadows, 
   }
 }
 
-BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool same_answers,
+BareEmbree::BareEmbree(std::span<const raytrace::GeometryInstance> instances, bool same_answers,
                        const char* isa)
     : state_(std::make_unique<State>()) {
   std::string configuration = "set_affinity=0";
@@ -194,7 +194,7 @@ BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool sam
     rtcSetSceneFlags(scene, same_answers ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     return scene;
   };
-  const auto attach = [&](RTCScene scene, unsigned number, const raytrace::Placement& p) {
+  const auto attach = [&](RTCScene scene, unsigned number, const raytrace::GeometryInstance& p) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t vertices = p.mesh->positions.size();
     void* to = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -205,8 +205,8 @@ BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool sam
                                p.mesh->triangles.size());
     if (same_answers && p.see_through) {
       rtcSetGeometryOccludedFilterFunction(geometry, pass);
-      if (p.solid) {
-        rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(p.solid->data()));
+      if (p.opaque) {
+        rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(p.opaque->data()));
       }
     }
     rtcCommitGeometry(geometry);
@@ -214,8 +214,8 @@ BareEmbree::BareEmbree(std::span<const raytrace::Placement> placements, bool sam
     rtcReleaseGeometry(geometry);
   };
   state_->top = new_scene();
-  for (unsigned i = 0; i < placements.size(); ++i) {
-    const raytrace::Placement& p = placements[i];
+  for (unsigned i = 0; i < instances.size(); ++i) {
+    const raytrace::GeometryInstance& p = instances[i];
     if (p.mesh == nullptr || p.mesh->triangles.empty()) continue;
     if (!p.instanced) {
       attach(state_->top, i, p);

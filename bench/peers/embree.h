@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/scene/placement.h"
+#include "raytrace/scene/geometry_instance.h"
 
 namespace delray::bench {
 
@@ -31,7 +31,8 @@ class BareEmbree {
   // be empty. Coherent loops of shadow rays over instances are left out where Embree hangs in them.
   // The structure has Embree's default flags, and shadow rays end at whatever they meet. With
   // `same_answers` it is robust, and they pass what can be seen through, unnoted.
-  BareEmbree(std::span<const raytrace::Placement> placements, bool same_answers, const char* isa);
+  BareEmbree(std::span<const raytrace::GeometryInstance> instances, bool same_answers,
+             const char* isa);
   ~BareEmbree();
 
   bool can(Loop loop, bool shadows) const;

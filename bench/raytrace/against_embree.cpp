@@ -29,7 +29,7 @@
 #include "comm/threads.h"
 #include "parallel/arena.h"
 #include "raytrace/integrator.h"
-#include "raytrace/integrators/answer.h"
+#include "raytrace/integrators/intersect.h"
 #include "raytrace/render.h"
 #include "raytrace/scene/flush_to_zero.h"
 #include "scenes/framing.h"
@@ -88,9 +88,9 @@ Recorded record(const raytrace::Tracer& tracer, const scenes::Camera& camera,
   const raytrace::FlushToZero flush;
   const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
   const scenes::View view = scenes::make_view(camera, options.width, options.height);
-  const raytrace::Setting setting{shader, tracer.lights, view, options.trace, options.samples};
-  const std::unique_ptr<raytrace::Walk> walk =
-      raytrace::integrator(options.integrator).make(setting);
+  const raytrace::FrameContext context{shader, tracer.lights, view, options.trace, options.samples};
+  const std::unique_ptr<raytrace::WavefrontIntegrator> wavefront =
+      raytrace::integrator(options.integrator).make(context);
   constexpr int kSide = 16;
   for (int y = 0; y < options.height; y += kSide) {
     for (int x = 0; x < options.width; x += kSide) {
@@ -98,14 +98,14 @@ Recorded record(const raytrace::Tracer& tracer, const scenes::Camera& camera,
         const raytrace::Task task{geometry::intersection({x, y, x + kSide, y + kSide},
                                                          {0, 0, options.width, options.height}),
                                   s, 1};
-        for (walk->start(task); !walk->done(); walk->go_on()) {
-          for (const raytrace::RayGroup& group : walk->wave().rays) {
+        for (wavefront->start(task); !wavefront->done(); wavefront->advance()) {
+          for (const raytrace::RayGroup& group : wavefront->batch().rays) {
             record(group.active, group.packet, recorded[group.coherent ? 0 : 1]);
           }
-          for (const raytrace::ShadowGroup& group : walk->wave().shadows) {
+          for (const raytrace::ShadowGroup& group : wavefront->batch().shadows) {
             record(group.active, group.packet, recorded[group.coherent ? 2 : 3]);
           }
-          answer(tracer, shader, walk->wave());
+          intersect(tracer, shader, wavefront->batch());
         }
       }
     }
@@ -176,7 +176,7 @@ void compare(const std::string& name, const Arguments& arguments) {
   std::unique_ptr<bench::BareEmbree> bare;
   Recorded recorded;
   if (!arguments.alone) {
-    bare = std::make_unique<bench::BareEmbree>(tracer.placements, arguments.same_answers,
+    bare = std::make_unique<bench::BareEmbree>(tracer.instances, arguments.same_answers,
                                                arguments.isa.c_str());
     recorded = record(tracer, camera, options);
     choose_loops(*bare, recorded);

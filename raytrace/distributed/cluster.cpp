@@ -76,8 +76,8 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
-// A placement without its pointers.
-struct PlacementValues {
+// A geometry instance without its pointers.
+struct InstanceValues {
   std::uint32_t piece, material;
   std::uint8_t instanced, identity, see_through, layered, texture_sets, unused[3];
   float orientation, transform_scale;
@@ -85,7 +85,7 @@ struct PlacementValues {
   glm::mat3 normal_to_world;
 };
 
-PlacementValues values_of(const Placement& p) {
+InstanceValues values_of(const GeometryInstance& p) {
   return {p.mesh_number,
           p.material,
           p.instanced,
@@ -100,8 +100,8 @@ PlacementValues values_of(const Placement& p) {
           p.normal_to_world};
 }
 
-Placement placement_of(const PlacementValues& v) {
-  Placement p;
+GeometryInstance instance_of(const InstanceValues& v) {
+  GeometryInstance p;
   p.mesh_number = v.piece;
   p.material = v.material;
   p.instanced = v.instanced != 0;
@@ -135,12 +135,12 @@ std::uint64_t ClusterData::triangles() const {
 }
 
 std::uint64_t ClusterData::bytes() const {
-  std::uint64_t sum = bytes_of(pieces) + bytes_of(placements);
+  std::uint64_t sum = bytes_of(pieces) + bytes_of(instances);
   for (const Piece& piece : pieces) {
     const scenes::Mesh& mesh = piece.mesh;
     sum += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.uvs) +
            bytes_of(mesh.uvs2) + bytes_of(mesh.tangents) + bytes_of(mesh.colours) +
-           bytes_of(mesh.triangles) + bytes_of(piece.triangles) + bytes_of(piece.placements);
+           bytes_of(mesh.triangles) + bytes_of(piece.triangles) + bytes_of(piece.instances);
   }
   return sum;
 }
@@ -149,20 +149,20 @@ std::vector<geometry::Box3> boxes_of(const ClusterData& cluster) {
   std::vector<geometry::Box3> boxes;
   glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
   bool any = false;
-  for (const Placement& placement : cluster.placements) {
-    const scenes::Mesh& mesh = cluster.pieces[placement.mesh_number].mesh;
-    if (!placement.instanced) {
+  for (const GeometryInstance& instance : cluster.instances) {
+    const scenes::Mesh& mesh = cluster.pieces[instance.mesh_number].mesh;
+    if (!instance.instanced) {
       for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
       any = any || !mesh.positions.empty();
       continue;
     }
     glm::vec3 placed_low(std::numeric_limits<float>::infinity()), placed_high = -placed_low;
     for (const glm::vec3& p : mesh.positions) {
-      const glm::vec3 q = placement.to_world * glm::vec4(p, 1.0F);
+      const glm::vec3 q = instance.to_world * glm::vec4(p, 1.0F);
       placed_low = glm::min(placed_low, q), placed_high = glm::max(placed_high, q);
     }
     if (!mesh.positions.empty())
-      boxes.push_back(with_slack(placed_low, placed_high, placement.transform_scale));
+      boxes.push_back(with_slack(placed_low, placed_high, instance.transform_scale));
   }
   if (any) boxes.push_back(with_slack(low, high, 0.0F));
   return boxes;
@@ -181,11 +181,11 @@ comm::Buffer pack(const ClusterData& cluster) {
     out.array(piece.mesh.colours);
     out.array(piece.mesh.triangles);
     out.array(piece.triangles);
-    out.array(piece.placements);
+    out.array(piece.instances);
   }
-  std::vector<PlacementValues> placements;
-  for (const Placement& p : cluster.placements) placements.push_back(values_of(p));
-  out.array(placements);
+  std::vector<InstanceValues> instances;
+  for (const GeometryInstance& p : cluster.instances) instances.push_back(values_of(p));
+  out.array(instances);
   return out.buffer();
 }
 
@@ -205,24 +205,24 @@ ClusterData unpack_cluster(std::span<const std::byte> message) {
     piece.mesh.colours = in.array<glm::vec4>();
     piece.mesh.triangles = in.array<glm::uvec3>();
     piece.triangles = in.array<std::uint32_t>();
-    piece.placements = in.array<std::uint32_t>();
+    piece.instances = in.array<std::uint32_t>();
   }
-  for (const PlacementValues& values : in.array<PlacementValues>())
-    cluster.placements.push_back(placement_of(values));
+  for (const InstanceValues& values : in.array<InstanceValues>())
+    cluster.instances.push_back(instance_of(values));
   return cluster;
 }
 
 Cluster::Cluster(ClusterData&& data, const BuildOptions& options, const EmbreeDevice& device)
     : data_(std::move(data)) {
-  for (Placement& placement : data_.placements) {
-    const Piece& piece = data_.pieces[placement.mesh_number];
-    placement.mesh = &piece.mesh;
-    placement.positions = piece.mesh.positions.data();
+  for (GeometryInstance& instance : data_.instances) {
+    const Piece& piece = data_.pieces[instance.mesh_number];
+    instance.mesh = &piece.mesh;
+    instance.positions = piece.mesh.positions.data();
   }
   for (const Piece& piece : data_.pieces)
-    numbers_.insert(numbers_.end(), piece.placements.begin(), piece.placements.end());
+    numbers_.insert(numbers_.end(), piece.instances.begin(), piece.instances.end());
   geometry_bytes_ = data_.bytes();
-  embree_ = std::make_unique<EmbreeScene>(data_.placements, options, device);
+  embree_ = std::make_unique<EmbreeScene>(data_.instances, options, device);
 }
 
 }  // namespace delray::raytrace

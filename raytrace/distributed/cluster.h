@@ -11,27 +11,27 @@
 #include "comm/buffer.h"
 #include "geometry/box.h"
 #include "raytrace/scene/embree_scene.h"
-#include "raytrace/scene/placement.h"
+#include "raytrace/scene/geometry_instance.h"
 
 namespace delray::raytrace {
 
 // Triangles of one mesh with the vertices that they use, and what they are in the whole scene.
 struct Piece {
   scenes::Mesh mesh;  // positions moved to the world where the mesh is placed once
-  std::vector<std::uint32_t> triangles;   // element i: number of triangle i in its mesh
-  std::vector<std::uint32_t> placements;  // numbers of the instances that place it
+  std::vector<std::uint32_t> triangles;  // element i: number of triangle i in its mesh
+  std::vector<std::uint32_t> instances;  // numbers of the instances that place it
 };
 
 // Geometry alone: what travels.
 struct ClusterData {
   std::vector<Piece> pieces;
-  std::vector<Placement> placements;  // of all pieces, piece by piece; pointers are not set
+  std::vector<GeometryInstance> instances;  // of all pieces, piece by piece; pointers are not set
 
   std::uint64_t triangles() const;
   std::uint64_t bytes() const;  // of the arrays
 };
 
-// The boxes of what is placed, one for each placement of an instanced piece; a little larger, for
+// The boxes of what is placed, one for each instance of an instanced piece; a little larger, for
 // what rounding does to a ray.
 std::vector<geometry::Box3> boxes_of(const ClusterData& cluster);
 
@@ -46,20 +46,20 @@ class Cluster {
   Cluster& operator=(const Cluster&) = delete;
 
   const ClusterData& data() const { return data_; }
-  std::span<const Placement> placements() const { return data_.placements; }
+  std::span<const GeometryInstance> instances() const { return data_.instances; }
   const EmbreeScene& embree() const { return *embree_; }
   // Geometry and acceleration structure.
   std::uint64_t bytes() const { return geometry_bytes_ + embree_->memory(); }
 
-  // What a local placement and triangle are in the whole scene.
-  std::uint32_t placement(std::uint32_t local) const { return numbers_[local]; }
-  std::uint32_t triangle(std::uint32_t local_placement, std::uint32_t local) const {
-    return data_.pieces[data_.placements[local_placement].mesh_number].triangles[local];
+  // What a local instance and triangle are in the whole scene.
+  std::uint32_t instance(std::uint32_t local) const { return numbers_[local]; }
+  std::uint32_t triangle(std::uint32_t local_instance, std::uint32_t local) const {
+    return data_.pieces[data_.instances[local_instance].mesh_number].triangles[local];
   }
 
  private:
   ClusterData data_;
-  std::vector<std::uint32_t> numbers_;  // of placements in the whole scene
+  std::vector<std::uint32_t> numbers_;  // of instances in the whole scene
   std::uint64_t geometry_bytes_ = 0;
   std::unique_ptr<EmbreeScene> embree_;
 };
@@ -68,11 +68,11 @@ class Cluster {
 // clusters of at most `most` triangles: in halves along the longest side of the box of their
 // centres, those of meshes placed several times for themselves. The numbers of the triangles in
 // their meshes go up by first_triangle. O(n log n). REQUIRES: most >= 1.
-std::vector<ClusterData> cut_clusters(std::span<const Placement> placements, std::uint64_t begin,
-                                      std::uint64_t end, std::uint32_t most,
+std::vector<ClusterData> cut_clusters(std::span<const GeometryInstance> instances,
+                                      std::uint64_t begin, std::uint64_t end, std::uint32_t most,
                                       std::uint32_t first_triangle = 0);
 
 // How many triangles there are in that sense.
-std::uint64_t stored_triangles(std::span<const Placement> placements);
+std::uint64_t stored_triangles(std::span<const GeometryInstance> instances);
 
 }  // namespace delray::raytrace

@@ -81,8 +81,8 @@ std::uint32_t ClusterTree::build(std::uint32_t first, std::uint32_t count) {
 }
 
 void ClusterTree::find(const glm::vec3& origin, const glm::vec3& direction, float near, float far,
-                       std::vector<Crossing>& crossings) const {
-  crossings.clear();
+                       std::vector<ClusterHit>& cluster_hits) const {
+  cluster_hits.clear();
   if (nodes_.empty()) return;
   const Line line{origin, glm::vec3(1.0F) / direction, near, far};
   constexpr float kMissed = std::numeric_limits<float>::infinity();
@@ -99,19 +99,19 @@ void ClusterTree::find(const glm::vec3& origin, const glm::vec3& direction, floa
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const float entry = entry_of(boxes_[i].box, line);
-      if (entry != kMissed) crossings.push_back({entry, boxes_[i].cluster});
+      if (entry != kMissed) cluster_hits.push_back({entry, boxes_[i].cluster});
     }
   }
-  std::sort(crossings.begin(), crossings.end());
-  // Of a cluster that is placed several times the first crossing counts.
+  std::sort(cluster_hits.begin(), cluster_hits.end());
+  // Of a cluster that is placed several times the first cluster_hit counts.
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
+  for (std::size_t i = 0; i < cluster_hits.size(); ++i) {
     bool known = false;
     for (std::size_t j = 0; j < kept && !known; ++j)
-      known = crossings[j].cluster == crossings[i].cluster;
-    if (!known) crossings[kept++] = crossings[i];
+      known = cluster_hits[j].cluster == cluster_hits[i].cluster;
+    if (!known) cluster_hits[kept++] = cluster_hits[i];
   }
-  crossings.resize(kept);
+  cluster_hits.resize(kept);
 }
 
 }  // namespace delray::raytrace

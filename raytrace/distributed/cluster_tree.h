@@ -18,13 +18,13 @@ struct ClusterBox {
 };
 
 // Where a ray enters a cluster first.
-struct Crossing {
+struct ClusterHit {
   float entry = 0.0F;
   std::uint32_t cluster = 0;
-  bool operator<(const Crossing& b) const {
+  bool operator<(const ClusterHit& b) const {
     return entry != b.entry ? entry < b.entry : cluster < b.cluster;
   }
-  bool operator==(const Crossing&) const = default;
+  bool operator==(const ClusterHit&) const = default;
 };
 
 class ClusterTree {
@@ -33,10 +33,10 @@ class ClusterTree {
   // The same boxes in the same order give the same tree on every rank. O(n log n).
   explicit ClusterTree(std::vector<ClusterBox> boxes);
 
-  // Replaces `crossings` by the clusters that points origin + t * direction, near <= t <= far, may
-  // touch, by (entry, number), each once. The same on every rank. O(log n + crossings).
+  // Replaces `cluster_hits` by the clusters that points origin + t * direction, near <= t <= far,
+  // may touch, by (entry, number), each once. The same on every rank. O(log n + cluster_hits).
   void find(const glm::vec3& origin, const glm::vec3& direction, float near, float far,
-            std::vector<Crossing>& crossings) const;
+            std::vector<ClusterHit>& cluster_hits) const;
 
   geometry::Box3 bounds() const { return nodes_.empty() ? geometry::Box3() : nodes_[0].box; }
 

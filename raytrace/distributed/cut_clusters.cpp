@@ -14,31 +14,31 @@ namespace {
 
 struct Item {
   glm::vec3 centre;
-  std::uint32_t placement, triangle;  // triangle: in the placement's mesh as it is at hand
+  std::uint32_t instance, triangle;  // triangle: in the instance's mesh as it is at hand
 };
 
-glm::vec3 centre_of(const Placement& placement, std::uint32_t triangle) {
-  const glm::uvec3 corners = placement.mesh->triangles[triangle];
-  const glm::vec3 sum = placement.positions[corners.x] + placement.positions[corners.y] +
-                        placement.positions[corners.z];
+glm::vec3 centre_of(const GeometryInstance& instance, std::uint32_t triangle) {
+  const glm::uvec3 corners = instance.mesh->triangles[triangle];
+  const glm::vec3 sum =
+      instance.positions[corners.x] + instance.positions[corners.y] + instance.positions[corners.z];
   return sum * (1.0F / 3.0F);
 }
 
-// The first placement of each mesh that is placed several times, and where the others are.
+// The first instance of each mesh that is placed several times, and where the others are.
 using Placed = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
 
-Placed instances_of_meshes(std::span<const Placement> placements) {
+Placed instances_of_meshes(std::span<const GeometryInstance> instances) {
   Placed placed;
-  for (std::uint32_t i = 0; i < placements.size(); ++i)
-    if (placements[i].instanced) placed[placements[i].mesh_number].push_back(i);
+  for (std::uint32_t i = 0; i < instances.size(); ++i)
+    if (instances[i].instanced) placed[instances[i].mesh_number].push_back(i);
   return placed;
 }
 
 // Whether its triangles count: each mesh that is placed several times counts once.
-bool is_stored(std::span<const Placement> placements, const Placed& placed, std::uint32_t i) {
-  const Placement& placement = placements[i];
-  if (placement.mesh == nullptr) return false;
-  return !placement.instanced || placed.at(placement.mesh_number).front() == i;
+bool is_stored(std::span<const GeometryInstance> instances, const Placed& placed, std::uint32_t i) {
+  const GeometryInstance& instance = instances[i];
+  if (instance.mesh == nullptr) return false;
+  return !instance.instanced || placed.at(instance.mesh_number).front() == i;
 }
 
 template <class T>
@@ -48,9 +48,9 @@ void take(const std::vector<T>& from, std::span<const std::uint32_t> vertices, s
   for (const std::uint32_t v : vertices) to.push_back(from[v]);
 }
 
-Piece piece_of(const Placement& placement, std::span<const Item> items,
+Piece piece_of(const GeometryInstance& instance, std::span<const Item> items,
                std::uint32_t first_triangle) {
-  const scenes::Mesh& mesh = *placement.mesh;
+  const scenes::Mesh& mesh = *instance.mesh;
   Piece piece;
   piece.mesh.material = mesh.material;
   std::unordered_map<std::uint32_t, std::uint32_t> known;
@@ -70,7 +70,7 @@ Piece piece_of(const Placement& placement, std::span<const Item> items,
     piece.triangles.push_back(first_triangle + item.triangle);
   }
   piece.mesh.positions.reserve(vertices.size() + 1);  // Embree loads past the last one
-  for (const std::uint32_t v : vertices) piece.mesh.positions.push_back(placement.positions[v]);
+  for (const std::uint32_t v : vertices) piece.mesh.positions.push_back(instance.positions[v]);
   take(mesh.normals, vertices, piece.mesh.normals);
   take(mesh.uvs, vertices, piece.mesh.uvs);
   take(mesh.uvs2, vertices, piece.mesh.uvs2);
@@ -79,8 +79,8 @@ Piece piece_of(const Placement& placement, std::span<const Item> items,
   return piece;
 }
 
-Placement without_pointers(const Placement& from, std::uint32_t piece) {
-  Placement p;
+GeometryInstance without_pointers(const GeometryInstance& from, std::uint32_t piece) {
+  GeometryInstance p;
   p.mesh_number = piece;
   p.material = from.material;
   p.instanced = from.instanced;
@@ -97,9 +97,9 @@ Placement without_pointers(const Placement& from, std::uint32_t piece) {
 
 class Cutter {
  public:
-  Cutter(std::span<const Placement> placements, const Placed& placed, std::uint32_t most,
+  Cutter(std::span<const GeometryInstance> instances, const Placed& placed, std::uint32_t most,
          std::uint32_t first_triangle)
-      : placements_(placements), placed_(placed), most_(most), first_triangle_(first_triangle) {}
+      : instances_(instances), placed_(placed), most_(most), first_triangle_(first_triangle) {}
 
   void cut(std::span<Item> items) {
     if (items.empty()) return;
@@ -114,8 +114,8 @@ class Cutter {
     const std::size_t half = items.size() / 2;
     std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
                      [axis](const Item& a, const Item& b) {
-                       return std::tuple(a.centre[axis], a.placement, a.triangle) <
-                              std::tuple(b.centre[axis], b.placement, b.triangle);
+                       return std::tuple(a.centre[axis], a.instance, a.triangle) <
+                              std::tuple(b.centre[axis], b.instance, b.triangle);
                      });
     cut(items.first(half));
     cut(items.subspan(half));
@@ -126,55 +126,55 @@ class Cutter {
  private:
   void finish(std::span<Item> items) {
     std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
-      return std::pair(a.placement, a.triangle) < std::pair(b.placement, b.triangle);
+      return std::pair(a.instance, a.triangle) < std::pair(b.instance, b.triangle);
     });
     ClusterData& cluster = clusters.emplace_back();
     for (std::size_t first = 0; first < items.size();) {
       std::size_t last = first;
-      const std::uint32_t number = items[first].placement;
-      while (last < items.size() && items[last].placement == number) ++last;
-      const Placement& placement = placements_[number];
+      const std::uint32_t number = items[first].instance;
+      while (last < items.size() && items[last].instance == number) ++last;
+      const GeometryInstance& instance = instances_[number];
       const auto index = static_cast<std::uint32_t>(cluster.pieces.size());
       Piece& piece = cluster.pieces.emplace_back(
-          piece_of(placement, items.subspan(first, last - first), first_triangle_));
-      piece.placements = placement.instanced ? placed_.at(placement.mesh_number)
-                                             : std::vector<std::uint32_t>{number};
-      for (const std::uint32_t i : piece.placements)
-        cluster.placements.push_back(without_pointers(placements_[i], index));
+          piece_of(instance, items.subspan(first, last - first), first_triangle_));
+      piece.instances = instance.instanced ? placed_.at(instance.mesh_number)
+                                           : std::vector<std::uint32_t>{number};
+      for (const std::uint32_t i : piece.instances)
+        cluster.instances.push_back(without_pointers(instances_[i], index));
       first = last;
     }
   }
 
-  std::span<const Placement> placements_;
+  std::span<const GeometryInstance> instances_;
   const Placed& placed_;
   std::uint32_t most_, first_triangle_;
 };
 
 }  // namespace
 
-std::uint64_t stored_triangles(std::span<const Placement> placements) {
-  const Placed placed = instances_of_meshes(placements);
+std::uint64_t stored_triangles(std::span<const GeometryInstance> instances) {
+  const Placed placed = instances_of_meshes(instances);
   std::uint64_t sum = 0;
-  for (std::uint32_t i = 0; i < placements.size(); ++i)
-    if (is_stored(placements, placed, i)) sum += placements[i].mesh->triangles.size();
+  for (std::uint32_t i = 0; i < instances.size(); ++i)
+    if (is_stored(instances, placed, i)) sum += instances[i].mesh->triangles.size();
   return sum;
 }
 
-std::vector<ClusterData> cut_clusters(std::span<const Placement> placements, std::uint64_t begin,
-                                      std::uint64_t end, std::uint32_t most,
+std::vector<ClusterData> cut_clusters(std::span<const GeometryInstance> instances,
+                                      std::uint64_t begin, std::uint64_t end, std::uint32_t most,
                                       std::uint32_t first_triangle) {
-  const Placed placed = instances_of_meshes(placements);
-  Cutter cutter(placements, placed, most, first_triangle);
+  const Placed placed = instances_of_meshes(instances);
+  Cutter cutter(instances, placed, most, first_triangle);
   std::vector<Item> once, own;
   std::uint64_t first = 0;
-  for (std::uint32_t i = 0; i < placements.size(); ++i) {
-    if (!is_stored(placements, placed, i)) continue;
-    const std::uint64_t count = placements[i].mesh->triangles.size();
-    std::vector<Item>& items = placements[i].instanced ? own : once;
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    if (!is_stored(instances, placed, i)) continue;
+    const std::uint64_t count = instances[i].mesh->triangles.size();
+    std::vector<Item>& items = instances[i].instanced ? own : once;
     const std::uint64_t low = std::max(begin, first), high = std::min(end, first + count);
     for (std::uint64_t t = low; t < high; ++t) {
       const auto triangle = static_cast<std::uint32_t>(t - first);
-      items.push_back({centre_of(placements[i], triangle), i, triangle});
+      items.push_back({centre_of(instances[i], triangle), i, triangle});
     }
     first += count;
     cutter.cut(own);

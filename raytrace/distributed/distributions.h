@@ -9,8 +9,8 @@ namespace delray::raytrace {
 // worth its latency.
 inline constexpr std::uint64_t kBatchRays = 256;
 
-Meeting meet_by_ray(const WaitingList& waiting);
-Meeting meet_by_object(const WaitingList& waiting);
-Meeting meet_by_either(const WaitingList& waiting);
+RoutingDecision distribute_ray(const WaitingList& waiting);
+RoutingDecision distribute_object(const WaitingList& waiting);
+RoutingDecision distribute_hybrid(const WaitingList& waiting);
 
 }  // namespace delray::raytrace

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "comm/communicator.h"
-#include "raytrace/distributed/ray_traffic.h"
+#include "raytrace/distributed/distributed_tracer.h"
 
 namespace delray::raytrace {
 
@@ -15,8 +15,8 @@ namespace delray::raytrace {
 // might hand them out. Messages of the traffic are not its caller's.
 class ServingCommunicator final : public comm::Communicator {
  public:
-  ServingCommunicator(comm::Communicator& inner, RayTraffic& traffic)
-      : inner_(inner), traffic_(traffic) {}
+  ServingCommunicator(comm::Communicator& inner, DistributedTracer& tracer)
+      : inner_(inner), tracer_(tracer) {}
 
   int rank() const override { return inner_.rank(); }
   int size() const override { return inner_.size(); }
@@ -36,7 +36,7 @@ class ServingCommunicator final : public comm::Communicator {
     for (;;) {
       if (const auto found = inner_.probe(from, tag, comm::Deadline::now())) return found;
       if (inner_.seconds() - begin >= seconds) return std::nullopt;
-      if (!traffic_.serve()) traffic_.wait_a_moment();
+      if (!tracer_.serve()) tracer_.wait_a_moment();
     }
   }
   std::unique_ptr<comm::Communicator> split(int color, int key) override {
@@ -51,7 +51,7 @@ class ServingCommunicator final : public comm::Communicator {
 
  private:
   comm::Communicator& inner_;
-  RayTraffic& traffic_;
+  DistributedTracer& tracer_;
 };
 
 }  // namespace delray::raytrace

@@ -5,8 +5,8 @@
 
 #include <bit>
 
-#include "raytrace/integrators/ask.h"
-#include "raytrace/integrators/lit_walk.h"
+#include "raytrace/integrators/direct_lighting.h"
+#include "raytrace/integrators/enqueue.h"
 #include "raytrace/sampling/sampler.h"
 #include "raytrace/sampling/warp.h"
 
@@ -15,15 +15,16 @@ namespace {
 
 using shading::LaneMask;
 
-class AmbientOcclusion final : public LitWalk {
+class AmbientOcclusion final : public DirectLighting {
  public:
-  explicit AmbientOcclusion(const Setting& setting) : LitWalk(setting, Positions::random) {
-    for (float& reach : reach_.lane) reach = setting.options.reach;
+  explicit AmbientOcclusion(const FrameContext& context)
+      : DirectLighting(context, Positions::random) {
+    for (float& reach : reach_.lane) reach = context.options.reach;
   }
 
  private:
-  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& /*shown*/) override {
-    const LaneMask seen = look_at(group, lanes, surfaces_);
+  LaneMask shade_group(RayGroup& group, RayLanes& lanes, shading::Shaded& /*shown*/) override {
+    const LaneMask seen = evaluate_hits(group, lanes, surfaces_);
     if (seen == 0) return 0;
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -36,7 +37,7 @@ class AmbientOcclusion final : public LitWalk {
       // Below the surface itself all is dark.
       white_.set(i, glm::vec3(glm::dot(direction, up) > 0.0F ? 1.0F : 0.0F));
     }
-    ask_shadows(group, lanes, seen, surfaces_, directions_, reach_, white_, false);
+    enqueue_shadows(group, lanes, seen, surfaces_, directions_, reach_, white_, false);
     return 0;
   }
 
@@ -47,8 +48,8 @@ class AmbientOcclusion final : public LitWalk {
 
 }  // namespace
 
-std::unique_ptr<Walk> make_ao(const Setting& setting) {
-  return std::make_unique<AmbientOcclusion>(setting);
+std::unique_ptr<WavefrontIntegrator> make_ao(const FrameContext& context) {
+  return std::make_unique<AmbientOcclusion>(context);
 }
 
 }  // namespace delray::raytrace

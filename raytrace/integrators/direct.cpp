@@ -4,8 +4,8 @@
 
 #include <bit>
 
+#include "raytrace/integrators/direct_lighting.h"
 #include "raytrace/integrators/lane_sums.h"
-#include "raytrace/integrators/lit_walk.h"
 #include "raytrace/scene/same_material.h"
 
 namespace delray::raytrace {
@@ -13,16 +13,16 @@ namespace {
 
 using shading::LaneMask;
 
-class Direct final : public LitWalk {
+class Direct final : public DirectLighting {
  public:
-  using LitWalk::LitWalk;
+  using DirectLighting::DirectLighting;
 
  private:
-  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
-    if (!setting_.options.shadows) return shade_unshadowed(group, lanes, shown);
-    const LaneMask seen = look_at(group, lanes, surfaces_);
+  LaneMask shade_group(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
+    if (!context_.options.shadows) return shade_unshadowed(group, lanes, shown);
+    const LaneMask seen = evaluate_hits(group, lanes, surfaces_);
     if (seen == 0) return 0;
-    const shading::BatchShader& shader = setting_.shader;
+    const shading::BatchShader& shader = context_.shader;
     copy_lanes(surfaces_.emission, seen, shown.colour);
     shading::ambient_diffuse(shader, surfaces_, group.view, seen, colour_);
     add_lanes(colour_, seen, shown.colour);
@@ -34,14 +34,14 @@ class Direct final : public LitWalk {
     }
     shading::ambient_transmitted(shader, surfaces_, group.view, seen, colour_);
     add_lanes(colour_, seen, shown.colour);
-    ask_lights(group, lanes, seen, surfaces_);
+    enqueue_lights(group, lanes, seen, surfaces_);
     return seen;
   }
 
   LaneMask shade_unshadowed(const RayGroup& group, RayLanes& lanes, shading::Shaded& shown) {
     for (LaneMask rest = group.hits; rest != 0;) {
       const LaneMask same = same_material(group, rest);
-      shading::shade(setting_.shader, group.material[std::countr_zero(rest)], group.points,
+      shading::shade(context_.shader, group.material[std::countr_zero(rest)], group.points,
                      group.view, same, {}, shown);
       rest &= ~same;
     }
@@ -54,8 +54,8 @@ class Direct final : public LitWalk {
 
 }  // namespace
 
-std::unique_ptr<Walk> make_direct(const Setting& setting) {
-  return std::make_unique<Direct>(setting);
+std::unique_ptr<WavefrontIntegrator> make_direct(const FrameContext& context) {
+  return std::make_unique<Direct>(context);
 }
 
 }  // namespace delray::raytrace

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "raytrace/integrators/walk.h"
+#include "raytrace/integrators/wavefront_integrator.h"
 
 namespace delray::raytrace {
 
@@ -11,6 +11,6 @@ namespace delray::raytrace {
 // reaches, and, of what stands around it, the environment only: what the rasterizer shows of it,
 // but for the shadows and lights with a size; without `shadows` the very same. Rays go on behind
 // layers that can be seen through.
-std::unique_ptr<Walk> make_direct(const Setting& setting);
+std::unique_ptr<WavefrontIntegrator> make_direct(const FrameContext& context);
 
 }  // namespace delray::raytrace

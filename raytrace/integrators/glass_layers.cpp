@@ -35,8 +35,8 @@ HWY_INLINE F mirrored_share(const F3& view, const F3& normal, F ratio) {
                         set(0.5F) * (parallel * parallel + perpendicular * perpendicular));
 }
 
-void left_block(const shading::Surfaces& s, const shading::Vectors16& views,
-                shading::Vectors16& left) {
+void transmittance_block(const shading::Surfaces& s, const shading::Vectors16& views,
+                         shading::Vectors16& transmittance) {
   const F one = set(1.0F);
   const FloatTag d;
   for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
@@ -47,9 +47,9 @@ void left_block(const shading::Surfaces& s, const shading::Vectors16& views,
     const F mirrored = mirrored_share(load(views, i), load(s.normal, i), ratio);
     const F alpha = load(s.alpha, i), past = one - alpha;
     const F3 through = load(s.tint, i) * (alpha * share * (one - mirrored));
-    hn::Store(past + through.x, d, left.x.lane + i);
-    hn::Store(past + through.y, d, left.y.lane + i);
-    hn::Store(past + through.z, d, left.z.lane + i);
+    hn::Store(past + through.x, d, transmittance.x.lane + i);
+    hn::Store(past + through.y, d, transmittance.y.lane + i);
+    hn::Store(past + through.z, d, transmittance.z.lane + i);
   }
 }
 
@@ -61,15 +61,15 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 namespace {
 
-HWY_EXPORT(left_block);
+HWY_EXPORT(transmittance_block);
 
 }  // namespace
 
-void find_left(std::span<const Placement> placements, const shading::BatchShader& shader,
-               std::span<const PaneHit> hits) {
+void find_transmittances(std::span<const GeometryInstance> instances,
+                         const shading::BatchShader& shader, std::span<const PaneHit> hits) {
   RayGroup group;
   shading::Surfaces surfaces;
-  shading::Vectors16 left;
+  shading::Vectors16 transmittance;
   group.width = group.spread = {};
   for (; !hits.empty(); hits = hits.subspan(std::min<std::size_t>(hits.size(), kPacketRays))) {
     const int count = static_cast<int>(std::min<std::size_t>(hits.size(), kPacketRays));
@@ -77,22 +77,23 @@ void find_left(std::span<const Placement> placements, const shading::BatchShader
       const PaneHit& pane = hits[static_cast<std::size_t>(i < count ? i : 0)];
       group.active.ray[i] = i < count ? -1 : 0;
       group.packet.far[i] = pane.hit.distance;
-      group.packet.geometry[i] = pane.hit.placement;
+      group.packet.geometry[i] = pane.hit.instance;
       group.packet.instance[i] = kMiss;
       group.packet.triangle[i] = pane.hit.triangle;
       group.packet.u[i] = pane.hit.u;
       group.packet.v[i] = pane.hit.v;
       group.view.set(i, -pane.direction);
     }
-    find_points(placements, group);
+    find_points(instances, group);
     for (shading::LaneMask rest = group.hits; rest != 0;) {
       const shading::LaneMask same = same_material(group, rest);
       shading::evaluate(shader, group.material[std::countr_zero(rest)], group.points, group.view,
                         same, surfaces);
       rest &= ~same;
     }
-    HWY_DYNAMIC_DISPATCH(left_block)(surfaces, group.view, left);
-    for (int i = 0; i < count; ++i) *hits[static_cast<std::size_t>(i)].left = left.get(i);
+    HWY_DYNAMIC_DISPATCH(transmittance_block)(surfaces, group.view, transmittance);
+    for (int i = 0; i < count; ++i)
+      *hits[static_cast<std::size_t>(i)].transmittance = transmittance.get(i);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "raytrace/scene/placement.h"
+#include "raytrace/scene/geometry_instance.h"
 #include "raytrace/scene/ray.h"
 #include "shading/batch_shader.h"
 
@@ -14,12 +14,12 @@ namespace delray::raytrace {
 struct PaneHit {
   Hit hit;
   glm::vec3 direction{0.0F};
-  glm::vec3* left = nullptr;  // where the answer goes
+  glm::vec3* transmittance = nullptr;  // where the answer goes
 };
 
-// Layer::left of each, bit for bit what layer_of says of light that passes glass. `shader` is made
-// of the shader's own materials. REQUIRES: the materials of all hits transmit.
-void find_left(std::span<const Placement> placements, const shading::BatchShader& shader,
-               std::span<const PaneHit> hits);
+// Layer::transmittance of each, bit for bit what layer_of says of light that passes glass. `shader`
+// is made of the shader's own materials. REQUIRES: the materials of all hits transmit.
+void find_transmittances(std::span<const GeometryInstance> instances,
+                         const shading::BatchShader& shader, std::span<const PaneHit> hits);
 
 }  // namespace delray::raytrace

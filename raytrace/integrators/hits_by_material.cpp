@@ -82,7 +82,7 @@ void gather_block(const RayGroup& first, const PathLanes& first_lanes, const std
       take(from.colour_alpha, to.points.colour_alpha);
     }
     const Gather take_lanes(offsets(sizeof(PathLanes)), i);
-    take_lanes(first_lanes.weight, to_lanes.weight);
+    take_lanes(first_lanes.throughput, to_lanes.throughput);
     take_lanes(first_lanes.pdf, to_lanes.pdf);
     take_lanes(first_lanes.pixel, to_lanes.pixel);
     take_lanes(first_lanes.bounce, to_lanes.bounce);

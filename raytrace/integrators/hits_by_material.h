@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "raytrace/integrators/path_vertices.h"
-#include "raytrace/scene/wave.h"
+#include "raytrace/scene/ray_batch.h"
 
 namespace delray::raytrace {
 

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "image/image.h"
-#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/enqueue.h"
 #include "raytrace/integrators/hits_by_material.h"
 #include "raytrace/integrators/lane_sums.h"
 #include "raytrace/integrators/path_vertices.h"
@@ -47,54 +47,54 @@ bool finite(const glm::vec3& v) {
   return brightest(glm::abs(v)) < std::numeric_limits<float>::infinity();  // false for NaN
 }
 
-class Path final : public Walk {
+class Path final : public WavefrontIntegrator {
  public:
-  explicit Path(const Setting& setting)
-      : Walk(setting, Positions::random),
-        plain_(setting.shader.materials.size()),
-        coloured_(setting.shader.materials.size()) {}
+  explicit Path(const FrameContext& context)
+      : WavefrontIntegrator(context, Positions::random),
+        plain_(context.shader.materials.size()),
+        coloured_(context.shader.materials.size()) {}
 
  private:
   void begin() override {
-    asked_.clear();
-    asked_lights_.clear();
+    enqueued_.clear();
+    enqueued_lights_.clear();
     filling_ = straight_ = {};
     used_lights_ = kPacketRays;
     for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
-      PathLanes& lanes = asked_.add();
+      PathLanes& lanes = enqueued_.add();
       lanes.whole = true;
       lanes.block = block;
     }
   }
 
-  void look() override {
-    std::swap(asked_, answered_);
-    std::swap(asked_lights_, answered_lights_);
-    asked_.clear();
-    asked_lights_.clear();
+  void shade() override {
+    std::swap(enqueued_, intersected_);
+    std::swap(enqueued_lights_, intersected_lights_);
+    enqueued_.clear();
+    enqueued_lights_.clear();
     filling_ = straight_ = {};
     used_lights_ = kPacketRays;
     texture_sets_ = 0;
-    for (std::size_t g = 0; g < wave_.shadows.size(); ++g) {
-      add_light(wave_.shadows[g], answered_lights_[g]);
+    for (std::size_t g = 0; g < batch_.shadows.size(); ++g) {
+      add_light(batch_.shadows[g], intersected_lights_[g]);
     }
-    for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
-      PathLanes& lanes = answered_[g];
-      if (lanes.whole && wave_.rays[g].hits != 0) spell_out(lanes);
-      add_sky(wave_.rays[g], lanes);
-      if (wave_.rays[g].hits != 0) find(static_cast<std::uint32_t>(g), lanes);
+    for (std::size_t g = 0; g < batch_.rays.size(); ++g) {
+      PathLanes& lanes = intersected_[g];
+      if (lanes.whole && batch_.rays[g].hits != 0) spell_out(lanes);
+      add_sky(batch_.rays[g], lanes);
+      if (batch_.rays[g].hits != 0) find(static_cast<std::uint32_t>(g), lanes);
     }
-    meet_gathered(plain_.take(), false);
-    meet_gathered(coloured_.take(), true);
+    shade_gathered(plain_.take(), false);
+    shade_gathered(coloured_.take(), true);
   }
 
   static void spell_out(PathLanes& lanes) {
     for (int i = 0; i < kPacketRays; ++i) {
-      lanes.weight.set(i, glm::vec3(1.0F));
+      lanes.throughput.set(i, glm::vec3(1.0F));
       lanes.pdf[i] = 0.0F;
       lanes.pixel[i] = lanes.block * kPacketRays + static_cast<std::uint32_t>(i);
       lanes.bounce[i] = lanes.vertex[i] = 0;
-      lanes.placement[i] = lanes.triangle[i] = kMiss;
+      lanes.instance[i] = lanes.triangle[i] = kMiss;
     }
   }
 
@@ -109,14 +109,15 @@ class Path final : public Walk {
     for (LaneMask rest = group.lit; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const glm::vec3 reflected = lanes.reflected.get(i);
-      add(lanes.pixel[i], (group.dimmed >> i & 1) != 0 ? reflected * group.left.get(i) : reflected);
+      add(lanes.pixel[i],
+          (group.attenuated >> i & 1) != 0 ? reflected * group.transmittance.get(i) : reflected);
     }
   }
 
   void add_sky(const RayGroup& group, const PathLanes& lanes) {
     LaneMask missed = active_lanes(group.active) & ~group.hits;
     if (missed == 0) return;
-    const bool transparent = setting_.options.background == TraceOptions::Background::transparent;
+    const bool transparent = context_.options.background == TraceOptions::Background::transparent;
     if (lanes.whole && transparent) {
       SampleBlock& block = samples_[lanes.block];
       choose_lanes(block.alpha.lane, 0.0F, ~missed, block.alpha);
@@ -131,11 +132,11 @@ class Path final : public Walk {
         missed &= ~(1U << i);
       }
     }
-    if (missed == 0 || setting_.shader.shader->environment.black) return;
+    if (missed == 0 || context_.shader.shader->environment.black) return;
     negate_lanes(group.view, directions_);
-    shading::environment_radiance(setting_.shader, directions_, 0.0F, missed, colour_);
+    shading::environment_radiance(context_.shader, directions_, 0.0F, missed, colour_);
     if (lanes.whole) return add_lanes(colour_, missed, samples_[lanes.block].colour);
-    setting_.lights.pdf_of_sky(directions_, pdfs_);
+    context_.lights.pdf_of_sky(directions_, pdfs_);
     weigh_sky(lanes, pdfs_, colour_);
     for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -145,42 +146,42 @@ class Path final : public Walk {
 
   // The surfaces that a group's rays met: looks at them at once where they fill it.
   void find(std::uint32_t number, PathLanes& lanes) {
-    const RayGroup& group = wave_.rays[number];
+    const RayGroup& group = batch_.rays[number];
     const LaneMask seen = see(group, lanes);
     for (LaneMask rest = seen; rest != 0;) {
       const LaneMask same = same_material(group, rest);
       rest &= ~same;
       const std::uint32_t material = group.material[std::countr_zero(same)];
-      if (same == shading::kAllLanes) return meet_all(number, lanes);
-      const bool known = material < setting_.shader.materials.size();
+      if (same == shading::kAllLanes) return shade_all(number, lanes);
+      const bool known = material < context_.shader.materials.size();
       (group.points.coloured ? coloured_ : plain_).add(known ? material : 0, number, same);
-      texture_sets_ = std::max(texture_sets_, setting_.shader.material(material).texture_sets);
+      texture_sets_ = std::max(texture_sets_, context_.shader.material(material).texture_sets);
     }
   }
 
-  void meet_all(std::uint32_t number, PathLanes& lanes) {
+  void shade_all(std::uint32_t number, PathLanes& lanes) {
     for (std::uint32_t i = 0; i < kPacketRays; ++i) sources_[i] = number * kPacketRays + i;
-    meet(wave_.rays[number], lanes, shading::kAllLanes);
+    shade_hits(batch_.rays[number], lanes, shading::kAllLanes);
   }
 
-  void meet_gathered(std::span<const std::uint32_t> hits, bool coloured) {
+  void shade_gathered(std::span<const std::uint32_t> hits, bool coloured) {
     while (!hits.empty()) {
       const std::size_t count = std::min<std::size_t>(hits.size(), kPacketRays);
-      gather_hits(wave_.rays, answered_, hits.first(count), coloured, texture_sets_, group_,
+      gather_hits(batch_.rays, intersected_, hits.first(count), coloured, texture_sets_, group_,
                   lanes_);
       std::copy_n(hits.begin(), count, sources_);
-      meet(group_, lanes_, shading::first_lanes(static_cast<int>(count)));
+      shade_hits(group_, lanes_, shading::first_lanes(static_cast<int>(count)));
       hits = hits.subspan(count);
     }
   }
 
-  // Surfaces side by side, of which lane i is that of hit sources_[i] of the wave.
-  void meet(const RayGroup& group, PathLanes& lanes, LaneMask seen) {
+  // Surfaces side by side, of which lane i is that of hit sources_[i] of the batch.
+  void shade_hits(const RayGroup& group, PathLanes& lanes, LaneMask seen) {
     for (LaneMask rest = seen; rest != 0;) {
       const LaneMask same = same_material(group, rest);
       const std::uint32_t material = group.material[std::countr_zero(rest)];
-      shading::evaluate(setting_.shader, material, group.points, group.view, same, surfaces_);
-      if (setting_.shader.material(material).absorbs) absorb(group, lanes, same);
+      shading::evaluate(context_.shader, material, group.points, group.view, same, surfaces_);
+      if (context_.shader.material(material).absorbs) absorb(group, lanes, same);
       rest &= ~same;
     }
     LaneMask alive = 0;
@@ -188,22 +189,22 @@ class Path final : public Walk {
       const int i = std::countr_zero(rest);
       alive |= may_scatter(lanes, i) ? 1U << i : 0U;
     }
-    for (LaneMask rest = glowing_lanes(surfaces_, seen); rest != 0; rest &= rest - 1) {
-      add_glow(lanes, std::countr_zero(rest));
+    for (LaneMask rest = emissive_lanes(surfaces_, seen); rest != 0; rest &= rest - 1) {
+      add_emission(lanes, std::countr_zero(rest));
     }
     if (alive != 0) make_bsdfs(surfaces_, group.view, alive, bsdfs_);
     alive &= ~bsdfs_.black;
     if (alive == 0) return;
     draw_at(lanes, alive, kLight, pairs_);
-    setting_.lights.sample(setting_.shader, surfaces_.position, alive,
+    context_.lights.sample(context_.shader, surfaces_.position, alive,
                            std::span(pairs_).subspan<kLight, LightTable::kPairs>(), lights_);
     evaluate(bsdfs_, lights_.direction, alive, values_);
     const Vertices vertices{group, lanes, surfaces_};
     const LaneMask lit = rays_to_lights(vertices, lights_, values_, alive, light_rays_);
-    if (lit != 0) ask_lights(lit);
+    if (lit != 0) enqueue_lights(lit);
     sample(bsdfs_, pairs_[kLobe].x, pairs_[kDirection].x, pairs_[kDirection].y, alive, scattered_);
     scattered_rays(vertices, scattered_, pairs_[kLobe].y, kCertain, alive, next_rays_);
-    if (next_rays_.count != 0) ask_scattered();
+    if (next_rays_.count != 0) enqueue_scattered();
   }
 
   // Bodies of glass take from the light that comes out of them.
@@ -213,18 +214,18 @@ class Path final : public Walk {
       if (surfaces_.front[i] != 0) continue;
       // Rays of the camera have directions of any length.
       const float distance = lanes.bounce[i] == 0
-                                 ? glm::distance(surfaces_.position.get(i), setting_.view.eye)
+                                 ? glm::distance(surfaces_.position.get(i), context_.view.eye)
                                  : group.packet.far[i];
-      const auto& material = setting_.shader.material(group.material[i]).material;
-      lanes.weight.set(i, lanes.weight.get(i) * shading::transmittance(material, distance));
+      const auto& material = context_.shader.material(group.material[i]).material;
+      lanes.throughput.set(i, lanes.throughput.get(i) * shading::transmittance(material, distance));
     }
   }
 
   // Takes the lobes from a surface of which light has been scattered by its kind as often as it
   // may. Returns whether some are left.
   bool may_scatter(const PathLanes& lanes, int i) {
-    const bool diffuse = diffuse_bounces(lanes.bounce[i]) < setting_.options.diffuse_depth;
-    const bool others = other_bounces(lanes.bounce[i]) < setting_.options.depth;
+    const bool diffuse = diffuse_bounces(lanes.bounce[i]) < context_.options.diffuse_depth;
+    const bool others = other_bounces(lanes.bounce[i]) < context_.options.depth;
     if (!diffuse) shading::remove_diffuse(surfaces_, i);
     if (!others) shading::keep_diffuse(surfaces_, i);
     return diffuse || others;
@@ -246,8 +247,8 @@ class Path final : public Walk {
       const LaneMask same = same_material(group, rest);
       const std::uint32_t material = group.material[std::countr_zero(rest)];
       rest &= ~same;
-      if (setting_.shader.material(material).covers && !group.points.coloured) continue;
-      shading::coverage(setting_.shader, material, group.points, same, alpha_);
+      if (context_.shader.material(material).covers && !group.points.coloured) continue;
+      shading::coverage(context_.shader, material, group.points, same, alpha_);
       layered |= same;
     }
     return layered;
@@ -263,7 +264,7 @@ class Path final : public Walk {
       const int i = std::countr_zero(rest);
       const Hit hit = hit_of(group.packet, i);
       // A ray that left a layer behind may meet it once more.
-      const bool again = hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
+      const bool again = hit.instance == lanes.instance[i] && hit.triangle == lanes.triangle[i];
       if (!again) {
         if (!(alpha_[i] < 1.0F)) continue;
         if (!drawn) draw_at(lanes, layered, kLayer, std::span(pairs_).first<1>());
@@ -287,21 +288,21 @@ class Path final : public Walk {
     return seen;
   }
 
-  void add_glow(const PathLanes& lanes, int i) {
+  void add_emission(const PathLanes& lanes, int i) {
     float share = 1.0F;
     if (lanes.pdf[i] > 0.0F) {
-      const RayPacket& packet = wave_.rays[sources_[i] / kPacketRays].packet;
+      const RayPacket& packet = batch_.rays[sources_[i] / kPacketRays].packet;
       const int lane = static_cast<int>(sources_[i] % kPacketRays);
       const Hit hit = hit_of(packet, lane);
-      const float pdf = setting_.lights.pdf_of_hit(
-          hit.placement, hit.triangle, origin_of(packet, lane), surfaces_.position.get(i));
+      const float pdf = context_.lights.pdf_of_hit(
+          hit.instance, hit.triangle, origin_of(packet, lane), surfaces_.position.get(i));
       share = power_heuristic(lanes.pdf[i], pdf);
     }
-    add(lanes.pixel[i], lanes.weight.get(i) * surfaces_.emission.get(i) * share);
+    add(lanes.pixel[i], lanes.throughput.get(i) * surfaces_.emission.get(i) * share);
   }
 
   void go_behind(const RayGroup& group, const PathLanes& lanes, int i, const Hit& hit) {
-    const auto& limits = setting_.options;
+    const auto& limits = context_.options;
     if (lanes.vertex[i] >=
         kMostLayers + static_cast<std::uint32_t>(limits.depth + limits.diffuse_depth)) {
       return;
@@ -311,18 +312,18 @@ class Path final : public Walk {
     make_room(filling);
     const int lane = filling.used++;
     RayGroup& next = next_.rays[filling.group];
-    PathLanes& to = asked_[filling.group];
+    PathLanes& to = enqueued_[filling.group];
     next.coherent = lanes.bounce[i] == 0;
     set_ray(next, lane, origin_of(group.packet, i), direction_of(group.packet, i),
             group.view.get(i), next_up(hit.distance));
     next.width[lane] = group.width[i];
     next.spread[lane] = group.spread[i];
-    to.weight.set(lane, lanes.weight.get(i));
+    to.throughput.set(lane, lanes.throughput.get(i));
     to.pdf[lane] = lanes.pdf[i];
     to.pixel[lane] = lanes.pixel[i];
     to.bounce[lane] = lanes.bounce[i];
     to.vertex[lane] = lanes.vertex[i] + 1;
-    to.placement[lane] = hit.placement;
+    to.instance[lane] = hit.instance;
     to.triangle[lane] = hit.triangle;
     ++(lanes.bounce[i] == 0 ? rays_.primary : rays_.secondary);
   }
@@ -338,12 +339,12 @@ class Path final : public Walk {
     if (filling.used < kPacketRays) return;
     filling = {next_.rays.size(), 0};
     clear_rays(next_.rays.add());
-    PathLanes& lanes = asked_.add();
+    PathLanes& lanes = enqueued_.add();
     lanes.whole = false;
     std::fill_n(lanes.triangle, kPacketRays, kMiss);
   }
 
-  void ask_scattered() {
+  void enqueue_scattered() {
     make_room(filling_);
     const int used = filling_.used, all = used + next_rays_.count;
     const std::size_t first = filling_.group;
@@ -352,19 +353,19 @@ class Path final : public Walk {
     if (all > kPacketRays) {
       make_room(filling_);
       filling_.used = all - kPacketRays;
-      second = path_fields(next_.rays.back(), asked_.back());
+      second = path_fields(next_.rays.back(), enqueued_.back());
       activate(next_.rays.back(), 0, filling_.used);
     }
-    append_lanes(next_rays_, used, path_fields(next_.rays[first], asked_[first]),
+    append_lanes(next_rays_, used, path_fields(next_.rays[first], enqueued_[first]),
                  all > kPacketRays ? &second : nullptr);
     activate(next_.rays[first], used, std::min(all, kPacketRays));
     rays_.secondary += static_cast<std::uint64_t>(next_rays_.count);
   }
 
-  void ask_lights(LaneMask lit) {
+  void enqueue_lights(LaneMask lit) {
     const auto add_group = [&] {
       clear_rays(next_.shadows.add());
-      asked_lights_.add();
+      enqueued_lights_.add();
     };
     if (used_lights_ == kPacketRays) add_group(), used_lights_ = 0;
     const int used = used_lights_, all = used + light_rays_.count;
@@ -374,10 +375,10 @@ class Path final : public Walk {
     if (all > kPacketRays) {
       add_group();
       used_lights_ = all - kPacketRays;
-      second = light_fields(next_.shadows.back(), asked_lights_.back());
+      second = light_fields(next_.shadows.back(), enqueued_lights_.back());
       activate(next_.shadows.back(), 0, used_lights_);
     }
-    append_lanes(light_rays_, used, light_fields(next_.shadows[first], asked_lights_[first]),
+    append_lanes(light_rays_, used, light_fields(next_.shadows[first], enqueued_lights_[first]),
                  all > kPacketRays ? &second : nullptr);
     activate(next_.shadows[first], used, std::min(all, kPacketRays));
     // Scattered rays find other lights behind glass.
@@ -395,8 +396,8 @@ class Path final : public Walk {
     std::fill(group.active.ray + from, group.active.ray + to, -1);
   }
 
-  Groups<PathLanes> asked_, answered_;  // of next_.rays and wave_.rays
-  Groups<LightLanes> asked_lights_, answered_lights_;
+  Groups<PathLanes> enqueued_, intersected_;  // of next_.rays and batch_.rays
+  Groups<LightLanes> enqueued_lights_, intersected_lights_;
   Filling filling_, straight_;       // groups of next_.rays, straight_ of camera rays
   int used_lights_ = kPacketRays;    // lanes of the last group of next_.shadows
   HitsByMaterial plain_, coloured_;  // colours of vertices: of none, of some of a group
@@ -421,6 +422,8 @@ class Path final : public Walk {
 
 }  // namespace
 
-std::unique_ptr<Walk> make_path(const Setting& setting) { return std::make_unique<Path>(setting); }
+std::unique_ptr<WavefrontIntegrator> make_path(const FrameContext& context) {
+  return std::make_unique<Path>(context);
+}
 
 }  // namespace delray::raytrace

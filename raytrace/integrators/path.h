@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "raytrace/integrators/walk.h"
+#include "raytrace/integrators/wavefront_integrator.h"
 
 namespace delray::raytrace {
 
@@ -15,6 +15,6 @@ namespace delray::raytrace {
 // Glass takes from light what its volume absorbs on the way through. Layers are met or
 // passed by chance. Through glass no light reaches a surface straight, except from lights of no
 // size, which no scattered ray would ever find.
-std::unique_ptr<Walk> make_path(const Setting& setting);
+std::unique_ptr<WavefrontIntegrator> make_path(const FrameContext& context);
 
 }  // namespace delray::raytrace

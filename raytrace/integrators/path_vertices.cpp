@@ -11,7 +11,7 @@
 // What is compiled per target comes after it.
 #include <hwy/highway.h>
 
-#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/enqueue.h"
 #include "raytrace/sampling/warp_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -52,12 +52,12 @@ class Appending {
   int field_ = 0;
 };
 
-shading::LaneMask glowing_block(const shading::Surfaces& surfaces, shading::LaneMask hits) {
-  shading::LaneMask glowing = 0;
+shading::LaneMask emissive_block(const shading::Surfaces& surfaces, shading::LaneMask hits) {
+  shading::LaneMask emissive = 0;
   for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
-    glowing |= bits_of(any_positive(load(surfaces.emission, i)), i);
+    emissive |= bits_of(any_positive(load(surfaces.emission, i)), i);
   }
-  return glowing & hits;
+  return emissive & hits;
 }
 
 void weigh_sky_block(const PathLanes& from, const shading::Floats16& pdfs,
@@ -67,7 +67,7 @@ void weigh_sky_block(const PathLanes& from, const shading::Floats16& pdfs,
     const F pdf = load(from.pdf, i);
     const F share =
         hn::IfThenElse(hn::Gt(pdf, set(0.0F)), power_heuristic(pdf, load(pdfs, i)), set(1.0F));
-    const F3 weighed = load(from.weight, i) * load(radiance, i) * share;
+    const F3 weighed = load(from.throughput, i) * load(radiance, i) * share;
     hn::Store(weighed.x, d, radiance.x.lane + i);
     hn::Store(weighed.y, d, radiance.y.lane + i);
     hn::Store(weighed.z, d, radiance.z.lane + i);
@@ -86,7 +86,7 @@ shading::LaneMask light_rays_block(const Vertices& at, const LightSamples& light
     const F share =
         hn::IfThenElse(hn::Gt(pdf, zero), power_heuristic(pdf, load(values.pdf, i)), one);
     const F3 reflected =
-        load(at.lanes.weight, i) * load(values.value, i) * load(lights.weight, i) * share;
+        load(at.lanes.throughput, i) * load(values.value, i) * load(lights.weight, i) * share;
     const M asks = hn::And(active, any_positive(reflected));
     if (hn::AllFalse(FloatTag(), asks)) continue;
     asked |= bits_of(asks, i);
@@ -117,7 +117,7 @@ void scattered_block(const Vertices& at, const BsdfSamples& samples, const shadi
   const F one = set(1.0F);
   rays.count = 0;
   for (int i = 0; i < shading::kBlockPoints; i += lanes()) {
-    F3 weight = load(at.lanes.weight, i) * load(samples.weight, i);
+    F3 weight = load(at.lanes.throughput, i) * load(samples.weight, i);
     M goes_on = hn::And(mask_of(mask, i), hn::And(any_positive(weight), finite(weight)));
     const I bounce = word(at.lanes.bounce, i);
     const I scatterings = hn::ShiftRight<16>(bounce) + (bounce & set(0xFFFF));
@@ -156,7 +156,7 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 namespace {
 
-HWY_EXPORT(glowing_block);
+HWY_EXPORT(emissive_block);
 HWY_EXPORT(weigh_sky_block);
 HWY_EXPORT(light_rays_block);
 HWY_EXPORT(scattered_block);
@@ -167,11 +167,12 @@ float* words(std::uint32_t* p) { return reinterpret_cast<float*>(p); }
 
 std::array<float*, 18> path_fields(RayGroup& group, PathLanes& lanes) {
   RayPacket& packet = group.packet;
-  return {packet.origin_x,     packet.origin_y,     packet.origin_z,   packet.direction_x,
-          packet.direction_y,  packet.direction_z,  group.view.x.lane, group.view.y.lane,
-          group.view.z.lane,   group.width.lane,    group.spread.lane, lanes.weight.x.lane,
-          lanes.weight.y.lane, lanes.weight.z.lane, lanes.pdf.lane,    words(lanes.pixel),
-          words(lanes.bounce), words(lanes.vertex)};
+  return {packet.origin_x,         packet.origin_y,         packet.origin_z,
+          packet.direction_x,      packet.direction_y,      packet.direction_z,
+          group.view.x.lane,       group.view.y.lane,       group.view.z.lane,
+          group.width.lane,        group.spread.lane,       lanes.throughput.x.lane,
+          lanes.throughput.y.lane, lanes.throughput.z.lane, lanes.pdf.lane,
+          words(lanes.pixel),      words(lanes.bounce),     words(lanes.vertex)};
 }
 
 std::array<float*, 11> light_fields(ShadowGroup& group, LightLanes& lanes) {
@@ -181,8 +182,8 @@ std::array<float*, 11> light_fields(ShadowGroup& group, LightLanes& lanes) {
           lanes.reflected.y.lane, lanes.reflected.z.lane, words(lanes.pixel)};
 }
 
-shading::LaneMask glowing_lanes(const shading::Surfaces& surfaces, shading::LaneMask hits) {
-  return HWY_DYNAMIC_DISPATCH(glowing_block)(surfaces, hits);
+shading::LaneMask emissive_lanes(const shading::Surfaces& surfaces, shading::LaneMask hits) {
+  return HWY_DYNAMIC_DISPATCH(emissive_block)(surfaces, hits);
 }
 
 void weigh_sky(const PathLanes& lanes, const shading::Floats16& pdfs,

@@ -1,4 +1,4 @@
-// What a path tracer computes at sixteen surfaces at a time.
+// Vertices of paths, sixteen at a time.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include "raytrace/integrators/dense_lanes.h"
 #include "raytrace/sampling/bsdf.h"
 #include "raytrace/sampling/light_table.h"
-#include "raytrace/scene/wave.h"
+#include "raytrace/scene/ray_batch.h"
 #include "shading/batch.h"
 
 namespace delray::raytrace {
@@ -16,17 +16,17 @@ inline constexpr std::uint32_t kDiffuse = 1U << 16;
 inline int diffuse_bounces(std::uint32_t bounce) { return static_cast<int>(bounce / kDiffuse); }
 inline int other_bounces(std::uint32_t bounce) { return static_cast<int>(bounce % kDiffuse); }
 
-// What a path tracer knows of the rays of a group besides.
+// State of the rays of a group beside their geometry.
 struct PathLanes {
-  bool whole = true;          // the primary rays of `block`: the rest is not set
-  std::uint32_t block = 0;    // of samples()
-  shading::Vectors16 weight;  // what the sample makes of radiance along the ray
-  shading::Floats16 pdf;      // with which the direction was drawn; 0: no other way finds it
+  bool whole = true;              // the primary rays of `block`: the rest is not set
+  std::uint32_t block = 0;        // of samples()
+  shading::Vectors16 throughput;  // what the sample makes of radiance along the ray
+  shading::Floats16 pdf;          // with which the direction was drawn; 0: no other way finds it
   alignas(64) std::uint32_t pixel[kPacketRays];  // 16 * sample block + lane in it
   // Scatterings so far: diffuse ones times kDiffuse, and others.
   alignas(64) std::uint32_t bounce[kPacketRays];
   alignas(64) std::uint32_t vertex[kPacketRays];  // surfaces met so far, layers among them
-  alignas(64) std::uint32_t placement[kPacketRays], triangle[kPacketRays];  // left behind
+  alignas(64) std::uint32_t instance[kPacketRays], triangle[kPacketRays];  // left behind
 };
 
 // Of shadow rays.
@@ -48,11 +48,11 @@ struct Vertices {
   const shading::Surfaces& surfaces;
 };
 
-// Lanes of `hits` whose surfaces glow.
-shading::LaneMask glowing_lanes(const shading::Surfaces& surfaces, shading::LaneMask hits);
+// Lanes of `hits` whose surfaces emit light.
+shading::LaneMask emissive_lanes(const shading::Surfaces& surfaces, shading::LaneMask hits);
 
-// Multiplies radiance of the sky by the lanes' weights, and, where a light sample may find it as
-// well, by the share of the scattered ray. `pdfs`: LightTable::pdf_of_sky.
+// Multiplies radiance of the sky by the lanes' throughputs, and, where a light sample may find it
+// as well, by the share of the scattered ray. `pdfs`: LightTable::pdf_of_sky.
 void weigh_sky(const PathLanes& lanes, const shading::Floats16& pdfs, shading::Vectors16& radiance);
 
 // Shadow rays from the surfaces of `mask` to lights that were drawn, with the surfaces' answers to

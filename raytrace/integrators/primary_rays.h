@@ -1,7 +1,7 @@
 // Rays from the camera.
 #pragma once
 
-#include "raytrace/scene/wave.h"
+#include "raytrace/scene/ray_batch.h"
 #include "scenes/camera.h"
 
 namespace delray::raytrace {

@@ -13,7 +13,7 @@
 #endif
 
 #include "parallel/processor_time.h"
-#include "raytrace/integrators/answer.h"
+#include "raytrace/integrators/intersect.h"
 #include "raytrace/scene/flush_to_zero.h"
 
 namespace delray::raytrace {
@@ -135,11 +135,12 @@ void finish_writes() {}
 
 }  // namespace
 
-void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels) {
+void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
+                 TilePixels& pixels) {
   const float weight = 1.0F / static_cast<float>(samples_of(frame.options));
   const bool first = task.first_sample == frame.options.part.first_sample;
   const Rect& tile = pixels.rect;
-  const SampleBlock* block = walk.samples().data();
+  const SampleBlock* block = integrator.samples().data();
   const bool past_caches = first && may_pass_caches(frame, pixels.colour);
   for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
     const std::size_t row = static_cast<std::size_t>(y - tile.y0) * pixels.stride;
@@ -156,20 +157,21 @@ void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, Ti
     }
   }
   if (past_caches) finish_writes();
-  pixels.rays += walk.rays();
+  pixels.rays += integrator.rays();
 }
 
-TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk) {
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
+                       WavefrontIntegrator& integrator) {
   const FlushToZero flush;
   const double start = thread_seconds();
   TilePixels pixels = start_tile(frame, tile);
   const int samples = samples_of(frame.options);
-  for (Task& task : tasks_of(frame, pixels.rect, frame.walks.side())) {
+  for (Task& task : tasks_of(frame, pixels.rect, frame.integrators.side())) {
     for (int s = 0; s < samples; ++s, ++task.first_sample) {
-      for (walk.start(task); !walk.done(); walk.go_on()) {
-        answer(*frame.tracer, frame.setting.shader, walk.wave());
+      for (integrator.start(task); !integrator.done(); integrator.advance()) {
+        intersect(*frame.tracer, frame.context.shader, integrator.batch());
       }
-      add_samples(frame, walk, task, pixels);
+      add_samples(frame, integrator, task, pixels);
     }
   }
   pixels.busy = thread_seconds() - start;

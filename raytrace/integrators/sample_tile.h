@@ -1,4 +1,4 @@
-// The samples of a tile: from walks to pixels.
+// The samples of a tile: from integrators to pixels.
 #pragma once
 
 #include <cstdint>
@@ -36,11 +36,14 @@ std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile,
 // How many samples a task gets, one after the other.
 int samples_of(const RenderOptions& options);
 
-// What a walk that is done found. Samples of a pixel have to be added in ascending order.
-void add_samples(const TiledFrame& frame, const Walk& walk, const Task& task, TilePixels& pixels);
+// What an integrator that is done has found. Samples of a pixel have to be added in ascending
+// order.
+void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
+                 TilePixels& pixels);
 
-// All samples, on the calling thread. `walk` is of frame.walks and at rest.
-TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile, Walk& walk);
+// All samples, on the calling thread. `integrator` is of frame.integrators and at rest.
+TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
+                       WavefrontIntegrator& integrator);
 
 // Processor time of this thread: ranks may share a core, and waiting is no work.
 double thread_seconds();

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/direct_lighting.h"
+#include "raytrace/integrators/enqueue.h"
 #include "raytrace/integrators/lane_sums.h"
-#include "raytrace/integrators/lit_walk.h"
 
 namespace delray::raytrace {
 namespace {
@@ -36,9 +36,9 @@ void dim_lobes(shading::Surfaces& surfaces, int i, float base, float coat) {
 
 }  // namespace
 
-LaneMask LitWalk::split_lobes(const shading::Surfaces& surfaces, LaneMask mask,
-                              const Mirrored& mirrored, shading::Surfaces& wide,
-                              shading::Surfaces& narrow) {
+LaneMask DirectLighting::split_lobes(const shading::Surfaces& surfaces, LaneMask mask,
+                                     const Mirrored& mirrored, shading::Surfaces& wide,
+                                     shading::Surfaces& narrow) {
   wide = narrow = surfaces;
   LaneMask some = 0;
   for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
@@ -58,17 +58,17 @@ LaneMask LitWalk::split_lobes(const shading::Surfaces& surfaces, LaneMask mask,
   return some;
 }
 
-int LitWalk::points_per_light() const {
-  return std::clamp(kLeastPoints / std::max(1, setting_.samples), 1, kLeastPoints);
+int DirectLighting::points_per_light() const {
+  return std::clamp(kLeastPoints / std::max(1, context_.samples), 1, kLeastPoints);
 }
 
-void LitWalk::draw_points(const RayLanes& lanes, LaneMask mask, std::size_t light, int point,
-                          std::span<Pairs16> pairs) {
+void DirectLighting::draw_points(const RayLanes& lanes, LaneMask mask, std::size_t light, int point,
+                                 std::span<Pairs16> pairs) {
   alignas(64) std::uint32_t pixels[kPacketRays];
   for (int i = 0; i < kPacketRays; ++i) pixels[i] = lanes.pixel_of(i);
   SampleLanes numbers;
   draw(pixels, mask, numbers);
-  const auto lights = static_cast<std::uint32_t>(setting_.shader.lights.size()) + 1;
+  const auto lights = static_cast<std::uint32_t>(context_.shader.lights.size()) + 1;
   const auto points = static_cast<std::uint32_t>(points_per_light());
   for (int i = 0; i < kPacketRays; ++i) {
     const std::uint32_t surface = lanes.whole ? 0 : lanes.branch[i];
@@ -79,8 +79,8 @@ void LitWalk::draw_points(const RayLanes& lanes, LaneMask mask, std::size_t ligh
   sobol_pairs(numbers, pairs);
 }
 
-void LitWalk::ask_points(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                         const shading::Surfaces& surfaces, LightSamples& points) {
+void DirectLighting::enqueue_points(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                                    const shading::Surfaces& surfaces, LightSamples& points) {
   const float share = 1.0F / static_cast<float>(points_per_light());
   shading::reflect(surfaces, group.view, points.direction, mask, reflected_);
   LaneMask reached = 0;
@@ -92,11 +92,12 @@ void LitWalk::ask_points(const RayGroup& group, const RayLanes& lanes, LaneMask 
     if (positive(light)) reached |= 1U << i;
   }
   if (reached == 0) return;
-  ask_shadows(group, lanes, reached, surfaces, points.direction, points.distance, reflected_, true);
+  enqueue_shadows(group, lanes, reached, surfaces, points.direction, points.distance, reflected_,
+                  true);
 }
 
-void LitWalk::ask_area_light(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                             std::size_t light) {
+void DirectLighting::enqueue_area_light(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                                        std::size_t light) {
   const auto number = static_cast<std::uint32_t>(light);
   Pairs16 places;
   for (int k = 0; k < points_per_light(); ++k) {
@@ -105,38 +106,39 @@ void LitWalk::ask_area_light(const RayGroup& group, const RayLanes& lanes, LaneM
     for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const LightSample point =
-          setting_.lights.sample_area(number, wide_.position.get(i), {places.x[i], places.y[i]});
+          context_.lights.sample_area(number, wide_.position.get(i), {places.x[i], places.y[i]});
       points_.set(i, point);
       if (positive(point.weight)) lit |= 1U << i;
     }
-    ask_points(group, lanes, lit, wide_, points_);
+    enqueue_points(group, lanes, lit, wide_, points_);
   }
 }
 
-void LitWalk::ask_glow(const RayGroup& group, const RayLanes& lanes, LaneMask mask) {
+void DirectLighting::enqueue_emission(const RayGroup& group, const RayLanes& lanes, LaneMask mask) {
   Pairs16 pairs[LightTable::kPairs];
   for (int k = 0; k < points_per_light(); ++k) {
-    draw_points(lanes, mask, setting_.shader.lights.size(), k, pairs);
+    draw_points(lanes, mask, context_.shader.lights.size(), k, pairs);
     LaneMask lit = 0;
     for (LaneMask rest = mask; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const LightSample point = setting_.lights.sample_glow(
-          *setting_.shader.shader, wide_.position.get(i), {pairs[0].x[i], pairs[0].y[i]},
+      const LightSample point = context_.lights.sample_emission(
+          *context_.shader.shader, wide_.position.get(i), {pairs[0].x[i], pairs[0].y[i]},
           {pairs[1].x[i], pairs[1].y[i]}, {pairs[2].x[i], pairs[2].y[i]});
       points_.set(i, point);
       if (positive(point.weight)) lit |= 1U << i;
     }
-    ask_points(group, lanes, lit, wide_, points_);
+    enqueue_points(group, lanes, lit, wide_, points_);
   }
 }
 
-void LitWalk::ask_sized_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                               const shading::Surfaces& surfaces, const Mirrored& mirrored) {
-  const std::span<const shading::BatchLight> lights = setting_.shader.lights;
+void DirectLighting::enqueue_sized_lights(const RayGroup& group, const RayLanes& lanes,
+                                          LaneMask mask, const shading::Surfaces& surfaces,
+                                          const Mirrored& mirrored) {
+  const std::span<const shading::BatchLight> lights = context_.shader.lights;
   const bool area = std::ranges::any_of(lights, [](const shading::BatchLight& light) {
     return light.kind == scenes::Light::Kind::area;
   });
-  if (!area && !setting_.lights.glows()) return;
+  if (!area && !context_.lights.emits()) return;
   const LaneMask narrow = split_lobes(surfaces, mask, mirrored, wide_, narrow_);
   LaneMask seen = 0;  // by mirrored rays
   for (LaneMask rest = narrow; rest != 0; rest &= rest - 1) {
@@ -145,11 +147,11 @@ void LitWalk::ask_sized_lights(const RayGroup& group, const RayLanes& lanes, Lan
   }
   for (std::size_t l = 0; l < lights.size(); ++l) {
     if (lights[l].kind != scenes::Light::Kind::area) continue;
-    ask_area_light(group, lanes, mask, l);
-    const bool met = setting_.lights.has_lamp(static_cast<std::uint32_t>(l));
-    ask_light(group, lanes, met ? narrow & ~seen : narrow, l, narrow_);
+    enqueue_area_light(group, lanes, mask, l);
+    const bool met = context_.lights.has_lamp(static_cast<std::uint32_t>(l));
+    enqueue_light(group, lanes, met ? narrow & ~seen : narrow, l, narrow_);
   }
-  if (setting_.lights.glows()) ask_glow(group, lanes, mask);
+  if (context_.lights.emits()) enqueue_emission(group, lanes, mask);
 }
 
 }  // namespace delray::raytrace

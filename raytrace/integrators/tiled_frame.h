@@ -2,7 +2,7 @@
 #pragma once
 
 #include "loadbalance/task_grid.h"
-#include "raytrace/integrators/walks.h"
+#include "raytrace/integrators/integrator_pool.h"
 #include "raytrace/render.h"
 
 namespace delray::raytrace {
@@ -10,8 +10,8 @@ namespace delray::raytrace {
 struct TiledFrame {
   const Tracer* tracer;  // null where the scene is shared out over ranks
   const RenderOptions& options;
-  const Setting& setting;
-  Walks& walks;
+  const FrameContext& context;
+  IntegratorPool& integrators;
   loadbalance::Blocks tiles;  // tile k is task k of the schedule
   image::ImageF* picture;     // of the window, on rank 0, whose tiles go there; null elsewhere
 };

@@ -12,9 +12,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/direct_lighting.h"
+#include "raytrace/integrators/enqueue.h"
 #include "raytrace/integrators/lane_sums.h"
-#include "raytrace/integrators/lit_walk.h"
 #include "raytrace/sampling/optics.h"
 #include "shading/shade.h"
 
@@ -26,18 +26,18 @@ using shading::LaneMask;
 // Roughness up to which a surface is a perfect mirror, and from which it is none.
 constexpr float kMirror = 0.15F, kMatt = 0.5F;
 
-class Whitted final : public LitWalk {
+class Whitted final : public DirectLighting {
  public:
-  using LitWalk::LitWalk;
+  using DirectLighting::DirectLighting;
 
  private:
-  LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
-    const LaneMask seen = look_at(group, lanes, surfaces_);
+  LaneMask shade_group(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) override {
+    const LaneMask seen = evaluate_hits(group, lanes, surfaces_);
     if (seen == 0) return 0;
     absorb(group, lanes, seen);
     shading::Vectors16 &sum = shown.colour, &colour = colour_;
     copy_lanes(surfaces_.emission, seen, sum);
-    shading::ambient_diffuse(setting_.shader, surfaces_, group.view, seen, colour);
+    shading::ambient_diffuse(context_.shader, surfaces_, group.view, seen, colour);
     add_lanes(colour, seen, sum);
 
     // How much of the blurred reflection of the environment each lane shows.
@@ -51,15 +51,15 @@ class Whitted final : public LitWalk {
         ended |= 1U << i;
         blurred[i] = 1.0F;
       } else {
-        blurred[i] = ask_around(group, lanes, i);
+        blurred[i] = enqueue_around(group, lanes, i);
       }
       some |= blurred[i] > 0.0F ? 1U << i : 0U;
       mirrored.base[i] = 1.0F - blurred[i];
       mirrored.coat[i] = 1.0F - blurred_coat_[i];
     }
-    ask_lights(group, lanes, seen, surfaces_, mirrored);
+    enqueue_lights(group, lanes, seen, surfaces_, mirrored);
     if (some != 0) {
-      shading::ambient_specular(setting_.shader, surfaces_, group.view, some, colour);
+      shading::ambient_specular(context_.shader, surfaces_, group.view, some, colour);
       for (int i = 0; i < kPacketRays; ++i) {
         colour.x[i] *= blurred[i];
         colour.y[i] *= blurred[i];
@@ -68,11 +68,11 @@ class Whitted final : public LitWalk {
       add_lanes(colour, some, sum);
     }
     if (ended != 0) {
-      shading::ambient_transmitted(setting_.shader, surfaces_, group.view, ended, colour);
+      shading::ambient_transmitted(context_.shader, surfaces_, group.view, ended, colour);
       add_lanes(colour, ended, sum);
     }
     if ((surfaces_.layered & seen) != 0) {
-      shading::ambient_coat(setting_.shader, surfaces_, group.view, seen, colour);
+      shading::ambient_coat(context_.shader, surfaces_, group.view, seen, colour);
       for (int i = 0; i < kPacketRays; ++i) colour.set(i, colour.get(i) * blurred_coat_[i]);
       add_lanes(colour, seen & surfaces_.layered, sum);
     }
@@ -81,7 +81,7 @@ class Whitted final : public LitWalk {
 
   // Asks for the mirrored and the refracted ray of a lane. Returns the part of the reflection that
   // neither of them sees.
-  float ask_around(const RayGroup& group, const RayLanes& lanes, int i) {
+  float enqueue_around(const RayGroup& group, const RayLanes& lanes, int i) {
     const shading::Surface s = shading::surface_at(surfaces_, i);
     const float glass = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
     // Inside glass there is no environment to stand in for a reflection.
@@ -102,33 +102,34 @@ class Whitted final : public LitWalk {
       reflectance += (glm::vec3(refraction.reflected * layers.below) - reflectance) * glass;
     }
     NextRay ray;
-    ray.spread = setting_.view.spread();
+    ray.spread = context_.view.spread();
     ray.width = group.width[i] + group.packet.far[i] * group.spread[i];
     ray.pixel = lanes.pixel_of(i);
     ray.depth = depth_of(lanes, i) - 1;
     ray.branch = branch_of(lanes, i, Bundle::mirrored);
-    const glm::vec3 weight = lanes.weight_of(i);
+    const glm::vec3 throughput = lanes.throughput_of(i);
     float blurred = inside ? 0.0F : 1.0F;
     // One ray for surface and coat, whose normals hardly differ.
     const float by_coat = coat * layers.coat * shading::coat_fresnel(cosine);
-    ray.weight = weight * (reflectance * mirror + glm::vec3(by_coat));
-    if (brightest(ray.weight) >= kLeastWeight) {
+    ray.throughput = throughput * (reflectance * mirror + glm::vec3(by_coat));
+    if (brightest(ray.throughput) >= kLeastThroughput) {
       blurred = inside ? 0.0F : 1.0F - mirror;
       blurred_coat_[i] = inside ? 0.0F : 1.0F - coat;
       ray.origin = s.position + s.geometric_normal * group.offset[i];
       ray.direction = kept_on_side(mirrored(view, s.normal), s.geometric_normal);
       ray.view = -ray.direction;
-      ask(ray, Bundle::mirrored);
+      enqueue(ray, Bundle::mirrored);
     }
     if (glass > 0.0F && refraction.reflected < 1.0F) {
-      ray.weight = weight * s.base_colour * (glass * (1.0F - refraction.reflected) * layers.below);
-      if (brightest(ray.weight) >= kLeastWeight) {
+      ray.throughput =
+          throughput * s.base_colour * (glass * (1.0F - refraction.reflected) * layers.below);
+      if (brightest(ray.throughput) >= kLeastThroughput) {
         ray.branch = branch_of(lanes, i, Bundle::refracted);
         const bool thin = (surfaces_.thin >> i & 1) != 0;
         ray.origin = s.position - s.geometric_normal * group.offset[i];
         ray.direction = thin ? -view : kept_on_side(refraction.direction, -s.geometric_normal);
         ray.view = -ray.direction;
-        ask(ray, Bundle::refracted);
+        enqueue(ray, Bundle::refracted);
       }
     }
     return blurred;
@@ -138,18 +139,18 @@ class Whitted final : public LitWalk {
   void absorb(const RayGroup& group, RayLanes& lanes, LaneMask seen) {
     for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const auto& material = setting_.shader.material(group.material[i]);
+      const auto& material = context_.shader.material(group.material[i]);
       if (!material.absorbs || surfaces_.front[i] != 0) continue;
-      if (!lanes.weighted) {
-        for (int k = 0; k < kPacketRays; ++k) lanes.weight.set(k, glm::vec3(1.0F));
-        lanes.weighted = true;
+      if (!lanes.has_throughput) {
+        for (int k = 0; k < kPacketRays; ++k) lanes.throughput.set(k, glm::vec3(1.0F));
+        lanes.has_throughput = true;
       }
       const RayPacket& packet = group.packet;
       const float distance =
           glm::distance(surfaces_.position.get(i),
                         glm::vec3(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]));
-      lanes.weight.set(i,
-                       lanes.weight.get(i) * shading::transmittance(material.material, distance));
+      lanes.throughput.set(
+          i, lanes.throughput.get(i) * shading::transmittance(material.material, distance));
     }
   }
 
@@ -164,8 +165,8 @@ class Whitted final : public LitWalk {
 
 }  // namespace
 
-std::unique_ptr<Walk> make_whitted(const Setting& setting) {
-  return std::make_unique<Whitted>(setting);
+std::unique_ptr<WavefrontIntegrator> make_whitted(const FrameContext& context) {
+  return std::make_unique<Whitted>(context);
 }
 
 }  // namespace delray::raytrace

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "raytrace/integrators/walk.h"
+#include "raytrace/integrators/wavefront_integrator.h"
 
 namespace delray::raytrace {
 
@@ -14,6 +14,6 @@ namespace delray::raytrace {
 // do those that `depth` or the weight leaves no ray for. A sample sums generation by generation:
 // first the lights of the generation before, then what the surfaces that the rays have met show by
 // themselves.
-std::unique_ptr<Walk> make_whitted(const Setting& setting);
+std::unique_ptr<WavefrontIntegrator> make_whitted(const FrameContext& context);
 
 }  // namespace delray::raytrace

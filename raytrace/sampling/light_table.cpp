@@ -20,7 +20,7 @@
 #include <hwy/highway.h>
 
 #include "raytrace/sampling/alias_lanes.h"
-#include "raytrace/scene/solid_triangles.h"
+#include "raytrace/scene/opaque_triangles.h"
 #include "shading/arithmetic.h"
 #include "shading/batch.h"
 #include "shading/lighting.h"
@@ -137,10 +137,10 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
     const std::vector<glm::vec2>& uvs = uvs_of(shader, mesh, material.emission_texture);
     const std::vector<glm::vec2>& alpha_uvs = uvs_of(shader, mesh, material.base_colour_texture);
     const bool textured = material.emission_texture != kNone && !uvs.empty();
-    GlowingMesh glowing;
-    glowing.material = mesh.material;
-    const std::vector<std::uint64_t> solid = solid_triangles(mesh, material, alphas);
-    glowing.slots.assign(mesh.triangles.size(), kNone);
+    EmissiveMesh emissive;
+    emissive.material = mesh.material;
+    const std::vector<std::uint64_t> solid = opaque_triangles(mesh, material, alphas);
+    emissive.slots.assign(mesh.triangles.size(), kNone);
     std::vector<float> weights;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const glm::uvec3 c = mesh.triangles[t];
@@ -168,21 +168,21 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
       }
       const float weight = brightness * 0.5F * length(glm::cross(triangle.ab, triangle.ac));
       if (!(weight > 0.0F) || !std::isfinite(weight)) continue;
-      glowing.slots[t] = static_cast<std::uint32_t>(glowing.triangles.size());
-      glowing.triangles.push_back(triangle);
+      emissive.slots[t] = static_cast<std::uint32_t>(emissive.triangles.size());
+      emissive.triangles.push_back(triangle);
       weights.push_back(weight);
-      glowing.power += static_cast<double>(weight) * 2.0 * kPi;  // on both sides
+      emissive.power += static_cast<double>(weight) * 2.0 * kPi;  // on both sides
     }
     if (weights.empty()) continue;
-    glowing.table = AliasTable(weights);
+    emissive.table = AliasTable(weights);
     number[m] = static_cast<std::uint32_t>(meshes_.size());
-    meshes_.push_back(std::move(glowing));
+    meshes_.push_back(std::move(emissive));
   }
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const std::uint32_t mesh = scene.instances[i].mesh;
     if (mesh >= number.size() || number[mesh] == kNone) continue;
-    GlowingInstance instance{static_cast<std::uint32_t>(i), number[mesh], kNone,
-                             scene.instances[i].transform};
+    EmissiveInstance instance{static_cast<std::uint32_t>(i), number[mesh], kNone,
+                              scene.instances[i].transform};
     const scenes::Material& material = shading::material(shader, meshes_[instance.mesh].material);
     if (material.emission_texture == kNone) {
       instance.light = lamp_of(instance, material.emission);
@@ -192,9 +192,9 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
   }
 }
 
-std::uint32_t LightTable::lamp_of(const GlowingInstance& instance,
+std::uint32_t LightTable::lamp_of(const EmissiveInstance& instance,
                                   const glm::vec3& emission) const {
-  const GlowingMesh& mesh = meshes_[instance.mesh];
+  const EmissiveMesh& mesh = meshes_[instance.mesh];
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     const Light& light = lights_[i];
     if (light.kind != Light::Kind::area) continue;
@@ -247,7 +247,7 @@ void LightTable::weigh(const scenes::Scene& scene) {
     }
   }
   power.push_back(has_sky_ ? disc * sky_.integral() : 0.0);
-  for (const GlowingInstance& instance : instances_) {
+  for (const EmissiveInstance& instance : instances_) {
     power.push_back(instance.light != kNone
                         ? 0.0
                         : meshes_[instance.mesh].power * area_scale(instance.transform));
@@ -268,7 +268,7 @@ void LightTable::weigh(const scenes::Scene& scene) {
   emitters_ = AliasTable(weights);
   const auto first = weights.begin() + static_cast<std::ptrdiff_t>(lights_.size()) + 1;
   if (std::any_of(first, weights.end(), [](float weight) { return weight > 0.0F; })) {
-    glow_ = AliasTable(std::span(first, weights.end()));
+    emission_ = AliasTable(std::span(first, weights.end()));
   }
 }
 
@@ -302,10 +302,11 @@ LightSample LightTable::draw_light(std::uint32_t number, const glm::vec3& from, 
   return result;
 }
 
-LightSample LightTable::draw_glow(const shading::Shader& shader, const GlowingInstance& instance,
-                                  const glm::vec3& from, float chance, const glm::vec2& element,
-                                  const glm::vec2& place) const {
-  const GlowingMesh& mesh = meshes_[instance.mesh];
+LightSample LightTable::draw_emission(const shading::Shader& shader,
+                                      const EmissiveInstance& instance, const glm::vec3& from,
+                                      float chance, const glm::vec2& element,
+                                      const glm::vec2& place) const {
+  const EmissiveMesh& mesh = meshes_[instance.mesh];
   const std::uint32_t slot = mesh.table.pick(element.x, element.y);
   const Triangle& triangle = mesh.triangles[slot];
   const glm::vec2 b = triangle_point(place);
@@ -338,11 +339,12 @@ LightSample LightTable::draw_glow(const shading::Shader& shader, const GlowingIn
   return result;
 }
 
-LightSample LightTable::sample_glow(const shading::Shader& shader, const glm::vec3& from,
-                                    const glm::vec2& instance, const glm::vec2& element,
-                                    const glm::vec2& place) const {
-  const std::uint32_t number = glow_.pick(instance.x, instance.y);
-  return draw_glow(shader, instances_[number], from, glow_.probability(number), element, place);
+LightSample LightTable::sample_emission(const shading::Shader& shader, const glm::vec3& from,
+                                        const glm::vec2& instance, const glm::vec2& element,
+                                        const glm::vec2& place) const {
+  const std::uint32_t number = emission_.pick(instance.x, instance.y);
+  return draw_emission(shader, instances_[number], from, emission_.probability(number), element,
+                       place);
 }
 
 void LightTable::sample(const shading::BatchShader& shader, const shading::Vectors16& from,
@@ -367,8 +369,8 @@ void LightTable::sample(const shading::BatchShader& shader, const shading::Vecto
       samples.set(i, draw_light(emitter, from.get(i), chances[i], place));
     } else {
       const glm::vec2 element(numbers[1].x[i], numbers[1].y[i]);
-      samples.set(i, draw_glow(*shader.shader, instances_[emitter - lights - 1], from.get(i),
-                               chances[i], element, place));
+      samples.set(i, draw_emission(*shader.shader, instances_[emitter - lights - 1], from.get(i),
+                                   chances[i], element, place));
     }
   }
   if (sky == 0) return;
@@ -383,9 +385,9 @@ float LightTable::pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, con
                              const glm::vec3& position) const {
   const auto found = std::lower_bound(
       instances_.begin(), instances_.end(), instance,
-      [](const GlowingInstance& a, std::uint32_t number) { return a.instance < number; });
+      [](const EmissiveInstance& a, std::uint32_t number) { return a.instance < number; });
   if (found == instances_.end() || found->instance != instance) return 0.0F;
-  const GlowingMesh& mesh = meshes_[found->mesh];
+  const EmissiveMesh& mesh = meshes_[found->mesh];
   const std::uint32_t slot = mesh.slots[triangle];
   if (slot == kNone) return 0.0F;
   const glm::vec3 way = position - from;
@@ -412,9 +414,9 @@ void LightTable::pdf_of_sky(const shading::Vectors16& directions, shading::Float
   for (float& pdf : pdfs.lane) pdf *= chance;
 }
 
-std::uint64_t LightTable::glowing_triangles() const {
+std::uint64_t LightTable::emissive_triangles() const {
   std::uint64_t sum = 0;
-  for (const GlowingInstance& instance : instances_) {
+  for (const EmissiveInstance& instance : instances_) {
     if (instance.light == kNone) sum += meshes_[instance.mesh].triangles.size();
   }
   return sum;

@@ -50,8 +50,8 @@ class LightTable {
   static constexpr std::size_t kPairs = 3;
 
   LightTable() = default;
-  // The shader is that of the scene. Keeps glowing triangles of its own, once for each mesh.
-  // O(glowing triangles + vertices of the scene). REQUIRES: indices of the scene are in range.
+  // The shader is that of the scene. Keeps emissive triangles of its own, once for each mesh.
+  // O(emissive triangles + vertices of the scene). REQUIRES: indices of the scene are in range.
   LightTable(const scenes::Scene& scene, const shading::Shader& shader);
 
   bool empty() const { return emitters_.size() == 0; }
@@ -62,7 +62,7 @@ class LightTable {
               LightSamples& samples) const;
 
   // One at a time, for renderers that ask them all. Nothing else has a chance: weights are what
-  // arrives over the density of the point. REQUIRES: the light is an area light; glows().
+  // arrives over the density of the point. REQUIRES: the light is an area light; emits().
   LightSample sample_area(std::uint32_t light, const glm::vec3& from,
                           const glm::vec2& place) const {
     return draw_light(light, from, 1.0F, place);
@@ -70,10 +70,10 @@ class LightTable {
   // Whether a lamp shows it, which rays meet.
   bool has_lamp(std::uint32_t light) const { return has_lamp_[light]; }
   // Of triangles that glow and are no lamp of an area light.
-  bool glows() const { return glow_.size() > 0; }
-  LightSample sample_glow(const shading::Shader& shader, const glm::vec3& from,
-                          const glm::vec2& instance, const glm::vec2& element,
-                          const glm::vec2& place) const;
+  bool emits() const { return emission_.size() > 0; }
+  LightSample sample_emission(const shading::Shader& shader, const glm::vec3& from,
+                              const glm::vec2& instance, const glm::vec2& element,
+                              const glm::vec2& place) const;
 
   // The density with which `sample` would have drawn what a ray from `from` met: a point of a
   // triangle, or the environment. 0 for what does not glow.
@@ -82,7 +82,7 @@ class LightTable {
   // The same of lanes that look along unit vectors.
   void pdf_of_sky(const shading::Vectors16& directions, shading::Floats16& pdfs) const;
 
-  std::uint64_t glowing_triangles() const;  // that can be drawn, of all instances
+  std::uint64_t emissive_triangles() const;  // that can be drawn, of all instances
 
  private:
   // In space of the mesh.
@@ -92,14 +92,14 @@ class LightTable {
     float alpha[3];
     bool solid;  // covered everywhere
   };
-  struct GlowingMesh {
+  struct EmissiveMesh {
     std::vector<Triangle> triangles;
     AliasTable table;
     std::vector<std::uint32_t> slots;  // of the mesh's triangles in `triangles`; kNone: dark
     std::uint32_t material = 0;
     double power = 0.0;
   };
-  struct GlowingInstance {
+  struct EmissiveInstance {
     std::uint32_t instance = 0;  // of the scene; ascending
     std::uint32_t mesh = 0;      // in meshes_
     std::uint32_t light = 0;     // the area light that this is the lamp of; kNone
@@ -112,22 +112,22 @@ class LightTable {
   float chance_of(std::uint32_t emitter) const {
     return empty() ? 0.0F : emitters_.probability(emitter);
   }
-  std::uint32_t lamp_of(const GlowingInstance& instance, const glm::vec3& emission) const;
+  std::uint32_t lamp_of(const EmissiveInstance& instance, const glm::vec3& emission) const;
   void weigh(const scenes::Scene& scene);
   LightSample draw_light(std::uint32_t light, const glm::vec3& from, float chance,
                          const glm::vec2& place) const;
-  LightSample draw_glow(const shading::Shader& shader, const GlowingInstance& instance,
-                        const glm::vec3& from, float chance, const glm::vec2& element,
-                        const glm::vec2& place) const;
+  LightSample draw_emission(const shading::Shader& shader, const EmissiveInstance& instance,
+                            const glm::vec3& from, float chance, const glm::vec2& element,
+                            const glm::vec2& place) const;
 
   std::vector<scenes::Light> lights_;
   std::vector<bool> has_lamp_;  // of lights
-  std::vector<GlowingMesh> meshes_;
-  std::vector<GlowingInstance> instances_;
+  std::vector<EmissiveMesh> meshes_;
+  std::vector<EmissiveInstance> instances_;
   SkyTable sky_;
   bool has_sky_ = false;
-  AliasTable emitters_;  // lights, the sky, glowing instances
-  AliasTable glow_;      // glowing instances alone; empty where there is nothing to draw
+  AliasTable emitters_;  // lights, the sky, emissive instances
+  AliasTable emission_;  // emissive instances alone; empty where there is nothing to draw
 };
 
 }  // namespace delray::raytrace

@@ -95,8 +95,8 @@ void find_least(const RTCFilterFunctionNArguments* arguments) {
     arguments->valid[i] = 0;
     const Hit hit = hit_of(arguments, i);
     Nearest& least = query->nearest[RTCRayN_id(arguments->ray, n, i)];
-    if (std::tie(hit.distance, hit.placement, hit.triangle) >=
-        std::tie(least.hit.distance, least.hit.placement, least.hit.triangle))
+    if (std::tie(hit.distance, hit.instance, hit.triangle) >=
+        std::tie(least.hit.distance, least.hit.instance, least.hit.triangle))
       continue;
     least = {hit, RTCHitN_Ng_x(arguments->hit, n, i), RTCHitN_Ng_y(arguments->hit, n, i),
              RTCHitN_Ng_z(arguments->hit, n, i), RTCHitN_instID(arguments->hit, n, i, 0) != kMiss};
@@ -125,22 +125,22 @@ RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
 }
 #endif
 
-// Notes a hit and lets the ray go on, unless the triangle is solid. Embree may report one hit
+// Notes a hit and lets the ray go on, unless the triangle is opaque. Embree may report one hit
 // several times.
 void note_and_pass(const RTCFilterFunctionNArguments* arguments) {
   auto* query = reinterpret_cast<Query*>(arguments->context);
-  const auto* solid = static_cast<const std::uint64_t*>(arguments->geometryUserPtr);
+  const auto* opaque = static_cast<const std::uint64_t*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
     const unsigned triangle = RTCHitN_primID(arguments->hit, n, i);
-    if (solid != nullptr && (solid[triangle / 64] >> (triangle % 64) & 1) != 0) continue;
+    if (opaque != nullptr && (opaque[triangle / 64] >> (triangle % 64) & 1) != 0) continue;
     const Hit hit = hit_of(arguments, i);
     SeeThrough& passed = query->passed[RTCRayN_id(arguments->ray, n, i)];
     bool known = false;
     for (int j = 0; j < passed.count; ++j) {
-      known = known || (passed.hits[j].placement == hit.placement &&
-                        passed.hits[j].triangle == hit.triangle);
+      known = known ||
+              (passed.hits[j].instance == hit.instance && passed.hits[j].triangle == hit.triangle);
     }
     if (!known) {
       if (passed.count == SeeThrough::kMost) continue;  // stays valid: ends the ray
@@ -209,7 +209,7 @@ struct EmbreeScene::State {
   Tree top = {};
   std::vector<std::unique_ptr<std::vector<glm::vec3>>> copies =
       {};  // of positions that were unreadable
-  std::vector<std::shared_ptr<const std::vector<std::uint64_t>>> solid = {};  // of geometries
+  std::vector<std::shared_ptr<const std::vector<std::uint64_t>>> opaque = {};  // of geometries
 };
 
 namespace {
@@ -234,11 +234,11 @@ void commit(RTCDevice device, RTCScene tree) {
 }
 
 void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
-                      const Placement& placement, const BuildOptions& options) {
+                      const GeometryInstance& instance, const BuildOptions& options) {
   RTCDevice device = state.device;
-  const scenes::Mesh& mesh = *placement.mesh;
-  const glm::vec3* positions = placement.positions;
-  const bool moved = !placement.moved.empty();
+  const scenes::Mesh& mesh = *instance.mesh;
+  const glm::vec3* positions = instance.positions;
+  const bool moved = !instance.moved.empty();
   if (!last_vertex_is_readable(positions, mesh.positions.size(),
                                moved ? mesh.positions.size() + 1 : mesh.positions.capacity())) {
     auto copy = std::make_unique<std::vector<glm::vec3>>();
@@ -253,10 +253,10 @@ void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
   rtcSetGeometryBuildQuality(geometry, quality(options.quality));
-  if (placement.see_through) rtcSetGeometryOccludedFilterFunction(geometry, note_and_pass);
-  if (placement.solid) {
-    state.solid.push_back(placement.solid);
-    rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(placement.solid->data()));
+  if (instance.see_through) rtcSetGeometryOccludedFilterFunction(geometry, note_and_pass);
+  if (instance.opaque) {
+    state.opaque.push_back(instance.opaque);
+    rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(instance.opaque->data()));
   }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(tree, geometry, number);
@@ -264,18 +264,18 @@ void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
   check(device, "adding triangles");
 }
 
-void attach_instance(EmbreeScene::State& state, unsigned number, const Placement& placement,
+void attach_instance(EmbreeScene::State& state, unsigned number, const GeometryInstance& instance,
                      const BuildOptions& options) {
   RTCDevice device = state.device;
-  Tree& mesh = state.meshes[placement.mesh_number];
+  Tree& mesh = state.meshes[instance.mesh_number];
   if (!mesh) {
     mesh = new_tree(device, options);
-    attach_triangles(state, mesh.get(), 0, placement, options);
+    attach_triangles(state, mesh.get(), 0, instance, options);
     commit(device, mesh.get());
   }
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, mesh.get());
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &placement.to_world);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &instance.to_world);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(state.top.get(), geometry, number);
   rtcReleaseGeometry(geometry);
@@ -364,8 +364,9 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
 }
 
 // Decides between triangles that rays hit at the same distance.
-[[gnu::noinline, gnu::cold]] void settle(const EmbreeScene::State& scene, const ActiveRays& edges,
-                                         RayPacket& packet, bool coherent) {
+[[gnu::noinline, gnu::cold]] void break_ties(const EmbreeScene::State& scene,
+                                             const ActiveRays& edges, RayPacket& packet,
+                                             bool coherent) {
   RayPacket again = packet;
   Nearest nearest[kPacketRays];
   for (int i = 0; i < kPacketRays; ++i) {
@@ -383,8 +384,8 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
     packet.normal_z[i] = least.normal_z;
     packet.u[i] = least.hit.u, packet.v[i] = least.hit.v;
     packet.triangle[i] = least.hit.triangle;
-    packet.instance[i] = least.instanced ? least.hit.placement : kMiss;
-    packet.geometry[i] = least.instanced ? 0 : least.hit.placement;
+    packet.instance[i] = least.instanced ? least.hit.instance : kMiss;
+    packet.geometry[i] = least.instanced ? 0 : least.hit.instance;
   }
 }
 
@@ -416,25 +417,26 @@ std::string EmbreeDevice::version() const {
 
 std::string EmbreeDevice::isa() const { return state_->isa; }
 
-EmbreeScene::EmbreeScene(std::span<const Placement> placements, const BuildOptions& options,
+EmbreeScene::EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options,
                          const EmbreeDevice& common)
     : state_(new State{common, common.state_->device.get(), common.state_->widest_packet}) {
   RTCDevice device = state_->device;
   const std::uint64_t before = common.memory();
 
   std::size_t meshes = 0;
-  for (const Placement& p : placements) meshes = std::max<std::size_t>(meshes, p.mesh_number + 1);
+  for (const GeometryInstance& p : instances)
+    meshes = std::max<std::size_t>(meshes, p.mesh_number + 1);
   state_->meshes.resize(meshes);
   state_->top = new_tree(device, options);
-  for (std::size_t i = 0; i < placements.size(); ++i) {
-    const Placement& placement = placements[i];
-    if (placement.mesh == nullptr || placement.mesh->triangles.empty()) continue;
-    has_see_through_ = has_see_through_ || placement.see_through;
-    has_instances_ = has_instances_ || placement.instanced;
-    if (placement.instanced) {
-      attach_instance(*state_, static_cast<unsigned>(i), placement, options);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const GeometryInstance& instance = instances[i];
+    if (instance.mesh == nullptr || instance.mesh->triangles.empty()) continue;
+    has_see_through_ = has_see_through_ || instance.see_through;
+    has_instances_ = has_instances_ || instance.instanced;
+    if (instance.instanced) {
+      attach_instance(*state_, static_cast<unsigned>(i), instance, options);
     } else {
-      attach_triangles(*state_, state_->top.get(), static_cast<unsigned>(i), placement, options);
+      attach_triangles(*state_, state_->top.get(), static_cast<unsigned>(i), instance, options);
     }
   }
   commit(device, state_->top.get());
@@ -459,14 +461,14 @@ void EmbreeScene::intersect(Ray& ray) const {
   ray.normal_x = least.normal_x, ray.normal_y = least.normal_y, ray.normal_z = least.normal_z;
   ray.u = least.hit.u, ray.v = least.hit.v;
   ray.triangle = least.hit.triangle;
-  ray.instance = least.instanced ? least.hit.placement : kMiss;
-  ray.geometry = least.instanced ? 0 : least.hit.placement;
+  ray.instance = least.instanced ? least.hit.instance : kMiss;
+  ray.geometry = least.instanced ? 0 : least.hit.instance;
 }
 
 void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const {
   find_hits(*state_, active, packet, coherent);
   ActiveRays edges;
-  if (find_edges(active, packet, edges)) settle(*state_, edges, packet, coherent);
+  if (find_edges(active, packet, edges)) break_ties(*state_, edges, packet, coherent);
 }
 
 bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {

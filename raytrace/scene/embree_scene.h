@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/box.h"
-#include "raytrace/scene/placement.h"
+#include "raytrace/scene/geometry_instance.h"
 #include "raytrace/scene/ray.h"
 
 namespace delray::raytrace {
@@ -41,28 +41,28 @@ class EmbreeDevice {
 class EmbreeScene {
  public:
   // Builds in the caller's arena; scenes of one device one after the other, or memory() of one
-  // counts some of another. Buffers of `placements` are used in place and have to outlive the
+  // counts some of another. Buffers of `instances` are used in place and have to outlive the
   // object. Degenerate triangles are never hit. O(n log n).
   // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
-  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options,
+  EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options,
               const EmbreeDevice& device);
   // On a device of its own.
-  EmbreeScene(std::span<const Placement> placements, const BuildOptions& options)
-      : EmbreeScene(placements, options, EmbreeDevice(options)) {}
+  EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options)
+      : EmbreeScene(instances, options, EmbreeDevice(options)) {}
   ~EmbreeScene();
   EmbreeScene(EmbreeScene&&) noexcept;
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
 
   // Nearest hits; `coherent`: the rays of a packet stay close to each other, which makes it faster
   // and changes nothing else. Where a ray goes through an edge or a corner and meets several
-  // triangles at exactly the same distance, that of the lowest placement, then triangle, number is
+  // triangles at exactly the same distance, that of the lowest instance, then triangle, number is
   // taken: always the same, however the triangles are dealt out to scenes. Of surfaces that lie in
   // each other any one is taken, always the same for the same scene, ray and instruction set.
   void intersect(Ray& ray) const;
   void intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const;
 
-  // Whether anything opaque is on the way. What can be seen through (Placement::see_through,
-  // but for triangles that are solid) is put into `passed` instead, once each. A negative `far` on
+  // Whether anything opaque is on the way. What can be seen through (GeometryInstance::see_through,
+  // but for triangles that are opaque) is put into `passed` instead, once each. A negative `far` on
   // return: occluded.
   bool occluded(Ray& ray, SeeThrough& passed) const;
   void occluded(const ActiveRays& active, ShadowPacket& packet,

@@ -20,11 +20,12 @@ struct CornerUvs {
   alignas(64) float u[3][kPacketRays], v[3][kPacketRays];
 };
 
-// What meshes and placements know of the triangles that lanes hit: [corner][axis][lane]. What a
+// What meshes and instances know of the triangles that lanes hit: [corner][axis][lane]. What a
 // lane's mask does not ask for may hold anything.
 struct Gathered {
   alignas(64) float position[3][3][kPacketRays], normal[3][3][kPacketRays];
-  alignas(64) float linear[3][3][kPacketRays], origin[3][kPacketRays];  // Placement::to_world
+  alignas(64) float linear[3][3][kPacketRays],
+      origin[3][kPacketRays];  // GeometryInstance::to_world
   alignas(64) float normal_matrix[3][3][kPacketRays];
   alignas(64) float orientation[kPacketRays], transform_scale[kPacketRays];
   CornerUvs uvs[2];
@@ -192,18 +193,18 @@ void find_gathered_points(const Gathered& g, RayGroup& group) {
   }
 }
 
-// Sets hits, and the number of the placement of each lane.
-void find_hits(RayGroup& group, std::uint32_t* placements) {
+// Sets hits, and the number of the instance of each lane.
+void find_hits(RayGroup& group, std::uint32_t* instances) {
   const IntTag d;
   const auto ints = [](std::uint32_t* p) { return reinterpret_cast<std::int32_t*>(p); };
   RayPacket& packet = group.packet;
   const I none = set(-1);
   shading::LaneMask hits = 0;
   for (int i = 0; i < kPacketRays; i += lanes()) {
-    const I instance = hn::Load(d, ints(packet.instance) + i);
-    const I placement =
-        hn::IfThenElse(hn::Eq(instance, none), hn::Load(d, ints(packet.geometry) + i), instance);
-    hn::Store(placement, d, ints(placements) + i);
+    const I nested = hn::Load(d, ints(packet.instance) + i);
+    const I instance =
+        hn::IfThenElse(hn::Eq(nested, none), hn::Load(d, ints(packet.geometry) + i), nested);
+    hn::Store(instance, d, ints(instances) + i);
     const auto hit = hn::And(hn::Ne(hn::Load(d, ints(packet.triangle) + i), none),
                              hn::Ne(hn::Load(d, group.active.ray + i), set(0)));
     hits |= bits_of(hn::RebindMask(FloatTag(), hit), i);
@@ -275,28 +276,28 @@ void gather_tangents(const scenes::Mesh& mesh, const glm::uvec3* corners, shadin
   });
 }
 
-void gather_transforms(const Placement& placement, shading::LaneMask lanes, Gathered& to) {
+void gather_transforms(const GeometryInstance& instance, shading::LaneMask lanes, Gathered& to) {
   to.placed |= lanes;
-  if (placement.instanced) to.instanced |= lanes;
+  if (instance.instanced) to.instanced |= lanes;
   for_lanes(lanes, [&](int i) {
     for (int k = 0; k < 3; ++k) {
-      put(placement.to_world[k], i, to.linear[k]);
-      put(placement.normal_to_world[k], i, to.normal_matrix[k]);
+      put(instance.to_world[k], i, to.linear[k]);
+      put(instance.normal_to_world[k], i, to.normal_matrix[k]);
     }
-    put(placement.to_world[3], i, to.origin);
+    put(instance.to_world[3], i, to.origin);
   });
 }
 
-// What the lanes' triangles of one placement need.
-void gather(const Placement& placement, const std::uint32_t* triangles, shading::LaneMask lanes,
-            Gathered& to) {
-  const scenes::Mesh& mesh = *placement.mesh;
+// What the lanes' triangles of one instance need.
+void gather(const GeometryInstance& instance, const std::uint32_t* triangles,
+            shading::LaneMask lanes, Gathered& to) {
+  const scenes::Mesh& mesh = *instance.mesh;
   glm::uvec3 corners[kPacketRays];
-  for_lanes(lanes, [&, numbers = mesh.triangles.data(), positions = placement.positions](int i) {
+  for_lanes(lanes, [&, numbers = mesh.triangles.data(), positions = instance.positions](int i) {
     corners[i] = numbers[triangles[i]];
     for (int k = 0; k < 3; ++k) put(positions[corners[i][k]], i, to.position[k]);
-    to.orientation[i] = placement.orientation;
-    to.transform_scale[i] = placement.transform_scale;
+    to.orientation[i] = instance.orientation;
+    to.transform_scale[i] = instance.transform_scale;
   });
   if (!mesh.normals.empty()) {
     to.smooth |= lanes;
@@ -304,7 +305,7 @@ void gather(const Placement& placement, const std::uint32_t* triangles, shading:
       for (int k = 0; k < 3; ++k) put(normals[corners[i][k]], i, to.normal[k]);
     });
   }
-  if (placement.instanced || !placement.identity) gather_transforms(placement, lanes, to);
+  if (instance.instanced || !instance.identity) gather_transforms(instance, lanes, to);
   if (!mesh.colours.empty()) {
     to.coloured |= lanes;
     for_lanes(lanes, [&, colours = mesh.colours.data()](int i) {
@@ -314,8 +315,8 @@ void gather(const Placement& placement, const std::uint32_t* triangles, shading:
       }
     });
   }
-  for (int set = 0; set < placement.texture_sets; ++set) gather_uvs(mesh, set, corners, lanes, to);
-  if (placement.texture_sets > 0) gather_tangents(mesh, corners, lanes, to);
+  for (int set = 0; set < instance.texture_sets; ++set) gather_uvs(mesh, set, corners, lanes, to);
+  if (instance.texture_sets > 0) gather_tangents(mesh, corners, lanes, to);
 }
 
 // GCC 12 takes functions that do nothing but prefetch for functions that do nothing, and leaves out
@@ -325,14 +326,14 @@ void fetch(const void* p) {
   asm volatile("");
 }
 
-// Calls f(placement, triangle) for the hits.
+// Calls f(instance, triangle) for the hits.
 template <class F>
-void for_hits(std::span<const Placement> placements, const RayGroup& group, F&& f) {
+void for_hits(std::span<const GeometryInstance> instances, const RayGroup& group, F&& f) {
   const RayPacket& packet = group.packet;
   for (int i = 0; i < kPacketRays; ++i) {
     if (group.active.ray[i] == 0 || packet.triangle[i] == kMiss) continue;
     const Hit hit = hit_of(packet, i);
-    f(placements[hit.placement], hit.triangle);
+    f(instances[hit.instance], hit.triangle);
   }
 }
 
@@ -342,41 +343,41 @@ bool find_edges(const ActiveRays& active, const RayPacket& packet, ActiveRays& e
   return HWY_DYNAMIC_DISPATCH(find_edge_lanes)(active, packet, edges);
 }
 
-void fetch_corners(std::span<const Placement> placements, const RayGroup& group) {
-  for_hits(placements, group, [](const Placement& placement, std::uint32_t triangle) {
-    fetch(&placement.mesh->triangles[triangle]);
+void fetch_corners(std::span<const GeometryInstance> instances, const RayGroup& group) {
+  for_hits(instances, group, [](const GeometryInstance& instance, std::uint32_t triangle) {
+    fetch(&instance.mesh->triangles[triangle]);
   });
 }
 
-void fetch_vertices(std::span<const Placement> placements, const RayGroup& group) {
-  for_hits(placements, group, [](const Placement& placement, std::uint32_t triangle) {
-    const scenes::Mesh& mesh = *placement.mesh;
+void fetch_vertices(std::span<const GeometryInstance> instances, const RayGroup& group) {
+  for_hits(instances, group, [](const GeometryInstance& instance, std::uint32_t triangle) {
+    const scenes::Mesh& mesh = *instance.mesh;
     const glm::uvec3 corners = mesh.triangles[triangle];
     for (int k = 0; k < 3; ++k) {
-      fetch(placement.positions + corners[k]);
+      fetch(instance.positions + corners[k]);
       if (!mesh.normals.empty()) fetch(&mesh.normals[corners[k]]);
       if (!mesh.colours.empty()) fetch(&mesh.colours[corners[k]]);
-      for (int set = 0; set < placement.texture_sets; ++set) {
+      for (int set = 0; set < instance.texture_sets; ++set) {
         if (!mesh.uvs_of(set).empty()) fetch(&mesh.uvs_of(set)[corners[k]]);
       }
     }
   });
 }
 
-void find_points(std::span<const Placement> placements, RayGroup& group) {
+void find_points(std::span<const GeometryInstance> instances, RayGroup& group) {
   alignas(64) std::uint32_t numbers[kPacketRays];
   HWY_DYNAMIC_DISPATCH(find_hits)(group, numbers);
   if (group.hits == 0) return;
   Gathered gathered;
   for (shading::LaneMask rest = group.hits; rest != 0;) {
     const std::uint32_t number = numbers[std::countr_zero(rest)];
-    const Placement& placement = placements[number];
+    const GeometryInstance& instance = instances[number];
     shading::LaneMask same = 0;
     for (int i = 0; i < kPacketRays; ++i) same |= numbers[i] == number ? 1U << i : 0U;
     same &= rest;
     rest &= ~same;
-    for_lanes(same, [&](int i) { group.material[i] = placement.material; });
-    gather(placement, group.packet.triangle, same, gathered);
+    for_lanes(same, [&](int i) { group.material[i] = instance.material; });
+    gather(instance, group.packet.triangle, same, gathered);
   }
   group.points.coloured = gathered.coloured != 0;
   HWY_DYNAMIC_DISPATCH(find_gathered_points)(gathered, group);

@@ -40,24 +40,24 @@ shading::Footprint footprint(const std::vector<glm::vec2>& uvs, const glm::uvec3
 
 }  // namespace
 
-Intersection intersection(const Placement& placement, const Hit& hit, const glm::vec3& direction,
-                          const Cone& cone) {
-  const scenes::Mesh& mesh = *placement.mesh;
+Intersection intersection(const GeometryInstance& instance, const Hit& hit,
+                          const glm::vec3& direction, const Cone& cone) {
+  const scenes::Mesh& mesh = *instance.mesh;
   const glm::uvec3 corners = mesh.triangles[hit.triangle];
-  glm::vec3 a = placement.positions[corners.x];
-  glm::vec3 b = placement.positions[corners.y];
-  glm::vec3 c = placement.positions[corners.z];
-  if (placement.instanced) {
-    a = placement.to_world * glm::vec4(a, 1.0F);
-    b = placement.to_world * glm::vec4(b, 1.0F);
-    c = placement.to_world * glm::vec4(c, 1.0F);
+  glm::vec3 a = instance.positions[corners.x];
+  glm::vec3 b = instance.positions[corners.y];
+  glm::vec3 c = instance.positions[corners.z];
+  if (instance.instanced) {
+    a = instance.to_world * glm::vec4(a, 1.0F);
+    b = instance.to_world * glm::vec4(b, 1.0F);
+    c = instance.to_world * glm::vec4(c, 1.0F);
   }
   const glm::vec3 ab = b - a, ac = c - a;
   Intersection result;
   shading::Point& point = result.point;
   point.position = a + ab * hit.u + ac * hit.v;
   result.offset = kOffset * (std::max(std::max(largest(a), largest(b)), largest(c)) +
-                             std::max(largest(ab), largest(ac)) + placement.transform_scale);
+                             std::max(largest(ab), largest(ac)) + instance.transform_scale);
 
   glm::vec3 cross = glm::cross(ab, ac);
   const float squared = glm::dot(cross, cross);
@@ -69,11 +69,11 @@ Intersection intersection(const Placement& placement, const Hit& hit, const glm:
     area = length * size * size;
   }
   point.geometric_normal =
-      length > 0.0F ? cross * (placement.orientation / length) : glm::vec3(0, 0, 1);
+      length > 0.0F ? cross * (instance.orientation / length) : glm::vec3(0, 0, 1);
   point.normal = point.geometric_normal;
   if (!mesh.normals.empty()) {
     glm::vec3 normal = interpolate(mesh.normals, corners, hit);
-    if (!placement.identity) normal = placement.normal_to_world * normal;
+    if (!instance.identity) normal = instance.normal_to_world * normal;
     point.normal = unit(normal, point.geometric_normal);
   }
   if (!mesh.colours.empty()) point.colour = interpolate(mesh.colours, corners, hit);
@@ -81,24 +81,24 @@ Intersection intersection(const Placement& placement, const Hit& hit, const glm:
   const auto texture_point = [&](const std::vector<glm::vec2>& uvs) -> shading::TexturePoint {
     return {interpolate(uvs, corners, hit), footprint(uvs, corners, area, cosine, cone.width)};
   };
-  if (placement.texture_sets > 1 && !mesh.uvs2.empty()) point.second = texture_point(mesh.uvs2);
-  if (placement.texture_sets > 0 && !mesh.uvs.empty()) {
+  if (instance.texture_sets > 1 && !mesh.uvs2.empty()) point.second = texture_point(mesh.uvs2);
+  if (instance.texture_sets > 0 && !mesh.uvs.empty()) {
     const shading::TexturePoint first = texture_point(mesh.uvs);
     point.uv = first.uv;
     point.footprint = first.footprint;
     if (!mesh.tangents.empty()) {
       const glm::vec4 along = interpolate(mesh.tangents, corners, hit);
       glm::vec3 tangent(along);
-      if (!placement.identity) tangent = glm::mat3(placement.to_world) * tangent;
+      if (!instance.identity) tangent = glm::mat3(instance.to_world) * tangent;
       const float side = mesh.tangents[corners.x].w < 0.0F ? -1.0F : 1.0F;
-      point.tangent = glm::vec4(unit(tangent, glm::vec3(1, 0, 0)), side * placement.orientation);
+      point.tangent = glm::vec4(unit(tangent, glm::vec3(1, 0, 0)), side * instance.orientation);
     }
   }
   return result;
 }
 
-CoveragePoint coverage_point(const Placement& placement, const Hit& hit, int set) {
-  const scenes::Mesh& mesh = *placement.mesh;
+CoveragePoint coverage_point(const GeometryInstance& instance, const Hit& hit, int set) {
+  const scenes::Mesh& mesh = *instance.mesh;
   const glm::uvec3 corners = mesh.triangles[hit.triangle];
   CoveragePoint result;
   const std::vector<glm::vec2>& uvs = mesh.uvs_of(set);

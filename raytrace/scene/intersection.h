@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "raytrace/scene/placement.h"
+#include "raytrace/scene/geometry_instance.h"
 #include "raytrace/scene/ray.h"
 #include "shading/surface.h"
 
@@ -33,16 +33,16 @@ struct Intersection {
   float offset = 0.0F;
 };
 
-// `direction` is the unit direction of the ray. REQUIRES: the placement and triangle of `hit`
+// `direction` is the unit direction of the ray. REQUIRES: the instance and triangle of `hit`
 // exist.
-Intersection intersection(const Placement& placement, const Hit& hit, const glm::vec3& direction,
-                          const Cone& cone);
+Intersection intersection(const GeometryInstance& instance, const Hit& hit,
+                          const glm::vec3& direction, const Cone& cone);
 
 // Texture coordinates of a set and vertex alpha alone, for shading::coverage.
 struct CoveragePoint {
   glm::vec2 uv{0.0F};
   float alpha = 1.0F;
 };
-CoveragePoint coverage_point(const Placement& placement, const Hit& hit, int set);
+CoveragePoint coverage_point(const GeometryInstance& instance, const Hit& hit, int set);
 
 }  // namespace delray::raytrace

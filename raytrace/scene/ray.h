@@ -21,8 +21,8 @@ struct alignas(16) Ray {
   float normal_x, normal_y, normal_z;  // as Embree has it: not normalised, in space of the mesh
   float u, v;
   std::uint32_t triangle = kMiss;
-  std::uint32_t geometry = kMiss;       // number of the placement, unless instance is set
-  std::uint32_t instance = kMiss;       // number of the placement, if that is an Embree instance
+  std::uint32_t geometry = kMiss;       // of the geometry instance, unless `instance` is set
+  std::uint32_t instance = kMiss;       // of the geometry instance, if Embree instances it
   std::uint32_t instance_part = kMiss;  // not used: Embree from 4.3 on may write there
 };
 
@@ -58,7 +58,7 @@ struct alignas(64) ActiveRays {
 // Where a ray met a triangle.
 struct Hit {
   float distance = 0.0F;  // in units of the ray's direction
-  std::uint32_t placement = kMiss, triangle = kMiss;
+  std::uint32_t instance = kMiss, triangle = kMiss;
   float u = 0.0F, v = 0.0F;
 };
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "raytrace/scene/wave.h"
+#include "raytrace/scene/ray_batch.h"
 
 namespace delray::raytrace {
 

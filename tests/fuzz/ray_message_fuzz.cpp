@@ -4,7 +4,7 @@
 #include <span>
 
 #include "comm/bad_message.h"
-#include "raytrace/distributed/ray_messages.h"
+#include "raytrace/distributed/pack_messages.h"
 
 // Whatever the bytes, as many rays come out as the header says, or the message is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const comm::Buffer message = comm::Buffer::of(std::as_bytes(std::span(data, size)));
   try {
     const raytrace::MessageHeader header = raytrace::header_of(message);
-    const raytrace::Travellers found = raytrace::unpack_travellers(message, header);
+    const raytrace::RayQueue found = raytrace::unpack_rays(message, header);
     if (found.rays.size() != header.rays || found.shadows.size() != header.shadows) std::abort();
     const comm::Buffer again = raytrace::pack(header.kind, found.rays, found.shadows);
     if (again.size() != message.size()) std::abort();

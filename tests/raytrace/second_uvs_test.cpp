@@ -38,11 +38,11 @@ scenes::Scene textured_scene() {
       add_textured(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), placed(1, {0.4F, 0, 0.5F}));
   masked.alpha = scenes::Material::Alpha::mask;
   masked.base_colour_texture = add_texture(scene, 2);
-  scenes::Material& glowing = add_textured(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), placed(1, {}));
-  glowing.emission = {4, 3, 2};
-  glowing.emission_texture = add_texture(scene, 3);
-  glowing.alpha = scenes::Material::Alpha::blend;
-  glowing.base_colour_texture = add_texture(scene, 4);
+  scenes::Material& emissive = add_textured(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), placed(1, {}));
+  emissive.emission = {4, 3, 2};
+  emissive.emission_texture = add_texture(scene, 3);
+  emissive.alpha = scenes::Material::Alpha::blend;
+  emissive.base_colour_texture = add_texture(scene, 4);
   scenes::Material& mapped = add_textured(sphere(10), placed(0.6F, {-1, 0, 0}));
   mapped.normal_texture = add_texture(scene, 5);
   mapped.metallic_roughness_texture = add_texture(scene, 6);

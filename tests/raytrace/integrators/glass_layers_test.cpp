@@ -5,7 +5,7 @@
 #include <bit>
 #include <random>
 
-#include "raytrace/integrators/answer.h"
+#include "raytrace/integrators/intersect.h"
 #include "raytrace/tracer.h"
 #include "scenes/generate.h"
 #include "tests/support/targets.h"
@@ -34,26 +34,28 @@ TEST(GlassLayers, ManyLeaveWhatEachLeavesAlone) {
   std::mt19937 random(1);
   const auto unit = [&] { return std::uniform_real_distribution<float>(0.0F, 1.0F)(random); };
   for (const std::size_t count : {1, 15, 16, 17, 190}) {
-    std::vector<glm::vec3> left(count, glm::vec3(-1.0F));
+    std::vector<glm::vec3> transmittance(count, glm::vec3(-1.0F));
     std::vector<PaneHit> panes(count);
     for (std::size_t i = 0; i < count; ++i) {
       Hit& hit = panes[i].hit;
       hit.distance = unit();
-      hit.placement = static_cast<std::uint32_t>(random() % tracer.placements.size());
-      const scenes::Mesh& mesh = *tracer.placements[hit.placement].mesh;
+      hit.instance = static_cast<std::uint32_t>(random() % tracer.instances.size());
+      const scenes::Mesh& mesh = *tracer.instances[hit.instance].mesh;
       hit.triangle = static_cast<std::uint32_t>(random() % mesh.triangles.size());
       hit.u = unit(), hit.v = unit() * (1.0F - hit.u);
       const glm::vec3 way(unit() - 0.5F, unit() - 0.5F, unit() - 0.5F);
       panes[i].direction = way * (1.0F / std::sqrt(glm::dot(way, way)));
-      panes[i].left = &left[i];
+      panes[i].transmittance = &transmittance[i];
     }
     tests::for_each_target([&] {
-      std::fill(left.begin(), left.end(), glm::vec3(-1.0F));
-      find_left(tracer.placements, shader, panes);
+      std::fill(transmittance.begin(), transmittance.end(), glm::vec3(-1.0F));
+      find_transmittances(tracer.instances, shader, panes);
       for (std::size_t i = 0; i < count; ++i) {
         const glm::vec3 alone =
-            layer_of(tracer.placements, tracer.shader, panes[i].hit, panes[i].direction, true).left;
-        for (int k = 0; k < 3; ++k) ASSERT_TRUE(same(left[i][k], alone[k])) << i << " of " << count;
+            layer_of(tracer.instances, tracer.shader, panes[i].hit, panes[i].direction, true)
+                .transmittance;
+        for (int k = 0; k < 3; ++k)
+          ASSERT_TRUE(same(transmittance[i][k], alone[k])) << i << " of " << count;
       }
     });
   }

@@ -104,7 +104,8 @@ TEST(HitsByMaterial, GathersWhatEachHitIsOf) {
       EXPECT_TRUE(same(to->spread, group.spread) && same(to->offset, group.offset)) << i;
       EXPECT_TRUE(same(to->packet.far, group.packet.far)) << i;
       EXPECT_TRUE(same(to->material, group.material)) << i;
-      EXPECT_TRUE(all(to_lanes->weight, lanes.weight) && same(to_lanes->pdf, lanes.pdf)) << i;
+      EXPECT_TRUE(all(to_lanes->throughput, lanes.throughput) && same(to_lanes->pdf, lanes.pdf))
+          << i;
       EXPECT_TRUE(same(to_lanes->pixel, lanes.pixel) && same(to_lanes->bounce, lanes.bounce)) << i;
       EXPECT_TRUE(same(to_lanes->vertex, lanes.vertex)) << i;
     }

@@ -99,7 +99,7 @@ TEST(LightTable, AddsUpLightsOfEveryKind) {
 
   const shading::Shader shader = shading::make_shader(scene);
   const LightTable table(scene, shader);
-  EXPECT_EQ(table.glowing_triangles(), 2 * lamp.triangles.size());
+  EXPECT_EQ(table.emissive_triangles(), 2 * lamp.triangles.size());
   const glm::vec3 from(0.1F, 0.2F, 0), normal(0, 0, 1);
   double expected = 0;
   for (int i = 0; i < 2; ++i) {
@@ -171,7 +171,7 @@ TEST(LightTable, AnAreaLightIsMetAtItsLamp) {
   const scenes::Scene scene = scenes::generate("gen:cornell:500");
   const shading::Shader shader = shading::make_shader(scene);
   const LightTable table(scene, shader);
-  EXPECT_EQ(table.glowing_triangles(), 0U);
+  EXPECT_EQ(table.emissive_triangles(), 0U);
   std::uint32_t lamp = 0;
   while (!(scene.materials[scene.meshes[scene.instances[lamp].mesh].material].emission.x > 0))
     ++lamp;
@@ -195,7 +195,7 @@ TEST(LightTable, AnAreaLightAloneIsMetByNoRay) {
   scene.lights[0].edge_u *= 1.1F;  // larger than the lamp
   const shading::Shader shader = shading::make_shader(scene);
   const LightTable table(scene, shader);
-  EXPECT_GT(table.glowing_triangles(), 0U);
+  EXPECT_GT(table.emissive_triangles(), 0U);
 }
 
 TEST(LightTable, GlowGoesByWhatTheTextureShows) {

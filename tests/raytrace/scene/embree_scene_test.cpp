@@ -39,19 +39,19 @@ TEST(EmbreeScene, FindsPlacementAndTriangle) {
   add(scene, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), placed(1, {0, 0, -2}));
   scene.instances.push_back({0, placed(1, {5, 0, 0})});  // makes mesh 0 an Embree instance
   const Tracer tracer = make_tracer(scene);
-  EXPECT_TRUE(tracer.placements[0].instanced);
-  EXPECT_FALSE(tracer.placements[1].instanced);
+  EXPECT_TRUE(tracer.instances[0].instanced);
+  EXPECT_FALSE(tracer.instances[1].instanced);
   const auto hit = [&](const glm::vec3& origin) {
     Ray r = ray(origin, {0, 0, -1});
     tracer.embree.intersect(r);
     EXPECT_NE(r.triangle, kMiss);
     return hit_of(r);
   };
-  EXPECT_EQ(hit({0.5F, 0, 3}).placement, 0U);
+  EXPECT_EQ(hit({0.5F, 0, 3}).instance, 0U);
   EXPECT_EQ(hit({0.5F, 0, 3}).triangle, 0U);
   EXPECT_EQ(hit({0.2F, 0.5F, 3}).triangle, 1U);
-  EXPECT_EQ(hit({0.5F, 0, -1}).placement, 1U);
-  EXPECT_EQ(hit({5.5F, 0, 3}).placement, 2U);
+  EXPECT_EQ(hit({0.5F, 0, -1}).instance, 1U);
+  EXPECT_EQ(hit({5.5F, 0, 3}).instance, 2U);
   EXPECT_FLOAT_EQ(hit({5.5F, 0, 3}).distance, 3.0F);
   Ray miss = ray({3, 0, 3}, {0, 0, -1});
   tracer.embree.intersect(miss);
@@ -92,7 +92,7 @@ TEST(EmbreeScene, PacketsAgreeWithSingleRays) {
         tracer.embree.intersect(one);
         ASSERT_EQ(packet.triangle[i] == kMiss, one.triangle == kMiss) << isa;
         if (one.triangle == kMiss) continue;
-        EXPECT_EQ(hit_of(packet, i).placement, hit_of(one).placement);
+        EXPECT_EQ(hit_of(packet, i).instance, hit_of(one).instance);
         EXPECT_NEAR(packet.far[i], one.far, 1e-5);
       }
     }
@@ -159,9 +159,8 @@ TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
           Hit least[kPacketRays], least_alone[kPacketRays];
           const auto take = [&](Hit hit, std::size_t k, Hit& into) {
             hit.triangle = numbers[k][hit.triangle];
-            if (into.triangle == kMiss ||
-                std::tie(hit.distance, hit.placement, hit.triangle) <
-                    std::tie(into.distance, into.placement, into.triangle))
+            if (into.triangle == kMiss || std::tie(hit.distance, hit.instance, hit.triangle) <
+                                              std::tie(into.distance, into.instance, into.triangle))
               into = hit;
           };
           for (std::size_t k = 0; k < kParts; ++k) {
@@ -181,7 +180,7 @@ TEST(EmbreeScene, TriangleOfAnEdgeDoesNotDependOnWhatElseIsInTheScene) {
             ASSERT_EQ(packet.triangle[i], least[i].triangle) << isa << ' ' << i << ' ' << y;
             ASSERT_EQ(packet.far[i], least[i].distance);
             ASSERT_EQ(packet.u[i], least[i].u);
-            ASSERT_EQ(hit_of(packet, i).placement, least[i].placement);
+            ASSERT_EQ(hit_of(packet, i).instance, least[i].instance);
             ASSERT_EQ(one.triangle, least_alone[i].triangle) << isa << ' ' << i << ' ' << y;
             ASSERT_EQ(one.far, least_alone[i].distance);
           }
@@ -254,7 +253,7 @@ TEST(EmbreeScene, OcclusionNotesWhatItSeesThrough) {
     EXPECT_FALSE(tracer.embree.occluded(r, passed));
     EXPECT_EQ(passed.count, 2);
     for (int i = 0; i < passed.count; ++i) {
-      EXPECT_NEAR(passed.hits[i].distance, 5.0F + static_cast<float>(passed.hits[i].placement),
+      EXPECT_NEAR(passed.hits[i].distance, 5.0F + static_cast<float>(passed.hits[i].instance),
                   1e-5);
     }
     scene.materials[0].base_colour.w = 1.0F;
@@ -283,7 +282,7 @@ TEST(EmbreeScene, BadGeometryIsCountedAndHarmless) {
   Ray r = ray({0.5F, 0, 3}, {0, 0, -1});
   tracer.embree.intersect(r);
   ASSERT_NE(r.triangle, kMiss);
-  EXPECT_EQ(hit_of(r).placement, 0U);
+  EXPECT_EQ(hit_of(r).instance, 0U);
   EXPECT_EQ(hit_of(r).triangle, 0U);
 }
 
@@ -321,8 +320,7 @@ TEST(Intersection, GivesPointNormalAndUv) {
       tracer.embree.intersect(r);
       ASSERT_NE(r.triangle, kMiss);
       const Hit hit = hit_of(r);
-      const Intersection at =
-          intersection(tracer.placements[hit.placement], hit, {0, 0, -1}, {0.1F});
+      const Intersection at = intersection(tracer.instances[hit.instance], hit, {0, 0, -1}, {0.1F});
       EXPECT_NEAR(at.point.position.x, side * 1.5F, 1e-5);
       EXPECT_NEAR(at.point.geometric_normal.z, 1.0F, 1e-6) << side;
       EXPECT_NEAR(at.point.uv.x, 0.75F, 1e-5);

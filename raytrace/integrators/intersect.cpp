@@ -1,4 +1,7 @@
-#include "raytrace/integrators/answer.h"
+// Intersects a batch with a scene that this rank holds whole. In large scenes the vertices of hits
+// are fetched ahead, one group before they are used. Shadow rays multiply the transmittances of the
+// layers that they passed in one order, since Embree reports them in any.
+#include "raytrace/integrators/intersect.h"
 
 #include <algorithm>
 #include <bit>
@@ -21,14 +24,14 @@ union PerHit {
 };
 
 bool transmits(const Tracer& tracer, const Hit& hit) {
-  return tracer.shader.materials[tracer.placements[hit.placement].material].transmission > 0.0F;
+  return tracer.shader.materials[tracer.instances[hit.instance].material].transmission > 0.0F;
 }
 
 void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGroup& group) {
   const shading::LaneMask active = active_lanes(group.active);
   SeeThrough passed[kPacketRays];
   tracer.embree.occluded(group.active, group.packet, passed, group.coherent);
-  group.lit = group.dimmed = 0;
+  group.lit = group.attenuated = 0;
   for (int i = 0; i < kPacketRays; ++i) {
     group.lit |= group.packet.far[i] >= 0.0F ? 1U << i : 0U;
   }
@@ -39,7 +42,7 @@ void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGro
   std::size_t pane_count = 0, first = 0;
   for (int i = 0; i < kPacketRays; ++i) {
     if ((group.lit >> i & 1) == 0 || passed[i].count == 0) continue;
-    group.dimmed |= 1U << i;
+    group.attenuated |= 1U << i;
     const glm::vec3 direction(group.packet.direction_x[i], group.packet.direction_y[i],
                               group.packet.direction_z[i]);
     for (int k = 0; k < passed[i].count; ++k) {
@@ -47,72 +50,72 @@ void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGro
       Layer& layer = layers.element[first++];
       const bool through_glass = (group.through_glass >> i & 1) != 0;
       if (through_glass && transmits(tracer, hit)) {
-        layer = {hit.distance, hit.placement, hit.triangle, {}};
-        panes.element[pane_count++] = {hit, direction, &layer.left};
+        layer = {hit.distance, hit.instance, hit.triangle, {}};
+        panes.element[pane_count++] = {hit, direction, &layer.transmittance};
       } else {
-        layer = layer_of(tracer.placements, tracer.shader, hit, direction, through_glass);
+        layer = layer_of(tracer.instances, tracer.shader, hit, direction, through_glass);
       }
     }
   }
-  if (pane_count != 0) find_left(tracer.placements, shader, {panes.element, pane_count});
+  if (pane_count != 0) find_transmittances(tracer.instances, shader, {panes.element, pane_count});
   first = 0;
-  for (shading::LaneMask rest = group.dimmed; rest != 0; rest &= rest - 1) {
+  for (shading::LaneMask rest = group.attenuated; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const auto count = static_cast<std::size_t>(passed[i].count);
-    group.left.set(i, left_by({layers.element + first, count}));
+    group.transmittance.set(i, transmittance_of({layers.element + first, count}));
     first += count;
   }
 }
 
 }  // namespace
 
-void answer(const Tracer& tracer, const shading::BatchShader& shader, Wave& wave) {
+void intersect(const Tracer& tracer, const shading::BatchShader& shader, RayBatch& batch) {
   const RayGroup* before = nullptr;
-  for (RayGroup& group : wave.rays) {
+  for (RayGroup& group : batch.rays) {
     if (group.misses) continue;
     tracer.embree.intersect(group.active, group.packet, group.coherent);
     if (!tracer.large) continue;
-    fetch_corners(tracer.placements, group);
-    if (before != nullptr) fetch_vertices(tracer.placements, *before);
+    fetch_corners(tracer.instances, group);
+    if (before != nullptr) fetch_vertices(tracer.instances, *before);
     before = &group;
   }
-  if (before != nullptr) fetch_vertices(tracer.placements, *before);
-  for (RayGroup& group : wave.rays) {
+  if (before != nullptr) fetch_vertices(tracer.instances, *before);
+  for (RayGroup& group : batch.rays) {
     group.hits = 0;
-    if (!group.misses) find_points(tracer.placements, group);
+    if (!group.misses) find_points(tracer.instances, group);
   }
-  for (ShadowGroup& group : wave.shadows) occlude(tracer, shader, group);
+  for (ShadowGroup& group : batch.shadows) occlude(tracer, shader, group);
 }
 
-Layer layer_of(std::span<const Placement> placements, const shading::Shader& shader, const Hit& hit,
-               const glm::vec3& direction, bool through_glass) {
-  const Placement& placement = placements[hit.placement];
-  const scenes::Material& material = shader.materials[placement.material];
+Layer layer_of(std::span<const GeometryInstance> instances, const shading::Shader& shader,
+               const Hit& hit, const glm::vec3& direction, bool through_glass) {
+  const GeometryInstance& instance = instances[hit.instance];
+  const scenes::Material& material = shader.materials[instance.material];
   if (!through_glass || !(material.transmission > 0.0F)) {
     const std::uint32_t texture = material.base_colour_texture;
     const int set = texture == scenes::kNone ? 0 : shader.textures[texture].set;
-    const CoveragePoint at = coverage_point(placement, hit, set);
+    const CoveragePoint at = coverage_point(instance, hit, set);
     const float alpha = shading::coverage(shader, material, at.uv, {}, at.alpha);
-    return {hit.distance, hit.placement, hit.triangle, glm::vec3(1.0F - alpha)};
+    return {hit.distance, hit.instance, hit.triangle, glm::vec3(1.0F - alpha)};
   }
-  const Intersection at = intersection(placement, hit, direction, {0.0F});
+  const Intersection at = intersection(instance, hit, direction, {0.0F});
   const glm::vec3 view = -direction;
   const shading::Surface s = shading::evaluate(shader, material, at.point, view);
   const float share = shading::clamp01(s.transmission) * (1.0F - shading::clamp01(s.metallic));
   const float reflected = refracted(view, s.normal, s.front ? 1.0F / s.ior : s.ior).reflected;
-  return {hit.distance, hit.placement, hit.triangle,
+  return {hit.distance, hit.instance, hit.triangle,
           glm::vec3(1.0F - s.alpha) +
               s.base_colour * s.attenuation * (s.alpha * share * (1.0F - reflected))};
 }
 
-glm::vec3 left_by(std::span<Layer> layers) {
+glm::vec3 transmittance_of(std::span<Layer> layers) {
   std::sort(layers.begin(), layers.end(), [](const Layer& a, const Layer& b) {
-    return std::tie(a.distance, a.placement, a.triangle) <
-           std::tie(b.distance, b.placement, b.triangle);
+    return std::tie(a.distance, a.instance, a.triangle) <
+           std::tie(b.distance, b.instance, b.triangle);
   });
-  glm::vec3 left(1.0F);
-  for (const Layer& layer : layers) left *= layer.left;
-  return left;
+  glm::vec3 transmittance(1.0F);
+  for (const Layer& layer : layers) transmittance *= layer.transmittance;
+  return transmittance;
 }
 
 }  // namespace delray::raytrace

@@ -1,4 +1,4 @@
-// How the instances of a scene are put before the ray tracer.
+// Instances of a scene as the ray tracer sees them.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,10 +11,10 @@
 
 namespace delray::raytrace {
 
-// One instance of the scene; placement i is instance i. A mesh that is placed often stays as it is
-// and is reached through a transform at every ray; one that is placed once is moved to the world
-// beforehand, which costs its positions once more and saves the transform.
-struct Placement {
+// One instance of the scene; element i is instance i of the scene. A mesh that is placed often
+// stays as it is and is reached through a transform at every ray; one that is placed once is moved
+// to the world beforehand, which costs its positions once more and saves the transform.
+struct GeometryInstance {
   const scenes::Mesh* mesh = nullptr;
   const glm::vec3* positions = nullptr;  // of the mesh's vertices: its own, or moved to the world
   std::uint32_t mesh_number = 0;
@@ -23,10 +23,10 @@ struct Placement {
   bool identity = true;      // normals and tangents need no transform
   bool see_through = false;  // masked, blended or transmitting: shadow rays do not end there
   bool layered = false;      // masked or blended: no ray need end there
-  std::shared_ptr<const std::vector<std::uint64_t>> solid;  // solid_triangles(); null: none
-  int texture_sets = 0;                                     // that the material looks at
-  float orientation = 1.0F;                                 // -1 if the transform mirrors
-  glm::mat4x3 to_world{1.0F};                               // the instance's transform
+  std::shared_ptr<const std::vector<std::uint64_t>> opaque;  // opaque_triangles(); null: none
+  int texture_sets = 0;                                      // that the material looks at
+  float orientation = 1.0F;                                  // -1 if the transform mirrors
+  glm::mat4x3 to_world{1.0F};                                // the instance's transform
   glm::mat3 normal_to_world{1.0F};
   float transform_scale = 0.0F;  // largest length that to_world adds rounding errors of, 0 if none
   std::vector<glm::vec3> moved;  // backing store of `positions`, one spare element at the end
@@ -34,11 +34,11 @@ struct Placement {
 
 // `share_meshes` false moves every instance to the world, however often its mesh is placed. Refers
 // to the scene, which has to outlive it. Instances of meshes that do not exist get a null mesh.
-std::vector<Placement> place(const scenes::Scene& scene, const shading::Shader& shader,
-                             bool share_meshes);
+std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
+                                             const shading::Shader& shader, bool share_meshes);
 
 // Triangles that can never be hit: corners in one line or point, not finite, or beyond 1e18.
-// Counted over placements. Parallel; O(triangles).
-std::uint64_t count_degenerate(std::span<const Placement> placements);
+// Counted over instances. Parallel; O(triangles).
+std::uint64_t count_degenerate(std::span<const GeometryInstance> instances);
 
 }  // namespace delray::raytrace

@@ -1,6 +1,7 @@
-// An integrator at work: a machine over the pixels of one task that asks for rays, wave by wave,
-// and goes on when they are answered. The same one serves a scene that this rank holds whole and
-// scenes distributed over ranks, where questions travel and the task is put aside meanwhile.
+// A wavefront integrator (Laine et al. 2013): a state machine over the pixels of one task that
+// enqueues rays batch by batch and shades them once they are intersected. It serves a scene that
+// this rank holds whole as well as scenes distributed over ranks, where rays travel and the task
+// waits.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 #include "geometry/rect.h"
 #include "raytrace/sampling/light_table.h"
 #include "raytrace/sampling/sampler.h"
-#include "raytrace/scene/wave.h"
+#include "raytrace/scene/ray_batch.h"
 #include "scenes/camera.h"
 #include "shading/batch_shader.h"
 
@@ -42,8 +43,8 @@ struct RayCounts {
   bool operator==(const RayCounts&) const = default;
 };
 
-// What all tasks of a frame have in common.
-struct Setting {
+// Values that all tasks of a frame share.
+struct FrameContext {
   const shading::BatchShader& shader;
   const LightTable& lights;
   scenes::View view;
@@ -83,20 +84,20 @@ struct SampleBlock {
 };
 
 // Keeps its memory from task to task. Nothing in it depends on the task before.
-class Walk {
+class WavefrontIntegrator {
  public:
-  virtual ~Walk() = default;
-  Walk(const Walk&) = delete;
-  Walk& operator=(const Walk&) = delete;
+  virtual ~WavefrontIntegrator() = default;
+  WavefrontIntegrator(const WavefrontIntegrator&) = delete;
+  WavefrontIntegrator& operator=(const WavefrontIntegrator&) = delete;
 
-  // Asks the first questions of a task.
+  // Enqueues the primary rays of a task.
   void start(const Task& task);
 
-  // REQUIRES: all of wave() is answered, and not done.
-  void go_on();
+  // REQUIRES: all of batch() is intersected, and not done.
+  void advance();
 
-  bool done() const { return wave_.empty(); }
-  Wave& wave() { return wave_; }
+  bool done() const { return batch_.empty(); }
+  RayBatch& batch() { return batch_; }
 
   // Once done: element s * blocks + b is sample first_sample + s of block b; blocks go row by row.
   std::span<const SampleBlock> samples() const { return samples_; }
@@ -105,27 +106,28 @@ class Walk {
  protected:
   // Where samples lie in their pixels: at the same places in all of them, or anywhere.
   enum class Positions : std::uint8_t { regular, random };
-  explicit Walk(const Setting& setting, Positions positions = Positions::regular)
-      : setting_(setting), positions_(positions) {}
+  explicit WavefrontIntegrator(const FrameContext& context,
+                               Positions positions = Positions::regular)
+      : context_(context), positions_(positions) {}
 
   // Prepares for primary rays, which are in next_ already: group g is of samples_[g].
   virtual void begin() = 0;
-  // Looks at the answered wave_, adds to samples_ and asks in next_, which is empty.
-  virtual void look() = 0;
+  // Shades the intersected batch_, adds to samples_ and enqueues into next_, which is empty.
+  virtual void shade() = 0;
 
   // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
   Sampler sampler(std::uint32_t pixel);
   // The same for sixteen lanes, of which those in `lanes` are set.
   void draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples);
 
-  Setting setting_;
+  FrameContext context_;
   Task task_;
-  Wave wave_, next_;
+  RayBatch batch_, next_;
   std::vector<SampleBlock> samples_;
   RayCounts rays_;
 
  private:
-  void ask_primary_rays();
+  void enqueue_primary_rays();
   const PixelKeys& keys(std::uint32_t block);
 
   Positions positions_;

@@ -1,4 +1,4 @@
-#include "raytrace/scene/solid_triangles.h"
+#include "raytrace/scene/opaque_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ scenes::Texture with_holes(int width, int height, Wrap wrap, std::mt19937& rando
 TEST(SolidTriangles, AreCoveredEverywhere) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-  int solid = 0, others = 0;
+  int opaque = 0, others = 0;
   for (const Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp}) {
     for (const auto alpha : {scenes::Material::Alpha::blend, scenes::Material::Alpha::mask}) {
       scenes::Scene scene;
@@ -50,14 +50,14 @@ TEST(SolidTriangles, AreCoveredEverywhere) {
       material.alpha = alpha;
       material.alpha_cutoff = 0.9F;
       const shading::Shader shader = shading::make_shader(scene);
-      const auto bits = solid_triangles(mesh, scene.materials.back(), least_alphas(shader));
+      const auto bits = opaque_triangles(mesh, scene.materials.back(), least_alphas(shader));
       ASSERT_EQ(bits.size(), 5U);
       for (std::uint32_t i = 0; i < 300; ++i) {
         if ((bits[i / 64] >> (i % 64) & 1) == 0) {
           ++others;
           continue;
         }
-        ++solid;
+        ++opaque;
         for (int point = 0; point < 100; ++point) {
           float u = unit(random), v = unit(random);
           if (u + v > 1.0F) u = 1.0F - u, v = 1.0F - v;
@@ -69,7 +69,7 @@ TEST(SolidTriangles, AreCoveredEverywhere) {
       }
     }
   }
-  EXPECT_GT(solid, 300);
+  EXPECT_GT(opaque, 300);
   EXPECT_GT(others, 300);
 }
 
@@ -77,16 +77,16 @@ TEST(SolidTriangles, ThereAreNoneWhereAllIsSeenThrough) {
   const scenes::Mesh mesh = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   scenes::Material material;
   material.alpha = scenes::Material::Alpha::blend;
-  EXPECT_EQ(solid_triangles(mesh, material, {}), std::vector<std::uint64_t>{3});
+  EXPECT_EQ(opaque_triangles(mesh, material, {}), std::vector<std::uint64_t>{3});
   material.base_colour.w = 0.5F;
-  EXPECT_TRUE(solid_triangles(mesh, material, {}).empty());
+  EXPECT_TRUE(opaque_triangles(mesh, material, {}).empty());
   material.base_colour.w = 1.0F;
   material.transmission = 0.1F;
-  EXPECT_TRUE(solid_triangles(mesh, material, {}).empty());
+  EXPECT_TRUE(opaque_triangles(mesh, material, {}).empty());
   material.transmission = 0.0F;
   scenes::Mesh coloured = mesh;
   coloured.colours.assign(4, {1, 1, 1, 0.5F});
-  EXPECT_TRUE(solid_triangles(coloured, material, {}).empty());
+  EXPECT_TRUE(opaque_triangles(coloured, material, {}).empty());
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raytrace/distributed/cluster.h"
-#include "raytrace/distributed/travelling.h"
+#include "raytrace/distributed/ray_message.h"
 #include "shading/shader.h"
 
 namespace delray::raytrace {
@@ -13,8 +13,8 @@ struct Kernels {
 };
 
 // Brings all rays that wait up to date with the cluster. Of equally near hits the one with the
-// lowest placement and triangle counts, whichever cluster came first.
-void meet_cluster(const Cluster& cluster, const shading::Shader& shader, const Kernels& kernels,
-                  Waiting& waiting);
+// lowest instance and triangle counts, whichever cluster came first.
+void intersect_cluster(const Cluster& cluster, const shading::Shader& shader,
+                       const Kernels& kernels, RayQueue& waiting);
 
 }  // namespace delray::raytrace

@@ -1,49 +1,51 @@
-// What integrators that follow no random paths have in common: layers that can be seen through,
+// Base class of the integrators that follow no random paths: layers that can be seen through,
 // misses, and lights with their shadow rays.
 #pragma once
 
 #include <cstdint>
 
-#include "raytrace/integrators/walk.h"
+#include "raytrace/integrators/wavefront_integrator.h"
 #include "shading/batch.h"
 
 namespace delray::raytrace {
 
 // A ray that could change its sample by less than this is not sent.
-inline constexpr float kLeastWeight = 1.0F / 256.0F;
+inline constexpr float kLeastThroughput = 1.0F / 256.0F;
 
 // Rays of neighbouring pixels that were sent for one reason are alike, and share groups.
 enum class Bundle : std::uint8_t { straight, mirrored, refracted };
 inline constexpr int kBundles = 3;
 
-// What an integrator knows of the rays of a group besides.
+// State of the rays of a group beside their geometry.
 struct RayLanes {
-  bool whole = true;        // the primary rays of `block`: of the rest only `weight` is set
+  bool whole = true;        // the primary rays of `block`: of the rest only `throughput` is set
   std::uint32_t block = 0;  // of samples()
   Bundle bundle = Bundle::straight;
-  bool weighted = false;                          // whether weights are set; all are 1 if not
-  shading::Vectors16 weight;                      // what the sample makes of radiance along the ray
+  bool has_throughput = false;    // whether `throughput` is set; 1 if not
+  shading::Vectors16 throughput;  // of the path: what the sample makes of radiance along the ray
   alignas(64) std::uint32_t pixel[kPacketRays];   // 16 * block + lane in it
   alignas(64) std::int32_t depth[kPacketRays];    // how often it may be mirrored or refracted
   alignas(64) std::uint32_t branch[kPacketRays];  // of the sample's tree of rays; 0: its root
   alignas(64) std::uint32_t layers[kPacketRays];  // passed before
-  alignas(64) std::uint32_t placement[kPacketRays], triangle[kPacketRays];  // of the last layer
+  alignas(64) std::uint32_t instance[kPacketRays], triangle[kPacketRays];  // of the last layer
 
   std::uint32_t pixel_of(int i) const {
     return whole ? block * kPacketRays + static_cast<std::uint32_t>(i) : pixel[i];
   }
-  glm::vec3 weight_of(int i) const { return weighted ? weight.get(i) : glm::vec3(1.0F); }
+  glm::vec3 throughput_of(int i) const {
+    return has_throughput ? throughput.get(i) : glm::vec3(1.0F);
+  }
 };
 
 // A ray to be put into a group. `direction` may have any length, `view` is the unit vector back.
 struct NextRay {
   glm::vec3 origin{0.0F}, direction{0.0F}, view{0.0F};
   float near = 0.0F, width = 0.0F, spread = 0.0F;
-  glm::vec3 weight{1.0F};
+  glm::vec3 throughput{1.0F};
   std::uint32_t pixel = 0;
   std::int32_t depth = 0;
   std::uint32_t branch = 0;
-  std::uint32_t layers = 0, placement = kMiss, triangle = kMiss;
+  std::uint32_t layers = 0, instance = kMiss, triangle = kMiss;
 };
 
 // Parts of the lanes' specular lobes, from 0 to 1, that rays along the mirror direction stand for.
@@ -51,39 +53,41 @@ struct Mirrored {
   shading::Floats16 base{}, coat{};
 };
 
-class LitWalk : public Walk {
+class DirectLighting : public WavefrontIntegrator {
  public:
-  explicit LitWalk(const Setting& setting, Positions positions = Positions::regular)
-      : Walk(setting, positions) {}
+  explicit DirectLighting(const FrameContext& context, Positions positions = Positions::regular)
+      : WavefrontIntegrator(context, positions) {}
 
  protected:
   // Writes what the surfaces that a group's rays met show to their lanes of `shown`, and asks for
   // more. Returns those lanes. REQUIRES: group.hits != 0.
-  virtual shading::LaneMask shade(RayGroup& group, RayLanes& lanes, shading::Shaded& shown) = 0;
+  virtual shading::LaneMask shade_group(RayGroup& group, RayLanes& lanes,
+                                        shading::Shaded& shown) = 0;
 
   // Sets `surfaces` of a group's hits, and does what see() does.
-  shading::LaneMask look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces);
+  shading::LaneMask evaluate_hits(const RayGroup& group, RayLanes& lanes,
+                                  shading::Surfaces& surfaces);
 
-  // Given Surface::alpha of the hits: asks for rays behind layers, multiplies weights by alpha,
+  // Given Surface::alpha of the hits: asks for rays behind layers, multiplies throughputs by alpha,
   // notes depths. Returns the lanes that show anything.
   shading::LaneMask see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha);
 
   // Asks for shadow rays to every light that matters, groups of rays for each: to points drawn from
-  // what has a size, lights and surfaces that glow. What mirrored rays meet does not count twice.
-  void ask_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                  const shading::Surfaces& surfaces, const Mirrored& mirrored = {});
+  // what has a size, lights and emissive surfaces. What mirrored rays meet does not count twice.
+  void enqueue_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                      const shading::Surfaces& surfaces, const Mirrored& mirrored = {});
 
   // The same for directions of the lanes' own, unit vectors, of which `reflected` will be added
   // where nothing is within a distance. `coherent`: they are like those of neighbours.
-  void ask_shadows(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                   const shading::Surfaces& surfaces, const shading::Vectors16& directions,
-                   const shading::Floats16& distances, const shading::Vectors16& reflected,
-                   bool coherent);
+  void enqueue_shadows(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                       const shading::Surfaces& surfaces, const shading::Vectors16& directions,
+                       const shading::Floats16& distances, const shading::Vectors16& reflected,
+                       bool coherent);
 
-  void ask(const NextRay& ray, Bundle bundle);
+  void enqueue(const NextRay& ray, Bundle bundle);
 
   std::int32_t depth_of(const RayLanes& lanes, int i) const {
-    return lanes.whole ? setting_.options.depth : lanes.depth[i];
+    return lanes.whole ? context_.options.depth : lanes.depth[i];
   }
 
   // Of a ray that a lane's hit sends. Numbers wrap around, in very deep trees.
@@ -103,20 +107,22 @@ class LitWalk : public Walk {
   };
 
   void begin() final;
-  void look() final;
+  void shade() final;
   void add_lights();
   void add(const RayLanes& lanes, shading::LaneMask mask, const shading::Vectors16& radiance);
   shading::LaneMask show_environment(const RayGroup& group, const RayLanes& lanes);
-  shading::LaneMask look_through(const RayGroup& group, RayLanes& lanes, shading::LaneMask layered,
-                                 const shading::Floats16& alpha);
-  void ask_behind(const RayGroup& group, const RayLanes& lanes, int i, const glm::vec3& weight);
+  shading::LaneMask enqueue_behind_layers(const RayGroup& group, RayLanes& lanes,
+                                          shading::LaneMask layered,
+                                          const shading::Floats16& alpha);
+  void enqueue_behind(const RayGroup& group, const RayLanes& lanes, int i,
+                      const glm::vec3& throughput);
   // A light as it acts from its place or, of an area light, from its centre.
-  void ask_light(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                 std::size_t light, const shading::Surfaces& surfaces);
+  void enqueue_light(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                     std::size_t light, const shading::Surfaces& surfaces);
 
   // Lights with a size (sampled_lights.cpp).
-  void ask_sized_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                        const shading::Surfaces& surfaces, const Mirrored& mirrored);
+  void enqueue_sized_lights(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                            const shading::Surfaces& surfaces, const Mirrored& mirrored);
   // Of the surfaces' lobes those that samples of lights find, and the others. Returns the lanes
   // that have others.
   static shading::LaneMask split_lobes(const shading::Surfaces& surfaces, shading::LaneMask mask,
@@ -126,14 +132,14 @@ class LitWalk : public Walk {
   // Numbers for one of them; what glows counts as the light after the last.
   void draw_points(const RayLanes& lanes, shading::LaneMask mask, std::size_t light, int point,
                    std::span<Pairs16> pairs);
-  void ask_points(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                  const shading::Surfaces& surfaces, LightSamples& points);
-  void ask_area_light(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
-                      std::size_t light);
-  void ask_glow(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask);
+  void enqueue_points(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                      const shading::Surfaces& surfaces, LightSamples& points);
+  void enqueue_area_light(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask,
+                          std::size_t light);
+  void enqueue_emission(const RayGroup& group, const RayLanes& lanes, shading::LaneMask mask);
 
-  Groups<RayLanes> asked_, answered_;  // of next_.rays and wave_.rays
-  Groups<Light> asked_lights_, answered_lights_;
+  Groups<RayLanes> enqueued_, intersected_;  // of next_.rays and batch_.rays
+  Groups<Light> enqueued_lights_, intersected_lights_;
   shading::Vectors16 directions_, sum_;
   shading::Shaded shown_;
   shading::Arriving arriving_;

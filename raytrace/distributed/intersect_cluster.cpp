@@ -1,4 +1,6 @@
-#include "raytrace/distributed/meet_cluster.h"
+// Intersects rays with one cluster in packets of sixteen, and keeps the nearest hits and the layers
+// that shadow rays pass.
+#include "raytrace/distributed/intersect_cluster.h"
 
 #include <algorithm>
 #include <tuple>
@@ -9,7 +11,7 @@
 namespace delray::raytrace {
 namespace {
 
-void set_lane(RayGroup& group, int i, const TravellingRay& ray) {
+void set_lane(RayGroup& group, int i, const RayMessage& ray) {
   RayPacket& p = group.packet;
   group.active.ray[i] = -1;
   p.origin_x[i] = ray.origin.x, p.origin_y[i] = ray.origin.y, p.origin_z[i] = ray.origin.z;
@@ -41,7 +43,7 @@ shading::Point point_of(const shading::Points& p, int i) {
 }
 
 // Sixteen rays at most that are traced by the same kernel.
-void meet(const Cluster& cluster, std::span<TravellingRay* const> rays, bool coherent) {
+void intersect(const Cluster& cluster, std::span<RayMessage* const> rays, bool coherent) {
   RayGroup group;
   group.coherent = coherent;
   for (int i = 0; i < kPacketRays; ++i) group.active.ray[i] = 0;
@@ -50,17 +52,17 @@ void meet(const Cluster& cluster, std::span<TravellingRay* const> rays, bool coh
   bool any = false;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const int i = static_cast<int>(k);
-    TravellingRay& ray = *rays[k];
+    RayMessage& ray = *rays[k];
     bool nearer = group.packet.triangle[i] != kMiss;
     if (nearer) {
       const Hit hit = hit_of(group.packet, i);
-      const std::uint32_t placement = cluster.placement(hit.placement);
-      const std::uint32_t triangle = cluster.triangle(hit.placement, hit.triangle);
-      nearer = std::tie(hit.distance, placement, triangle) <
-               std::tie(ray.far, ray.placement, ray.triangle);
+      const std::uint32_t instance = cluster.instance(hit.instance);
+      const std::uint32_t triangle = cluster.triangle(hit.instance, hit.triangle);
+      nearer = std::tie(hit.distance, instance, triangle) <
+               std::tie(ray.far, ray.instance, ray.triangle);
       if (nearer) {
         ray.far = hit.distance;
-        ray.placement = placement;
+        ray.instance = instance;
         ray.triangle = triangle;
         ray.u = hit.u;
         ray.v = hit.v;
@@ -70,23 +72,23 @@ void meet(const Cluster& cluster, std::span<TravellingRay* const> rays, bool coh
     any = any || nearer;
   }
   if (!any) return;
-  find_points(cluster.placements(), group);
+  find_points(cluster.instances(), group);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const int i = static_cast<int>(k);
     if (group.active.ray[i] == 0) continue;
     rays[k]->point = point_of(group.points, i);
-    rays[k]->asker.coloured = group.points.coloured ? 1 : 0;
-    const Placement& placement = cluster.placements()[hit_of(group.packet, i).placement];
-    rays[k]->asker.second_uvs = placement.texture_sets > 1 ? 1 : 0;
+    rays[k]->return_address.coloured = group.points.coloured ? 1 : 0;
+    const GeometryInstance& instance = cluster.instances()[hit_of(group.packet, i).instance];
+    rays[k]->return_address.second_uvs = instance.texture_sets > 1 ? 1 : 0;
     rays[k]->offset = group.offset[i];
     rays[k]->material = group.material[i];
   }
 }
 
-void add_layer(const Layer& layer, TravellingShadow& shadow) {
+void add_layer(const Layer& layer, ShadowMessage& shadow) {
   for (int i = 0; i < shadow.layers; ++i) {
     const Layer& known = shadow.layer[i];
-    if (known.placement == layer.placement && known.triangle == layer.triangle) return;
+    if (known.instance == layer.instance && known.triangle == layer.triangle) return;
   }
   if (shadow.layers == SeeThrough::kMost) {
     shadow.occluded = true;
@@ -95,14 +97,14 @@ void add_layer(const Layer& layer, TravellingShadow& shadow) {
   shadow.layer[shadow.layers++] = layer;
 }
 
-void meet(const Cluster& cluster, const shading::Shader& shader, const Kernels& kernels,
-          std::span<TravellingShadow* const> shadows, bool coherent) {
+void intersect(const Cluster& cluster, const shading::Shader& shader, const Kernels& kernels,
+               std::span<ShadowMessage* const> shadows, bool coherent) {
   ShadowPacket packet{};
   ActiveRays active;
   SeeThrough passed[kPacketRays];
   for (int i = 0; i < kPacketRays; ++i) active.ray[i] = 0;
   for (std::size_t k = 0; k < shadows.size(); ++k) {
-    const TravellingShadow& shadow = *shadows[k];
+    const ShadowMessage& shadow = *shadows[k];
     const int i = static_cast<int>(k);
     active.ray[i] = -1;
     packet.origin_x[i] = shadow.origin.x, packet.origin_y[i] = shadow.origin.y;
@@ -115,14 +117,14 @@ void meet(const Cluster& cluster, const shading::Shader& shader, const Kernels& 
   }
   cluster.embree().occluded(active, packet, passed, coherent && !kernels.has_instances);
   for (std::size_t k = 0; k < shadows.size(); ++k) {
-    TravellingShadow& shadow = *shadows[k];
+    ShadowMessage& shadow = *shadows[k];
     shadow.occluded = packet.far[k] < 0.0F;
     for (int j = 0; j < passed[k].count && !shadow.occluded; ++j) {
       const Hit& hit = passed[k].hits[j];
-      Layer layer = layer_of(cluster.placements(), shader, hit, shadow.direction,
-                             shadow.asker.through_glass != 0);
-      layer.placement = cluster.placement(hit.placement);
-      layer.triangle = cluster.triangle(hit.placement, hit.triangle);
+      Layer layer = layer_of(cluster.instances(), shader, hit, shadow.direction,
+                             shadow.return_address.through_glass != 0);
+      layer.instance = cluster.instance(hit.instance);
+      layer.triangle = cluster.triangle(hit.instance, hit.triangle);
       add_layer(layer, shadow);
     }
   }
@@ -130,23 +132,24 @@ void meet(const Cluster& cluster, const shading::Shader& shader, const Kernels& 
 
 }  // namespace
 
-void meet_cluster(const Cluster& cluster, const shading::Shader& shader, const Kernels& kernels,
-                  Waiting& waiting) {
+void intersect_cluster(const Cluster& cluster, const shading::Shader& shader,
+                       const Kernels& kernels, RayQueue& waiting) {
   // Packets of sixteen, which whoever traces them fills as it likes.
-  const auto in_packets = [](auto& all, auto&& meet_packet) {
+  const auto in_packets = [](auto& all, auto&& intersect_packet) {
     std::vector<std::remove_reference_t<decltype(all.front())>*> some;
     for (const bool coherent : {false, true}) {
       some.clear();
       for (auto& ray : all)
-        if ((ray.asker.coherent != 0) == coherent) some.push_back(&ray);
+        if ((ray.return_address.coherent != 0) == coherent) some.push_back(&ray);
       for (std::size_t i = 0; i < some.size(); i += kPacketRays)
-        meet_packet(std::span(some).subspan(i, std::min<std::size_t>(kPacketRays, some.size() - i)),
-                    coherent);
+        intersect_packet(
+            std::span(some).subspan(i, std::min<std::size_t>(kPacketRays, some.size() - i)),
+            coherent);
     }
   };
-  in_packets(waiting.rays, [&](auto rays, bool coherent) { meet(cluster, rays, coherent); });
+  in_packets(waiting.rays, [&](auto rays, bool coherent) { intersect(cluster, rays, coherent); });
   in_packets(waiting.shadows, [&](auto shadows, bool coherent) {
-    meet(cluster, shader, kernels, shadows, coherent);
+    intersect(cluster, shader, kernels, shadows, coherent);
   });
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "raytrace/scene/wave.h"
+#include "raytrace/scene/ray_batch.h"
 
 namespace delray::raytrace {
 
@@ -28,7 +28,7 @@ void clear_lanes(Group& group) {
   if constexpr (std::is_same_v<Group, RayGroup>) group.misses = false;
 }
 
-// What is the same in all rays that start at surfaces; no lane is active.
+// Sets the fields that are equal in all rays that start at surfaces; no lane is active.
 inline void clear_rays(RayGroup& group) {
   RayPacket& packet = group.packet;
   clear_lanes(group);

@@ -1,4 +1,4 @@
-#include "raytrace/integrators/walk.h"
+#include "raytrace/integrators/wavefront_integrator.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "raytrace/integrator.h"
-#include "raytrace/integrators/answer.h"
+#include "raytrace/integrators/intersect.h"
 #include "raytrace/scene/hit_points.h"
 #include "raytrace/scene/intersection.h"
 #include "tests/raytrace/small_scenes.h"
@@ -62,28 +62,29 @@ Samples walk_over(const Tracer& tracer, const char* name, int width, int height,
   const shading::BatchShader shader = shading::make_batch_shader(tracer.shader);
   TraceOptions options;
   options.depth = 4;
-  Setting setting{shader, tracer.lights, scenes::make_view(camera(), width, height), options,
-                  samples};
-  if (!all_filled) setting.filled = scenes::pixels_of(setting.view, tracer.embree.bounds());
+  FrameContext context{shader, tracer.lights, scenes::make_view(camera(), width, height), options,
+                       samples};
+  if (!all_filled) context.filled = scenes::pixels_of(context.view, tracer.embree.bounds());
   const auto pixels = static_cast<std::size_t>(width * height);
   Samples result;
   result.colours.resize(pixels * static_cast<std::size_t>(samples));
   result.depths.resize(result.colours.size());
-  const std::unique_ptr<Walk> walk = integrator(name).make(setting);
+  const std::unique_ptr<WavefrontIntegrator> wavefront = integrator(name).make(context);
   for (int y = 0; y < height; y += side) {
     for (int x = 0; x < width; x += side) {
       for (int s = 0; s < samples; s += samples_at_a_time) {
         const Task task{{x, y, std::min(x + side, width), std::min(y + side, height)},
                         s,
                         std::min(samples_at_a_time, samples - s)};
-        for (walk->start(task); !walk->done(); walk->go_on()) {
-          for (const RayGroup& group : walk->wave().rays) result.misses += group.misses ? 1 : 0;
-          answer(tracer, shader, walk->wave());
+        for (wavefront->start(task); !wavefront->done(); wavefront->advance()) {
+          for (const RayGroup& group : wavefront->batch().rays)
+            result.misses += group.misses ? 1 : 0;
+          intersect(tracer, shader, wavefront->batch());
         }
-        result.rays += walk->rays();
-        for (std::size_t b = 0; b < walk->samples().size(); ++b) {
+        result.rays += wavefront->rays();
+        for (std::size_t b = 0; b < wavefront->samples().size(); ++b) {
           const auto blocks = static_cast<std::size_t>(task.blocks());
-          const SampleBlock& block = walk->samples()[b];
+          const SampleBlock& block = wavefront->samples()[b];
           const int at = static_cast<int>(b % blocks);
           for (int i = 0; i < kPacketRays; ++i) {
             const int column = x + at % task.columns() * kBlockSide + i % kBlockSide;
@@ -101,7 +102,7 @@ Samples walk_over(const Tracer& tracer, const char* name, int width, int height,
   return result;
 }
 
-TEST(Walk, PixelsThatNothingFillsAreNotSentAndStayTheSame) {
+TEST(WavefrontIntegrator, PixelsThatNothingFillsAreNotSentAndStayTheSame) {
   scenes::Scene scene;
   add(scene, sphere(12));
   scene.environment.zenith = {0.2F, 0.3F, 0.6F};
@@ -120,7 +121,7 @@ TEST(Walk, PixelsThatNothingFillsAreNotSentAndStayTheSame) {
   }
 }
 
-TEST(Walk, CutsIntoTasksChangeNoPixel) {
+TEST(WavefrontIntegrator, CutsIntoTasksChangeNoPixel) {
   const scenes::Scene scene = mixture();
   const Tracer tracer = make_tracer(scene);
   for (const Integrator& one : integrators()) {
@@ -198,7 +199,7 @@ TEST(HitPoints, AgreeWithIntersectionToTheLastBit) {
   int hits = 0, second_hits = 0;
   for (int turn = 0; turn < 200; ++turn) {
     RayGroup group = random_group(random);
-    if (turn % 2 == 0) {  // neighbours, which hit the same placement
+    if (turn % 2 == 0) {  // neighbours, which hit the same instance
       for (int i = 1; i < kPacketRays; ++i) {
         const auto next = [&](float* v) { v[i] = v[0] + 0.01F * static_cast<float>(i % 4); };
         next(group.packet.origin_x), next(group.packet.origin_y), next(group.packet.origin_z);
@@ -209,33 +210,33 @@ TEST(HitPoints, AgreeWithIntersectionToTheLastBit) {
       }
     }
     tracer.embree.intersect(group.active, group.packet, false);
-    find_points(tracer.placements, group);
+    find_points(tracer.instances, group);
     for (int i = 0; i < kPacketRays; ++i) {
       const bool hit = group.active.ray[i] != 0 && group.packet.triangle[i] != kMiss;
       ASSERT_EQ(group.hits >> i & 1, hit ? 1U : 0U);
       if (!hit) continue;
       ++hits;
-      const Placement& placement = tracer.placements[hit_of(group.packet, i).placement];
+      const GeometryInstance& instance = tracer.instances[hit_of(group.packet, i).instance];
       const Intersection at =
-          intersection(placement, hit_of(group.packet, i), -group.view.get(i),
+          intersection(instance, hit_of(group.packet, i), -group.view.get(i),
                        {group.width[i] + group.packet.far[i] * group.spread[i]});
       const shading::Points& p = group.points;
       ASSERT_EQ(p.position.get(i), at.point.position);
       ASSERT_EQ(p.geometric_normal.get(i), at.point.geometric_normal);
       ASSERT_EQ(p.normal.get(i), at.point.normal);
       ASSERT_EQ(group.offset[i], at.offset);
-      ASSERT_EQ(group.material[i], placement.material);
+      ASSERT_EQ(group.material[i], instance.material);
       if (p.coloured) {
         ASSERT_EQ(glm::vec4(p.colour.get(i), p.colour_alpha[i]), at.point.colour);
       } else {
         ASSERT_EQ(at.point.colour, glm::vec4(1.0F));
       }
-      if (placement.texture_sets == 0) continue;
+      if (instance.texture_sets == 0) continue;
       const shading::TexturePoint first = p.uvs[0].get(i), second = p.uvs[1].get(i);
       ASSERT_EQ(first.uv, at.point.uv);
       ASSERT_EQ(first.footprint.dx, at.point.footprint.dx);
       ASSERT_EQ(first.footprint.dy, at.point.footprint.dy);
-      if (placement.texture_sets > 1) {
+      if (instance.texture_sets > 1) {
         ASSERT_EQ(second.uv, at.point.second.uv);
         ASSERT_EQ(second.footprint.dx, at.point.second.footprint.dx);
         ASSERT_EQ(second.footprint.dy, at.point.second.footprint.dy);

@@ -1,7 +1,7 @@
-// What an integrator asks and is told: rays in groups of sixteen, a wave of groups at a time.
+// Rays and their hits in groups of sixteen, a batch of groups at a time.
 //
-// Who answers needs the geometry, but no materials, textures or lights; who asks needs those, but
-// no geometry. Between question and answer a wave may wait as long as it takes.
+// Whoever intersects a batch needs the geometry, but no materials, textures or lights; the
+// integrator needs those, but no geometry. A batch may wait for its hits as long as it takes.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace delray::raytrace {
 // Sixteen rays, each to its nearest hit. Lane i is ray i everywhere; lanes that are not active hold
 // anything.
 struct RayGroup {
-  // The question.
+  // Input.
   ActiveRays active;
   RayPacket packet;          // near, far and a miss as the hit
   bool coherent = false;     // rays of neighbouring pixels, which stay together
@@ -27,25 +27,25 @@ struct RayGroup {
   shading::Floats16 width;   // of the cone that stands for its pixel, where the ray starts
   shading::Floats16 spread;  // what the cone gains per unit of the packet's distances
 
-  // The answer: the packet's hits, and for those lanes what shading looks at.
+  // Result: the packet's hits, and for those lanes the values that shading needs.
   shading::LaneMask hits = 0;
   alignas(64) std::uint32_t material[kPacketRays];
   shading::Points points;
   shading::Floats16 offset;  // Intersection::offset
 };
 
-// Sixteen rays that ask how much light comes along them.
+// Sixteen shadow rays: how much light comes along them.
 struct ShadowGroup {
-  // The question.
+  // Input.
   ActiveRays active;
   ShadowPacket packet;
   bool coherent = false;
   shading::LaneMask through_glass = 0;  // lanes whose light passes glass, unbent
 
-  // The answer. Nothing arrives in lanes outside `lit`; in lanes of `dimmed`, a part of those,
-  // `left` says what surfaces that can be seen through leave of it, channel by channel.
-  shading::LaneMask lit = 0, dimmed = 0;
-  shading::Vectors16 left;
+  // Result. Nothing arrives in lanes outside `lit`; in lanes of `attenuated`, a part of those,
+  // `transmittance` says what surfaces that can be seen through leave of it, channel by channel.
+  shading::LaneMask lit = 0, attenuated = 0;
+  shading::Vectors16 transmittance;
 };
 
 // A list that keeps its elements, as they are, when it is cleared.
@@ -71,7 +71,7 @@ class Groups {
   std::size_t size_ = 0;
 };
 
-struct Wave {
+struct RayBatch {
   Groups<RayGroup> rays;
   Groups<ShadowGroup> shadows;
   bool empty() const { return rays.empty() && shadows.empty(); }

@@ -1,4 +1,9 @@
-#include "raytrace/distributed/ray_traffic.h"
+// Traces a frame over a distributed scene: advances integrators, intersects rays with the clusters
+// at hand, and routes all others as the distribution decides. A ray visits the clusters on its way
+// in the order of entry and returns to its own rank with the nearest hit. In the ring it visits
+// rank after rank instead; a cluster that moved while the ray was under way sends the ray round
+// once more. The end is detected by counting messages (comm/termination.h).
+#include "raytrace/distributed/distributed_tracer.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,30 +13,31 @@
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
 #include "raytrace/distributed/distributions.h"
-#include "raytrace/distributed/ray_messages.h"
+#include "raytrace/distributed/pack_messages.h"
 #include "raytrace/scene/flush_to_zero.h"
 
 namespace delray::raytrace {
 namespace {
 
 // Beside those of schedules, which are used meanwhile.
-constexpr comm::Tag kTagTraffic = 200, kTagControl = 201;
+constexpr comm::Tag kTagRays = 200, kTagControl = 201;
 
 constexpr std::uint32_t kOnward = kMiss - 1;  // Progression::next: to the next rank of the ring
 
-// Walks in the making on a rank: enough that some are ready while the others' questions travel.
-constexpr std::size_t kMostStrands = 96;
+// IntegratorPool in the making on a rank: enough that some are ready while the others' questions
+// travel.
+constexpr std::size_t kMostPixelTasks = 96;
 
 // A rank looks whether messages have come at least so often while it waits.
 constexpr auto kMoment = std::chrono::microseconds(100);
 
-bool is_decided(const TravellingRay&) { return false; }
-bool is_decided(const TravellingShadow& shadow) { return shadow.occluded; }
+bool is_decided(const RayMessage&) { return false; }
+bool is_decided(const ShadowMessage& shadow) { return shadow.occluded; }
 
 }  // namespace
 
-RayTraffic::RayTraffic(comm::Communicator& communicator, SharedScene& scene,
-                       const Distribution& distribution, const TiledFrame& frame)
+DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedScene& scene,
+                                     const Distribution& distribution, const TiledFrame& frame)
     : communicator_(communicator),
       scene_(scene),
       distribution_(distribution),
@@ -39,11 +45,11 @@ RayTraffic::RayTraffic(comm::Communicator& communicator, SharedScene& scene,
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
-      ring_(distribution.meet == nullptr),
-      to_meet_(static_cast<std::size_t>(communicator.size())),
+      ring_(distribution.decide == nullptr),
+      to_intersect_(static_cast<std::size_t>(communicator.size())),
       to_answer_(static_cast<std::size_t>(communicator.size())) {}
 
-void RayTraffic::add(std::uint32_t number) {
+void DistributedTracer::add(std::uint32_t number) {
   TilePixels pixels = start_tile(frame_, number);
   const std::vector<Task> tasks = tasks_of(frame_, pixels.rect);
   if (tasks.empty()) {
@@ -54,41 +60,41 @@ void RayTraffic::add(std::uint32_t number) {
   tile.pixels = std::move(pixels);
   for (const Task& task : tasks) {
     if (free_.empty()) {
-      free_.push_back(static_cast<std::uint32_t>(strands_.size()));
-      strands_.emplace_back();
+      free_.push_back(static_cast<std::uint32_t>(pixel_tasks_.size()));
+      pixel_tasks_.emplace_back();
     }
     const std::uint32_t index = free_.back();
     free_.pop_back();
-    Strand& strand = strands_[index];
-    strand.walk = frame_.walks.take();
-    strand.tile = &tile;
-    strand.task = task;
-    strand.started = false;
-    ++tile.strands;
+    PixelTask& pixel_task = pixel_tasks_[index];
+    pixel_task.integrator = frame_.integrators.take();
+    pixel_task.tile = &tile;
+    pixel_task.task = task;
+    pixel_task.started = false;
+    ++tile.pixel_tasks;
     ++in_flight_;
     ready_.push_back(index);
   }
-  while (in_flight_ > kMostStrands) {
+  while (in_flight_ > kMostPixelTasks) {
     if (!serve()) wait_a_moment();
   }
 }
 
-bool RayTraffic::serve() {
+bool DistributedTracer::serve() {
   receive_all();
-  bool any = work_at_walks();
-  any = work_at_clusters() || any;
+  bool any = advance_pixel_tasks();
+  any = intersect_clusters() || any;
   const std::uint64_t before = termination_sent_;
-  look_at_waiting(!any);
-  if (ring_) even_out();
+  decide_waiting(!any);
+  if (ring_) balance_load();
   send_all(!any);
   return any || termination_sent_ != before;
 }
 
-void RayTraffic::wait_a_moment() {
-  communicator_.probe(comm::kAnyRank, kTagTraffic, comm::Deadline::in(kMoment));
+void DistributedTracer::wait_a_moment() {
+  communicator_.probe(comm::kAnyRank, kTagRays, comm::Deadline::in(kMoment));
 }
 
-void RayTraffic::finish() {
+void DistributedTracer::finish() {
   while (!termination_.is_over()) {
     if (serve()) continue;
     termination_.idle();
@@ -103,40 +109,39 @@ void RayTraffic::finish() {
   comm::barrier(communicator_);
 }
 
-void RayTraffic::send(int to, comm::Buffer&& message) {
-  communicator_.send(to, kTagTraffic, std::move(message));
+void DistributedTracer::send(int to, comm::Buffer&& message) {
+  communicator_.send(to, kTagRays, std::move(message));
   termination_.count_sent();
   ++termination_sent_;
 }
 
-void RayTraffic::receive_all() {
-  while (const auto envelope =
-             communicator_.probe(comm::kAnyRank, kTagTraffic, comm::Deadline::now()))
+void DistributedTracer::receive_all() {
+  while (const auto envelope = communicator_.probe(comm::kAnyRank, kTagRays, comm::Deadline::now()))
     receive(*envelope);
 }
 
-void RayTraffic::receive(const comm::Envelope& envelope) {
-  const comm::Buffer message = communicator_.receive(envelope.source, kTagTraffic);
+void DistributedTracer::receive(const comm::Envelope& envelope) {
+  const comm::Buffer message = communicator_.receive(envelope.source, kTagRays);
   termination_.count_received();
   const MessageHeader header = header_of(message);
   const std::span<const std::byte> content(message.data() + sizeof(MessageHeader),
                                            message.size() - sizeof(MessageHeader));
   switch (header.kind) {
-    case MessageKind::meet: {
-      std::vector<Crossing> crossings;
+    case MessageKind::intersect: {
+      std::vector<ClusterHit> cluster_hits;
       const auto take_in = [&](auto&& ray) {
-        if (ring_) choose_next(ray, crossings);
+        if (ring_) choose_next(ray, cluster_hits);
         route(std::move(ray));
       };
-      Travellers travellers = unpack_travellers(message, header);
-      for (TravellingRay& ray : travellers.rays) take_in(std::move(ray));
-      for (TravellingShadow& shadow : travellers.shadows) take_in(std::move(shadow));
+      RayQueue queue = unpack_rays(message, header);
+      for (RayMessage& ray : queue.rays) take_in(std::move(ray));
+      for (ShadowMessage& shadow : queue.shadows) take_in(std::move(shadow));
       break;
     }
     case MessageKind::answer: {
-      const Travellers travellers = unpack_travellers(message, header);
-      for (const TravellingRay& ray : travellers.rays) deliver(ray);
-      for (const TravellingShadow& shadow : travellers.shadows) deliver(shadow);
+      const RayQueue queue = unpack_rays(message, header);
+      for (const RayMessage& ray : queue.rays) deliver(ray);
+      for (const ShadowMessage& shadow : queue.shadows) deliver(shadow);
       break;
     }
     case MessageKind::fetch: {
@@ -164,78 +169,78 @@ void RayTraffic::receive(const comm::Envelope& envelope) {
   }
 }
 
-bool RayTraffic::work_at_walks() {
+bool DistributedTracer::advance_pixel_tasks() {
   if (ready_.empty()) return false;
   const std::vector<std::uint32_t> ready = std::exchange(ready_, {});
   struct Asked {
-    std::vector<TravellingRay> rays;
-    std::vector<TravellingShadow> shadows;
+    std::vector<RayMessage> rays;
+    std::vector<ShadowMessage> shadows;
     double busy = 0;
   };
   std::vector<Asked> asked(ready.size());
   parallel::parallel_for(0, ready.size(), 1, [&](std::size_t i) {
     const FlushToZero flush;
     const double start = thread_seconds();
-    Strand& strand = strands_[ready[i]];
-    if (strand.started)
-      strand.walk->go_on();
+    PixelTask& pixel_task = pixel_tasks_[ready[i]];
+    if (pixel_task.started)
+      pixel_task.integrator->advance();
     else
-      strand.walk->start(strand.task);
-    strand.started = true;
-    if (!strand.walk->done()) ask(ready[i], asked[i].rays, asked[i].shadows);
+      pixel_task.integrator->start(pixel_task.task);
+    pixel_task.started = true;
+    if (!pixel_task.integrator->done()) make_messages(ready[i], asked[i].rays, asked[i].shadows);
     asked[i].busy = thread_seconds() - start;
   });
   for (std::size_t i = 0; i < ready.size(); ++i) {
-    Strand& strand = strands_[ready[i]];
+    PixelTask& pixel_task = pixel_tasks_[ready[i]];
     busy_ += asked[i].busy;
-    strand.tile->pixels.busy += asked[i].busy;
-    if (strand.walk->done()) {
+    pixel_task.tile->pixels.busy += asked[i].busy;
+    if (pixel_task.integrator->done()) {
       end_sample(ready[i]);
       continue;
     }
-    strand.open = asked[i].rays.size() + asked[i].shadows.size();
-    for (TravellingRay& ray : asked[i].rays) route(std::move(ray));
-    for (TravellingShadow& shadow : asked[i].shadows) route(std::move(shadow));
+    pixel_task.open = asked[i].rays.size() + asked[i].shadows.size();
+    for (RayMessage& ray : asked[i].rays) route(std::move(ray));
+    for (ShadowMessage& shadow : asked[i].shadows) route(std::move(shadow));
   }
   return true;
 }
 
-void RayTraffic::end_sample(std::uint32_t index) {
-  Strand& strand = strands_[index];
-  add_samples(frame_, *strand.walk, strand.task, strand.tile->pixels);
-  strand.started = false;
-  if (++strand.task.first_sample < last_sample_) {
+void DistributedTracer::end_sample(std::uint32_t index) {
+  PixelTask& pixel_task = pixel_tasks_[index];
+  add_samples(frame_, *pixel_task.integrator, pixel_task.task, pixel_task.tile->pixels);
+  pixel_task.started = false;
+  if (++pixel_task.task.first_sample < last_sample_) {
     ready_.push_back(index);
     return;
   }
-  frame_.walks.give(std::move(strand.walk));
+  frame_.integrators.give(std::move(pixel_task.integrator));
   free_.push_back(index);
   --in_flight_;
-  Tile* const tile = std::exchange(strand.tile, nullptr);
-  if (--tile->strands > 0) return;
+  Tile* const tile = std::exchange(pixel_task.tile, nullptr);
+  if (--tile->pixel_tasks > 0) return;
   done_.push_back(std::move(tile->pixels));
   std::erase_if(open_tiles_, [tile](const auto& open) { return open.get() == tile; });
 }
 
-void RayTraffic::ask(std::uint32_t index, std::vector<TravellingRay>& rays,
-                     std::vector<TravellingShadow>& shadows) {
-  Wave& wave = strands_[index].walk->wave();
-  std::vector<Crossing> crossings;
-  Asker asker;
-  asker.rank = communicator_.rank();
-  asker.strand = index;
-  for (std::uint32_t g = 0; g < wave.rays.size(); ++g) {
-    RayGroup& group = wave.rays[g];
+void DistributedTracer::make_messages(std::uint32_t index, std::vector<RayMessage>& rays,
+                                      std::vector<ShadowMessage>& shadows) {
+  RayBatch& batch = pixel_tasks_[index].integrator->batch();
+  std::vector<ClusterHit> cluster_hits;
+  ReturnAddress return_address;
+  return_address.rank = communicator_.rank();
+  return_address.pixel_task = index;
+  for (std::uint32_t g = 0; g < batch.rays.size(); ++g) {
+    RayGroup& group = batch.rays[g];
     group.hits = 0;
     group.points.coloured = false;
     const RayPacket& p = group.packet;
     for (int i = 0; i < kPacketRays; ++i) {
       if (group.active.ray[i] == 0) continue;
-      TravellingRay& ray = rays.emplace_back();
-      ray.asker = asker;
-      ray.asker.group = g;
-      ray.asker.lane = static_cast<std::uint8_t>(i);
-      ray.asker.coherent = group.coherent ? 1 : 0;
+      RayMessage& ray = rays.emplace_back();
+      ray.return_address = return_address;
+      ray.return_address.group = g;
+      ray.return_address.lane = static_cast<std::uint8_t>(i);
+      ray.return_address.coherent = group.coherent ? 1 : 0;
       ray.origin = {p.origin_x[i], p.origin_y[i], p.origin_z[i]};
       ray.near = p.near[i];
       ray.direction = {p.direction_x[i], p.direction_y[i], p.direction_z[i]};
@@ -244,48 +249,48 @@ void RayTraffic::ask(std::uint32_t index, std::vector<TravellingRay>& rays,
       ray.width = group.width[i];
       ray.spread = group.spread[i];
       ray.way.stamp = taken_over_.size();
-      choose_next(ray, crossings);
+      choose_next(ray, cluster_hits);
     }
   }
-  for (std::uint32_t g = 0; g < wave.shadows.size(); ++g) {
-    ShadowGroup& group = wave.shadows[g];
-    group.lit = group.dimmed = 0;
+  for (std::uint32_t g = 0; g < batch.shadows.size(); ++g) {
+    ShadowGroup& group = batch.shadows[g];
+    group.lit = group.attenuated = 0;
     const ShadowPacket& p = group.packet;
     for (int i = 0; i < kPacketRays; ++i) {
       if (group.active.ray[i] == 0) continue;
-      TravellingShadow& shadow = shadows.emplace_back();
-      shadow.asker = asker;
-      shadow.asker.group = g;
-      shadow.asker.lane = static_cast<std::uint8_t>(i);
-      shadow.asker.coherent = group.coherent ? 1 : 0;
-      shadow.asker.through_glass = (group.through_glass >> i & 1) != 0 ? 1 : 0;
+      ShadowMessage& shadow = shadows.emplace_back();
+      shadow.return_address = return_address;
+      shadow.return_address.group = g;
+      shadow.return_address.lane = static_cast<std::uint8_t>(i);
+      shadow.return_address.coherent = group.coherent ? 1 : 0;
+      shadow.return_address.through_glass = (group.through_glass >> i & 1) != 0 ? 1 : 0;
       shadow.origin = {p.origin_x[i], p.origin_y[i], p.origin_z[i]};
       shadow.near = p.near[i];
       shadow.direction = {p.direction_x[i], p.direction_y[i], p.direction_z[i]};
       shadow.far = p.far[i];
       shadow.way.stamp = taken_over_.size();
-      choose_next(shadow, crossings);
+      choose_next(shadow, cluster_hits);
     }
   }
 }
 
 template <class T>
-void RayTraffic::choose_next(T& ray, std::vector<Crossing>& crossings) const {
+void DistributedTracer::choose_next(T& ray, std::vector<ClusterHit>& cluster_hits) const {
   ray.way.next = kMiss;
   if (is_decided(ray)) return;
-  scene_.tree().find(ray.origin, ray.direction, ray.near, ray.far, crossings);
+  scene_.tree().find(ray.origin, ray.direction, ray.near, ray.far, cluster_hits);
   const bool is_back = ring_ && ray.way.hops == static_cast<std::uint32_t>(communicator_.size());
   // What came to this rank while the ray was under way may have been nowhere when it was there.
-  const auto times_it_came = [&](const Crossing& crossing) {
+  const auto times_it_came = [&](const ClusterHit& cluster_hit) {
     return std::count(taken_over_.begin() + static_cast<std::ptrdiff_t>(ray.way.stamp),
-                      taken_over_.end(), crossing.cluster);
+                      taken_over_.end(), cluster_hit.cluster);
   };
-  for (const Crossing& crossing : crossings) {
-    if (!(ray.way.last < crossing)) continue;
-    if (ring_ && !scene_.owns(crossing.cluster)) continue;
-    if (is_back && times_it_came(crossing) == 0) continue;
-    ray.way.last = crossing;
-    ray.way.next = crossing.cluster;
+  for (const ClusterHit& cluster_hit : cluster_hits) {
+    if (!(ray.way.last < cluster_hit)) continue;
+    if (ring_ && !scene_.owns(cluster_hit.cluster)) continue;
+    if (is_back && times_it_came(cluster_hit) == 0) continue;
+    ray.way.last = cluster_hit;
+    ray.way.next = cluster_hit.cluster;
     return;
   }
   if (!ring_) return;
@@ -295,19 +300,19 @@ void RayTraffic::choose_next(T& ray, std::vector<Crossing>& crossings) const {
   }
   // What has gone on since is behind the ray, which goes round once more then.
   const bool missed =
-      std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
-        return times_it_came(crossing) > (scene_.owns(crossing.cluster) ? 1 : 0);
+      std::any_of(cluster_hits.begin(), cluster_hits.end(), [&](const ClusterHit& cluster_hit) {
+        return times_it_came(cluster_hit) > (scene_.owns(cluster_hit.cluster) ? 1 : 0);
       });
   if (!missed) return;
   ray.way.hops = 0;
   ray.way.stamp = taken_over_.size();
   ray.way.last = {-1.0F, 0};
-  choose_next(ray, crossings);
+  choose_next(ray, cluster_hits);
 }
 
 template <class T>
-void RayTraffic::route(T&& ray) {
-  constexpr bool kIsShadow = std::is_same_v<std::decay_t<T>, TravellingShadow>;
+void DistributedTracer::route(T&& ray) {
+  constexpr bool kIsShadow = std::is_same_v<std::decay_t<T>, ShadowMessage>;
   const auto append = [&](auto& to) {
     if constexpr (kIsShadow)
       to.shadows.push_back(std::forward<T>(ray));
@@ -319,35 +324,35 @@ void RayTraffic::route(T&& ray) {
     ray.way.last = {-1.0F, 0};
     const int next = (communicator_.rank() + 1) % communicator_.size();
     if (next != communicator_.rank()) {
-      append(to_meet_[static_cast<std::size_t>(next)]);
+      append(to_intersect_[static_cast<std::size_t>(next)]);
       return;
     }
     ray.way.next = kMiss;  // alone there is nobody to go round
   }
   if (ray.way.next != kMiss) {
     append(waiting_[ray.way.next]);
-  } else if (ray.asker.rank == communicator_.rank()) {
+  } else if (ray.return_address.rank == communicator_.rank()) {
     deliver(ray);
   } else {
-    append(to_answer_[static_cast<std::size_t>(ray.asker.rank)]);
+    append(to_answer_[static_cast<std::size_t>(ray.return_address.rank)]);
   }
 }
 
-void RayTraffic::deliver(const TravellingRay& ray) {
-  Strand& strand = strands_[ray.asker.strand];
-  RayGroup& group = strand.walk->wave().rays[ray.asker.group];
-  const int i = ray.asker.lane;
-  if (ray.placement != kMiss) {
+void DistributedTracer::deliver(const RayMessage& ray) {
+  PixelTask& pixel_task = pixel_tasks_[ray.return_address.pixel_task];
+  RayGroup& group = pixel_task.integrator->batch().rays[ray.return_address.group];
+  const int i = ray.return_address.lane;
+  if (ray.instance != kMiss) {
     group.packet.far[i] = ray.far;
     group.packet.u[i] = ray.u;
     group.packet.v[i] = ray.v;
     group.packet.triangle[i] = ray.triangle;
-    group.packet.geometry[i] = ray.placement;
+    group.packet.geometry[i] = ray.instance;
     group.packet.instance[i] = kMiss;
     group.hits |= 1U << i;
     group.material[i] = ray.material;
     group.offset[i] = ray.offset;
-    if (ray.asker.coloured != 0 && !group.points.coloured) {
+    if (ray.return_address.coloured != 0 && !group.points.coloured) {
       group.points.coloured = true;
       for (int k = 0; k < kPacketRays; ++k) {
         group.points.colour.set(k, glm::vec3(1.0F));
@@ -356,37 +361,38 @@ void RayTraffic::deliver(const TravellingRay& ray) {
     }
     shading::set_point(group.points, i, ray.point);
   }
-  if (--strand.open == 0) ready_.push_back(ray.asker.strand);
+  if (--pixel_task.open == 0) ready_.push_back(ray.return_address.pixel_task);
 }
 
-void RayTraffic::deliver(const TravellingShadow& shadow) {
-  Strand& strand = strands_[shadow.asker.strand];
-  ShadowGroup& group = strand.walk->wave().shadows[shadow.asker.group];
-  const int i = shadow.asker.lane;
+void DistributedTracer::deliver(const ShadowMessage& shadow) {
+  PixelTask& pixel_task = pixel_tasks_[shadow.return_address.pixel_task];
+  ShadowGroup& group = pixel_task.integrator->batch().shadows[shadow.return_address.group];
+  const int i = shadow.return_address.lane;
   if (!shadow.occluded) {
     group.lit |= 1U << i;
     if (shadow.layers > 0) {
       Layer layers[SeeThrough::kMost];
       std::copy_n(shadow.layer, shadow.layers, layers);
-      group.dimmed |= 1U << i;
-      group.left.set(i, left_by({layers, shadow.layers}));
+      group.attenuated |= 1U << i;
+      group.transmittance.set(i, transmittance_of({layers, shadow.layers}));
     }
   }
-  if (--strand.open == 0) ready_.push_back(shadow.asker.strand);
+  if (--pixel_task.open == 0) ready_.push_back(shadow.return_address.pixel_task);
 }
 
-bool RayTraffic::work_at_clusters() {
-  struct Met {
+bool DistributedTracer::intersect_clusters() {
+  struct ClusterBatch {
     std::shared_ptr<const Cluster> cluster;
-    Waiting waiting;
+    RayQueue waiting;
     double busy = 0;
   };
-  std::vector<Met> met;
-  // What has just come stays until its rays have met it, however little room there is.
+  std::vector<ClusterBatch> batches;
+  // A cluster that has just come stays until its rays have been intersected, however little room
+  // there is.
   for (auto& [number, cluster] : arrived_) {
     const auto at = waiting_.find(number);
     if (at == waiting_.end()) continue;
-    met.push_back({std::move(cluster), std::move(at->second)});
+    batches.push_back({std::move(cluster), std::move(at->second)});
     waiting_.erase(at);
   }
   arrived_.clear();
@@ -396,36 +402,36 @@ bool RayTraffic::work_at_clusters() {
       ++at;
       continue;
     }
-    met.push_back({std::move(cluster), std::move(at->second)});
+    batches.push_back({std::move(cluster), std::move(at->second)});
     at = waiting_.erase(at);
   }
-  if (met.empty()) return false;
-  parallel::parallel_for(0, met.size(), 1, [&](std::size_t i) {
+  if (batches.empty()) return false;
+  parallel::parallel_for(0, batches.size(), 1, [&](std::size_t i) {
     const FlushToZero flush;
     const double start = thread_seconds();
-    meet_cluster(*met[i].cluster, scene_.shader(), kernels_, met[i].waiting);
-    std::vector<Crossing> crossings;
-    for (TravellingRay& ray : met[i].waiting.rays) choose_next(ray, crossings);
-    for (TravellingShadow& shadow : met[i].waiting.shadows) choose_next(shadow, crossings);
-    met[i].busy = thread_seconds() - start;
+    intersect_cluster(*batches[i].cluster, scene_.shader(), kernels_, batches[i].waiting);
+    std::vector<ClusterHit> cluster_hits;
+    for (RayMessage& ray : batches[i].waiting.rays) choose_next(ray, cluster_hits);
+    for (ShadowMessage& shadow : batches[i].waiting.shadows) choose_next(shadow, cluster_hits);
+    batches[i].busy = thread_seconds() - start;
   });
   std::uint64_t tests = 0;
-  for (Met& each : met) {
+  for (ClusterBatch& each : batches) {
     busy_ += each.busy;
     tests += each.waiting.size();
-    for (TravellingRay& ray : each.waiting.rays) route(std::move(ray));
-    for (TravellingShadow& shadow : each.waiting.shadows) route(std::move(shadow));
+    for (RayMessage& ray : each.waiting.rays) route(std::move(ray));
+    for (ShadowMessage& shadow : each.waiting.shadows) route(std::move(shadow));
   }
   counts_.tests += tests;
   communicator_.work(comm::Work::rays, tests);
   return true;
 }
 
-void RayTraffic::look_at_waiting(bool hungry) {
+void DistributedTracer::decide_waiting(bool idle) {
   if (ring_) return;
   for (auto at = waiting_.begin(); at != waiting_.end();) {
     const std::uint32_t number = at->first;
-    Waiting& waiting = at->second;
+    RayQueue& waiting = at->second;
     // What is at hand by now waits for the next turn.
     if (fetching_.contains(number) || scene_.find(number) != nullptr) {
       ++at;
@@ -434,16 +440,16 @@ void RayTraffic::look_at_waiting(bool hungry) {
     WaitingList list;
     list.cluster = number;
     list.rays = waiting.size();
-    list.ray_bytes = waiting.rays.size() * sizeof(TravellingRay) +
-                     waiting.shadows.size() * offsetof(TravellingShadow, layer);
+    list.ray_bytes = waiting.rays.size() * sizeof(RayMessage) +
+                     waiting.shadows.size() * offsetof(ShadowMessage, layer);
     list.cluster_bytes = scene_.packed_bytes(number);
-    list.hungry = hungry;
+    list.idle = idle;
     const auto owner = static_cast<std::size_t>(scene_.owner(number));
-    switch (distribution_.meet(list)) {
-      case Meeting::wait:
+    switch (distribution_.decide(list)) {
+      case RoutingDecision::wait:
         ++at;
         break;
-      case Meeting::fetch_cluster: {
+      case RoutingDecision::fetch_cluster: {
         MessageHeader header;
         header.kind = MessageKind::fetch;
         header.cluster = number;
@@ -452,8 +458,8 @@ void RayTraffic::look_at_waiting(bool hungry) {
         ++at;
         break;
       }
-      case Meeting::send_rays: {
-        Outgoing& to = to_meet_[owner];
+      case RoutingDecision::send_rays: {
+        RayQueue& to = to_intersect_[owner];
         to.rays.insert(to.rays.end(), waiting.rays.begin(), waiting.rays.end());
         to.shadows.insert(to.shadows.end(), waiting.shadows.begin(), waiting.shadows.end());
         at = waiting_.erase(at);
@@ -463,23 +469,23 @@ void RayTraffic::look_at_waiting(bool hungry) {
   }
 }
 
-void RayTraffic::send_all(bool hungry) {
+void DistributedTracer::send_all(bool idle) {
   for (int rank = 0; rank < communicator_.size(); ++rank) {
-    const auto send_batch = [&](MessageKind kind, Outgoing& out) {
+    const auto send_batch = [&](MessageKind kind, RayQueue& out) {
       const std::size_t count = out.rays.size() + out.shadows.size();
-      if (count == 0 || (!hungry && count < kBatchRays)) return false;
-      (kind == MessageKind::meet ? counts_.rays_sent : counts_.answers_sent) += count;
+      if (count == 0 || (!idle && count < kBatchRays)) return false;
+      (kind == MessageKind::intersect ? counts_.rays_sent : counts_.answers_sent) += count;
       send(rank, pack(kind, out.rays, out.shadows));
       out.rays.clear();
       out.shadows.clear();
       return true;
     };
-    send_batch(MessageKind::meet, to_meet_[static_cast<std::size_t>(rank)]);
+    send_batch(MessageKind::intersect, to_intersect_[static_cast<std::size_t>(rank)]);
     send_batch(MessageKind::answer, to_answer_[static_cast<std::size_t>(rank)]);
   }
 }
 
-void RayTraffic::even_out() {
+void DistributedTracer::balance_load() {
   const int ranks = communicator_.size();
   if (ranks == 1) return;
   const std::uint64_t load = counts_.tests;

@@ -37,8 +37,8 @@ std::vector<LeastAlpha> least_alphas(const shading::Shader& shader);
 // ray may meet it. A triangle that spans a large part of a texture, or whose vertices have colours,
 // counts as 0 without a look. Empty if no bit is 1, as with materials that transmit light.
 // O(triangles).
-std::vector<std::uint64_t> solid_triangles(const scenes::Mesh& mesh,
-                                           const scenes::Material& material,
-                                           std::span<const LeastAlpha> alphas);
+std::vector<std::uint64_t> opaque_triangles(const scenes::Mesh& mesh,
+                                            const scenes::Material& material,
+                                            std::span<const LeastAlpha> alphas);
 
 }  // namespace delray::raytrace

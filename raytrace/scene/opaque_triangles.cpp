@@ -4,7 +4,7 @@
 //
 // Degenerate: boxes that span too many texels take the least of the whole texture; coordinates far
 // from 0 or not finite count as too many.
-#include "raytrace/scene/solid_triangles.h"
+#include "raytrace/scene/opaque_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -58,7 +58,7 @@ std::span<const int> find_tiles(float low, float high, int size, Wrap wrap, Tile
   return {tiles.data(), count};
 }
 
-bool is_solid(const scenes::Material& material, int least) {
+bool is_opaque(const scenes::Material& material, int least) {
   const float alpha = material.base_colour.w * (static_cast<float>(least) / 255.0F);
   // What interpolation rounds off.
   constexpr float kMargin = 1.0F - 1e-5F;
@@ -115,18 +115,18 @@ std::vector<LeastAlpha> least_alphas(const shading::Shader& shader) {
   return result;
 }
 
-std::vector<std::uint64_t> solid_triangles(const scenes::Mesh& mesh,
-                                           const scenes::Material& material,
-                                           std::span<const LeastAlpha> alphas) {
+std::vector<std::uint64_t> opaque_triangles(const scenes::Mesh& mesh,
+                                            const scenes::Material& material,
+                                            std::span<const LeastAlpha> alphas) {
   const std::uint32_t texture = material.base_colour_texture;
   if (material.alpha == Alpha::opaque || material.transmission > 0.0F || !mesh.colours.empty() ||
-      !is_solid(material, 255)) {
+      !is_opaque(material, 255)) {
     return {};
   }
   const std::vector<glm::vec2>& uvs =
       mesh.uvs_of(texture == scenes::kNone ? 0 : alphas[texture].set());
   if (texture != scenes::kNone && uvs.empty()) return {};
-  std::vector<std::uint64_t> solid((mesh.triangles.size() + 63) / 64, 0);
+  std::vector<std::uint64_t> opaque((mesh.triangles.size() + 63) / 64, 0);
   std::uint64_t any = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     int least = 255;
@@ -135,12 +135,12 @@ std::vector<std::uint64_t> solid_triangles(const scenes::Mesh& mesh,
       const glm::vec2 &a = uvs[t.x], &b = uvs[t.y], &c = uvs[t.z];
       least = alphas[texture].over(glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c));
     }
-    const std::uint64_t bit = is_solid(material, least) ? 1 : 0;
-    solid[i / 64] |= bit << (i % 64);
+    const std::uint64_t bit = is_opaque(material, least) ? 1 : 0;
+    opaque[i / 64] |= bit << (i % 64);
     any |= bit;
   }
-  if (any == 0) solid.clear();
-  return solid;
+  if (any == 0) opaque.clear();
+  return opaque;
 }
 
 }  // namespace delray::raytrace

@@ -1,4 +1,5 @@
-#include "raytrace/integrators/walk.h"
+// Primary rays and random numbers of a task, whatever the integrator.
+#include "raytrace/integrators/wavefront_integrator.h"
 
 #include <bit>
 #include <cassert>
@@ -35,16 +36,16 @@ enum : std::uint32_t { kPosition, kLens, kFirstFree };
 
 }  // namespace
 
-void Walk::ask_primary_rays() {
-  const bool lens = setting_.view.lens_radius > 0.0F;
+void WavefrontIntegrator::enqueue_primary_rays() {
+  const bool lens = context_.view.lens_radius > 0.0F;
   const bool jittered =
-      (positions_ == Positions::random || setting_.scattered) && setting_.samples > 1;
+      (positions_ == Positions::random || context_.scattered) && context_.samples > 1;
   keys_.resize(static_cast<std::size_t>(task_.blocks()));
   has_keys_.assign(keys_.size(), false);
   PrimaryPlaces places;
   std::size_t block = 0;
   for (int s = task_.first_sample; s < task_.first_sample + task_.samples; ++s) {
-    places.set(sample_position(s, setting_.samples));
+    places.set(sample_position(s, context_.samples));
     block = 0;
     for (int y = task_.pixels.y0; y < task_.pixels.y1; y += kBlockSide) {
       for (int x = task_.pixels.x0; x < task_.pixels.x1; x += kBlockSide, ++block) {
@@ -58,33 +59,34 @@ void Walk::ask_primary_rays() {
         }
         const shading::LaneMask mask = inside(task_.pixels, x, y);
         RayGroup& group = next_.rays.add();
-        set_primary_rays(setting_.view, x, y, places, mask, group);
+        set_primary_rays(context_.view, x, y, places, mask, group);
         group.misses =
-            geometry::intersection(setting_.filled, {x, y, x + kBlockSide, y + kBlockSide}).empty();
+            geometry::intersection(context_.filled, {x, y, x + kBlockSide, y + kBlockSide}).empty();
         rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
       }
     }
   }
 }
 
-const PixelKeys& Walk::keys(std::uint32_t block) {
+const PixelKeys& WavefrontIntegrator::keys(std::uint32_t block) {
   if (!has_keys_[block]) {
     has_keys_[block] = true;
     const int columns = task_.columns(), number = static_cast<int>(block);
-    pixel_keys(setting_.options.seed, task_.pixels.x0 + number % columns * kBlockSide,
+    pixel_keys(context_.options.seed, task_.pixels.x0 + number % columns * kBlockSide,
                task_.pixels.y0 + number / columns * kBlockSide, keys_[block]);
   }
   return keys_[block];
 }
 
-Sampler Walk::sampler(std::uint32_t pixel) {
+Sampler WavefrontIntegrator::sampler(std::uint32_t pixel) {
   const auto pixels = static_cast<std::uint32_t>(keys_.size()) * kPacketRays;
   const std::uint32_t first = pixel % pixels;
   return {keys(first / kPacketRays).key(static_cast<int>(first % kPacketRays)),
           static_cast<std::uint32_t>(task_.first_sample) + pixel / pixels, kFirstFree};
 }
 
-void Walk::draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples) {
+void WavefrontIntegrator::draw(const std::uint32_t* pixels, shading::LaneMask lanes,
+                               SampleLanes& samples) {
   const auto count = static_cast<std::uint32_t>(keys_.size()) * kPacketRays;
   for (shading::LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
@@ -97,23 +99,23 @@ void Walk::draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLane
   }
 }
 
-void Walk::start(const Task& task) {
+void WavefrontIntegrator::start(const Task& task) {
   assert(task.pixels.x0 % kBlockSide == 0 && task.pixels.y0 % kBlockSide == 0);
   task_ = task;
   rays_ = {};
-  wave_.clear();
+  batch_.clear();
   next_.clear();
   samples_.resize(static_cast<std::size_t>(task.blocks()) * static_cast<std::size_t>(task.samples));
   for (SampleBlock& block : samples_) clear(block);
-  ask_primary_rays();
+  enqueue_primary_rays();
   begin();
-  std::swap(wave_, next_);
+  std::swap(batch_, next_);
 }
 
-void Walk::go_on() {
+void WavefrontIntegrator::advance() {
   next_.clear();
-  look();
-  std::swap(wave_, next_);
+  shade();
+  std::swap(batch_, next_);
 }
 
 }  // namespace delray::raytrace

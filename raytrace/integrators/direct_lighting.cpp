@@ -1,4 +1,7 @@
-#include "raytrace/integrators/lit_walk.h"
+// The loop of integrators without random paths: adds the light that arrived, then shades the hits
+// bundle by bundle in one order, whatever groups rays were put in, so that sums have the same bits.
+// A ray that meets a layer shades it by its alpha and continues behind it.
+#include "raytrace/integrators/direct_lighting.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,7 +9,7 @@
 #include <utility>
 
 #include "image/image.h"
-#include "raytrace/integrators/ask.h"
+#include "raytrace/integrators/enqueue.h"
 #include "raytrace/integrators/lane_sums.h"
 #include "raytrace/scene/same_material.h"
 
@@ -25,53 +28,53 @@ void multiply(const shading::Vectors16& by, shading::Vectors16& v) {
 
 }  // namespace
 
-void LitWalk::begin() {
-  asked_.clear();
-  asked_lights_.clear();
+void DirectLighting::begin() {
+  enqueued_.clear();
+  enqueued_lights_.clear();
   std::fill_n(open_, kBundles, Open{});
   for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
-    RayLanes& lanes = asked_.add();
+    RayLanes& lanes = enqueued_.add();
     lanes.whole = true;
     lanes.block = block;
     lanes.bundle = Bundle::straight;
-    lanes.weighted = false;
+    lanes.has_throughput = false;
   }
 }
 
-void LitWalk::look() {
-  std::swap(asked_, answered_);
-  std::swap(asked_lights_, answered_lights_);
-  asked_.clear();
-  asked_lights_.clear();
+void DirectLighting::shade() {
+  std::swap(enqueued_, intersected_);
+  std::swap(enqueued_lights_, intersected_lights_);
+  enqueued_.clear();
+  enqueued_lights_.clear();
   std::fill_n(open_, kBundles, Open{});
   add_lights();
   // Bundle by bundle, so that the rays of a sample have one order however groups were filled.
   for (int bundle = 0; bundle < kBundles; ++bundle) {
-    for (std::size_t g = 0; g < wave_.rays.size(); ++g) {
-      if (answered_[g].bundle != static_cast<Bundle>(bundle)) continue;
-      RayGroup& group = wave_.rays[g];
+    for (std::size_t g = 0; g < batch_.rays.size(); ++g) {
+      if (intersected_[g].bundle != static_cast<Bundle>(bundle)) continue;
+      RayGroup& group = batch_.rays[g];
       source_ = g;
       // Once for each ray, as two rays of one sample may or may not share a group.
-      LaneMask shown = show_environment(group, answered_[g]);
-      if (group.hits != 0) shown |= shade(group, answered_[g], shown_);
-      if (shown != 0) add(answered_[g], shown, shown_.colour);
+      LaneMask shown = show_environment(group, intersected_[g]);
+      if (group.hits != 0) shown |= shade_group(group, intersected_[g], shown_);
+      if (shown != 0) add(intersected_[g], shown, shown_.colour);
     }
   }
 }
 
 // A ray's lights are summed before they are added to its sample, so that it makes no difference
 // which rays share a group.
-void LitWalk::add_lights() {
-  for (std::size_t g = 0; g < wave_.shadows.size();) {
-    const Light& first = answered_lights_[g];
+void DirectLighting::add_lights() {
+  for (std::size_t g = 0; g < batch_.shadows.size();) {
+    const Light& first = intersected_lights_[g];
     sum_ = {};
     LaneMask lit = 0;
-    for (; g < wave_.shadows.size() && answered_lights_[g].source == first.source; ++g) {
-      const ShadowGroup& group = wave_.shadows[g];
-      shading::Vectors16& reflected = answered_lights_[g].reflected;
-      for (LaneMask rest = group.dimmed; rest != 0; rest &= rest - 1) {
+    for (; g < batch_.shadows.size() && intersected_lights_[g].source == first.source; ++g) {
+      const ShadowGroup& group = batch_.shadows[g];
+      shading::Vectors16& reflected = intersected_lights_[g].reflected;
+      for (LaneMask rest = group.attenuated; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
-        reflected.set(i, reflected.get(i) * group.left.get(i));
+        reflected.set(i, reflected.get(i) * group.transmittance.get(i));
       }
       add_lanes(reflected, group.lit, sum_);
       lit |= group.lit;
@@ -89,45 +92,47 @@ void LitWalk::add_lights() {
   }
 }
 
-LaneMask LitWalk::show_environment(const RayGroup& group, const RayLanes& lanes) {
+LaneMask DirectLighting::show_environment(const RayGroup& group, const RayLanes& lanes) {
   LaneMask missed = active_lanes(group.active) & ~group.hits;
   if (missed == 0) return 0;
-  if (setting_.options.background == TraceOptions::Background::transparent) {
+  if (context_.options.background == TraceOptions::Background::transparent) {
     // Primary rays make the picture transparent.
     for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      if (depth_of(lanes, i) != setting_.options.depth) continue;
+      if (depth_of(lanes, i) != context_.options.depth) continue;
       const std::uint32_t pixel = lanes.pixel_of(i);
       samples_[pixel / kPacketRays].alpha[static_cast<int>(pixel % kPacketRays)] =
-          1.0F - lanes.weight_of(i).x;
+          1.0F - lanes.throughput_of(i).x;
       missed &= ~(1U << i);
     }
   }
-  if (missed == 0 || setting_.shader.shader->environment.black) return 0;
+  if (missed == 0 || context_.shader.shader->environment.black) return 0;
   negate_lanes(group.view, directions_);
-  shading::environment_radiance(setting_.shader, directions_, 0.0F, missed, shown_.colour);
+  shading::environment_radiance(context_.shader, directions_, 0.0F, missed, shown_.colour);
   return missed;
 }
 
-LaneMask LitWalk::look_at(const RayGroup& group, RayLanes& lanes, shading::Surfaces& surfaces) {
+LaneMask DirectLighting::evaluate_hits(const RayGroup& group, RayLanes& lanes,
+                                       shading::Surfaces& surfaces) {
   for (LaneMask rest = group.hits; rest != 0;) {
     const LaneMask same = same_material(group, rest);
-    shading::evaluate(setting_.shader, group.material[std::countr_zero(rest)], group.points,
+    shading::evaluate(context_.shader, group.material[std::countr_zero(rest)], group.points,
                       group.view, same, surfaces);
     rest &= ~same;
   }
   return see(group, lanes, surfaces.alpha);
 }
 
-LaneMask LitWalk::see(const RayGroup& group, RayLanes& lanes, const shading::Floats16& alpha) {
+LaneMask DirectLighting::see(const RayGroup& group, RayLanes& lanes,
+                             const shading::Floats16& alpha) {
   LaneMask layered = 0;
   for (LaneMask rest = group.hits; rest != 0;) {
     const LaneMask same = same_material(group, rest);
-    const auto& material = setting_.shader.material(group.material[std::countr_zero(rest)]);
+    const auto& material = context_.shader.material(group.material[std::countr_zero(rest)]);
     if (material.material.alpha != scenes::Material::Alpha::opaque) layered |= same;
     rest &= ~same;
   }
-  const LaneMask hidden = layered != 0 ? look_through(group, lanes, layered, alpha) : 0;
+  const LaneMask hidden = layered != 0 ? enqueue_behind_layers(group, lanes, layered, alpha) : 0;
   const LaneMask seen = group.hits & ~hidden;
   if (lanes.whole) {  // the first that these pixels see
     choose_lanes(group.packet.far, image::kEmptyDepth, seen, samples_[lanes.block].depth);
@@ -142,31 +147,31 @@ LaneMask LitWalk::see(const RayGroup& group, RayLanes& lanes, const shading::Flo
   return seen;
 }
 
-LaneMask LitWalk::look_through(const RayGroup& group, RayLanes& lanes, LaneMask layered,
-                               const shading::Floats16& alpha) {
-  if (!lanes.weighted) {
-    for (int i = 0; i < kPacketRays; ++i) lanes.weight.set(i, glm::vec3(1.0F));
-    lanes.weighted = true;
+LaneMask DirectLighting::enqueue_behind_layers(const RayGroup& group, RayLanes& lanes,
+                                               LaneMask layered, const shading::Floats16& alpha) {
+  if (!lanes.has_throughput) {
+    for (int i = 0; i < kPacketRays; ++i) lanes.throughput.set(i, glm::vec3(1.0F));
+    lanes.has_throughput = true;
   }
   LaneMask hidden = 0;
   for (LaneMask rest = layered; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const Hit hit = hit_of(group.packet, i);
     const bool again =
-        !lanes.whole && hit.placement == lanes.placement[i] && hit.triangle == lanes.triangle[i];
+        !lanes.whole && hit.instance == lanes.instance[i] && hit.triangle == lanes.triangle[i];
     const float covered = again ? 0.0F : alpha[i];
-    const glm::vec3 weight = lanes.weight.get(i);
-    ask_behind(group, lanes, i, weight * (1.0F - covered));
-    lanes.weight.set(i, weight * covered);
+    const glm::vec3 throughput = lanes.throughput.get(i);
+    enqueue_behind(group, lanes, i, throughput * (1.0F - covered));
+    lanes.throughput.set(i, throughput * covered);
     if (!(covered > 0.0F)) hidden |= 1U << i;
   }
   return hidden;
 }
 
-void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
-                         const glm::vec3& weight) {
+void DirectLighting::enqueue_behind(const RayGroup& group, const RayLanes& lanes, int i,
+                                    const glm::vec3& throughput) {
   const std::uint32_t layers = lanes.whole ? 1 : lanes.layers[i] + 1;
-  if (brightest(weight) < kLeastWeight || layers >= kMostLayers) return;
+  if (brightest(throughput) < kLeastThroughput || layers >= kMostLayers) return;
   const RayPacket& packet = group.packet;
   const Hit hit = hit_of(packet, i);
   NextRay ray;
@@ -176,18 +181,18 @@ void LitWalk::ask_behind(const RayGroup& group, const RayLanes& lanes, int i,
   ray.near = next_up(hit.distance);
   ray.width = group.width[i];
   ray.spread = group.spread[i];
-  ray.weight = weight;
+  ray.throughput = throughput;
   ray.pixel = lanes.pixel_of(i);
   ray.depth = depth_of(lanes, i);
   ray.branch = branch_of(lanes, i, Bundle::straight);
   ray.layers = layers;
-  ray.placement = hit.placement;
+  ray.instance = hit.instance;
   ray.triangle = hit.triangle;
-  ask(ray, Bundle::straight);
+  enqueue(ray, Bundle::straight);
 }
 
-void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16& radiance) {
-  if (lanes.whole && !lanes.weighted) {
+void DirectLighting::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16& radiance) {
+  if (lanes.whole && !lanes.has_throughput) {
     SampleBlock& block = samples_[lanes.block];
     add_lanes(radiance, mask, block.colour);
     return;
@@ -197,43 +202,44 @@ void LitWalk::add(const RayLanes& lanes, LaneMask mask, const shading::Vectors16
     const std::uint32_t pixel = lanes.pixel_of(i);
     SampleBlock& block = samples_[pixel / kPacketRays];
     const int lane = static_cast<int>(pixel % kPacketRays);
-    block.colour.set(lane, block.colour.get(lane) + radiance.get(i) * lanes.weight_of(i));
+    block.colour.set(lane, block.colour.get(lane) + radiance.get(i) * lanes.throughput_of(i));
   }
 }
 
-void LitWalk::ask_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                         const shading::Surfaces& surfaces, const Mirrored& mirrored) {
-  for (std::size_t l = 0; l < setting_.shader.lights.size(); ++l) {
-    if (setting_.shader.lights[l].kind == scenes::Light::Kind::area) continue;
-    ask_light(group, lanes, mask, l, surfaces);
+void DirectLighting::enqueue_lights(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                                    const shading::Surfaces& surfaces, const Mirrored& mirrored) {
+  for (std::size_t l = 0; l < context_.shader.lights.size(); ++l) {
+    if (context_.shader.lights[l].kind == scenes::Light::Kind::area) continue;
+    enqueue_light(group, lanes, mask, l, surfaces);
   }
-  ask_sized_lights(group, lanes, mask, surfaces, mirrored);
+  enqueue_sized_lights(group, lanes, mask, surfaces, mirrored);
 }
 
-void LitWalk::ask_light(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                        std::size_t light, const shading::Surfaces& surfaces) {
+void DirectLighting::enqueue_light(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                                   std::size_t light, const shading::Surfaces& surfaces) {
   if (mask == 0) return;
   shading::Arriving& arriving = arriving_;
   const LaneMask reached =
-      shading::reflect_light(setting_.shader, light, surfaces, group.view, mask, arriving);
+      shading::reflect_light(context_.shader, light, surfaces, group.view, mask, arriving);
   if (reached == 0) return;
   for (int i = 0; i < kPacketRays; ++i) arriving.distance[i] *= kShadowReach;
-  ask_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
-              arriving.reflected, true);
+  enqueue_shadows(group, lanes, reached, surfaces, arriving.direction, arriving.distance,
+                  arriving.reflected, true);
 }
 
-void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
-                          const shading::Surfaces& surfaces, const shading::Vectors16& directions,
-                          const shading::Floats16& distances, const shading::Vectors16& reflected,
-                          bool coherent) {
+void DirectLighting::enqueue_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask mask,
+                                     const shading::Surfaces& surfaces,
+                                     const shading::Vectors16& directions,
+                                     const shading::Floats16& distances,
+                                     const shading::Vectors16& reflected, bool coherent) {
   rays_.shadow += static_cast<std::uint64_t>(std::popcount(mask));
-  Light& light = asked_lights_.add();
+  Light& light = enqueued_lights_.add();
   light.source = source_;
   light.whole = lanes.whole;
   light.block = lanes.block;
   if (!lanes.whole) std::copy_n(lanes.pixel, kPacketRays, light.pixel);
   light.reflected = reflected;
-  if (lanes.weighted) multiply(lanes.weight, light.reflected);
+  if (lanes.has_throughput) multiply(lanes.throughput, light.reflected);
   ShadowGroup& shadows = next_.shadows.add();
   shadows.coherent = coherent;
   shadows.through_glass = shading::kAllLanes;
@@ -255,32 +261,32 @@ void LitWalk::ask_shadows(const RayGroup& group, const RayLanes& lanes, LaneMask
   }
 }
 
-void LitWalk::ask(const NextRay& ray, Bundle bundle) {
+void DirectLighting::enqueue(const NextRay& ray, Bundle bundle) {
   Open& open = open_[static_cast<int>(bundle)];
   if (open.used == kPacketRays) {
     open = {next_.rays.size(), 0};
     RayGroup& fresh = next_.rays.add();
     clear_lanes(fresh);
     fresh.coherent = true;  // neighbours' rays are mirrored and refracted alike
-    RayLanes& lanes = asked_.add();
+    RayLanes& lanes = enqueued_.add();
     lanes.whole = false;
     lanes.bundle = bundle;
-    lanes.weighted = true;
+    lanes.has_throughput = true;
   }
   const int i = open.used++;
   RayGroup& group = next_.rays[open.group];
   set_ray(group, i, ray.origin, ray.direction, ray.view, ray.near);
   group.width[i] = ray.width;
   group.spread[i] = ray.spread;
-  RayLanes& lanes = asked_[open.group];
-  lanes.weight.set(i, ray.weight);
+  RayLanes& lanes = enqueued_[open.group];
+  lanes.throughput.set(i, ray.throughput);
   lanes.pixel[i] = ray.pixel;
   lanes.depth[i] = ray.depth;
   lanes.branch[i] = ray.branch;
   lanes.layers[i] = ray.layers;
-  lanes.placement[i] = ray.placement;
+  lanes.instance[i] = ray.instance;
   lanes.triangle[i] = ray.triangle;
-  ++(ray.depth == setting_.options.depth ? rays_.primary : rays_.secondary);
+  ++(ray.depth == context_.options.depth ? rays_.primary : rays_.secondary);
 }
 
 }  // namespace delray::raytrace

@@ -1,6 +1,6 @@
 // Packs rays as far as they have something to say: without a point while they have met nothing, and
 // with as many layers as there are. A message that is too short, too long or of no kind is refused.
-#include "raytrace/distributed/ray_messages.h"
+#include "raytrace/distributed/pack_messages.h"
 
 #include <cstddef>
 #include <cstring>
@@ -25,31 +25,31 @@ class Writer {
 };
 
 // The point is last in a ray, and what few points need is last in a point.
-constexpr std::size_t kPlainRay = offsetof(TravellingRay, point) + offsetof(shading::Point, second);
+constexpr std::size_t kPlainRay = offsetof(RayMessage, point) + offsetof(shading::Point, second);
 
-std::size_t size_of(const TravellingRay& ray) {
-  if (ray.placement == kMiss) return offsetof(TravellingRay, point);
-  return ray.asker.second_uvs != 0 ? sizeof(TravellingRay) : kPlainRay;
+std::size_t size_of(const RayMessage& ray) {
+  if (ray.instance == kMiss) return offsetof(RayMessage, point);
+  return ray.return_address.second_uvs != 0 ? sizeof(RayMessage) : kPlainRay;
 }
-std::size_t size_of(const TravellingShadow& shadow) {
-  return offsetof(TravellingShadow, layer) + shadow.layers * sizeof(Layer);
+std::size_t size_of(const ShadowMessage& shadow) {
+  return offsetof(ShadowMessage, layer) + shadow.layers * sizeof(Layer);
 }
 
 }  // namespace
 
-comm::Buffer pack(MessageKind kind, std::span<const TravellingRay> rays,
-                  std::span<const TravellingShadow> shadows) {
+comm::Buffer pack(MessageKind kind, std::span<const RayMessage> rays,
+                  std::span<const ShadowMessage> shadows) {
   std::size_t size = sizeof(MessageHeader);
-  for (const TravellingRay& ray : rays) size += size_of(ray);
-  for (const TravellingShadow& shadow : shadows) size += size_of(shadow);
+  for (const RayMessage& ray : rays) size += size_of(ray);
+  for (const ShadowMessage& shadow : shadows) size += size_of(shadow);
   MessageHeader header;
   header.kind = kind;
   header.rays = static_cast<std::uint32_t>(rays.size());
   header.shadows = static_cast<std::uint32_t>(shadows.size());
   Writer out(size);
   out.put(&header, sizeof(header));
-  for (const TravellingRay& ray : rays) out.put(&ray, size_of(ray));
-  for (const TravellingShadow& shadow : shadows) out.put(&shadow, size_of(shadow));
+  for (const RayMessage& ray : rays) out.put(&ray, size_of(ray));
+  for (const ShadowMessage& shadow : shadows) out.put(&shadow, size_of(shadow));
   return out.take();
 }
 
@@ -61,9 +61,9 @@ MessageHeader header_of(const comm::Buffer& message) {
   return header;
 }
 
-Travellers unpack_travellers(const comm::Buffer& message, const MessageHeader& header) {
-  constexpr std::size_t kRay = offsetof(TravellingRay, point);
-  constexpr std::size_t kShadow = offsetof(TravellingShadow, layer);
+RayQueue unpack_rays(const comm::Buffer& message, const MessageHeader& header) {
+  constexpr std::size_t kRay = offsetof(RayMessage, point);
+  constexpr std::size_t kShadow = offsetof(ShadowMessage, layer);
   const std::byte* at = message.data() + sizeof(MessageHeader);
   std::size_t rest = message.size() - sizeof(MessageHeader);
   const auto read = [&](void* to, std::size_t size) {
@@ -75,20 +75,20 @@ Travellers unpack_travellers(const comm::Buffer& message, const MessageHeader& h
     rest -= size;
   };
   comm::check_message(rest / kRay >= header.rays && rest / kShadow >= header.shadows);
-  Travellers result;
+  RayQueue result;
   result.rays.reserve(header.rays);
   for (std::uint32_t i = 0; i < header.rays; ++i) {
-    TravellingRay& ray = result.rays.emplace_back();
+    RayMessage& ray = result.rays.emplace_back();
     read(static_cast<void*>(&ray), kRay);
-    if (ray.placement != kMiss) read(static_cast<void*>(&ray), size_of(ray));
+    if (ray.instance != kMiss) read(static_cast<void*>(&ray), size_of(ray));
     advance(size_of(ray));
   }
   result.shadows.reserve(header.shadows);
   for (std::uint32_t i = 0; i < header.shadows; ++i) {
-    TravellingShadow& shadow = result.shadows.emplace_back();
+    ShadowMessage& shadow = result.shadows.emplace_back();
     read(static_cast<void*>(&shadow), kShadow);
     comm::check_message(shadow.layers <= SeeThrough::kMost &&
-                        at[offsetof(TravellingShadow, occluded)] <= std::byte{1});
+                        at[offsetof(ShadowMessage, occluded)] <= std::byte{1});
     read(static_cast<void*>(&shadow), size_of(shadow));
     advance(size_of(shadow));
   }
