@@ -74,6 +74,14 @@ Header parse_header(const Input& input) {
       fail(input, at_byte(131 + 8 * k), "scale or offset is not a finite number");
     }
   }
+  const std::size_t smallest = minor == 4 ? kSmallest14 : kSmallest;
+  const std::size_t size = load<std::uint16_t>(content, 94);
+  if (size < smallest) {
+    fail(input, at_byte(94),
+         "the header claims to have " + std::to_string(size) + " bytes, but takes " +
+             std::to_string(smallest));
+  }
+  if (header.points_begin < size) fail(input, at_byte(96), "points cannot begin inside the header");
   if (header.record_size < header.format.size) {
     fail(input, at_byte(105), "records are too short for their point format");
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <string>
 
+#include "delaunay/files/line_ends.h"
 #include "delaunay/files/point_readers.h"
 #include "files/read_file.h"
 
@@ -16,8 +17,8 @@ using files::Format;
 
 // A file in memory that an Input refers to.
 struct Content {
-  Content(const std::filesystem::path& path, const files::MemoryBudget& memory)
-      : bytes(files::read_file(path, memory)),
+  Content(const std::filesystem::path& path, Format format, const files::MemoryBudget& memory)
+      : bytes(with_line_feeds(format, files::read_file(path, memory))),
         input{path == "-" ? "standard input" : path.string(), bytes, memory} {
     if (bytes.empty()) fail(input, "", "the file is empty");
   }
@@ -29,24 +30,25 @@ struct Content {
 };
 
 PointMesh read_node_and_ele(const std::filesystem::path& path, const files::MemoryBudget& memory) {
-  const Content nodes(std::filesystem::path(path).replace_extension(".node"), memory);
-  const Content elements(std::filesystem::path(path).replace_extension(".ele"), memory);
+  const Content nodes(std::filesystem::path(path).replace_extension(".node"), Format::node, memory);
+  const Content elements(std::filesystem::path(path).replace_extension(".ele"), Format::node,
+                         memory);
   return read_node_mesh(nodes.input, elements.input);
 }
 
-template <PointMesh (*read)(const Input&)>
+template <PointMesh (*read)(const Input&), Format format>
 PointMesh read_file(const std::filesystem::path& path, const files::MemoryBudget& memory) {
-  const Content file(path, memory);
+  const Content file(path, format, memory);
   return read(file.input);
 }
 
 constexpr std::array kReaders = {
-    MeshReader{Format::ply, "PLY", "mesh of triangles", &read_file<read_ply_mesh>},
-    MeshReader{Format::obj, "OBJ", "mesh of triangles", &read_file<read_obj_mesh>},
-    MeshReader{Format::off, "OFF", "mesh of triangles", &read_file<read_off_mesh>},
-    MeshReader{Format::stl, "STL", "mesh of triangles", &read_file<read_stl_mesh>},
+    MeshReader{Format::ply, "PLY", "mesh of triangles", &read_file<read_ply_mesh, Format::ply>},
+    MeshReader{Format::obj, "OBJ", "mesh of triangles", &read_file<read_obj_mesh, Format::obj>},
+    MeshReader{Format::off, "OFF", "mesh of triangles", &read_file<read_off_mesh, Format::off>},
+    MeshReader{Format::stl, "STL", "mesh of triangles", &read_file<read_stl_mesh, Format::stl>},
     MeshReader{Format::vtu, "VTU", "mesh of triangles or tetrahedra, as delray writes them",
-               &read_file<read_vtu_mesh>},
+               &read_file<read_vtu_mesh, Format::vtu>},
     MeshReader{Format::node, "NODE+ELE",
                "mesh of triangles or tetrahedra of Triangle and TetGen, two files",
                &read_node_and_ele},
@@ -67,7 +69,7 @@ PointMesh read_any(const std::filesystem::path& path, const files::MemoryBudget&
   if (reader != kReaders.end()) return reader->read(path, memory);
   // A stream of something else need not be read to its end, if it has one.
   if (files::is_stream(path)) fail({path.string(), ""}, "", no_mesh());
-  const Content file(path, memory);
+  const Content file(path, Format::unknown, memory);
   fail(file.input, "", no_mesh());
 }
 

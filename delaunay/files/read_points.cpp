@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "delaunay/files/line_ends.h"
 #include "delaunay/files/point_readers.h"
 #include "files/read_file.h"
 
@@ -38,7 +39,7 @@ PointCloud read_points(const std::filesystem::path& given, const ReadOptions& op
   if (reader == kPointReaders.end()) {
     fail({name, ""}, "", "not a file of points; known formats: " + known_formats());
   }
-  const std::string content = files::read_file(path, options.memory);
+  const std::string content = with_line_feeds(format, files::read_file(path, options.memory));
   const Input input{name, content, options.memory};
   PointCloud cloud = reader->read(input);
   if (cloud.size() == 0) fail(input, "", "no points");

@@ -1,10 +1,10 @@
 // XYZ, CSV, TXT: rows of numbers. Before them there may be
-// - one line of column names: x, y, z (also easting, lon, height, elevation ...), red, green, blue,
-//   intensity, classification, in any order, other columns are skipped;
+// - one line of column names: x, y, z (also easting, lon, height, ele ...), red, green, blue,
+//   intensity, classification, in any order; other columns are skipped and told, as are names of
+//   which none is known;
 // - one line with the number of points;
 // - one line "points edges", followed by the points and then by pairs of vertex numbers (an
-// outline,
-//   of which the points are read).
+//   outline, of which the points are read).
 // Without names the columns are x, y and, if there are three or more, z; of exactly six columns the
 // last three are a colour if they are whole numbers from 0 to 255 throughout.
 #include <algorithm>
@@ -36,7 +36,9 @@ enum Quantity {
 // columns[i] is the quantity in column i of the file.
 struct Layout {
   std::vector<Quantity> columns;
+  bool is_plane = false;    // unnamed columns, two in the first row
   bool geographic = false;  // columns are named longitude and latitude
+  std::string warning;      // of columns that are left out, or guessed
   std::size_t edges = 0;    // of an outline, which are not read
   Separator separator = Separator::comma;
   TextPlace begin;               // of the first row of coordinates
@@ -48,19 +50,38 @@ struct ColumnName {
   Quantity quantity;
   bool degrees = false;
 };
+// Of several columns for one quantity that whose name comes first is taken.
 constexpr std::array kColumnNames = {
     ColumnName{"x", kX},
     ColumnName{"easting", kX},
+    ColumnName{"x_coord", kX},
+    ColumnName{"point_x", kX},
     ColumnName{"lon", kX, true},
+    ColumnName{"lng", kX, true},
+    ColumnName{"long", kX, true},
     ColumnName{"longitude", kX, true},
+    ColumnName{"east", kX},
+    ColumnName{"e", kX},
     ColumnName{"y", kY},
     ColumnName{"northing", kY},
+    ColumnName{"y_coord", kY},
+    ColumnName{"point_y", kY},
     ColumnName{"lat", kY, true},
     ColumnName{"latitude", kY, true},
+    ColumnName{"north", kY},
+    ColumnName{"n", kY},
     ColumnName{"z", kZ},
+    ColumnName{"z_coord", kZ},
+    ColumnName{"point_z", kZ},
     ColumnName{"height", kZ},
     ColumnName{"elevation", kZ},
     ColumnName{"altitude", kZ},
+    ColumnName{"elev", kZ},
+    ColumnName{"ele", kZ},
+    ColumnName{"alt", kZ},
+    ColumnName{"h", kZ},
+    ColumnName{"dem", kZ},
+    ColumnName{"value", kZ},
     ColumnName{"red", kRed},
     ColumnName{"r", kRed},
     ColumnName{"green", kGreen},
@@ -72,14 +93,26 @@ constexpr std::array kColumnNames = {
     ColumnName{"class", kClass},
 };
 
-ColumnName column_of(std::string_view field) {
+// The index in kColumnNames; its size for other names.
+std::size_t column_of(std::string_view field) {
   std::string name;
   for (const char c : field) {
     if (c != '"' && c != '\'')
       name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
-  const auto found = std::ranges::find(kColumnNames, name, &ColumnName::name);
-  return found == kColumnNames.end() ? ColumnName{"", kSkipped} : *found;
+  return static_cast<std::size_t>(std::ranges::find(kColumnNames, name, &ColumnName::name) -
+                                  kColumnNames.begin());
+}
+
+// Names for a message: short, printable, with commas between them.
+std::string listed(const std::vector<std::string_view>& names) {
+  constexpr std::size_t kMost = 12, kLongest = 40;
+  std::string list;
+  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
+    list += i > 0 ? ", " : "";
+    for (const char c : names[i].substr(0, kLongest)) list += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return list + (names.size() > kMost ? " ..." : "");
 }
 
 std::vector<std::string_view> split(const Input& input, std::string_view line,
@@ -127,24 +160,39 @@ std::vector<Quantity> unnamed_columns(const std::vector<std::string_view>& first
   return {kX, kY, kZ};
 }
 
-// No columns if no name is known: a title, or another language.
+// No columns if no name of a coordinate is known: a title, or another language.
 Layout named_columns(const Input& input, std::size_t line_number,
                      const std::vector<std::string_view>& names) {
+  constexpr std::size_t kNone = kColumnNames.size();
+  std::array<std::size_t, kQuantities> taken;
+  taken.fill(kNone);
+  for (const std::string_view name : names) {
+    const std::size_t number = column_of(name);
+    if (number == kNone) continue;
+    std::size_t& best = taken[kColumnNames[number].quantity];
+    best = std::min(best, number);
+  }
   Layout layout;
-  std::array<bool, kQuantities + 1> seen{};  // the last is kSkipped
+  if (taken[kX] == kNone && taken[kY] == kNone && taken[kZ] == kNone) {
+    layout.warning = at_line(line_number) + " names no column that is known (" + listed(names) +
+                     "): took the first columns for x, y and z";
+    return layout;
+  }
+  if (taken[kX] == kNone || taken[kY] == kNone) {
+    fail(input, at_line(line_number), "the column names have no x or no y: " + listed(names));
+  }
+  std::vector<std::string_view> left_out;
   int degrees = 0;
   for (const std::string_view name : names) {
-    ColumnName column = column_of(name);
-    if (column.quantity != kSkipped && seen[column.quantity]) column = {"", kSkipped};
-    seen[column.quantity] = true;
-    degrees += column.degrees ? 1 : 0;
-    layout.columns.push_back(column.quantity);
-  }
-  if (!seen[kX] && !seen[kY] && !seen[kZ]) return {};
-  if (!seen[kX] || !seen[kY]) {
-    fail(input, at_line(line_number), "the column names have no x or no y");
+    const std::size_t number = column_of(name);
+    const bool used = number != kNone && taken[kColumnNames[number].quantity] == number;
+    layout.columns.push_back(used ? kColumnNames[number].quantity : kSkipped);
+    if (used) taken[kColumnNames[number].quantity] = kNone;  // a name that comes twice counts once
+    if (used && kColumnNames[number].degrees) ++degrees;
+    if (!used) left_out.push_back(name);
   }
   layout.geographic = degrees == 2;
+  if (!left_out.empty()) layout.warning = "columns left out: " + listed(left_out);
   return layout;
 }
 
@@ -243,7 +291,10 @@ Layout find_layout(const Input& input) {
   if (first_fields.size() < 2) {
     fail(input, at_line(first_number), "a point needs two numbers at least");
   }
-  if (layout.columns.empty()) layout.columns = unnamed_columns(first_fields);
+  if (layout.columns.empty()) {
+    layout.columns = unnamed_columns(first_fields);
+    layout.is_plane = first_fields.size() == 2;
+  }
   return layout;
 }
 
@@ -269,6 +320,7 @@ PointCloud read_text_points(const Input& input) {
   cloud.has_z = has(kZ);
   cloud.geographic = layout.geographic;
   if (layout.edges > 0) cloud.warnings.push_back(edges_left_out(layout.edges));
+  if (!layout.warning.empty()) cloud.warnings.push_back(layout.warning);
   input.require_points(rows.count);
   cloud.positions.resize(rows.count);
   if (has_colour) cloud.colours.resize(rows.count);
@@ -290,6 +342,10 @@ PointCloud read_text_points(const Input& input) {
           } else if (!fields.next(skipped)) {
             fields.fail("the line ends too early");
           }
+        }
+        std::string_view rest;
+        if (layout.is_plane && fields.next(rest)) {
+          fields.fail("has more than the two numbers of the first row");
         }
         cloud.positions[i] = {values[kX], values[kY], values[kZ]};
         if (has_colour) {

@@ -82,6 +82,57 @@ TEST(ReadPoints, FindsColumnsByName) {
   EXPECT_NE(complaint("a.csv", "x,z\n1,2\n").find("no y"), std::string::npos);
 }
 
+TEST(ReadPoints, KnowsTheNamesThatSurveyorsAndExportersUse) {
+  for (const char* names :
+       {"id,lon,lat,ele", "id,lng,lat,elev", "id,long,lat,alt", "id,E,N,H", "id,East,North,dem",
+        "id,X_COORD,Y_COORD,Z_COORD", "id,POINT_X,POINT_Y,POINT_Z", "id,x,y,value",
+        "id,easting,northing,elevation", "e,x,y,z"}) {
+    EXPECT_EQ(read("a.csv", std::string(names) + "\n7,1,2,3\n").positions, (Positions{{1, 2, 3}}))
+        << names;
+  }
+}
+
+TEST(ReadPoints, RefusesRowsThatWouldLoseTheirHeights) {
+  EXPECT_NE(complaint("a.xyz", "0 0\n1 0\n0 1 5\n1 1 2\n").find("line 3"), std::string::npos);
+  EXPECT_NE(complaint("a.csv", "0,0\n1,0,\n0,1,5\n").find("line 3"), std::string::npos);
+  EXPECT_EQ(read("a.xyz", "0 0 # c\n1 0 # 5\n").size(), 2U);
+}
+
+TEST(ReadPoints, TakesLineEndsOfEveryKind) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  std::string binary = header;
+  binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+  for (const char* end : {"\r", "\r\n"}) {
+    const auto converted = [end](const std::string& text) {
+      std::string result;
+      for (const char c : text) result += c == '\n' ? std::string(end) : std::string(1, c);
+      return result;
+    };
+    for (const auto& [name, text] :
+         std::vector<std::pair<std::string, std::string>>{{"a.xyz", "1 2 3\n4 5 6\n"},
+                                                          {"a.csv", "x,y,z\n1,2,3\n4,5,6\n"},
+                                                          {"a.obj", "v 1 2 3\nv 4 5 6\n"},
+                                                          {"a.off", "OFF\n2 0 0\n1 2 3\n4 5 6\n"},
+                                                          {"a.node", "2 3 0 0\n1 1 2 3\n2 4 5 6\n"},
+                                                          {"a.ply", header + "1 2 3\n4 5 6\n"}}) {
+      EXPECT_EQ(read(name, converted(text)).positions, (Positions{{1, 2, 3}, {4, 5, 6}}))
+          << name << (end[1] == 0 ? " with CR" : " with CR LF");
+    }
+    std::string bytes = converted(binary);
+    // A body with bytes that look like line ends.
+    for (const float x : {std::bit_cast<float>(0x3f0d0d0dU), 2.0F, 3.0F, 4.0F, 5.0F, 6.0F}) {
+      append(bytes, x);
+    }
+    if (end[1] == 0) {
+      const PointCloud cloud = read("a.ply", bytes);
+      EXPECT_EQ(cloud.positions[0].x, double{std::bit_cast<float>(0x3f0d0d0dU)});
+      EXPECT_EQ(cloud.positions[1], glm::dvec3(4, 5, 6));
+    }
+  }
+}
+
 TEST(ReadPoints, TakesSixColumnsAsColoursIfTheyAreBytes) {
   EXPECT_EQ(read("a.xyz", "1 2 3 255 0 7\n4 5 6 1 2 3\n").colours.size(), 2U);
   EXPECT_TRUE(read("a.xyz", "1 2 3 0 0 1\n4 5 6 0.6 0.8 0\n").colours.empty());
@@ -319,6 +370,7 @@ std::string las(int minor, unsigned format, std::size_t record, std::size_t colo
   bytes.replace(0, 4, "LASF");
   put(24, std::uint8_t{1});
   put(25, static_cast<std::uint8_t>(minor));
+  put(94, static_cast<std::uint16_t>(bytes.size()));
   put(96, static_cast<std::uint32_t>(bytes.size()));
   put(104, static_cast<std::uint8_t>(format));
   put(105, static_cast<std::uint16_t>(record));
@@ -433,6 +485,12 @@ TEST(ReadPoints, TellsWhatItLeavesOut) {
   EXPECT_EQ(warnings("a.obj", vertices + "l 1 2\n").size(), 1U);
   EXPECT_TRUE(warnings("a.txt", "3 0\n0 0\n1.5 0\n1 1\n").empty());
   EXPECT_TRUE(warnings("a.obj", vertices).empty());
+  EXPECT_TRUE(warnings("a.csv", "x,y,z\n1,2,3\n").empty());
+  EXPECT_EQ(warnings("a.csv", "id,x,\"gps time\",y,height,z\n1,2,3,4,5,6\n"),
+            (std::vector<std::string>{"columns left out: id, \"gps time\", height"}));
+  EXPECT_EQ(warnings("a.csv", "a,b,c,d\n1,2,3,4\n"),
+            (std::vector<std::string>{"line 1 names no column that is known (a, b, c, d): took the "
+                                      "first columns for x, y and z"}));
 }
 
 TEST(ReadPoints, RefusesBrokenLas) {
@@ -449,6 +507,11 @@ TEST(ReadPoints, RefusesBrokenLas) {
   complaint("a.las", with(107, std::uint32_t{3}));
   complaint("a.las", with(107, std::uint32_t{0xffffffff}));
   complaint("a.las", with(96, std::uint32_t{0xffffffff}));
+  for (const std::uint32_t begin : {0U, 4U, 226U}) {
+    EXPECT_NE(complaint("a.las", with(96, begin)).find("byte 96: points cannot begin inside"),
+              std::string::npos);
+  }
+  EXPECT_NE(complaint("a.las", with(94, std::uint16_t{0})).find("byte 94"), std::string::npos);
   complaint("a.las", with(24, std::uint8_t{2}));
   complaint("a.las", with(25, std::uint8_t{5}));
   complaint("a.las", with(131, std::numeric_limits<double>::quiet_NaN()));
