@@ -32,9 +32,11 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Takes the first line from `rest`, without its end.
+bool ends_line(char c) { return c == '\n' || c == '\r'; }
+
+// Takes the first line from `rest`, without its end; "\r\n" ends an empty line, too.
 std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find('\n'), rest.size());
+  const auto end = static_cast<std::size_t>(std::ranges::find_if(rest, ends_line) - rest.begin());
   const std::string_view line = rest.substr(0, end);
   rest.remove_prefix(std::min(end + 1, rest.size()));
   return line;
@@ -129,7 +131,7 @@ bool obj_file_has_faces(const std::filesystem::path& path, const MemoryBudget& m
     const std::string_view text(buffer.data(), kept + got);
     if (obj_has_faces(text)) return true;
     if (got == 0) return false;
-    const std::size_t line = text.rfind('\n') + 1;  // 0 if there is none
+    const std::size_t line = text.find_last_of("\r\n") + 1;  // 0 if there is none
     // A line that fills the whole buffer is no face: drop it.
     kept = line == 0 && text.size() == buffer.size() ? 0 : text.size() - line;
     std::memmove(buffer.data(), text.data() + line, kept);
@@ -160,6 +162,18 @@ Format xml_format(std::string_view start) {
                                                                                 : Format::unknown;
 }
 
+// By its mark, or by the zeros that letters and digits have in it.
+bool is_utf16(std::string_view start) {
+  if (start.starts_with("\xff\xfe") || start.starts_with("\xfe\xff")) return true;
+  constexpr std::size_t kLooked = 16;
+  if (start.size() < kLooked) return false;
+  const auto zero = [start](std::size_t i) { return start[i] == '\0'; };
+  for (std::size_t i = 0; i < kLooked; i += 2) {
+    if (zero(i) == zero(i + 1) || zero(i) != zero(0)) return false;
+  }
+  return true;
+}
+
 Format format_of_content(std::string_view start, std::uint64_t size) {
   for (const auto& [magic, format] : kFormatStarts) {
     if (start.starts_with(magic)) return format;
@@ -175,6 +189,15 @@ Format format_of_content(std::string_view start, std::uint64_t size) {
   if (word == "solid" && start.find("facet") != std::string_view::npos) return Format::stl;
   if (std::ranges::find(kObjKeywords, word) != std::end(kObjKeywords)) return Format::obj;
   return Format::unknown;
+}
+
+constexpr std::size_t kComments = 4096;  // bytes at the beginning that may tell about the file
+
+// Files of older versions, which do not tell which way is up, too.
+bool is_by_delray(std::string_view start) {
+  constexpr std::string_view kMark = "written by delray";
+  static_assert(kWrittenByDelray.starts_with(kMark));
+  return start.substr(0, kComments).find(kMark) != std::string_view::npos;
 }
 
 // Nobody knows how much of a stream is to come.
@@ -230,6 +253,24 @@ std::string suffixes(Format format) {
   return list;
 }
 
+char up_axis(std::string_view start) {
+  start = start.substr(0, kComments);
+  bool is_first = true;
+  while (!start.empty()) {
+    const std::string_view line = take_line(start);
+    std::string_view rest = line;
+    const std::string_view word = take_word(rest);
+    // All of an STL's header, and the name in the first line of its text, are comments.
+    const bool is_comment = word.starts_with('#') || word == "comment" || word == "obj_info";
+    for (std::string_view said : {"up: y", "up: z", "up:y", "up:z"}) {
+      const std::size_t at = line.find(said);
+      if ((is_comment || is_first) && at != std::string_view::npos) return said.back();
+    }
+    is_first = false;
+  }
+  return '\0';
+}
+
 Format format_of_suffix(const std::filesystem::path& path) {
   const std::string suffix = lower(path.extension().string());
   for (const auto& [known, format] : kFormatSuffixes) {
@@ -246,12 +287,17 @@ Format identify_format(const std::filesystem::path& path, const MemoryBudget& me
 FileKind identify(std::string_view start, std::uint64_t size, const std::filesystem::path& path) {
   FileKind kind;
   kind.format = format_of_content(start, size);
+  if (kind.format == Format::unknown && is_utf16(start)) {
+    throw FileError(Cause::input, path == "-" ? "standard input" : path.string(), "",
+                    "UTF-16 text is not read; save it as UTF-8");
+  }
   if (kind.format == Format::unknown) kind.format = format_of_suffix(path);
   if (kind.format == Format::unknown) {
     std::string_view line = first_content_line(start);
     if (looks_like_number(take_word(line))) kind.format = Format::text;
   }
   kind.has_faces = has_faces(kind.format, start);
+  kind.by_delray = is_by_delray(start);
   // A .node of an .ele is a mesh only together with it; the name says which one the user means.
   if (kind.format == Format::node) kind.has_faces = lower(path.extension().string()) == ".ele";
   return kind;

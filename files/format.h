@@ -77,12 +77,21 @@ struct FileKind {
   // PLY, OBJ and OFF hold bare points as well as meshes; true if this one has at least one face.
   // True for the formats that are always meshes or scenes, false for all others.
   bool has_faces = false;
+  // Whether an OBJ, OFF, STL or PLY says that delray wrote it: its points lie over x and y.
+  bool by_delray = false;
 };
+
+// What says so, in a comment or in the header of an STL, and which way is up.
+inline constexpr std::string_view kWrittenByDelray = "written by delray; up: z";
+// The axis that a comment of an OBJ, OFF or PLY, or the header of an STL, calls up ("up: y"); 0 if
+// none does. O(1): in the first kilobytes.
+char up_axis(std::string_view start);
 
 // Finds out what a file is from its first bytes and, where they do not tell, from the suffix of
 // `path`. A file whose content no format claims keeps the format of its suffix, so that the reader
 // of that format can say what is wrong with it. `size` is the size of the whole file (binary STL
-// has no other mark). `has_faces` of an OBJ is what `start` shows. O(start).
+// has no other mark). `has_faces` of an OBJ is what `start` shows. Throws FileError (input) for
+// text in UTF-16. O(start).
 FileKind identify(std::string_view start, std::uint64_t size, const std::filesystem::path& path);
 
 // Identifies a file or stream: reads its first megabyte, and as much of an OBJ as is needed to

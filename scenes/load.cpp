@@ -85,7 +85,8 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
       order_for_locality(mesh);
     }
   }
-  scene.z_up = !says_up && guess_z_up(scene, format == Format::stl);
+  const char up = files::up_axis(start);
+  scene.z_up = !says_up && (up == '\0' ? guess_z_up(scene, format == Format::stl) : up == 'z');
   if (options.progress) options.progress->advance();
   return scene;
 }

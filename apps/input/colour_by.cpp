@@ -154,7 +154,8 @@ std::span<const ColourBy> colour_bys() { return kTable; }
 
 std::string_view default_colour_by(const delaunay::PointCloud& points) {
   if (!points.colours.empty()) return "rgb";
-  return points.has_z ? "z" : "simplex";
+  const auto is_level = [&](const glm::dvec3& p) { return p.z == points.positions[0].z; };
+  return std::ranges::all_of(points.positions, is_level) ? "simplex" : "z";
 }
 
 void colour_by(scenes::Scene& scene, std::string_view name, const delaunay::PointCloud* points) {

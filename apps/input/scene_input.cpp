@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
 #include "apps/input/colour_by.h"
 #include "apps/input/dots.h"
@@ -39,6 +40,13 @@ bool has_double_coordinates(const std::string& path) {
          start.find("property float64 x") != std::string::npos;
 }
 
+// Whether an .ele beside this .node makes a mesh of its points.
+bool has_elements(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(std::filesystem::path(path).replace_extension(".ele"),
+                                          error);
+}
+
 // Throws FileError for points that 32-bit floats cannot hold around their middle.
 void check_reach(const SceneInput& input, const delaunay::PointCloud& points,
                  const glm::dvec3& middle) {
@@ -52,8 +60,15 @@ void check_reach(const SceneInput& input, const delaunay::PointCloud& points,
   }
 }
 
-std::string colouring(const SceneInput& input, const delaunay::PointCloud& points) {
-  return input.colour_by.empty() ? std::string(default_colour_by(points)) : input.colour_by;
+void set_up(const SceneInput& input, scenes::Scene& scene) {
+  if (!input.up.empty()) scene.z_up = input.up == "z";
+}
+
+// Dots have no triangles that could be told apart.
+std::string colouring(const SceneInput& input, const delaunay::PointCloud& points, bool dots) {
+  if (!input.colour_by.empty()) return input.colour_by;
+  const std::string_view suits = default_colour_by(points);
+  return std::string(dots && suits == "simplex" ? "z" : suits);
 }
 
 // The points as vertices of the triangulation's triangles, coloured.
@@ -66,17 +81,22 @@ scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& poin
                  input.file.path, inliers.outside, points.size());
   }
   scenes::Scene scene = relief(points, triangulation, inliers, input.exaggeration);
-  colour_by(scene, colouring(input, points), &points);
+  set_up(input, scene);
+  colour_by(scene, colouring(input, points, triangulation.size() == 0), &points);
   return scene;
 }
 
-scenes::Scene surface(const SceneInput& input, const delaunay::PointCloud& points,
-                      const delaunay::Triangulation& triangulation) {
-  if (triangulation.size() == 0) {
-    throw files::FileError(files::Cause::input, input.file.path, "",
-                           "all points are equal or on one line: there is no surface to show");
-  }
-  return coloured(input, points, triangulation);
+// Why points have no triangulation over x and y.
+std::string no_surface(const delaunay::PointCloud& points) {
+  const auto same_height = [&](const glm::dvec3& p) { return p.z == points.positions[0].z; };
+  const bool level = std::ranges::all_of(points.positions, same_height);
+  return std::string(level ? "all points are equal or on one line"
+                           : "all points lie above one point or line of x and y") +
+         ": there is no surface of heights to show; --draw points shows the points";
+}
+
+[[noreturn]] void fail(const SceneInput& input, const std::string& what) {
+  throw files::FileError(files::Cause::input, input.file.path, "", what);
 }
 
 scenes::Scene dots(const SceneInput& input, const delaunay::PointCloud& points) {
@@ -123,7 +143,9 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   how.threads = parallel::arena_threads();
   how.progress = progress;
   require_memory_to_triangulate(input.file, points.size(), how.dim);
-  return surface(input, points, triangulate(delaunay::view(points.positions), how));
+  const delaunay::Triangulation triangulation = triangulate(delaunay::view(points.positions), how);
+  if (triangulation.size() == 0) fail(input, no_surface(points));
+  return coloured(input, points, triangulation);
 }
 
 scenes::Scene from_mesh(const SceneInput& input) {
@@ -132,7 +154,10 @@ scenes::Scene from_mesh(const SceneInput& input) {
     spdlog::warn("{}: {}", input.file.path, warning);
   }
   to_metres(mesh.points, input.file.path);
-  return surface(input, mesh.points, mesh.triangulation);
+  if (mesh.triangulation.size() == 0) {
+    fail(input, "the mesh has points, but no triangles or tetrahedra to show");
+  }
+  return coloured(input, mesh.points, mesh.triangulation);
 }
 
 scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
@@ -152,6 +177,7 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
         {.memory = limits.budget(), .outside = limits.outside(), .progress = progress});
     for (const std::string& warning : warnings) spdlog::warn(warning);
   }
+  set_up(input, scene);
   if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
   return scene;
 }
@@ -165,14 +191,16 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory)
     case Format::vtu:
       return InputKind::mesh;
     case Format::node:
-      return path.ends_with(".ele") ? InputKind::mesh : InputKind::points;
+      return path.ends_with(".ele") || has_elements(path) ? InputKind::mesh : InputKind::points;
     case Format::ply:
       if (!kind.has_faces) return InputKind::points;
       return has_double_coordinates(path) ? InputKind::mesh : InputKind::scene;
     case Format::obj:
     case Format::off:
-      return kind.has_faces ? InputKind::scene : InputKind::points;
+      if (!kind.has_faces) return InputKind::points;
+      return kind.by_delray ? InputKind::mesh : InputKind::scene;
     case Format::stl:
+      return kind.by_delray ? InputKind::mesh : InputKind::scene;
     case Format::gltf:
     case Format::glb:
     case Format::unknown:  // the scene loader says what it can read
@@ -207,13 +235,23 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
                   "points for scans, where many lie above each other; else surface)")
       ->group(group::kInput)
       ->check(one_of({"surface", "points"}));
+  command
+      .add_option("--up", input.up,
+                  "Axis that points up: y or z (default: as the file says; else z for points and "
+                  "meshes of them and STL, y for others unless they stand on a flat base of z)")
+      ->group(group::kInput)
+      ->check(one_of({"y", "z"}));
   choose_from(command, "--color-by", names_in(colour_bys()));
   add_point_options(command, input.file);
   add_outside_option(command, input.file.limits);
 }
 
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
-  const InputKind kind = input_kind(input.file.path, input.file.limits.budget());
+  InputKind kind = input_kind(input.file.path, input.file.limits.budget());
+  // Options of points ask for those of a .node, without the .ele beside it.
+  const bool is_node = files::format_of_suffix(input.file.path) == Format::node &&
+                       !input.file.path.ends_with(".ele");
+  if (is_node && (input.file.given() || !input.draw.empty())) kind = InputKind::points;
   if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
     refuse_outside(input.file.path, input.file.limits);
   }

@@ -18,14 +18,15 @@ struct SceneInput {
   std::string colour_by;    // empty: what suits the input
   std::string draw;         // points as "surface" or "points"; empty: what suits them
   double exaggeration = 1;  // of the heights of points
+  std::string up;           // "y" or "z"; empty: as the input says
 };
 
 // What a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit coordinates,
-// a VTU or an .ele is a mesh of points.
+// an OBJ, OFF or STL that delray wrote, a VTU, an .ele or a .node beside one is a mesh of points.
 enum class InputKind { scene, mesh, points, picture };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 
-// Adds SCENE, --color-by, --exaggeration, --draw, --allow-outside and the options of points.
+// Adds SCENE, --color-by, --exaggeration, --draw, --up, --allow-outside and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
 // Loads or generates the scene; points are triangulated in the plane, with their z as height, or

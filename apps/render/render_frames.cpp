@@ -80,7 +80,7 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request,
 
 // Whether the generator can make parts of the scene, and nothing changes what it makes.
 bool has_parts(const RenderRequest& request) {
-  if (!request.scene.colour_by.empty()) return false;
+  if (!request.scene.colour_by.empty() || !request.scene.up.empty()) return false;
   try {
     return scenes::has_parts(request.scene.file.path);
   } catch (const std::invalid_argument&) {

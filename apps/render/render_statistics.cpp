@@ -21,6 +21,7 @@ Json options_of(const RenderRequest& request, int ranks, int threads) {
   options["camera"] = request.camera.camera;
   options["view"] = request.camera.view;
   options["color_by"] = request.scene.colour_by;
+  options["up"] = request.scene.up;
   options["ranks"] = ranks;
   options["threads"] = threads;
   return options;

@@ -2,13 +2,14 @@
 // vertices numbered from 0.
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
+#include "files/format.h"
 
 namespace delray::delaunay {
 
 void write_off(const std::filesystem::path& path, const MeshView& mesh) {
   Output output(path);
-  output.write("OFF\n" + std::to_string(mesh.points.size()) + " " + std::to_string(mesh.size()) +
-               " 0\n");
+  output.write("OFF\n# " + std::string(files::kWrittenByDelray) + "\n" +
+               std::to_string(mesh.points.size()) + " " + std::to_string(mesh.size()) + " 0\n");
   write_rows(output, mesh.points.size(), [&](std::size_t i, std::string& row) {
     for (int k = 0; k < 3; ++k) {
       append_number(row, mesh.points.positions[i][k]);

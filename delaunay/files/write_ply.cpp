@@ -4,6 +4,7 @@
 
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
+#include "files/format.h"
 
 namespace delray::delaunay {
 
@@ -11,7 +12,8 @@ void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
   const PointCloud& points = mesh.points;
   // Many readers know signed indices only.
   const bool large = points.size() > std::numeric_limits<std::int32_t>::max();
-  std::string header = "ply\nformat binary_little_endian 1.0\ncomment written by delray\n";
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  header += "comment " + std::string(files::kWrittenByDelray) + "\n";
   header += "element vertex " + std::to_string(points.size()) + "\n";
   header += "property double x\nproperty double y\n";
   // A mesh needs z for every viewer; points in the plane stay so.

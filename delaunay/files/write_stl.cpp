@@ -6,6 +6,7 @@
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
 #include "files/error.h"
+#include "files/format.h"
 
 namespace delray::delaunay {
 namespace {
@@ -29,7 +30,7 @@ void write_stl(const std::filesystem::path& path, const MeshView& mesh) {
     throw files::FileError(files::Cause::device, path.string(), "",
                            "more triangles than an STL file can count");
   }
-  std::string header = "written by delray";
+  std::string header(files::kWrittenByDelray);
   header.resize(kHeader, ' ');
   append_bytes(header, static_cast<std::uint32_t>(mesh.size()));
   Output output(path);

@@ -85,6 +85,27 @@ TEST(Format, FindsTheFirstFaceFarIntoAFile) {
   EXPECT_TRUE(identify(folder.write("last.obj", points + "f 1 2 3")).has_faces);
 }
 
+TEST(Format, FindsFacesBetweenLineEndsOfEveryKind) {
+  for (const std::string& content :
+       {"ply\rformat ascii 1.0\relement vertex 3\relement face 1\rend_header\r"s, "OFF\r3 1 0\r"s,
+        "v 0 0 0\rf 1 2 3\r"s, "v 0 0 0\r\nf 1 2 3\r\n"s}) {
+    EXPECT_TRUE(identify(content, content.size(), "a").has_faces) << content;
+  }
+}
+
+TEST(Format, TellsThatTextIsUtf16) {
+  std::string plain;
+  for (const char c : "v 0 0 0\nv 1 0 0\nf 1 2 3\n"s) plain += std::string{c, '\0'};
+  for (const std::string& content : {"\xff\xfe"s + plain, "\xfe\xff\0"s + plain, plain}) {
+    try {
+      identify(content, content.size(), "a.obj");
+      ADD_FAILURE();
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("UTF-16"), std::string::npos);
+    }
+  }
+}
+
 TEST(Format, OfAMissingFileIsAnInputError) {
   try {
     identify(std::filesystem::path("/nonexistent/a.ply"));

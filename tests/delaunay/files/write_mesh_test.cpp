@@ -60,7 +60,8 @@ TEST(WriteMesh, ReadsBackEqualInEveryFormatWithIndices) {
         EXPECT_EQ(mesh.triangulation.vertices, triangles.vertices);
         EXPECT_EQ(mesh.triangulation.dim, 2);
         EXPECT_EQ(read_points(folder / name).positions, cloud.positions);
-        const bool coloured = std::strcmp(name, "a.ply") == 0 || std::strcmp(name, "a.vtu") == 0;
+        const std::string_view coloured_formats = "a.ply a.vtu a.obj";
+        const bool coloured = coloured_formats.find(name) != std::string_view::npos;
         EXPECT_EQ(mesh.points.colours.size(), coloured ? n : 0);
         if (coloured) {
           EXPECT_EQ(mesh.points.colours, cloud.colours);
