@@ -1,3 +1,4 @@
+// Each "\r" of the text becomes "\n" if the first line ends with "\r" alone; linear in the text.
 #include "delaunay/files/line_ends.h"
 
 #include <algorithm>
