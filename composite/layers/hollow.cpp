@@ -1,3 +1,6 @@
+// Layers of the codecs active and bounds that hold masks in place of pixels, and of dense that hold
+// nothing. Their messages tell the size that a real one would have, and carry the coverage where
+// there is a mask; merging adds it. Degenerate: a message of nothing carries no coverage.
 #include "composite/hollow.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A deep layer that holds in place of fragments where surfaces lie. Its messages tell the size that
+// a real one would have, and carry the lists.
 #include <algorithm>
 #include <cstring>
 #include <utility>

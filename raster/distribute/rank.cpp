@@ -1,3 +1,8 @@
+// What strategies share on a rank: its equal part of the primitives, drawings of regions with their
+// counts, tiles stored into an image, and the gather of regions on rank 0.
+//
+// A single rank remembers which tiles it left clear in a picture's memory, and does not clear them
+// again. Degenerate: with fewer primitives than ranks some have none.
 #include "raster/distribute/rank.h"
 
 #include "raster/distribute/gather_regions.h"
