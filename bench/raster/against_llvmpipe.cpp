@@ -5,8 +5,8 @@
 //                           [SCENE...]
 //
 // SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], or layers:back or layers:front, 32 full-screen
-// layers drawn from back to front or from front to back; without any, those of docs/performance.md. Both
-// must cover the same pixels, but for a few on edges. For each number of threads llvmpipe with
+// layers drawn from back to front or from front to back; without any, those of docs/performance.md.
+// Both must cover the same pixels, but for a few on edges. For each number of threads llvmpipe with
 // one and with two threads of its own (the faster median counts) and Delray take turns; the table
 // has medians in milliseconds, Delray's over llvmpipe's, and over Delray's with the first number of
 // threads, without culling and with it: of faces that look away and of hidden clusters. With

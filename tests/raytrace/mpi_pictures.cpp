@@ -57,8 +57,8 @@ int wrong_pictures(comm::Communicator& communicator, bool full) {
           raytrace::SharedScene shared = raytrace::SharedScene::make(communicator, scene, {});
           return raytrace::Renderer(shared, distribution).render(communicator, camera, options);
         }),
-                      std::string(schedule.name) + ", " + distribution.name + ", " +
-                          std::to_string(threads) + " threads");
+                std::string(schedule.name) + ", " + distribution.name + ", " +
+                    std::to_string(threads) + " threads");
       }
     }
   }
