@@ -87,7 +87,7 @@ image::ImageF read_parts(const ComposeRequest& request, composite::Operator how,
       merged = std::move(layer);
     } else {
       const composite::PixelRange all{0, layer->pixels()};
-      merged->merge(all, layer->cut(all), composite::Side::higher);
+      merged->merge(all, layer->encode(all), composite::Side::higher);
     }
   }
   if (merged == nullptr) return {};
@@ -113,7 +113,7 @@ void agree_on_size(comm::Communicator& communicator, const std::string& file,
 }
 
 // Layers over each other have no depth: 0 where something is.
-void set_depths(composite::Part& part) {
+void set_depths(composite::OwnedPixels& part) {
   image::ImageF& image = dynamic_cast<composite::ImageLayer<image::RgbaF>&>(*part.layer).image();
   for (const composite::PixelRange& range : part.ranges) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -150,8 +150,8 @@ Outcome compose_parts(comm::Communicator& communicator, const ComposeRequest& re
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
   auto layer = composite::find_codec(request.codec)->make(std::move(image), how);
-  composite::Part part = composite::compose(recording, std::move(layer), request.scheme,
-                                            {.interlace = request.interlace});
+  composite::OwnedPixels part = composite::compose(recording, std::move(layer), request.scheme,
+                                                   {.interlace = request.interlace});
   outcome.compose = stopwatch.lap();
   if (request.ordered) set_depths(part);
   if (request.in_pieces) {

@@ -23,7 +23,7 @@ Surfaces copy_of(const Surfaces& surfaces) {
 
 }  // namespace
 
-bool is_transparent(const raster::Share& share) {
+bool is_transparent(const raster::PartialImage& share) {
   return !std::holds_alternative<image::Image8>(share);
 }
 
@@ -37,7 +37,7 @@ std::unique_ptr<composite::Layer> ShareLayers::make(const std::string& codec) {
   return composite::find_codec(codec)->make(std::exchange(spare_, {}));
 }
 
-image::Image8 ShareLayers::image_of(composite::Part&& part) const {
+image::Image8 ShareLayers::image_of(composite::OwnedPixels&& part) const {
   if (is_transparent(share_))
     return composite::flatten<image::Rgba8>(composite::take_deep<image::RgbaF>(std::move(part)));
   return composite::take_image<image::Rgba8>(std::move(part));

@@ -13,20 +13,20 @@ namespace delray::apps {
 class ShareLayers {
  public:
   // REQUIRES: the share outlives this.
-  explicit ShareLayers(const raster::Share& share) : share_(share) {}
+  explicit ShareLayers(const raster::PartialImage& share) : share_(share) {}
 
   // A copy of the share; its codec counts for flat ones only.
   std::unique_ptr<composite::Layer> make(const std::string& codec);
   // The image of a part, only the part's ranges of which are final.
-  image::Image8 image_of(composite::Part&& part) const;
+  image::Image8 image_of(composite::OwnedPixels&& part) const;
   void recycle(image::Image8&& image) { spare_ = std::move(image); }
 
  private:
-  const raster::Share& share_;
+  const raster::PartialImage& share_;
   image::Image8 spare_;
 };
 
 // Whether layers are lists of surfaces, whatever the codec.
-bool is_transparent(const raster::Share& share);
+bool is_transparent(const raster::PartialImage& share);
 
 }  // namespace delray::apps

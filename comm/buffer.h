@@ -42,8 +42,8 @@ class Buffer {
   }
 
   // Stands for a message of `bytes` bytes of which `content` is all that anybody looks at: runs on
-  // hollow data send these, in one process only. Ledgers and the simulated machine take them for
-  // what they stand for.
+  // metadata-only layers send these, in one process only. Ledgers and the simulated machine take
+  // them for what they stand for.
   static Buffer standing_for(std::size_t bytes, Buffer&& content) {
     Buffer buffer = std::move(content);
     buffer.counted_ = bytes;

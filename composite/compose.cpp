@@ -23,8 +23,8 @@
 #include "comm/agree_on_failure.h"
 #include "composite/layers/interlaced.h"
 #include "composite/scheme.h"
-#include "composite/schemes/members.h"
 #include "composite/schemes/range.h"
+#include "composite/schemes/sub_communicator.h"
 
 namespace delray::composite {
 namespace {
@@ -111,14 +111,14 @@ std::vector<int> taking_part(comm::Communicator& communicator, bool empty, std::
 
 }  // namespace
 
-Part compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-             std::string_view scheme, ComposeOptions options) {
+OwnedPixels compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                    std::string_view scheme, ComposeOptions options) {
   SchemeChoice choice = choose_scheme(scheme);
   const std::string why = objection(communicator, layer.get(), scheme, choice, options);
   const auto own = agreement(layer.get(), scheme, options, !why.empty());
   if (!choice.radices.empty()) options.radices = std::move(choice.radices);
   communicator.mark(comm::Phase::compose, 0);
-  internal::Members members(
+  internal::SubCommunicator members(
       communicator,
       taking_part(communicator, layer == nullptr || layer->empty(), options.order, own, why));
   if (members.rank() < 0) return {{}, std::move(layer)};

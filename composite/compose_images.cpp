@@ -16,7 +16,7 @@ image::BasicImage<Colour> compose_images(comm::Communicator& communicator,
                                          const ImageOptions& options) {
   const Codec* const codec = find_codec(options.codec);
   // Without a layer all ranks hear of it there.
-  Part part =
+  OwnedPixels part =
       compose(communicator, codec != nullptr ? codec->make(std::move(image), options.how) : nullptr,
               options.scheme, {.interlace = options.interlace});
   part = gather(communicator, std::move(part), options.root);

@@ -18,7 +18,7 @@ namespace delray::composite {
 // number of its fragments, then the fragments as they are. Fragments, not pixels, count as
 // composited: those that merge() compares. Which side a message comes from makes no difference.
 //
-// cut, merge and replace run in the caller's arena.
+// encode, merge and replace run in the caller's arena.
 template <class Payload>
 class DeepLayer final : public Layer {
  public:
@@ -28,7 +28,7 @@ class DeepLayer final : public Layer {
   const DeepImage<Payload>& image() const { return image_; }
 
   std::uint64_t pixels() const override { return image_.lists.size(); }
-  comm::Buffer cut(PixelRange range) override;
+  comm::Buffer encode(PixelRange range) override;
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override;
   void replace(PixelRange range, const comm::Buffer& pixels) override;
   bool empty() const override;
@@ -64,7 +64,7 @@ std::unique_ptr<Layer> make_deep(DeepImage<Payload>&& image) {
 //
 // REQUIRES: the part's layer is a DeepLayer<Payload>.
 template <class Payload>
-DeepImage<Payload> take_deep(Part&& part) {
+DeepImage<Payload> take_deep(OwnedPixels&& part) {
   return std::move(dynamic_cast<DeepLayer<Payload>&>(*part.layer).image());
 }
 
@@ -72,7 +72,7 @@ extern template class DeepLayer<image::RgbaF>;
 
 // ---
 
-// What cut() wrote.
+// What encode() wrote.
 template <class Payload>
 struct DeepLayer<Payload>::Arrived {
   Coverage coverage;
@@ -102,7 +102,7 @@ struct DeepLayer<Payload>::Arrived {
 };
 
 template <class Payload>
-comm::Buffer DeepLayer<Payload>::cut(PixelRange range) {
+comm::Buffer DeepLayer<Payload>::encode(PixelRange range) {
   assert(range.begin <= range.end && range.end <= pixels());
   std::vector<std::uint64_t> before((range.size() + kGroupPixels - 1) / kGroupPixels + 1);
   const auto find = [&](std::uint64_t begin, std::uint64_t end, GroupMask& mask) {

@@ -8,13 +8,13 @@ namespace delray::composite {
 // A message is the range's colours, then its depths, where there are any: of Rgba8 8 bytes per
 // pixel, or 4 without depth, of RgbaF 20 or 16. Every pixel of a merged range counts as composited.
 //
-// merge and cut run in the caller's arena.
+// merge and encode run in the caller's arena.
 template <class Colour>
 class DenseLayer final : public ImageLayer<Colour> {
  public:
   using ImageLayer<Colour>::ImageLayer;
 
-  comm::Buffer cut(PixelRange range) override;
+  comm::Buffer encode(PixelRange range) override;
 
  private:
   using typename ImageLayer<Colour>::Action;

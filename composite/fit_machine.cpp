@@ -23,7 +23,7 @@ MachineModel scaled(const MachineModel& start, const Factors& logarithms) {
   MachineModel model = start;
   model.network.overhead *= std::exp(logarithms[0]);
   for (double LayerCosts::*cost :
-       {&LayerCosts::cut, &LayerCosts::cut_pixel, &LayerCosts::cut_byte}) {
+       {&LayerCosts::encode, &LayerCosts::encode_pixel, &LayerCosts::encode_byte}) {
     model.costs.*cost *= std::exp(logarithms[1]);
   }
   for (double LayerCosts::*cost :

@@ -11,7 +11,7 @@ namespace delray::composite {
 // A scheme that was run and took so long, without the gather.
 struct TimedScheme {
   std::string scheme;
-  HollowImages images;
+  MetadataOnlyImages images;
   double seconds = 0;
   double weight = 1;  // how much it counts
   ComposeOptions options = {};

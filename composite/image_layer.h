@@ -26,7 +26,7 @@ enum class Operator : std::uint8_t {
   over_with_depth,
 };
 
-// Owns the image. A codec derives from it, for cut and apply.
+// Owns the image. A codec derives from it, for encode and apply.
 template <class Colour>
 class ImageLayer : public Layer {
  public:
@@ -62,7 +62,7 @@ class ImageLayer : public Layer {
     std::size_t readable = 0;  // values that both pointers may be read at
   };
 
-  // Does `action` with what cut(range) gave elsewhere; returns the pixels that it looked at.
+  // Does `action` with what encode(range) gave elsewhere; returns the pixels that it looked at.
   virtual std::uint64_t apply(PixelRange range, const comm::Buffer& pixels, Action action) = 0;
 
   bool has_depth() const { return operator_ != Operator::over; }
@@ -91,14 +91,14 @@ extern template class ImageLayer<image::RgbaF>;
 //
 // REQUIRES: the part's layer is an ImageLayer<Colour>, whatever its codec.
 template <class Colour>
-image::BasicImage<Colour> take_image(Part&& part) {
+image::BasicImage<Colour> take_image(OwnedPixels&& part) {
   return std::move(dynamic_cast<ImageLayer<Colour>&>(*part.layer).image());
 }
 
 // For a finished part whose colours are all that the rank it is gathered on needs; depths stay as
 // they are. On all ranks, as take_image.
 template <class Colour>
-void forget_depth(Part& part) {
+void forget_depth(OwnedPixels& part) {
   dynamic_cast<ImageLayer<Colour>&>(*part.layer).forget_depth();
 }
 

@@ -26,22 +26,22 @@ class Layer {
   virtual ~Layer() = default;
   virtual std::uint64_t pixels() const = 0;
   // The pixels of `range`, encoded for the other end's merge. The layer keeps its copy.
-  virtual comm::Buffer cut(PixelRange range) = 0;
-  // Merges what cut(range) gave on another rank. Returns the number of pixels composited.
+  virtual comm::Buffer encode(PixelRange range) = 0;
+  // Merges what encode(range) gave on another rank. Returns the number of pixels composited.
   virtual std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) = 0;
-  // Replaces `range` by what cut(range) gave on another rank.
+  // Replaces `range` by what encode(range) gave on another rank.
   virtual void replace(PixelRange range, const comm::Buffer& pixels) = 0;
-  // Forgets pixels of `range` that are certainly hidden by what cut(range) gave on a lower rank.
+  // Forgets pixels of `range` that are certainly hidden by what encode(range) gave on a lower rank.
   // Returns the number of pixels compared.
   virtual std::uint64_t prune(PixelRange /*range*/, const comm::Buffer& /*pixels*/) { return 0; }
-  // Layers of one type and another format do not understand what the other's cut gives.
+  // Layers of one type and another format do not understand what the other's encode gives.
   virtual int format() const { return 0; }
   // Nothing in it: the rank may stay out of the exchange.
   virtual bool empty() const = 0;
 };
 
 // What a rank owns after a scheme: final pixels in `ranges` of `layer`, the rest of it is garbage.
-struct Part {
+struct OwnedPixels {
   std::vector<PixelRange> ranges;
   std::unique_ptr<Layer> layer;
 };

@@ -9,9 +9,9 @@ namespace delray::composite {
 
 // Seconds of one processor, by codec.
 struct LayerCosts {
-  double cut = 0;            // each cut
-  double cut_pixel = 0;      // and for each pixel of the range
-  double cut_byte = 0;       // and for each byte of the message
+  double encode = 0;         // each message encoded
+  double encode_pixel = 0;   // and for each pixel of the range
+  double encode_byte = 0;    // and for each byte of the message
   double merge = 0;          // each merge
   double merge_pixel = 0;    // and for each pixel of the range
   double merge_covered = 0;  // and for each pixel composited

@@ -32,8 +32,8 @@ struct ComposeOptions {
 struct Scheme {
   const char* name;
   const char* description;
-  Part (*compose)(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                  const ComposeOptions& options);
+  OwnedPixels (*compose)(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                         const ComposeOptions& options);
   const char* group;  // of schemes that work alike; reports show these in one colour
   bool takes_radices = false;
 };
@@ -54,11 +54,11 @@ const Scheme* find_scheme(std::string_view name);
 // nothing in the end, unless all are empty. Beyond what the scheme costs, an all-reduce of a bit
 // per rank and 16 bytes. Collective. All ranks throw std::invalid_argument where there is no such
 // scheme, the options cannot be, or ranks differ in them or in the size or kind of their layers.
-Part compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-             std::string_view scheme, ComposeOptions options = {});
+OwnedPixels compose(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                    std::string_view scheme, ComposeOptions options = {});
 
 // Brings all parts to rank `root`; there the result owns all pixels, elsewhere none. Collective.
 // Throws std::invalid_argument for a root that does not exist, and a part without a layer.
-Part gather(comm::Communicator& communicator, Part&& part, int root);
+OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part, int root);
 
 }  // namespace delray::composite

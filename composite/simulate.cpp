@@ -43,22 +43,24 @@ class Counter {
   std::vector<bool> rounds_;
 };
 
-std::unique_ptr<Layer> make_layer(const HollowImages& images, int rank, const LayerClock& clock) {
-  if (images.codec == Hollow::deep) {
-    return make_hollow_deep(images.deep[static_cast<std::size_t>(rank)], sizeof(Fragment), clock);
+std::unique_ptr<Layer> make_layer(const MetadataOnlyImages& images, int rank,
+                                  const LayerClock& clock) {
+  if (images.codec == MetadataOnly::deep) {
+    return make_metadata_only_deep(images.deep[static_cast<std::size_t>(rank)], sizeof(Fragment),
+                                   clock);
   }
   const ImageMasks& image = images.ranks[static_cast<std::size_t>(rank)];
   switch (images.codec) {
-    case Hollow::dense:
-    case Hollow::deep:
+    case MetadataOnly::dense:
+    case MetadataOnly::deep:
       break;
-    case Hollow::bounds:
-      return make_hollow_bounds(image.copy(), images.width, images.pixel_bytes, clock);
-    case Hollow::active:
-      return make_hollow_active(image.copy(), images.pixel_bytes, clock);
+    case MetadataOnly::bounds:
+      return make_metadata_only_bounds(image.copy(), images.width, images.pixel_bytes, clock);
+    case MetadataOnly::active:
+      return make_metadata_only_active(image.copy(), images.pixel_bytes, clock);
   }
-  return make_hollow_dense(image.covered.pixels(), images.pixel_bytes, image.covered.empty(),
-                           clock);
+  return make_metadata_only_dense(image.covered.pixels(), images.pixel_bytes, image.covered.empty(),
+                                  clock);
 }
 
 }  // namespace
@@ -89,8 +91,8 @@ Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Pha
   return counter.counts();
 }
 
-Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
-                   const ComposeOptions& options) {
+Simulated simulate(std::string_view scheme, const MetadataOnlyImages& images,
+                   const MachineModel& machine, const ComposeOptions& options) {
   const int ranks = images.count();
   if (ranks < 1) throw std::invalid_argument("there are no images to composite");
   comm::Network network = machine.network;
@@ -104,8 +106,8 @@ Simulated simulate(std::string_view scheme, const HollowImages& images, const Ma
     comm::run_simulated(ranks, network, 1, [&](comm::Communicator& communicator) {
       const int rank = communicator.rank();
       comm::Recording recording(communicator, tallies[static_cast<std::size_t>(rank)]);
-      Part part = compose(recording, make_layer(images, rank, {&communicator, machine.costs}),
-                          scheme, options);
+      OwnedPixels part = compose(
+          recording, make_layer(images, rank, {&communicator, machine.costs}), scheme, options);
       result.compose_seconds = std::max(result.compose_seconds, communicator.seconds());
       comm::barrier(communicator);
       gather_begin = std::max(gather_begin, communicator.seconds());

@@ -9,9 +9,9 @@
 
 #include "comm/ledger.h"
 #include "comm/network.h"
-#include "composite/hollow.h"
 #include "composite/layer_costs.h"
 #include "composite/mask.h"
+#include "composite/metadata_only.h"
 #include "composite/scheme.h"
 
 namespace delray::composite {
@@ -30,14 +30,16 @@ Counts count(std::span<const comm::Tally> ranks, comm::Phase phase);
 Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Phase phase);
 
 // What ranks know of their images, and how they send them.
-struct HollowImages {
-  std::span<const ImageMasks> ranks;  // at least one, all of one size; without Hollow::deep
-  Hollow codec = Hollow::dense;
-  std::size_t pixel_bytes = kPixelBytes8;  // or another of hollow.h
-  std::uint64_t width = 1;                 // of the images, for Hollow::bounds
-  std::span<const DeepShape> deep = {};    // in place of `ranks`, with Hollow::deep
+struct MetadataOnlyImages {
+  std::span<const ImageMasks> ranks;  // at least one, all of one size; without MetadataOnly::deep
+  MetadataOnly codec = MetadataOnly::dense;
+  std::size_t pixel_bytes = kPixelBytes8;  // or another of metadata-only.h
+  std::uint64_t width = 1;                 // of the images, for MetadataOnly::bounds
+  std::span<const DeepShape> deep = {};    // in place of `ranks`, with MetadataOnly::deep
 
-  int count() const { return static_cast<int>(codec == Hollow::deep ? deep.size() : ranks.size()); }
+  int count() const {
+    return static_cast<int>(codec == MetadataOnly::deep ? deep.size() : ranks.size());
+  }
 };
 
 // A machine on which layers are cut and merged.
@@ -57,7 +59,7 @@ struct Simulated {
 //
 // Throws std::invalid_argument for a scheme that does not exist and for no images.
 // REQUIRES: masks were made in the order of the options.
-Simulated simulate(std::string_view scheme, const HollowImages& images, const MachineModel& machine,
-                   const ComposeOptions& options = {});
+Simulated simulate(std::string_view scheme, const MetadataOnlyImages& images,
+                   const MachineModel& machine, const ComposeOptions& options = {});
 
 }  // namespace delray::composite

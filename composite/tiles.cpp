@@ -139,7 +139,7 @@ void TileCompositor::hand_over(int tile, bool has_pixels) {
   if (const int to = owner(tile); to != communicator_.rank()) {
     const int number = has_pixels ? tile : ~tile;
     communicator_.send(to, internal::kTagTile, comm::Buffer::of_value(number));
-    if (has_pixels) communicator_.send(to, internal::kTagTilePixels, layer_->cut(pixels));
+    if (has_pixels) communicator_.send(to, internal::kTagTilePixels, layer_->encode(pixels));
   } else {
     own(tile).drawn = true;
     merge_what_came(tile);
@@ -147,7 +147,7 @@ void TileCompositor::hand_over(int tile, bool has_pixels) {
   take_what_came();
 }
 
-Part TileCompositor::finish() {
+OwnedPixels TileCompositor::finish() {
   communicator_.mark(comm::Phase::compose, 0);
   for (take_what_came(); missing_ > 0; take_what_came()) {
     if (announced_.empty()) {
@@ -156,7 +156,7 @@ Part TileCompositor::finish() {
       take_pixels(announced_.begin());
     }
   }
-  Part part;
+  OwnedPixels part;
   for (int tile = communicator_.rank(); tile < tiles_; tile += communicator_.size()) {
     if (range(tile).size() > 0) part.ranges.push_back(range(tile));
   }
@@ -166,8 +166,8 @@ Part TileCompositor::finish() {
 
 namespace internal {
 
-Part tiles(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-           const ComposeOptions& options) {
+OwnedPixels tiles(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                  const ComposeOptions& options) {
   TileCompositor compositor(communicator, std::move(layer), options);
   // Each rank begins elsewhere, so that not all of them send to one.
   for (int i = 1; i <= compositor.tiles(); ++i) {

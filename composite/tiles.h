@@ -42,7 +42,7 @@ class TileCompositor {
   // The same of a tile in which this rank has nothing: no pixels of it travel.
   void nothing_in(int tile);
   // Waits for the tiles of the others.
-  Part finish();
+  OwnedPixels finish();
 
  private:
   // Of a tile of this rank's own.

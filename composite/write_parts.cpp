@@ -195,7 +195,7 @@ void write_header(const Layout& layout, const std::vector<char>& start, const Fi
 }
 
 template <class Colour>
-void write_image_parts(comm::Communicator& communicator, const Part& part,
+void write_image_parts(comm::Communicator& communicator, const OwnedPixels& part,
                        const image::BasicImage<Colour>& image, const std::filesystem::path& path) {
   if (image.width < 1 || image.height < 1)
     throw std::invalid_argument("a picture has at least one pixel");
@@ -227,7 +227,7 @@ void write_image_parts(comm::Communicator& communicator, const Part& part,
 
 }  // namespace
 
-void write_parts(comm::Communicator& communicator, const Part& part,
+void write_parts(comm::Communicator& communicator, const OwnedPixels& part,
                  const std::filesystem::path& path) {
   if (const auto* layer = dynamic_cast<const ImageLayer<image::Rgba8>*>(part.layer.get())) {
     write_image_parts(communicator, part, layer->image(), path);

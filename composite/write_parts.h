@@ -16,7 +16,7 @@ namespace delray::composite {
 // and all have the size of the picture. Collective; all ranks have to see the same file system. The
 // file appears whole or not at all. Errors: what comm::agree_on_failure throws, on all ranks, for a
 // files::FileError (device) of any. REQUIRES: width, height >= 1.
-void write_parts(comm::Communicator& communicator, const Part& part,
+void write_parts(comm::Communicator& communicator, const OwnedPixels& part,
                  const std::filesystem::path& path);
 
 }  // namespace delray::composite

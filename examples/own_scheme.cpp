@@ -36,11 +36,11 @@ composite::Part chains(comm::Communicator& communicator, std::unique_ptr<composi
   communicator.mark(comm::Phase::compose, 0);
   for (int owner = ranks - 1; owner > rank; --owner) {  // up; sending never blocks
     merge(rank - 1, owner, Side::lower);
-    communicator.send(rank + 1, owner, layer->cut(piece_of(owner)));
+    communicator.send(rank + 1, owner, layer->encode(piece_of(owner)));
   }
   for (int owner = 0; owner < rank; ++owner) {  // down
     merge(rank + 1, owner, Side::higher);
-    communicator.send(rank - 1, owner, layer->cut(piece_of(owner)));
+    communicator.send(rank - 1, owner, layer->encode(piece_of(owner)));
   }
   merge(rank - 1, rank, Side::lower);
   merge(rank + 1, rank, Side::higher);

@@ -20,7 +20,7 @@
 #include "loadbalance/partition.h"
 #include "parallel/parallel_for.h"
 #include "raster/distribute/frame_memory.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/distribute/share_communicator.h"
 #include "raster/strategies.h"
 
@@ -100,7 +100,7 @@ void to_distances(std::span<float> depths, const scenes::View& view) {
   });
 }
 
-Report make_report(const Rank& rank, std::span<const comm::Event> events) {
+Report make_report(const RankContext& rank, std::span<const comm::Event> events) {
   const comm::Communicator& communicator = rank.communicator;
   const comm::Totals totals = comm::totals(events, communicator.world_rank(communicator.rank()));
   const Phases& phases = rank.counts.phases;
@@ -205,8 +205,8 @@ struct Renderer::Memory {
 struct Renderer::Frame {
   // `scratch` may be another frame's later.
   Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
-        const scenes::Camera& camera, const RenderOptions& wanted, parallel::Progress* progress)
-      : options((check(wanted, communicator.size()), check(camera), wanted)),
+        const scenes::Camera& camera, const RenderOptions& clip, parallel::Progress* progress)
+      : options((check(clip, communicator.size()), check(camera), clip)),
         screen(make_screen(scenes::make_view(camera, options.width * options.supersampling,
                                              options.height * options.supersampling))),
         recording(communicator, events),
@@ -236,7 +236,7 @@ struct Renderer::Frame {
   const Screen screen;
   std::vector<comm::Event> events;
   comm::Recording recording;
-  Rank rank;
+  RankContext rank;
 };
 
 class Renderer::Steps final : public FrameInSteps {
@@ -304,8 +304,8 @@ std::unique_ptr<FrameInSteps> Renderer::begin(comm::Communicator& communicator,
   return std::make_unique<Steps>(*memory_, communicator, camera, options, progress);
 }
 
-Share Renderer::draw_share(int rank, int ranks, const scenes::Camera& camera,
-                           const RenderOptions& options, parallel::Progress* progress) {
+PartialImage Renderer::draw_share(int rank, int ranks, const scenes::Camera& camera,
+                                  const RenderOptions& options, parallel::Progress* progress) {
   assert(options.supersampling == 1);
   ShareCommunicator communicator(rank, ranks);
   Frame frame(*memory_, memory_->scratch, communicator, camera, options, progress);
@@ -313,8 +313,8 @@ Share Renderer::draw_share(int rank, int ranks, const scenes::Camera& camera,
 }
 
 loadbalance::Costs Renderer::costs(int regions, const scenes::Camera& camera,
-                                   const RenderOptions& wanted) {
-  RenderOptions options = wanted;
+                                   const RenderOptions& clip) {
+  RenderOptions options = clip;
   options.costs = CostSource::model;
   ShareCommunicator communicator(0, 1);
   Frame frame(*memory_, memory_->scratch, communicator, camera, options, nullptr);

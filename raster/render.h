@@ -175,7 +175,7 @@ class FrameInSteps {
 
 // A partial image of sort-last: colours and depths (smaller is nearer; no distances) of an opaque
 // scene, or all surfaces of one that blends some.
-using Share = std::variant<image::Image8, composite::DeepImage<image::RgbaF>>;
+using PartialImage = std::variant<image::Image8, composite::DeepImage<image::RgbaF>>;
 
 // Renders frames of one scene, keeping the memory that a frame needs for the next one. One per
 // rank.
@@ -219,8 +219,8 @@ class Renderer {
   // What rank `rank` of `ranks` contributes to sort-last before anything travels: an equal,
   // ascending share of the primitives, drawn over the whole frame. Not collective. `options` as
   // above; only what concerns drawing counts, and supersampling is not allowed.
-  Share draw_share(int rank, int ranks, const scenes::Camera& camera, const RenderOptions& options,
-                   parallel::Progress* progress = nullptr);
+  PartialImage draw_share(int rank, int ranks, const scenes::Camera& camera,
+                          const RenderOptions& options, parallel::Progress* progress = nullptr);
 
   // What sort-first and sort-middle would cut the screen into so many regions by: boxes around
   // groups of all primitives and a grid of their costs, by the model. Not collective. `options` as

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "files/find_named.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 
 namespace delray::raster {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace delray::raster {
 
-struct Rank;
+struct RankContext;
 
 // What one rank does for a frame, in steps that follow each other. Frames may be in different steps
 // at the same time; only `compose` uses the communicator.
@@ -27,10 +27,10 @@ struct Strategy {
   const char* name;
   const char* description;
   // Collective. The picture on rank 0, with depths as -near / distance; of size 0 elsewhere.
-  Picture (*render)(Rank& rank);
+  Picture (*render)(RankContext& rank);
   // The same in steps; null where ranks exchange messages before they draw, or where what one frame
   // took decides how the next is shared out.
-  std::unique_ptr<FrameSteps> (*steps)(Rank& rank) = nullptr;
+  std::unique_ptr<FrameSteps> (*steps)(RankContext& rank) = nullptr;
   // Which of RenderOptions it looks at:
   bool composites = false;  // scheme, codec, blend; Shade::composited
   bool partitions = false;  // partition, costs, regions_per_rank, keep_factor

@@ -224,3 +224,14 @@ TEST(Layering, ArchitectureNamesEverySubFolder) {
   });
   EXPECT_EQ(told, there);
 }
+
+// What a source is for is said before what it includes.
+TEST(Layering, EverySourceBeginsWithAComment) {
+  for_each_source([&](const std::string& folder, const Names&, const fs::path& file) {
+    if (folder == "tests") return;  // the names of tests say it
+    std::ifstream in(file);
+    std::string first;
+    std::getline(in, first);
+    EXPECT_TRUE(first.starts_with("// ")) << in_tree(file) << ": " << first;
+  });
+}

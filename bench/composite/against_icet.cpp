@@ -235,9 +235,9 @@ std::unique_ptr<composite::Layer> layer_of(const Row& row, const Image8& image, 
       copy(image), blended ? composite::Operator::over : composite::Operator::nearest);
 }
 
-composite::Part compose(comm::Communicator& communicator, const Row& row,
-                        std::unique_ptr<composite::Layer> layer) {
-  composite::Part part = composite::compose(communicator, std::move(layer), row.method);
+composite::OwnedPixels compose(comm::Communicator& communicator, const Row& row,
+                               std::unique_ptr<composite::Layer> layer) {
+  composite::OwnedPixels part = composite::compose(communicator, std::move(layer), row.method);
   composite::forget_depth<image::Rgba8>(part);  // which IceT does not collect either
   return composite::gather(communicator, std::move(part), 0);
 }
@@ -267,7 +267,7 @@ Image8 run(const Communicators& communicators, const std::string& kind, Icet& ic
     if (rank == 0) std::memcpy(image.colour.data(), result, image.pixels() * sizeof *result);
     return image;
   }
-  composite::Part part;
+  composite::OwnedPixels part;
   if (row.side == Side::shared || row.side == Side::mpi) {
     comm::Communicator& communicator =
         row.side == Side::mpi ? communicators.mpi : communicators.shared;

@@ -101,18 +101,18 @@ void print(const Options& options) {
   const composite::PixelRange all{0, plain_image.pixels()};
   std::vector<double> plain;
   const KeepMemory kept;
-  for (Row& row : rows) row.before = row.layer->cut(all);
+  for (Row& row : rows) row.before = row.layer->encode(all);
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     for (Row& row : rows) {
       // Just written, as what is merged: caches are in the same state.
-      const comm::Buffer plain_other = plain_sender->cut(all);
+      const comm::Buffer plain_other = plain_sender->encode(all);
       plain.push_back(seconds_of([&] {
         merge_without_comparing(plain_image, plain_other);
         return 0;
       }));
       comm::Buffer message;
       row.cut.push_back(seconds_of([&] {
-        message = row.sender->cut(all);
+        message = row.sender->encode(all);
         return 0;
       }));
       row.bytes = message.size();

@@ -19,7 +19,7 @@ constexpr std::size_t kGrain = 4;  // groups of 4096 pixels; some ten microsecon
 }  // namespace
 
 template <class Colour>
-comm::Buffer ActiveLayer<Colour>::cut(PixelRange range) {
+comm::Buffer ActiveLayer<Colour>::encode(PixelRange range) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   const Colour* const colour = this->image().colour.data() + range.begin;
   const float* const depth = this->image().depth.data() + range.begin;

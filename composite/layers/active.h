@@ -10,14 +10,14 @@ namespace delray::composite {
 // of a dense layer. Covered pixels that arrive count as composited; those that do not are not
 // touched.
 //
-// Coverage is found anew by every cut: merging adds to it. cut, merge and replace run in the
-// caller's arena, merge straight from the message.
+// Coverage is found anew by every encoding: merging adds to it. encode, merge and replace run in
+// the caller's arena, merge straight from the message.
 template <class Colour>
 class ActiveLayer : public ImageLayer<Colour> {
  public:
   using ImageLayer<Colour>::ImageLayer;
 
-  comm::Buffer cut(PixelRange range) override;
+  comm::Buffer encode(PixelRange range) override;
 
  protected:
   using typename ImageLayer<Colour>::Action;

@@ -36,7 +36,7 @@ struct Runs {
 }  // namespace
 
 template <class Colour>
-comm::Buffer BoundsLayer<Colour>::cut(PixelRange range) {
+comm::Buffer BoundsLayer<Colour>::encode(PixelRange range) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   const image::BasicImage<Colour>& image = this->image();
   const auto width = static_cast<std::uint64_t>(image.width);

@@ -13,7 +13,7 @@ class BoundsLayer final : public ImageLayer<Colour> {
  public:
   using ImageLayer<Colour>::ImageLayer;
 
-  comm::Buffer cut(PixelRange range) override;
+  comm::Buffer encode(PixelRange range) override;
 
  private:
   using typename ImageLayer<Colour>::Action;

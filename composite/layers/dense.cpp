@@ -21,7 +21,7 @@ void copy(T* to, const T* from, std::size_t first, std::size_t last) {
 }  // namespace
 
 template <class Colour>
-comm::Buffer DenseLayer<Colour>::cut(PixelRange range) {
+comm::Buffer DenseLayer<Colour>::encode(PixelRange range) {
   assert(range.begin <= range.end && range.end <= this->pixels());
   const image::BasicImage<Colour>& image = this->image();
   comm::Buffer buffer(range.size() * this->bytes_per_pixel());

@@ -44,11 +44,11 @@ class InterlacedLayer final : public Layer {
   std::uint64_t pixels() const override { return layer_->pixels(); }
   bool empty() const override { return layer_->empty(); }
 
-  comm::Buffer cut(PixelRange range) override {
+  comm::Buffer encode(PixelRange range) override {
     std::vector<comm::Buffer> messages;
     std::size_t bytes = 0, counted = 0;
     for_each_piece(range, [&](PixelRange real) {
-      messages.push_back(layer_->cut(real));
+      messages.push_back(layer_->encode(real));
       bytes += sizeof(std::uint64_t) + padded(messages.back().size());
       counted += sizeof(std::uint64_t) + padded(messages.back().counted_bytes());
     });
@@ -84,8 +84,8 @@ class InterlacedLayer final : public Layer {
     return compared;
   }
 
-  Part deinterlaced(const std::vector<PixelRange>& ranges) && {
-    Part part;
+  OwnedPixels deinterlaced(const std::vector<PixelRange>& ranges) && {
+    OwnedPixels part;
     for (const PixelRange& range : ranges) {
       for_each_piece(range, [&](PixelRange real) { part.ranges.push_back(real); });
     }
@@ -134,7 +134,7 @@ std::unique_ptr<Layer> interlace(std::unique_ptr<Layer> layer, int parts, int sa
   return std::make_unique<InterlacedLayer>(std::move(layer), parts, samples_per_pixel);
 }
 
-Part deinterlace(Part&& part) {
+OwnedPixels deinterlace(OwnedPixels&& part) {
   return std::move(dynamic_cast<InterlacedLayer&>(*part.layer)).deinterlaced(part.ranges);
 }
 

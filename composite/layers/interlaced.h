@@ -12,14 +12,14 @@ namespace delray::composite {
 // the image dealt out to `parts` hands in turn, one hand after the other: an equal run for each of
 // as many ranks has a piece of every place (Moreland, Kendall, Peterka and Huang 2011).
 //
-// A cut range is the pieces' messages one after the other, each after a u64 that tells its size and
-// padded to a multiple of 8 bytes. Costs a copy of what travels, on either side.
+// An encoded range is the pieces' messages one after the other, each after a u64 that tells its
+// size and padded to a multiple of 8 bytes. Costs a copy of what travels, on either side.
 //
 // REQUIRES: parts >= 1; all ranks interlace alike.
 std::unique_ptr<Layer> interlace(std::unique_ptr<Layer> layer, int parts, int samples_per_pixel);
 
 // The part in the image's own order, of the layer that interlace was given. REQUIRES: the part's
 // layer is one that interlace gave.
-Part deinterlace(Part&& part);
+OwnedPixels deinterlace(OwnedPixels&& part);
 
 }  // namespace delray::composite

@@ -90,9 +90,9 @@ std::array<double, 3> fit(std::span<const Line> lines) {
 
 // What the calls of a rank came to: of cuts and of merges.
 struct Spent {
-  Line cut, merge;
+  Line encode, merge;
   Spent& operator+=(const Spent& other) {
-    for (Line Spent::*line : {&Spent::cut, &Spent::merge}) {
+    for (Line Spent::*line : {&Spent::encode, &Spent::merge}) {
       (this->*line).seconds += (other.*line).seconds;
       for (std::size_t k = 0; k < 3; ++k) (this->*line).amounts[k] += (other.*line).amounts[k];
     }
@@ -109,10 +109,10 @@ class TimedLayer final : public Layer {
   std::unique_ptr<Layer> release() { return std::move(layer_); }
   std::uint64_t pixels() const override { return layer_->pixels(); }
   bool empty() const override { return layer_->empty(); }
-  comm::Buffer cut(PixelRange range) override {
+  comm::Buffer encode(PixelRange range) override {
     const auto begin = Clock::now();
-    comm::Buffer message = layer_->cut(range);
-    add(spent_.cut, begin, range, message.size());
+    comm::Buffer message = layer_->encode(range);
+    add(spent_.encode, begin, range, message.size());
     return message;
   }
   std::uint64_t merge(PixelRange range, const comm::Buffer& pixels, Side from) override {
@@ -142,7 +142,7 @@ class Layers {
  public:
   virtual ~Layers() = default;
   virtual std::unique_ptr<Layer> make(const image::Image8& picture) = 0;
-  virtual void take_back(Part&& part) = 0;
+  virtual void take_back(OwnedPixels&& part) = 0;
 };
 
 class FlatLayers final : public Layers {
@@ -156,7 +156,7 @@ class FlatLayers final : public Layers {
     std::copy_n(picture.depth.data(), picture.pixels(), spare.depth.data());
     return codec_.make(std::exchange(spare, {}));
   }
-  void take_back(Part&& part) override {
+  void take_back(OwnedPixels&& part) override {
     image::Image8 image = take_image<image::Rgba8>(std::move(part));
     image::Image8& spare = spares_[image.pixels()];
     spare = std::move(image);
@@ -194,7 +194,7 @@ class DeepLayers final : public Layers {
     }
     return make_deep(std::move(image));
   }
-  void take_back(Part&&) override {}
+  void take_back(OwnedPixels&&) override {}
 
  private:
   // On a row, until any of the surfaces begins or ends; in the mean.
@@ -212,7 +212,7 @@ Spent compose_timed(comm::Communicator& communicator, Layers& layers, const char
   auto layer = std::make_unique<TimedLayer>(layers.make(picture), spent);
   // The first wait may be long; the others are over at once, and all are awake.
   for (int i = 0; i < 3; ++i) comm::barrier(communicator);
-  Part part = compose(communicator, std::move(layer), scheme);
+  OwnedPixels part = compose(communicator, std::move(layer), scheme);
   comm::barrier(communicator);  // who goes on would slow down those who are not done
   part.layer = dynamic_cast<TimedLayer&>(*part.layer).release();
   layers.take_back(std::move(part));
@@ -275,7 +275,7 @@ LayerCosts measure(std::uint64_t pixels, const MakeLayers& make) {
   });
   std::vector<Line> cuts, merges;
   for (const Variant& variant : variants) {
-    cuts.push_back(median_of(variant, &Spent::cut));
+    cuts.push_back(median_of(variant, &Spent::encode));
     merges.push_back(median_of(variant, &Spent::merge));
   }
   const auto cut = fit(cuts), merge = fit(merges);

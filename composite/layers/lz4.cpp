@@ -131,8 +131,8 @@ comm::Buffer decompress(const comm::Buffer& message) {
 }  // namespace
 
 template <class Colour>
-comm::Buffer Lz4Layer<Colour>::cut(PixelRange range) {
-  return compress(ActiveLayer<Colour>::cut(range));
+comm::Buffer Lz4Layer<Colour>::encode(PixelRange range) {
+  return compress(ActiveLayer<Colour>::encode(range));
 }
 
 template <class Colour>

@@ -14,13 +14,13 @@ namespace delray::composite {
 //     not be made smaller
 //   the blocks
 //
-// cut, merge and replace run in the caller's arena, a block at a time.
+// encode, merge and replace run in the caller's arena, a block at a time.
 template <class Colour>
 class Lz4Layer final : public ActiveLayer<Colour> {
  public:
   using ActiveLayer<Colour>::ActiveLayer;
 
-  comm::Buffer cut(PixelRange range) override;
+  comm::Buffer encode(PixelRange range) override;
 
  private:
   using typename ImageLayer<Colour>::Action;

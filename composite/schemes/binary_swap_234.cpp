@@ -9,13 +9,13 @@
 #include <bit>
 
 #include "composite/schemes/exchange.h"
-#include "composite/schemes/members.h"
 #include "composite/schemes/schemes.h"
+#include "composite/schemes/sub_communicator.h"
 
 namespace delray::composite::internal {
 
-Part binary_swap_234(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                     const ComposeOptions& options) {
+OwnedPixels binary_swap_234(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                            const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int rank = communicator.rank(), size = communicator.size();
   if (size == 1) return part_of(all, std::move(layer));
@@ -41,7 +41,7 @@ Part binary_swap_234(comm::Communicator& communicator, std::unique_ptr<Layer> la
 
   std::vector<int> ranks;
   for (int i = 0; i < groups; ++i) ranks.push_back(first_of(i) + me);
-  Members members(communicator, std::move(ranks));
+  SubCommunicator members(communicator, std::move(ranks));
   const PixelRange mine = swap(members, *layer, half(me), options.samples_per_pixel, round);
   return part_of(mine, std::move(layer));
 }

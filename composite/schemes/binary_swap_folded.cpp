@@ -10,13 +10,13 @@
 #include <bit>
 
 #include "composite/schemes/exchange.h"
-#include "composite/schemes/members.h"
 #include "composite/schemes/schemes.h"
+#include "composite/schemes/sub_communicator.h"
 
 namespace delray::composite::internal {
 
-Part binary_swap_folded(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                        const ComposeOptions& options) {
+OwnedPixels binary_swap_folded(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                               const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int rank = communicator.rank(), size = communicator.size();
   const int kept = static_cast<int>(std::bit_floor(static_cast<unsigned>(size)));
@@ -32,7 +32,7 @@ Part binary_swap_folded(comm::Communicator& communicator, std::unique_ptr<Layer>
   }
   std::vector<int> ranks;
   for (int i = 0; i < kept; ++i) ranks.push_back(i < folded ? 2 * i : i + folded);
-  Members members(communicator, std::move(ranks));
+  SubCommunicator members(communicator, std::move(ranks));
   const PixelRange mine = swap(members, *layer, all, options.samples_per_pixel, round);
   return part_of(mine, std::move(layer));
 }

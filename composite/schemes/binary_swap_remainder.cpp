@@ -11,8 +11,8 @@
 
 namespace delray::composite::internal {
 
-Part binary_swap_remainder(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                           const ComposeOptions& options) {
+OwnedPixels binary_swap_remainder(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                                  const ComposeOptions& options) {
   const int samples = options.samples_per_pixel;
   PixelRange range{0, layer->pixels()};
   // Those that hold the same range, in ascending order of the intervals they have merged; at first

@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "composite/schemes/exchange.h"
-#include "composite/schemes/members.h"
 #include "composite/schemes/schemes.h"
+#include "composite/schemes/sub_communicator.h"
 
 namespace delray::composite::internal {
 namespace {
@@ -32,8 +32,8 @@ PowerGroup group_after(int first, int ranks) {
 
 }  // namespace
 
-Part binary_swap_telescoping(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                             const ComposeOptions& options) {
+OwnedPixels binary_swap_telescoping(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                                    const ComposeOptions& options) {
   const int samples = options.samples_per_pixel, rank = communicator.rank();
   const PixelRange all{0, layer->pixels()};
   PowerGroup before, own = group_after(0, communicator.size());
@@ -45,7 +45,7 @@ Part binary_swap_telescoping(comm::Communicator& communicator, std::unique_ptr<L
 
   std::vector<int> ranks(static_cast<std::size_t>(own.count));
   std::iota(ranks.begin(), ranks.end(), own.first);
-  Members members(communicator, std::move(ranks));
+  SubCommunicator members(communicator, std::move(ranks));
   int round = 0;
   const PixelRange mine = swap(members, *layer, all, samples, round);
 

@@ -14,8 +14,8 @@
 
 namespace delray::composite::internal {
 
-Part bus(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-         const ComposeOptions& options) {
+OwnedPixels bus(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int rank = communicator.rank(), size = communicator.size();
   std::vector<int> listeners(static_cast<std::size_t>(std::max(0, size - rank - 1)));
@@ -26,7 +26,7 @@ Part bus(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
     if (size > 1) communicator.mark(comm::Phase::compose, turn);
     for_each_message(all, options.samples_per_pixel, [&](PixelRange piece) {
       if (turn == rank) {
-        communicator.multicast(listeners, kTagCompose, layer->cut(piece));
+        communicator.multicast(listeners, kTagCompose, layer->encode(piece));
         return;
       }
       const comm::Buffer pixels = communicator.receive(turn, kTagCompose);

@@ -6,8 +6,8 @@
 
 namespace delray::composite::internal {
 
-Part centralized(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                 const ComposeOptions& options) {
+OwnedPixels centralized(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                        const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   communicator.mark(comm::Phase::compose, 0);
   if (communicator.rank() != 0) {

@@ -19,8 +19,9 @@ void merge_message(comm::Communicator& communicator, Layer& layer, PixelRange pi
 
 void send(comm::Communicator& communicator, Layer& layer, PixelRange range, int to,
           int samples_per_pixel) {
-  for_each_message(range, samples_per_pixel,
-                   [&](PixelRange piece) { communicator.send(to, kTagCompose, layer.cut(piece)); });
+  for_each_message(range, samples_per_pixel, [&](PixelRange piece) {
+    communicator.send(to, kTagCompose, layer.encode(piece));
+  });
 }
 
 void merge(comm::Communicator& communicator, Layer& layer, PixelRange range, int from,
@@ -46,7 +47,7 @@ PixelRange exchange(comm::Communicator& communicator, Layer& layer, PixelRange r
     for_each_outwards(me, group.count, [&](int member) {
       const PixelRange pixels = message_of(piece(member), i, samples_per_pixel);
       if (pixels.size() == 0) return;
-      communicator.send(group.rank_of(member), kTagCompose, layer.cut(pixels));
+      communicator.send(group.rank_of(member), kTagCompose, layer.encode(pixels));
     });
     const PixelRange pixels =
         i < ahead ? PixelRange{} : message_of(mine, i - ahead, samples_per_pixel);
@@ -77,7 +78,7 @@ PixelRange swapped_piece(PixelRange range, int member, int members, int samples_
   return range;
 }
 
-Part part_of(PixelRange range, std::unique_ptr<Layer> layer) {
+OwnedPixels part_of(PixelRange range, std::unique_ptr<Layer> layer) {
   if (range.size() == 0) return {{}, std::move(layer)};
   return {{range}, std::move(layer)};
 }

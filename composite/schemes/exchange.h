@@ -72,6 +72,6 @@ PixelRange swap(comm::Communicator& members, Layer& layer, PixelRange range, int
 PixelRange swapped_piece(PixelRange range, int member, int members, int samples_per_pixel);
 
 // A part that consists of one range, or of none if that is empty.
-Part part_of(PixelRange range, std::unique_ptr<Layer> layer);
+OwnedPixels part_of(PixelRange range, std::unique_ptr<Layer> layer);
 
 }  // namespace delray::composite::internal

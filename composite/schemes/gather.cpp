@@ -9,7 +9,7 @@
 
 namespace delray::composite {
 
-Part gather(comm::Communicator& communicator, Part&& part, int root) {
+OwnedPixels gather(comm::Communicator& communicator, OwnedPixels&& part, int root) {
   using namespace internal;
   if (root < 0 || root >= communicator.size())
     throw std::invalid_argument("rank " + std::to_string(root) + " does not exist");
@@ -20,7 +20,7 @@ Part gather(comm::Communicator& communicator, Part&& part, int root) {
                       comm::Buffer::of(std::span<const PixelRange>(part.ranges)));
     for (const PixelRange& range : part.ranges) {
       for_each_message(range, 1, [&](PixelRange piece) {
-        communicator.send(root, kTagGatherPixels, part.layer->cut(piece));
+        communicator.send(root, kTagGatherPixels, part.layer->encode(piece));
       });
     }
     return {{}, std::move(part.layer)};

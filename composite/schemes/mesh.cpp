@@ -61,8 +61,8 @@ PixelRange exchange_in_rounds(comm::Communicator& communicator, Layer& layer, Pi
 
 }  // namespace
 
-Part mesh(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-          const ComposeOptions& options) {
+OwnedPixels mesh(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                 const ComposeOptions& options) {
   const int rank = communicator.rank(), size = communicator.size();
   const int columns = nearest_divisor(
       size, options.radices.empty() ? std::sqrt(static_cast<double>(size)) : options.radices[0]);

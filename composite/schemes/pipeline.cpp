@@ -18,8 +18,8 @@ constexpr std::uint64_t kMostPieces = 64;
 
 }  // namespace
 
-Part pipeline(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-              const ComposeOptions& options) {
+OwnedPixels pipeline(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                     const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int rank = communicator.rank(), last = communicator.size() - 1;
   const int pieces =

@@ -8,9 +8,9 @@
 //
 // Degenerate: of a power of two, radices of 2 give binary swap; one radix of n gives direct-send.
 #include "composite/schemes/exchange.h"
-#include "composite/schemes/members.h"
 #include "composite/schemes/radices.h"
 #include "composite/schemes/schemes.h"
+#include "composite/schemes/sub_communicator.h"
 
 namespace delray::composite::internal {
 namespace {
@@ -28,8 +28,8 @@ PixelRange piece_in_block(const Radices& radices, PixelRange range, int member,
 
 }  // namespace
 
-Part radix_k(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-             const ComposeOptions& options) {
+OwnedPixels radix_k(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                    const ComposeOptions& options) {
   const int samples = options.samples_per_pixel;
   const Radices radices = choose_radices(communicator.size(), options.radices);
   const RadixPlace place = place_of(radices, communicator.rank());
@@ -44,10 +44,10 @@ Part radix_k(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
   }
   std::vector<int> ranks;
   for (int i = 0; i < radices.members; ++i) ranks.push_back(rank_of(radices, i));
-  Members members(communicator, std::move(ranks));
+  SubCommunicator members(communicator, std::move(ranks));
   const int me = members.rank();
-  // Members that differ only in the digits of earlier rounds are neighbours; `stride` of them have
-  // been merged and hold the range's pieces.
+  // SubCommunicator that differ only in the digits of earlier rounds are neighbours; `stride` of
+  // them have been merged and hold the range's pieces.
   int stride = 1;
   for (int round = 0; round < static_cast<int>(radices.radices.size()); ++round) {
     const int k = radices.radices[static_cast<std::size_t>(round)];

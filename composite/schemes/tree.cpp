@@ -12,8 +12,8 @@
 
 namespace delray::composite::internal {
 
-Part tree(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-          const ComposeOptions& options) {
+OwnedPixels tree(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                 const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int rank = communicator.rank();
   int round = 0;

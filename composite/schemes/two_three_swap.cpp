@@ -142,8 +142,8 @@ void compose(comm::Communicator& communicator, Layer& layer, const Subtree& tree
 
 }  // namespace
 
-Part two_three_swap(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
-                    const ComposeOptions& options) {
+OwnedPixels two_three_swap(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
+                           const ComposeOptions& options) {
   const PixelRange all{0, layer->pixels()};
   const int size = communicator.size();
   const int height = std::bit_width(static_cast<unsigned>(size)) - 1;

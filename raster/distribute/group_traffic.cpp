@@ -45,7 +45,7 @@ comm::Buffer pieces_in(const comm::Buffer& message) {
 
 }  // namespace
 
-void GroupTraffic::begin_frame(Rank& rank, std::size_t groups) {
+void GroupTraffic::begin_frame(RankContext& rank, std::size_t groups) {
   const bool as_before = rank.number() == rank_ && rank.ranks() == ranks_ &&
                          rank.options.travel == travel_ && groups == holders_.size();
   if (!agreement_.holds(rank.communicator, as_before)) {
@@ -60,7 +60,7 @@ void GroupTraffic::begin_frame(Rank& rank, std::size_t groups) {
   staying_.clear();
 }
 
-void GroupTraffic::need(const Rank& rank, std::span<const Piece> groups, std::size_t group,
+void GroupTraffic::need(const RankContext& rank, std::span<const Piece> groups, std::size_t group,
                         int owner) {
   if (owner == rank.number()) {
     staying_.push_back(groups[group]);
@@ -86,7 +86,7 @@ void GroupTraffic::forget_unneeded(std::span<const Piece> groups) {
     });
 }
 
-void GroupTraffic::keep(Rank& rank, const comm::Buffer& message) {
+void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {
   for (const std::uint64_t primitive : forgotten_in(message)) held_.erase(primitive);
   Arrivals arrivals;
   if (travel_ == Travel::numbers) {
@@ -108,7 +108,7 @@ void GroupTraffic::keep(Rank& rank, const comm::Buffer& message) {
   }
 }
 
-std::vector<Piece> GroupTraffic::finish_frame(Rank& rank, std::span<const Piece> groups) {
+std::vector<Piece> GroupTraffic::finish_frame(RankContext& rank, std::span<const Piece> groups) {
   forget_unneeded(groups);
   std::vector<comm::Parcel> parcels;
   for (auto& [to, outgoing] : outgoing_) {

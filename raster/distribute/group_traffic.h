@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "raster/distribute/agreement.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/draws.h"
 
 namespace delray::raster {
@@ -28,7 +28,7 @@ class GroupTraffic {
   // If not all remember the same frames all begin anew. REQUIRES: for the same number of groups,
   // they are the same from frame to frame.
   template <class F>
-  std::vector<Piece> exchange(Rank& rank, std::span<const Piece> groups, F&& needed_by) {
+  std::vector<Piece> exchange(RankContext& rank, std::span<const Piece> groups, F&& needed_by) {
     begin_frame(rank, groups.size());
     for (std::size_t i = 0; i < groups.size(); ++i) {
       needed_by(i, owners_);
@@ -56,11 +56,11 @@ class GroupTraffic {
     std::vector<std::uint64_t> forgotten;  // first primitives of groups
   };
 
-  void begin_frame(Rank& rank, std::size_t groups);
-  void need(const Rank& rank, std::span<const Piece> groups, std::size_t group, int owner);
-  std::vector<Piece> finish_frame(Rank& rank, std::span<const Piece> groups);
+  void begin_frame(RankContext& rank, std::size_t groups);
+  void need(const RankContext& rank, std::span<const Piece> groups, std::size_t group, int owner);
+  std::vector<Piece> finish_frame(RankContext& rank, std::span<const Piece> groups);
   void forget_unneeded(std::span<const Piece> groups);
-  void keep(Rank& rank, const comm::Buffer& message);
+  void keep(RankContext& rank, const comm::Buffer& message);
 
   Agreement agreement_;
   std::uint64_t frame_ = 0;

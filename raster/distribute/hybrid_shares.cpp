@@ -22,7 +22,7 @@ constexpr std::uint64_t kGroupsPerRank = 250;
 constexpr std::uint64_t kLargestGroup = 256;  // triangles
 
 // The ranges of everybody's groups on all ranks. A message only where there are any.
-std::vector<PrimitiveRange> find_everybodys(const Rank& rank, std::span<const Piece> groups,
+std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, std::span<const Piece> groups,
                                             const Shares& shares) {
   const std::vector<int>& owners = shares.partition.owners;
   std::vector<PrimitiveRange> ranges;
@@ -43,7 +43,7 @@ std::vector<PrimitiveRange> find_everybodys(const Rank& rank, std::span<const Pi
 
 }  // namespace
 
-VisibleGroups find_visible_groups(Rank& rank) {
+VisibleGroups find_visible_groups(RankContext& rank) {
   const std::uint64_t all = rank.first_primitives.back();
   const std::uint64_t triangles =
       std::clamp(all / (kGroupsPerRank * static_cast<std::uint64_t>(rank.ranks())),
@@ -71,7 +71,7 @@ VisibleGroups find_visible_groups(Rank& rank) {
   return {std::move(groups), std::move(visible)};
 }
 
-Shares share_out(const Rank& rank, const VisibleGroups& visible) {
+Shares share_out(const RankContext& rank, const VisibleGroups& visible) {
   Shares shares;
   const std::vector<comm::Buffer> all =
       comm::all_gather(rank.communicator, comm::Buffer::of(std::span(visible.boxes)));
@@ -85,8 +85,8 @@ Shares share_out(const Rank& rank, const VisibleGroups& visible) {
   return shares;
 }
 
-std::vector<Piece> send_to_owners(Rank& rank, std::span<const Piece> groups, const Shares& shares,
-                                  Arrivals& arrivals) {
+std::vector<Piece> send_to_owners(RankContext& rank, std::span<const Piece> groups,
+                                  const Shares& shares, Arrivals& arrivals) {
   std::vector<std::vector<Piece>> leaving(static_cast<std::size_t>(rank.ranks()));
   const loadbalance::RegionIndex index(shares.partition.regions);
   std::vector<int> owners;

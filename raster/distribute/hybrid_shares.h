@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "loadbalance/hybrid_partition.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/distribute/tile_fragments.h"
 #include "raster/distribute/travel.h"
 
@@ -25,7 +25,7 @@ struct VisibleGroups {
   std::vector<Piece> groups;
   std::vector<GroupBox> boxes;
 };
-VisibleGroups find_visible_groups(Rank& rank);
+VisibleGroups find_visible_groups(RankContext& rank);
 
 // The same on all ranks.
 struct Shares {
@@ -35,7 +35,7 @@ struct Shares {
   std::vector<PrimitiveRange> everybodys;  // primitives of groups that everybody draws, ascending
 };
 // Collective: every rank gets all boxes, and then the ranges of everybody's groups, if any.
-Shares share_out(const Rank& rank, const VisibleGroups& visible);
+Shares share_out(const RankContext& rank, const VisibleGroups& visible);
 
 // How a frame was shared out, and what a rank draws of it.
 struct SharedOut {
@@ -47,7 +47,7 @@ struct SharedOut {
 
 // Sends every group to its owner, everybody's to the ranks whose regions they touch. Returns this
 // rank's, with those that arrived. Collective.
-std::vector<Piece> send_to_owners(Rank& rank, std::span<const Piece> groups, const Shares& shares,
-                                  Arrivals& arrivals);
+std::vector<Piece> send_to_owners(RankContext& rank, std::span<const Piece> groups,
+                                  const Shares& shares, Arrivals& arrivals);
 
 }  // namespace delray::raster

@@ -67,10 +67,10 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
       into_tiles_{task.screen,
                   task.list,
                   frame_->draws(),
-                  tiles_.wanted,
+                  tiles_.clip,
                   task.options.skip_hidden_clusters,
                   [this](std::uint32_t number, int x, int y) {
-                    return solid(frame_->shading(), memory().seen, number, x, y);
+                    return alpha_test(frame_->shading(), memory().seen, number, x, y);
                   },
                   {},
                   task.progress} {
@@ -151,7 +151,7 @@ void RegionDrawing::finish_rows(int first, int rows, FinishTile finish_tile,
 }
 
 void RegionDrawing::end_drawing_into(RegionCounts& counts) {
-  counts.triangles = end_drawing(task_.screen, scratch_.workers, scratch_.later, costs_);
+  counts.triangles = end_drawing(task_.screen, scratch_.workers, scratch_.deferred, costs_);
   counts.phases.transform = costs_.set_up;
   counts.phases.bin = costs_.sort;
   counts.phases.rasterize = costs_.rasterize;
@@ -176,16 +176,16 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
       VisibilityTile* tile = nullptr;
       if (scratch_.tiles.is_drawn_in(index)) {
         tile = &scratch_.tiles.open(index);
-      } else if (!scratch_.later.large.of_tile(index).empty()) {
+      } else if (!scratch_.deferred.large.of_tile(index).empty()) {
         // In memory that stays in the cache.
         tile = &mine.visibility;
         tile->clear(scratch_.tiles.rect(index));
       }
       if (tile != nullptr)
-        shaded_here +=
-            draw_large(into_tiles_, index, scratch_.later.large, scratch_.tiles.rect(index), *tile);
-      find_blended(screen, scratch_.tiles.rect(index), scratch_.later.blended.triangles,
-                   scratch_.later.blended.of_tile(index), tile, mine.blended);
+        shaded_here += draw_large(into_tiles_, index, scratch_.deferred.large,
+                                  scratch_.tiles.rect(index), *tile);
+      find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
+                   scratch_.deferred.blended.of_tile(index), tile, mine.blended);
       clock.finish(0);
       const geometry::Rect corner = screen.tile(index);
       const image::RgbaF* const colours =

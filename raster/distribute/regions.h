@@ -21,7 +21,7 @@ struct Scratch {
   const void* taken = nullptr;
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
-  LaterTriangles later;
+  DeferredTriangles deferred;
   image::Plane<image::RgbaF> shaded;  // of a frame that is shaded as it is drawn
 };
 

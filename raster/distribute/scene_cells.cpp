@@ -11,7 +11,7 @@
 #include "composite/codec.h"
 #include "composite/fragment.h"
 #include "parallel/parallel_for.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/samples.h"
 
 namespace delray::raster {
@@ -50,7 +50,7 @@ glm::vec3 moved_into(const geometry::Box3& box, glm::vec3 p) {
 
 }  // namespace
 
-void cut_scene(const Rank& rank, SceneCells& known) {
+void cut_scene(const RankContext& rank, SceneCells& known) {
   if (known.cells.cells.size() == static_cast<std::size_t>(rank.ranks())) return;
   const scenes::Scene& scene = rank.scene;
   std::vector<PlacedCluster> clusters;
@@ -87,7 +87,7 @@ void cut_scene(const Rank& rank, SceneCells& known) {
   }
 }
 
-std::unique_ptr<composite::Layer> draw_cell(Rank& rank, const DrawList& list,
+std::unique_ptr<composite::Layer> draw_cell(RankContext& rank, const DrawList& list,
                                             RegionDrawing& drawing, const geometry::Box3& cell) {
   constexpr std::size_t kGrain = 256;  // clusters
   std::vector<geometry::Box3> boxes(list.clusters.size());

@@ -11,7 +11,7 @@
 
 namespace delray::raster {
 
-struct Rank;
+struct RankContext;
 
 // A scene's cells for a number of ranks, and what reaches into this rank's.
 struct SceneCells {
@@ -24,7 +24,7 @@ struct SceneCells {
 // Cuts space by the triangles of clusters: the same cells on every rank, without a message. `known`
 // is taken where it is for as many ranks. O(clusters log clusters log ranks), and the first time
 // what making all clusters of the scene takes.
-void cut_scene(const Rank& rank, SceneCells& known);
+void cut_scene(const RankContext& rank, SceneCells& known);
 
 // Ends a drawing of `cells.pieces`: of what is seen at a sample those surfaces that are in the
 // rank's cell, blended front to back, with the depth of the first, as a layer of codec
@@ -34,7 +34,7 @@ void cut_scene(const Rank& rank, SceneCells& known);
 // that rounding makes it nobody's or everybody's never. Along a ray points are in the order of
 // depths; only what is closer than rounding to a plane may be blended in another order than by
 // depth.
-std::unique_ptr<composite::Layer> draw_cell(Rank& rank, const DrawList& list,
+std::unique_ptr<composite::Layer> draw_cell(RankContext& rank, const DrawList& list,
                                             RegionDrawing& drawing, const geometry::Box3& cell);
 
 }  // namespace delray::raster

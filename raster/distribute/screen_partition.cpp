@@ -21,7 +21,7 @@
 #include "parallel/parallel_for.h"
 #include "raster/distribute/coverage.h"
 #include "raster/distribute/extent.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/processor_seconds.h"
 #include "raster/pipeline/samples.h"
 
@@ -60,7 +60,7 @@ std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int part
   return static_cast<std::uint32_t>(loadbalance::primitives_per_box(triangles, parts));
 }
 
-std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
+std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(RankContext& rank,
                                                                 std::span<const Piece> groups,
                                                                 SeenSamples* seen_samples) {
   loadbalance::RasterCostModel model = cost_model(rank.options.lighting);
@@ -160,7 +160,7 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(Rank& rank,
   return boxes;
 }
 
-const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
+const loadbalance::Partition& ScreenPartition::cut(RankContext& rank,
                                                    std::span<const loadbalance::WeightedBox> boxes,
                                                    int parts, int first_rank) {
   const RenderOptions& options = rank.options;
@@ -213,7 +213,7 @@ const loadbalance::Partition& ScreenPartition::cut(Rank& rank,
   return partition;
 }
 
-loadbalance::Costs ScreenPartition::costs(Rank& rank, int regions) {
+loadbalance::Costs ScreenPartition::costs(RankContext& rank, int regions) {
   assert(rank.ranks() == 1);
   const auto [begin, end] = rank.own_primitives();
   std::vector<loadbalance::WeightedBox> boxes =
@@ -223,7 +223,7 @@ loadbalance::Costs ScreenPartition::costs(Rank& rank, int regions) {
   return costs_of(rank.frame(), regions, boxes);
 }
 
-void ScreenPartition::measure(const Rank& rank) {
+void ScreenPartition::measure(const RankContext& rank) {
   const Phases& phases = rank.counts.phases;
   sample_ = {static_cast<double>(rank.counts.triangles.rasterized),
              static_cast<double>(rank.counts.shaded),

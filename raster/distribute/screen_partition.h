@@ -15,7 +15,7 @@
 
 namespace delray::raster {
 
-struct Rank;
+struct RankContext;
 
 // The pieces cut into groups of at most so many neighbouring triangles. Groups of a piece follow
 // each other.
@@ -39,7 +39,7 @@ class ScreenPartition {
   // those of large triangles, more exactly than by a box. Empty boxes cost nothing. Collective:
   // unless nothing has changed for any rank since the last frame, a grid of 16 x 16 pixels is
   // summed over ranks and, where costs are measured, every rank says what it did.
-  std::vector<loadbalance::WeightedBox> boxes_of(Rank& rank, std::span<const Piece> groups,
+  std::vector<loadbalance::WeightedBox> boxes_of(RankContext& rank, std::span<const Piece> groups,
                                                  SeenSamples* seen_samples = nullptr);
 
   // Whether boxes_of gave on all ranks what it gave the last time; never for measured costs.
@@ -49,17 +49,18 @@ class ScreenPartition {
   // boxes, or as it was cut for the last frame. Collective; nothing travels if all is unchanged.
   // Valid until the next call. Owner k is
   // rank first_rank + k.
-  const loadbalance::Partition& cut(Rank& rank, std::span<const loadbalance::WeightedBox> boxes,
-                                    int parts, int first_rank = 0);
+  const loadbalance::Partition& cut(RankContext& rank,
+                                    std::span<const loadbalance::WeightedBox> boxes, int parts,
+                                    int first_rank = 0);
 
   // The costs of all primitives, to be cut into so many regions. REQUIRES: a single rank.
-  loadbalance::Costs costs(Rank& rank, int regions);
+  loadbalance::Costs costs(RankContext& rank, int regions);
 
   // Of the last cut, on rank 0 where options.report_partition asked for it.
   const std::optional<PartitionStatistics>& statistics() const { return statistics_; }
 
   // Remembers what the rank did in this frame, for the costs of the next.
-  void measure(const Rank& rank);
+  void measure(const RankContext& rank);
 
  private:
   // What decides whether a partition may be kept at all.

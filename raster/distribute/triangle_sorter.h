@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "loadbalance/region_index.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/set_up.h"
 
 namespace delray::raster {
@@ -34,7 +34,7 @@ struct SortedClusters {
 class TriangleSorter {
  public:
   // Refers to all of them; owners of regions are ranks.
-  TriangleSorter(const Rank& rank, const RegionDrawing& drawing,
+  TriangleSorter(const RankContext& rank, const RegionDrawing& drawing,
                  const loadbalance::RegionIndex& regions)
       : rank_(rank), drawing_(drawing), regions_(regions) {}
 
@@ -47,7 +47,7 @@ class TriangleSorter {
   bool find_receivers(const PreparedDraw& draw, const ClusterBlock& block, const Cluster& cluster);
   void pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted);
 
-  const Rank& rank_;
+  const RankContext& rank_;
   const RegionDrawing& drawing_;
   const loadbalance::RegionIndex& regions_;
   std::vector<int> owners_;

@@ -47,7 +47,7 @@ struct ClusterInSetUp {
   const ScreenVertices& vertices;
   std::int32_t position[kClusterVertices + ScreenVertices::kPadding];  // if compact: x | y << 16
   int origin_x = 0, origin_y = 0;                                      // if compact
-  geometry::Rect wanted;                                               // pixels of the frame
+  geometry::Rect clip;                                                 // pixels of the frame
   DepthsAround around;                                                 // in them
   int centre_x = 0, centre_y = 0, tiles_x = 0;                         // the screen's
 };
@@ -95,7 +95,7 @@ HWY_INLINE SmallSetUp set_up_small(const ClusterInSetUp& cluster, const SmallTri
   const I cx = low_half(c), cy = high_half(c);
   SmallSetUp s;
   s.origin = {hn::LoadU(d, triangles.origin_x + first), hn::LoadU(d, triangles.origin_y + first)};
-  s.box = boxes_of(cluster.wanted, s.origin, ax, ay, bx, by, cx, cy);
+  s.box = boxes_of(cluster.clip, s.origin, ax, ay, bx, by, cx, cy);
   const Mask used = hn::FirstN(d, count);
   const I none = hn::Set(d, -1);
   s.columns = hn::IfThenElse(used, hn::Sub(s.box.x1, s.box.x0), none);
@@ -256,7 +256,7 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
                     const Cluster& places, const ClusterInSetUp& cluster,
                     std::uint32_t first_number, SetUpResult& result) {
   const MeshCluster& mesh_cluster = block.clusters[places.part];
-  const geometry::Rect& wanted = cluster.wanted;
+  const geometry::Rect& clip = cluster.clip;
   const Ints d;
   const Bytes db;
   const std::size_t lanes = hn::Lanes(d);
@@ -308,7 +308,7 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
         const std::size_t count = hn::CountTrue(d, alone);
         for (std::size_t k = 0; k < count; ++k)
           set_up_place(screen, draw, block, places, cluster.vertices,
-                       static_cast<std::uint32_t>(which[k]), first_number, wanted, result);
+                       static_cast<std::uint32_t>(which[k]), first_number, clip, result);
         set_up_alone += count;
         in_range = hn::AndNot(alone, in_range);
       }
@@ -316,7 +316,7 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
       pb = hn::Or(bx, hn::ShiftLeft<16>(by));
       pc = hn::Or(cx, hn::ShiftLeft<16>(cy));
     }
-    const Boxes box = boxes_of(wanted, origin, ax, ay, bx, by, cx, cy);
+    const Boxes box = boxes_of(clip, origin, ax, ay, bx, by, cx, cy);
     const I columns = hn::Sub(box.x1, box.x0), rows = hn::Sub(box.y1, box.y0);
     const I area = hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)),
                            hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
@@ -367,7 +367,7 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
       const auto name = static_cast<std::uint32_t>(others[k]);
       const ScreenVertex v[3] = {cluster.vertices[name & 0xFF], cluster.vertices[name >> 8 & 0xFF],
                                  cluster.vertices[name >> 16 & 0xFF]};
-      append_triangle(screen, wanted, {{v[0], v[1], v[2]}, first_number + (name >> 24)},
+      append_triangle(screen, clip, {{v[0], v[1], v[2]}, first_number + (name >> 24)},
                       centres_in_box(v[0], v[1], v[2], screen), false, result);
     }
   }
@@ -417,23 +417,23 @@ namespace {
 // Clusters that are clipped, masked or blended.
 void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                  const Cluster& cluster, const ScreenVertices& vertices, std::uint32_t first_number,
-                 const geometry::Rect& wanted, SetUpResult& result) {
+                 const geometry::Rect& clip, SetUpResult& result) {
   for (std::uint32_t place = cluster.begin; place < cluster.end; ++place)
-    set_up_place(screen, draw, block, cluster, vertices, place, first_number, wanted, result);
+    set_up_place(screen, draw, block, cluster, vertices, place, first_number, clip, result);
 }
 
 }  // namespace
 
 void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                     const Cluster& cluster, const ScreenVertices& vertices,
-                    std::uint32_t first_number, const geometry::Rect& wanted,
-                    const FrameTiles& tiles, SetUpResult& result) {
+                    std::uint32_t first_number, const geometry::Rect& clip, const FrameTiles& tiles,
+                    SetUpResult& result) {
   if (draw.masked || draw.blended || vertices.any_outside) {
-    set_up_each(screen, draw, block, cluster, vertices, first_number, wanted, result);
+    set_up_each(screen, draw, block, cluster, vertices, first_number, clip, result);
     return;
   }
   ClusterInSetUp in_set_up(vertices);
-  in_set_up.wanted = wanted;
+  in_set_up.clip = clip;
   in_set_up.centre_x = screen.centre_x;
   in_set_up.centre_y = screen.centre_y;
   in_set_up.tiles_x = screen.tiles_x;
@@ -444,7 +444,7 @@ void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const Cluste
                                             pixel(vertices.low_y, screen.centre_y),
                                             pixel(vertices.high_x, screen.centre_x) + 1,
                                             pixel(vertices.high_y, screen.centre_y) + 1},
-                                           wanted),
+                                           clip),
                     vertices.farthest, in_set_up.around);
   // Whole pixels, so that pixel centres are where they are in the frame.
   const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;

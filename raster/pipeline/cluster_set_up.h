@@ -48,7 +48,7 @@ inline constexpr int kFewTiles = 4;
 // triangles that are known to be hidden in `tiles` are left out, but counted.
 void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                     const Cluster& cluster, const ScreenVertices& vertices,
-                    std::uint32_t first_number, const geometry::Rect& wanted,
-                    const FrameTiles& tiles, SetUpResult& result);
+                    std::uint32_t first_number, const geometry::Rect& clip, const FrameTiles& tiles,
+                    SetUpResult& result);
 
 }  // namespace delray::raster

@@ -38,7 +38,7 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
   TriangleCounts& counts = worker.result.counts;
 
   const ClusterBounds bounds = bound(task.screen, draw, mesh_cluster.box);
-  const geometry::Rect pixels = geometry::intersection(bounds.pixels, task.wanted);
+  const geometry::Rect pixels = geometry::intersection(bounds.pixels, task.clip);
   if (bounds.outside || pixels.empty() ||
       shows_hidden_side_only(task.screen, draw, mesh_cluster, bounds)) {
     counts.in += triangles;
@@ -53,7 +53,7 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
   }
   transform(draw.to_view, task.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
             worker.vertices);
-  set_up_cluster(task.screen, draw, block, cluster, worker.vertices, k << kClusterBits, task.wanted,
+  set_up_cluster(task.screen, draw, block, cluster, worker.vertices, k << kClusterBits, task.clip,
                  tiles, worker.result);
 }
 
@@ -116,8 +116,8 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
                            .subspan(touched.first_entry, touched.last_entry - touched.first_entry);
   if (task.shade_now) {
     worker.shaded += draw_and_shade(fragments, rect, task.shade_now, tile);
-    worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries, task.solid,
-                                    task.shade_now, tile);
+    worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries,
+                                    task.alpha_test, task.shade_now, tile);
     return;
   }
   rasterize_windows(worker.result.windows,
@@ -127,7 +127,7 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
   rasterize_fragments(fragments, tile);
   if (entries.empty()) return;
   rasterize(task.screen, rect, worker.result.triangles, entries, tile);
-  rasterize_masked(task.screen, rect, worker.result.triangles, entries, task.solid, tile);
+  rasterize_masked(task.screen, rect, worker.result.triangles, entries, task.alpha_test, tile);
 }
 
 // Tiles that another thread has at the moment come later.
@@ -298,10 +298,10 @@ void draw_clusters(const DrawIntoTiles& task, std::span<const std::uint32_t> clu
 }
 
 TriangleCounts end_drawing(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
-                           LaterTriangles& later, DrawCosts& costs) {
-  bin(screen, workers, &SetUpResult::large_triangles, &SetUpResult::large_entries, later.large);
+                           DeferredTriangles& deferred, DrawCosts& costs) {
+  bin(screen, workers, &SetUpResult::large_triangles, &SetUpResult::large_entries, deferred.large);
   bin(screen, workers, &SetUpResult::blended_triangles, &SetUpResult::blended_entries,
-      later.blended);
+      deferred.blended);
   TriangleCounts counts;
   for (const auto& worker : workers) {
     counts += worker->result.counts;
@@ -311,13 +311,13 @@ TriangleCounts end_drawing(const Screen& screen, std::span<const std::unique_ptr
 }
 
 TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
-                               std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
-                               DrawCosts& costs) {
+                               std::vector<std::unique_ptr<Worker>>& workers,
+                               DeferredTriangles& deferred, DrawCosts& costs) {
   begin_drawing(task.screen, workers);
   std::vector<std::uint32_t> clusters(task.list.clusters.size());
   std::iota(clusters.begin(), clusters.end(), 0U);
   draw_clusters(task, nearest_first(task, clusters), tiles, workers, costs);
-  return end_drawing(task.screen, workers, later, costs);
+  return end_drawing(task.screen, workers, deferred, costs);
 }
 
 std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
@@ -325,11 +325,11 @@ std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& l
   const std::span<const std::uint32_t> entries = large.of_tile(tile);
   if (entries.empty()) return 0;
   if (task.shade_now) {
-    return draw_and_shade(task.screen, rect, large.triangles, entries, task.solid, task.shade_now,
-                          visibility);
+    return draw_and_shade(task.screen, rect, large.triangles, entries, task.alpha_test,
+                          task.shade_now, visibility);
   }
   rasterize(task.screen, rect, large.triangles, entries, visibility);
-  rasterize_masked(task.screen, rect, large.triangles, entries, task.solid, visibility);
+  rasterize_masked(task.screen, rect, large.triangles, entries, task.alpha_test, visibility);
   return 0;
 }
 

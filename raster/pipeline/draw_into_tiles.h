@@ -48,7 +48,7 @@ struct BinnedTriangles {
 
 // What is left for when everything else is drawn: triangles that touch many tiles, and those of
 // blended draws.
-struct LaterTriangles {
+struct DeferredTriangles {
   BinnedTriangles large, blended;
 };
 
@@ -56,10 +56,10 @@ struct DrawIntoTiles {
   const Screen& screen;
   const DrawList& list;
   std::span<const PreparedDraw> draws;
-  geometry::Rect wanted;
+  geometry::Rect clip;
   bool skip_hidden_clusters;
   // Whether alpha leaves anything of a triangle of a masked draw at a pixel; called by any thread.
-  std::function<bool(std::uint32_t number, int x, int y)> solid;
+  std::function<bool(std::uint32_t number, int x, int y)> alpha_test;
   // Called for every pixel as soon as it shows another triangle, by the thread that has its tile;
   // pixels are drawn one by one then. Empty: never.
   std::function<void(std::uint32_t number, int x, int y)> shade_now;
@@ -85,12 +85,12 @@ void draw_clusters(const DrawIntoTiles& task, std::span<const std::uint32_t> clu
                    FrameTiles& tiles, std::span<const std::unique_ptr<Worker>> workers,
                    DrawCosts& costs);
 TriangleCounts end_drawing(const Screen& screen, std::span<const std::unique_ptr<Worker>> workers,
-                           LaterTriangles& later, DrawCosts& costs);
+                           DeferredTriangles& deferred, DrawCosts& costs);
 
 // All of the list at once, nearest draws first.
 TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
-                               std::vector<std::unique_ptr<Worker>>& workers, LaterTriangles& later,
-                               DrawCosts& costs);
+                               std::vector<std::unique_ptr<Worker>>& workers,
+                               DeferredTriangles& deferred, DrawCosts& costs);
 
 // Draws the large triangles of a tile, nearest first. The tile is the caller's alone. Returns how
 // often a pixel was shaded.

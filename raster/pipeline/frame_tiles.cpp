@@ -41,7 +41,7 @@ TileJobs make_tile_jobs(const Screen& screen, std::span<const geometry::Rect> re
       result.jobs.push_back({overlap.tile, at, at});
     result.rects.push_back(overlap.rect);
     ++result.jobs.back().last;
-    result.wanted = at == 0 ? overlap.rect : hull(result.wanted, overlap.rect);
+    result.clip = at == 0 ? overlap.rect : hull(result.clip, overlap.rect);
   }
   return result;
 }

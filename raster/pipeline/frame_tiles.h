@@ -18,7 +18,7 @@ struct TileJob {
 struct TileJobs {
   std::vector<TileJob> jobs;  // ascending by tile
   std::vector<geometry::Rect> rects;
-  geometry::Rect wanted;  // around all of them
+  geometry::Rect clip;  // around all of them
 
   std::span<const geometry::Rect> rects_of(const TileJob& job) const {
     return std::span(rects).subspan(job.first, job.last - job.first);

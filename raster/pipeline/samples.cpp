@@ -103,11 +103,11 @@ void gather_samples(const Window<Colour>& samples, int n, const geometry::Rect& 
 }
 
 template <class Colour>
-composite::Part resolve(composite::Part&& part, int n, int width, int height) {
+composite::OwnedPixels resolve(composite::OwnedPixels&& part, int n, int width, int height) {
   if (n == 1) return std::move(part);
   constexpr std::size_t kGrain = 1 << 12;  // pixels
   const auto count = static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(n);
-  composite::Part result;
+  composite::OwnedPixels result;
   result.ranges = part.ranges;
   const image::BasicImage<Colour> samples = composite::take_image<Colour>(std::move(part));
   image::BasicImage<Colour> image(width, height);
@@ -131,7 +131,7 @@ template void gather_samples(const Window<image::Rgba8>&, int, const geometry::R
                              image::Image8&);
 template void gather_samples(const Window<image::RgbaF>&, int, const geometry::Rect&,
                              image::ImageF&);
-template composite::Part resolve<image::Rgba8>(composite::Part&&, int, int, int);
-template composite::Part resolve<image::RgbaF>(composite::Part&&, int, int, int);
+template composite::OwnedPixels resolve<image::Rgba8>(composite::OwnedPixels&&, int, int, int);
+template composite::OwnedPixels resolve<image::RgbaF>(composite::OwnedPixels&&, int, int, int);
 
 }  // namespace delray::raster

@@ -36,6 +36,6 @@ void gather_samples(const Window<Colour>& samples, int n, const geometry::Rect& 
 //
 // REQUIRES: the part's ranges are of whole pixels.
 template <class Colour>
-composite::Part resolve(composite::Part&& part, int n, int width, int height);
+composite::OwnedPixels resolve(composite::OwnedPixels&& part, int n, int width, int height);
 
 }  // namespace delray::raster

@@ -5,10 +5,10 @@
 
 namespace delray::raster {
 
-inline void append_triangle(const Screen& screen, const geometry::Rect& wanted,
+inline void append_triangle(const Screen& screen, const geometry::Rect& clip,
                             const ScreenTriangle& triangle, const geometry::Rect& box, bool masked,
                             SetUpResult& result) {
-  const geometry::Rect pixels = geometry::intersection(box, wanted);
+  const geometry::Rect pixels = geometry::intersection(box, clip);
   if (pixels.empty()) return;
   const int x0 = pixels.x0 / kTileSize, x1 = (pixels.x1 - 1) / kTileSize;
   const int y0 = pixels.y0 / kTileSize, y1 = (pixels.y1 - 1) / kTileSize;
@@ -22,10 +22,10 @@ inline void append_triangle(const Screen& screen, const geometry::Rect& wanted,
       entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
 }
 
-inline void append_blended(const Screen& screen, const geometry::Rect& wanted,
+inline void append_blended(const Screen& screen, const geometry::Rect& clip,
                            const ScreenTriangle& triangle, const geometry::Rect& box,
                            SetUpResult& result) {
-  const geometry::Rect pixels = geometry::intersection(box, wanted);
+  const geometry::Rect pixels = geometry::intersection(box, clip);
   if (pixels.empty()) return;
   const auto entry = static_cast<std::uint32_t>(result.blended_triangles.size());
   result.blended_triangles.push_back(triangle);
@@ -38,15 +38,15 @@ inline void append_blended(const Screen& screen, const geometry::Rect& wanted,
 inline void set_up_place(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
                          const Cluster& cluster, const ScreenVertices& vertices,
                          std::uint32_t place, std::uint32_t first_number,
-                         const geometry::Rect& wanted, SetUpResult& result) {
+                         const geometry::Rect& clip, SetUpResult& result) {
   const MeshCluster& mesh_cluster = block.clusters[cluster.part];
   bool handed = false;
   const auto emit = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
     if (draw.blended)
-      append_blended(screen, wanted, triangle, pixels, result);
+      append_blended(screen, clip, triangle, pixels, result);
     else
-      append_triangle(screen, wanted, triangle, pixels, draw.masked, result);
-    handed |= !geometry::intersection(pixels, wanted).empty();
+      append_triangle(screen, clip, triangle, pixels, draw.masked, result);
+    handed |= !geometry::intersection(pixels, clip).empty();
   };
   const Fate fate = set_up(screen, draw, vertices, corners_at(block, mesh_cluster, place),
                            cluster.first + place, first_number + place, emit);

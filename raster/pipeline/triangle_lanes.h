@@ -54,8 +54,8 @@ struct Origins {
 struct Boxes {
   I x0, y0, x1, y1;  // all inclusive
 };
-HWY_INLINE Boxes boxes_of(const geometry::Rect& wanted, const Origins& origin, I ax, I ay, I bx,
-                          I by, I cx, I cy) {
+HWY_INLINE Boxes boxes_of(const geometry::Rect& clip, const Origins& origin, I ax, I ay, I bx, I by,
+                          I cx, I cy) {
   const Ints d;
   const auto first = [&](I a, I b, I c) {
     return hn::ShiftRight<kSubpixelBits>(
@@ -65,10 +65,10 @@ HWY_INLINE Boxes boxes_of(const geometry::Rect& wanted, const Origins& origin, I
     return hn::ShiftRight<kSubpixelBits>(
         hn::Sub(hn::Max(hn::Max(a, b), c), hn::Set(d, kHalfPixel)));
   };
-  return {hn::Max(first(ax, bx, cx), hn::Sub(hn::Set(d, wanted.x0), origin.x)),
-          hn::Max(first(ay, by, cy), hn::Sub(hn::Set(d, wanted.y0), origin.y)),
-          hn::Min(last(ax, bx, cx), hn::Sub(hn::Set(d, wanted.x1 - 1), origin.x)),
-          hn::Min(last(ay, by, cy), hn::Sub(hn::Set(d, wanted.y1 - 1), origin.y))};
+  return {hn::Max(first(ax, bx, cx), hn::Sub(hn::Set(d, clip.x0), origin.x)),
+          hn::Max(first(ay, by, cy), hn::Sub(hn::Set(d, clip.y0), origin.y)),
+          hn::Min(last(ax, bx, cx), hn::Sub(hn::Set(d, clip.x1 - 1), origin.x)),
+          hn::Min(last(ay, by, cy), hn::Sub(hn::Set(d, clip.y1 - 1), origin.y))};
 }
 
 // An edge function at the first pixel of each triangle's box, less 1 where the edge is neither top

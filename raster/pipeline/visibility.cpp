@@ -381,7 +381,7 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
                       std::span<const ScreenTriangle> triangles,
                       std::span<const std::uint32_t> entries,
-                      const std::function<bool(std::uint32_t, int, int)>& solid,
+                      const std::function<bool(std::uint32_t, int, int)>& alpha_test,
                       VisibilityTile& tile) {
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
@@ -390,7 +390,7 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
     const ScreenTriangle& triangle = triangles[entry & kIndex];
     for_each_covered(screen, rect, triangle, [&](int i, int j, std::int64_t key) {
       std::int64_t& old = tile.key[j * kTileSize + i];
-      if (key < old && solid(triangle.number, tile_x + i, tile_y + j)) old = key;
+      if (key < old && alpha_test(triangle.number, tile_x + i, tile_y + j)) old = key;
     });
   }
 }
@@ -398,7 +398,7 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
 std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
                              std::span<const ScreenTriangle> triangles,
                              std::span<const std::uint32_t> entries,
-                             const std::function<bool(std::uint32_t, int, int)>& solid,
+                             const std::function<bool(std::uint32_t, int, int)>& alpha_test,
                              const std::function<void(std::uint32_t, int, int)>& shade,
                              VisibilityTile& tile) {
   std::uint64_t shaded = 0;
@@ -409,7 +409,7 @@ std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
     for_each_covered(screen, rect, triangle, [&](int i, int j, std::int64_t key) {
       std::int64_t& old = tile.key[j * kTileSize + i];
       if (key >= old) return;
-      if ((entry & kMasked) != 0 && !solid(triangle.number, tile_x + i, tile_y + j)) return;
+      if ((entry & kMasked) != 0 && !alpha_test(triangle.number, tile_x + i, tile_y + j)) return;
       old = key;
       ++shaded;
       shade(triangle.number, tile_x + i, tile_y + j);

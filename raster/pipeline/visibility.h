@@ -160,7 +160,7 @@ void for_each_covered(const Screen& screen, const geometry::Rect& rect,
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
                       std::span<const ScreenTriangle> triangles,
                       std::span<const std::uint32_t> entries,
-                      const std::function<bool(std::uint32_t, int, int)>& solid,
+                      const std::function<bool(std::uint32_t, int, int)>& alpha_test,
                       VisibilityTile& tile);
 
 // The same for all entries, masked or not, and for fragments in `rect`'s tile, pixel by pixel:
@@ -168,7 +168,7 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
 std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
                              std::span<const ScreenTriangle> triangles,
                              std::span<const std::uint32_t> entries,
-                             const std::function<bool(std::uint32_t, int, int)>& solid,
+                             const std::function<bool(std::uint32_t, int, int)>& alpha_test,
                              const std::function<void(std::uint32_t, int, int)>& shade,
                              VisibilityTile& tile);
 std::uint64_t draw_and_shade(std::span<const Fragment> fragments, const geometry::Rect& rect,

@@ -16,8 +16,8 @@ namespace delray::raster {
 // Attributes that no draw has take no memory, and no time.
 void PhongTile::make_room(const FrameShading& frame) {
   const std::size_t room = triangles_.size() + kBlockSize;
-  const auto make = [&](auto& planes, bool wanted) {
-    if (!wanted)
+  const auto make = [&](auto& planes, bool clip) {
+    if (!clip)
       planes.clear();
     else if (planes.size() < room)
       planes.resize(room);

@@ -290,8 +290,8 @@ HWY_INLINE void shade_short_runs(const PixelTriangle* triangles, const TriangleI
   const TriangleIndices look_up = indices;
   for (std::uint64_t rest = runs.starts & runs.shown; rest != 0; rest &= rest - 1) {
     const int first = std::countr_zero(rest);
-    const std::uint64_t later = runs.starts & (~std::uint64_t{1} << first);
-    const int last = later == 0 ? count : std::countr_zero(later);
+    const std::uint64_t deferred = runs.starts & (~std::uint64_t{1} << first);
+    const int last = deferred == 0 ? count : std::countr_zero(deferred);
     sums_of_run(triangles[look_up.of(runs.numbers[first])], static_cast<float>(x + first), row,
                 first, last, sums);
   }

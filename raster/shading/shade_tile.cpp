@@ -150,7 +150,8 @@ void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw
   }
 }
 
-bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y) {
+bool alpha_test(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
+                int y) {
   const SeenTriangle& triangle = seen.get(frame, number);
   const shading::Point point = point_at(triangle, x, y);
   return shading::coverage(frame.shader, *triangle.material, point) > 0;

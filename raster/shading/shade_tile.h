@@ -65,7 +65,7 @@ class SeenTriangles {
 };
 
 // Whether alpha leaves anything of the triangle at a pixel.
-bool solid(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y);
+bool alpha_test(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y);
 
 // What shading needs to know of a triangle at a pixel. It may travel.
 struct SeenPoint {

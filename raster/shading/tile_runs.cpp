@@ -73,11 +73,11 @@ void find_runs(const VisibilityTile& tile, int j0, int j1, TileRuns& runs) {
 }
 
 std::uint64_t add_runs(const TileRuns& runs, int i0, int j0, int i1, int j1, TileGroups& groups) {
-  const std::uint64_t wanted = (~std::uint64_t{0} >> (kTileSize - (i1 - i0))) << i0;
+  const std::uint64_t clip = (~std::uint64_t{0} >> (kTileSize - (i1 - i0))) << i0;
   std::uint64_t shown = 0;
   for (int j = j0; j < j1; ++j) {
     const std::uint32_t* const numbers = runs.numbers() + j * kTileSize;
-    const std::uint64_t here = runs.shown[j] & wanted;
+    const std::uint64_t here = runs.shown[j] & clip;
     shown += static_cast<std::uint64_t>(std::popcount(here));
     const std::uint64_t starts = runs.changes_along[j] | std::uint64_t{1} << i0;
     for (std::uint64_t rest = starts & runs.changes_down[j] & here; rest != 0; rest &= rest - 1)

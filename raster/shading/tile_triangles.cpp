@@ -133,14 +133,14 @@ void TileTriangles::ask_for(const FrameShading& frame) {
   }
 }
 
-void TileTriangles::for_each_group(const FrameShading& frame, Wanted wanted, SetUp set_up) {
+void TileTriangles::for_each_group(const FrameShading& frame, Wanted clip, SetUp set_up) {
   left_.assign(size(), 0);
   any_left_ = false;
   ask_for(frame);
   int next = 0;
   members_[0].group = members_[1].group = nullptr;
   for (const Group& group : groups_.groups()) {
-    if (!wanted(frame.list.clusters[group.cluster].draw)) {
+    if (!clip(frame.list.clusters[group.cluster].draw)) {
       for (std::size_t t = group.first; t < std::size_t{group.first} + group.count; ++t) {
         for (auto& corner : planes_.corner) corner[t] = 0;
         leave_to_shade_pixel(t);

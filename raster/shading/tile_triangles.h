@@ -54,7 +54,7 @@ class TileTriangles {
   // The triangles of the others are left to shade_pixel.
   using Wanted = parallel::FunctionRef<bool(std::uint32_t)>;
   using SetUp = parallel::FunctionRef<void(const ClusterMembers&)>;
-  void for_each_group(const FrameShading& frame, Wanted wanted, SetUp set_up);
+  void for_each_group(const FrameShading& frame, Wanted clip, SetUp set_up);
   // The triangles' planes; their vertices get numbers from first_vertex on. Those that are not
   // proper are left to shade_pixel.
   void set_up_planes(const FrameShading& frame, const ClusterMembers& members,

@@ -36,7 +36,7 @@ std::vector<Rect> outside(const Rect& outer, const Rect& inner) {
 template <class Colour, bool kTransparent>
 class Drawing {
  public:
-  Drawing(Rank& rank, const Shares& shares, image::BasicImage<Colour>& image)
+  Drawing(RankContext& rank, const Shares& shares, image::BasicImage<Colour>& image)
       : rank_(rank),
         shares_(shares),
         window_(window_of(image)),
@@ -153,7 +153,7 @@ class Drawing {
     if (samples() > 1) resolve(to, samples(), pixels_of(rect, samples()), window_);
   }
 
-  Rank& rank_;
+  RankContext& rank_;
   const Shares& shares_;
   Window<Colour> window_;
   Rect own_, drawn_;  // in pixels: this rank's region, and where its groups may be seen
@@ -165,7 +165,7 @@ class Drawing {
 };
 
 template <class Colour, bool kTransparent>
-Picture render(Rank& rank) {
+Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
   communicator.mark(comm::Phase::transform, 0);
   const VisibleGroups visible = find_visible_groups(rank);
@@ -196,13 +196,13 @@ Picture render(Rank& rank) {
 }
 
 template <class Colour>
-Picture render(Rank& rank) {
+Picture render(RankContext& rank) {
   return rank.transparent ? render<Colour, true>(rank) : render<Colour, false>(rank);
 }
 
 }  // namespace
 
-Picture hybrid(Rank& rank) {
+Picture hybrid(RankContext& rank) {
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 

@@ -4,13 +4,13 @@
 // where they have been sent.
 #include "loadbalance/region_index.h"
 #include "raster/distribute/frame_memory.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 
 namespace delray::raster {
 namespace {
 
 template <class Colour>
-Picture render(Rank& rank) {
+Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
   communicator.mark(comm::Phase::transform, 0);
   const auto [begin, end] = rank.own_primitives();
@@ -45,7 +45,7 @@ Picture render(Rank& rank) {
 
 }  // namespace
 
-Picture sort_first(Rank& rank) {
+Picture sort_first(RankContext& rank) {
   if (!rank.options.schedule.empty()) return sort_first_scheduled(rank);
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }

@@ -9,7 +9,7 @@
 #include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 #include "raster/distribute/frame_memory.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/cull.h"
 #include "raster/pipeline/samples.h"
 
@@ -34,7 +34,7 @@ struct Bins {
   }
 };
 
-Bins bin_clusters(const Rank& rank, const DrawList& list, const PreparedFrame& frame,
+Bins bin_clusters(const RankContext& rank, const DrawList& list, const PreparedFrame& frame,
                   const loadbalance::Blocks& blocks) {
   std::vector<std::uint32_t> order(list.clusters.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -71,7 +71,7 @@ Bins bin_clusters(const Rank& rank, const DrawList& list, const PreparedFrame& f
 }
 
 // The blocks of the rank's regions. Collective.
-std::vector<loadbalance::TaskRange> blocks_of_regions(Rank& rank,
+std::vector<loadbalance::TaskRange> blocks_of_regions(RankContext& rank,
                                                       const loadbalance::Blocks& blocks) {
   const auto [begin, end] = rank.own_primitives();
   const std::uint32_t triangles = ScreenPartition::group_triangles(
@@ -83,7 +83,7 @@ std::vector<loadbalance::TaskRange> blocks_of_regions(Rank& rank,
 }
 
 // Who has rendered which block: all of it on rank 0, a rank's own elsewhere.
-loadbalance::Partition rendered(Rank& rank, const loadbalance::Blocks& blocks,
+loadbalance::Partition rendered(RankContext& rank, const loadbalance::Blocks& blocks,
                                 std::span<const std::unique_ptr<Hand>> hands) {
   std::vector<std::uint32_t> mine;
   for (const auto& hand : hands) mine.insert(mine.end(), hand->done.begin(), hand->done.end());
@@ -100,7 +100,7 @@ loadbalance::Partition rendered(Rank& rank, const loadbalance::Blocks& blocks,
 }
 
 template <class Colour>
-Picture render(Rank& rank) {
+Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
   const RenderOptions& options = rank.options;
   communicator.mark(comm::Phase::transform, 0);
@@ -153,7 +153,7 @@ Picture render(Rank& rank) {
 
 }  // namespace
 
-Picture sort_first_scheduled(Rank& rank) {
+Picture sort_first_scheduled(RankContext& rank) {
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 

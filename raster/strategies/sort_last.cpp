@@ -14,7 +14,7 @@
 #include "composite/scheme.h"
 #include "parallel/parallel_for.h"
 #include "raster/distribute/frame_memory.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/processor_seconds.h"
 #include "raster/pipeline/samples.h"
 
@@ -24,8 +24,8 @@ namespace {
 // All surfaces seen at the samples, those of a pixel together. for_each(tile, rect, add) calls
 // add(x, y, key, payload) for those of a tile, pixel by pixel, front to back.
 template <class Payload, class F>
-composite::DeepImage<Payload> end_deep(Rank& rank, const DrawList& list, RegionDrawing& drawing,
-                                       F&& for_each) {
+composite::DeepImage<Payload> end_deep(RankContext& rank, const DrawList& list,
+                                       RegionDrawing& drawing, F&& for_each) {
   const int n = rank.options.supersampling;
   std::vector<composite::DeepTile<Payload>> tiles(static_cast<std::size_t>(rank.screen.tiles()));
   const auto index_of = [&](int x, int y) {
@@ -54,9 +54,9 @@ composite::DeepImage<Payload> end_deep(Rank& rank, const DrawList& list, RegionD
 
 // The pixels that this rank owns in the end, blended. colour_of gives a payload's colour.
 template <class Colour, class Payload, class F>
-composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
+composite::OwnedPixels flatten(RankContext& rank, composite::OwnedPixels&& part, F&& colour_of) {
   constexpr std::size_t kGrain = 1 << 12;  // samples
-  composite::Part result;
+  composite::OwnedPixels result;
   result.ranges = part.ranges;
   const composite::DeepImage<Payload> deep = composite::take_deep<Payload>(std::move(part));
   image::BasicImage<Colour> image(deep.width, deep.height);
@@ -76,7 +76,7 @@ composite::Part flatten(Rank& rank, composite::Part&& part, F&& colour_of) {
 }
 
 // Transparent surfaces have to be blended in one order over all ranks.
-composite::DeepImage<image::RgbaF> surfaces_of(Rank& rank, const DrawList& list,
+composite::DeepImage<image::RgbaF> surfaces_of(RankContext& rank, const DrawList& list,
                                                RegionDrawing& drawing) {
   return end_deep<image::RgbaF>(
       rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
@@ -86,25 +86,25 @@ composite::DeepImage<image::RgbaF> surfaces_of(Rank& rank, const DrawList& list,
         });
       });
 }
-std::unique_ptr<composite::Layer> draw_surfaces(Rank& rank, const DrawList& list,
+std::unique_ptr<composite::Layer> draw_surfaces(RankContext& rank, const DrawList& list,
                                                 RegionDrawing& drawing) {
   return composite::make_deep(surfaces_of(rank, list, drawing));
 }
 
 template <class Colour>
-composite::Part blend_surfaces(Rank& rank, composite::Part&& part) {
+composite::OwnedPixels blend_surfaces(RankContext& rank, composite::OwnedPixels&& part) {
   return flatten<Colour, image::RgbaF>(rank, std::move(part),
                                        [](const image::RgbaF& colour) { return colour; });
 }
 
 // The pixels that this rank owns in the end, as the picture has them.
 template <class Colour>
-composite::Part stored(composite::Part&& part) {
+composite::OwnedPixels stored(composite::OwnedPixels&& part) {
   if constexpr (std::is_same_v<Colour, image::RgbaF>) {
     return std::move(part);
   } else {
     constexpr std::size_t kGrain = 1 << 14;  // samples
-    composite::Part result;
+    composite::OwnedPixels result;
     result.ranges = part.ranges;
     image::ImageF light = composite::take_image<image::RgbaF>(std::move(part));
     image::BasicImage<Colour> image(light.width, light.height);
@@ -135,7 +135,7 @@ struct PlainSeenPoint {
 bool is_opaque(const PlainSeenPoint& point) { return is_opaque(SeenPoint(point)); }
 
 template <class Payload>
-std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
+std::unique_ptr<composite::Layer> draw_points(RankContext& rank, const DrawList& list,
                                               RegionDrawing& drawing) {
   return composite::make_deep(end_deep<Payload>(
       rank, list, drawing, [](TileView& tile, const geometry::Rect& rect, auto&& add) {
@@ -150,12 +150,12 @@ std::unique_ptr<composite::Layer> draw_points(Rank& rank, const DrawList& list,
 }
 
 template <class Colour, class Payload>
-composite::Part shade_points(Rank& rank, composite::Part&& part) {
+composite::OwnedPixels shade_points(RankContext& rank, composite::OwnedPixels&& part) {
   const DrawList nothing;
   const FrameShading frame =
       make_frame_shading(rank.screen, rank.shader, nothing, rank.options.lighting, false);
   std::atomic<std::uint64_t> shaded{0};
-  composite::Part result =
+  composite::OwnedPixels result =
       flatten<Colour, Payload>(rank, std::move(part), [&](const Payload& point) {
         shaded.fetch_add(1, std::memory_order_relaxed);
         return shade(frame, SeenPoint(point));
@@ -169,7 +169,7 @@ composite::Part shade_points(Rank& rank, composite::Part&& part) {
 template <class Colour>
 class Steps final : public FrameSteps {
  public:
-  explicit Steps(Rank& rank) : rank_(rank) {}
+  explicit Steps(RankContext& rank) : rank_(rank) {}
 
   void transform() override {
     list_ = make_draw_list(pieces(), &rank_.clusters);
@@ -199,7 +199,7 @@ class Steps final : public FrameSteps {
 
   Picture compose() override {
     if (rank_.ranks() == 1) return std::move(image_);
-    composite::Part part = timed(rank_.communicator, rank_.counts.phases.compose, [&] {
+    composite::OwnedPixels part = timed(rank_.communicator, rank_.counts.phases.compose, [&] {
       return composite::compose(
           rank_.communicator, std::move(layer_), rank_.options.scheme,
           {.samples_per_pixel = rank_.samples_per_pixel(), .order = std::move(order_)});
@@ -245,7 +245,7 @@ class Steps final : public FrameSteps {
     return pieces_of(rank_.scene, rank_.first_primitives, begin, end);
   }
 
-  Picture picture_of(composite::Part&& part) {
+  Picture picture_of(composite::OwnedPixels&& part) {
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
                            rank_.options.height);
     part = timed(rank_.communicator, rank_.counts.phases.gather,
@@ -254,7 +254,7 @@ class Steps final : public FrameSteps {
     return composite::take_image<Colour>(std::move(part));
   }
 
-  Rank& rank_;
+  RankContext& rank_;
   DrawList list_;
   std::unique_ptr<RegionDrawing> drawing_;
   image::BasicImage<Colour> image_;          // a single rank's
@@ -265,7 +265,7 @@ class Steps final : public FrameSteps {
 };
 
 template <class Colour>
-Picture render(Rank& rank) {
+Picture render(RankContext& rank) {
   rank.communicator.mark(comm::Phase::rasterize, 0);
   Steps<Colour> steps(rank);
   steps.transform();
@@ -276,12 +276,12 @@ Picture render(Rank& rank) {
 
 }  // namespace
 
-std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank) {
+std::unique_ptr<FrameSteps> sort_last_steps(RankContext& rank) {
   if (rank.options.float_pixels) return std::make_unique<Steps<image::RgbaF>>(rank);
   return std::make_unique<Steps<image::Rgba8>>(rank);
 }
 
-Share sort_last_share(Rank& rank) {
+PartialImage sort_last_share(RankContext& rank) {
   const auto [begin, end] = rank.own_primitives();
   const DrawList list =
       make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
@@ -292,7 +292,7 @@ Share sort_last_share(Rank& rank) {
   return rank.end_samples<image::Rgba8>(drawing);
 }
 
-Picture sort_last(Rank& rank) {
+Picture sort_last(RankContext& rank) {
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 

@@ -6,7 +6,7 @@
 #include "composite/codec.h"
 #include "composite/tiles.h"
 #include "parallel/arena.h"
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 #include "raster/pipeline/samples.h"
 
 namespace delray::raster {
@@ -18,7 +18,7 @@ constexpr int kTilesOfThread = 8;
 // Which of the compositor's tiles, runs of pixels, are finished when rows of the screen's are.
 class TilesToHandOver {
  public:
-  TilesToHandOver(const Rank& rank, composite::TileCompositor& compositor)
+  TilesToHandOver(const RankContext& rank, composite::TileCompositor& compositor)
       : rank_(rank),
         compositor_(compositor),
         has_something_(static_cast<std::size_t>(rank.screen.tiles())),
@@ -77,7 +77,7 @@ class TilesToHandOver {
     return false;
   }
 
-  const Rank& rank_;
+  const RankContext& rank_;
   composite::TileCompositor& compositor_;
   const int first_ = rank_.number() * (compositor_.tiles() / rank_.ranks());
   std::vector<std::uint8_t> has_something_;  // by tile of the screen
@@ -88,7 +88,7 @@ class TilesToHandOver {
 }  // namespace
 
 template <class Colour>
-composite::Part hand_over_tiles(Rank& rank, RegionDrawing& drawing) {
+composite::OwnedPixels hand_over_tiles(RankContext& rank, RegionDrawing& drawing) {
   const int n = rank.options.supersampling;
   std::unique_ptr<composite::Layer> layer =
       composite::find_codec(rank.options.codec)
@@ -115,7 +115,7 @@ composite::Part hand_over_tiles(Rank& rank, RegionDrawing& drawing) {
   return timed(rank.communicator, seconds, [&] { return compositor.finish(); });
 }
 
-template composite::Part hand_over_tiles<image::Rgba8>(Rank&, RegionDrawing&);
-template composite::Part hand_over_tiles<image::RgbaF>(Rank&, RegionDrawing&);
+template composite::OwnedPixels hand_over_tiles<image::Rgba8>(RankContext&, RegionDrawing&);
+template composite::OwnedPixels hand_over_tiles<image::RgbaF>(RankContext&, RegionDrawing&);
 
 }  // namespace delray::raster

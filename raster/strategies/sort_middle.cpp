@@ -32,7 +32,7 @@ struct Roles {
   int geometry = 0, first_rasterizer = 0;
 };
 
-Roles roles_of(const Rank& rank) {
+Roles roles_of(const RankContext& rank) {
   const int n = rank.ranks();
   if (rank.options.groups == Groups::one || n == 1) return {n, 0};
   const int geometry = rank.options.geometry_ranks > 0 ? rank.options.geometry_ranks : n / 2;
@@ -41,7 +41,7 @@ Roles roles_of(const Rank& rank) {
 
 // Gives the list's clusters the numbers that they have among those of all ranks, and makes room for
 // the others. Returns the numbers. Collective.
-std::vector<std::uint32_t> number_globally(Rank& rank, DrawList& list) {
+std::vector<std::uint32_t> number_globally(RankContext& rank, DrawList& list) {
   const std::uint64_t mine = list.clusters.size() * std::uint64_t{kNumbersPerCluster};
   std::uint64_t before = mine;
   comm::exclusive_scan(rank.communicator, std::span(&before, 1), std::uint64_t{0}, std::plus<>());
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> number_globally(Rank& rank, DrawList& list) {
 class Redistributor {
  public:
   // Collective. `boxes` are around everything that this rank may send.
-  Redistributor(Rank& rank, const loadbalance::Partition& partition,
+  Redistributor(RankContext& rank, const loadbalance::Partition& partition,
                 std::span<const loadbalance::WeightedBox> boxes, DrawList& list,
                 RegionDrawing& drawing)
       : rank_(rank), regions_(partition), list_(list), drawing_(drawing) {
@@ -162,7 +162,7 @@ class Redistributor {
     rank_.communicator.send(to, kTagTriangles, std::move(message));
   }
 
-  Rank& rank_;
+  RankContext& rank_;
   const loadbalance::RegionIndex regions_;
   DrawList& list_;
   RegionDrawing& drawing_;
@@ -174,8 +174,8 @@ class Redistributor {
 };
 
 // Everything that touches the rank's regions, once it is there.
-void draw_at_end(Rank& rank, std::span<const std::uint32_t> own, Redistributor& redistributor,
-                 RegionDrawing& drawing) {
+void draw_at_end(RankContext& rank, std::span<const std::uint32_t> own,
+                 Redistributor& redistributor, RegionDrawing& drawing) {
   std::vector<std::uint32_t> here;
   rank.communicator.mark(comm::Phase::transform, 0);
   redistributor.sort(own, here);
@@ -190,8 +190,8 @@ void draw_at_end(Rank& rank, std::span<const std::uint32_t> own, Redistributor& 
 }
 
 // Whatever is there, while geometry goes on here or elsewhere.
-void draw_at_once(Rank& rank, std::span<const std::uint32_t> own, Redistributor& redistributor,
-                  RegionDrawing& drawing) {
+void draw_at_once(RankContext& rank, std::span<const std::uint32_t> own,
+                  Redistributor& redistributor, RegionDrawing& drawing) {
   comm::Communicator& communicator = rank.communicator;
   std::vector<std::uint32_t> here;
   int round = 0;
@@ -221,7 +221,7 @@ void draw_at_once(Rank& rank, std::span<const std::uint32_t> own, Redistributor&
 }
 
 template <class Colour>
-Picture render(Rank& rank) {
+Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
   communicator.mark(comm::Phase::transform, 0);
   const Roles roles = roles_of(rank);
@@ -265,7 +265,7 @@ Picture render(Rank& rank) {
 
 }  // namespace
 
-Picture sort_middle(Rank& rank) {
+Picture sort_middle(RankContext& rank) {
   return rank.options.float_pixels ? render<image::RgbaF>(rank) : render<image::Rgba8>(rank);
 }
 

@@ -11,7 +11,7 @@
 #include "comm/network.h"
 #include "comm/recording.h"
 #include "comm/simulated.h"
-#include "composite/hollow.h"
+#include "composite/metadata_only.h"
 #include "composite/schemes/radices.h"
 #include "composite/simulate.h"
 
@@ -29,7 +29,7 @@ Simulated simulate_dense(int ranks, std::uint64_t pixels, const comm::Network& n
     if (rank != empty) masks.back().covered.add(0, GroupMask{1});
   }
   const LayerCosts costs = {1e-6, 0.2e-9, 0.05e-9, 1e-6, 0.5e-9, 0.5e-9};
-  return simulate("radix-k", {.ranks = masks, .codec = Hollow::dense}, {network, costs});
+  return simulate("radix-k", {.ranks = masks, .codec = MetadataOnly::dense}, {network, costs});
 }
 
 int power_above(int ranks) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(ranks))); }
@@ -85,8 +85,8 @@ TEST(RadixK, CountsAreThoseOfItsRadices) {
     comm::run_simulated(ranks, {}, 1, [&](comm::Communicator& communicator) {
       comm::Recording recording(communicator,
                                 events[static_cast<std::size_t>(communicator.rank())]);
-      find_scheme("radix-k")->compose(recording, make_hollow_dense(pixels, kPixelBytes8, false),
-                                      {});
+      find_scheme("radix-k")->compose(recording,
+                                      make_metadata_only_dense(pixels, kPixelBytes8, false), {});
     });
     for (int rank = 0; rank < ranks; ++rank) {
       const internal::RadixPlace place = internal::place_of(plan, rank);

@@ -43,7 +43,7 @@ TEST(BadMessage, OfAnyLayerIsRefusedOrHarmless) {
   std::mt19937 random(7);
   for (const auto& codec : codecs()) {
     SCOPED_TRACE(codec.name);
-    const comm::Buffer good = codec.make(picture(true), Operator::nearest)->cut(kAll);
+    const comm::Buffer good = codec.make(picture(true), Operator::nearest)->encode(kAll);
     const auto layer = codec.make(picture(false), Operator::nearest);
     EXPECT_TRUE(is_merged(*layer, good));
     for (const std::size_t size :
@@ -65,7 +65,7 @@ TEST(BadMessage, OfDeepLayersIsRefused) {
   image.set(5, {&fragment, 1});
   const auto full = make_deep(std::move(image));
   const auto layer = make_deep(DeepImage<image::RgbaF>(kWidth, kHeight));
-  const comm::Buffer good = full->cut(kAll);
+  const comm::Buffer good = full->encode(kAll);
   EXPECT_TRUE(is_merged(*layer, good));
   EXPECT_FALSE(is_merged(*layer, shortened(good, good.size() - sizeof fragment)));
   comm::Buffer bad = good.copy();

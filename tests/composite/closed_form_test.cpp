@@ -12,7 +12,7 @@
 #include "comm/ledger.h"
 #include "comm/recording.h"
 #include "comm/simulated.h"
-#include "composite/hollow.h"
+#include "composite/metadata_only.h"
 #include "composite/scheme.h"
 #include "composite/schemes/radices.h"
 
@@ -231,7 +231,7 @@ TEST(ClosedForms, TellWhatEveryRankSendsAndComposites) {
       comm::run_simulated(n, {}, 1, [&](comm::Communicator& communicator) {
         comm::Recording recording(communicator,
                                   events[static_cast<std::size_t>(communicator.rank())]);
-        scheme.compose(recording, make_hollow_dense(a, kBytes, false), {});
+        scheme.compose(recording, make_metadata_only_dense(a, kBytes, false), {});
       });
       std::uint64_t sent = 0, composited = 0;
       for (int rank = 0; rank < n; ++rank) {
@@ -271,7 +271,7 @@ TEST(ClosedForms, OverABusTheSchemeOfThatNameSendsEachImageOnce) {
       const std::uint64_t a = 720720;
       const std::vector<double> finished =
           comm::run_simulated(n, network, 1, [&](comm::Communicator& communicator) {
-            compose(communicator, make_hollow_dense(a, kBytes, false), name);
+            compose(communicator, make_metadata_only_dense(a, kBytes, false), name);
           });
       const std::uint64_t images = name == "bus" ? u(n) : u(n - 1);
       // Before, ranks agree: three words from each in ceil(log2 n) rounds.

@@ -105,8 +105,8 @@ void expect_dense(const Codec& codec, Operator how, Shape own, Shape other, Pixe
     return by.make(kept_picture<Colour>(shape, seed), how);
   };
   const Codec& dense = *find_codec("dense");
-  const comm::Buffer message = make(codec, other, 2)->cut(range);
-  const comm::Buffer dense_message = make(dense, other, 2)->cut(range);
+  const comm::Buffer message = make(codec, other, 2)->encode(range);
+  const comm::Buffer dense_message = make(dense, other, 2)->encode(range);
   const auto expect = [&](const char* what, auto&& act) {
     const auto layer = make(codec, own, 1), expected = make(dense, own, 1);
     act(*layer, message);
@@ -115,8 +115,8 @@ void expect_dense(const Codec& codec, Operator how, Shape own, Shape other, Pixe
     EXPECT_EQ(layer->empty(), expected->empty()) << what;
     // What it has become travels as well.
     const auto third = make(codec, own, 3), fourth = make(dense, own, 3);
-    third->replace(range, layer->cut(range));
-    fourth->replace(range, expected->cut(range));
+    third->replace(range, layer->encode(range));
+    fourth->replace(range, expected->encode(range));
     EXPECT_TRUE(same<Colour>(*third, *fourth)) << what << ", then cut";
   };
   expect("merged from a lower rank", [&](Layer& layer, const comm::Buffer& pixels) {
@@ -161,9 +161,9 @@ TYPED_TEST(Codecs, PruneOnlyWhatIsHidden) {
       const auto front = codec.make(kept_picture<TypeParam>(Shape::half, 1), how);
       const auto whole = codec.make(kept_picture<TypeParam>(Shape::half, 1), how);
       const auto back = codec.make(kept_picture<TypeParam>(Shape::half, 2), how);
-      const comm::Buffer unpruned = back->cut(all);
-      back->prune(all, front->cut(all));
-      const comm::Buffer pruned = back->cut(all);
+      const comm::Buffer unpruned = back->encode(all);
+      back->prune(all, front->encode(all));
+      const comm::Buffer pruned = back->encode(all);
       whole->merge(all, unpruned, Side::higher);
       front->merge(all, pruned, Side::higher);
       EXPECT_TRUE(same<TypeParam>(*front, *whole));
@@ -178,7 +178,7 @@ TEST(CodecTable, SendsWhatItPromises) {
   const auto bytes = [](const char* codec, Shape shape, Operator how) {
     return find_codec(codec)
         ->make(picture<Rgba8>(400, 300, shape, 1), how)
-        ->cut({0, 120000})
+        ->encode({0, 120000})
         .size();
   };
   EXPECT_EQ(bytes("dense", Shape::dots, Operator::nearest), 960000U);

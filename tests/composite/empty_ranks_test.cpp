@@ -7,7 +7,7 @@
 
 #include "comm/collectives.h"
 #include "comm/simulated.h"
-#include "composite/hollow.h"
+#include "composite/metadata_only.h"
 #include "composite/scheme.h"
 
 namespace delray::composite {
@@ -25,12 +25,12 @@ TEST(EmptyRanks, CostNoMoreThanFindingThem) {
     for (const int busy : {2, 3, 8}) {
       const int all = 10 * busy;
       const double alone = seconds_of(busy, [&](comm::Communicator& communicator) {
-        compose(communicator, make_hollow_dense(kPixels, kPixelBytes8, false), scheme.name);
+        compose(communicator, make_metadata_only_dense(kPixels, kPixelBytes8, false), scheme.name);
       });
       const double among_empty = seconds_of(all, [&](comm::Communicator& communicator) {
         const bool empty = communicator.rank() % 10 != 7;
-        const Part part =
-            compose(communicator, make_hollow_dense(kPixels, kPixelBytes8, empty), scheme.name);
+        const OwnedPixels part = compose(
+            communicator, make_metadata_only_dense(kPixels, kPixelBytes8, empty), scheme.name);
         if (empty) {
           EXPECT_TRUE(part.ranges.empty());
         }
@@ -47,8 +47,8 @@ TEST(EmptyRanks, ShareAnEmptyPicture) {
   for (const Scheme& scheme : schemes()) {
     std::uint64_t pixels = 0;
     comm::run_simulated(7, {}, 1, [&](comm::Communicator& communicator) {
-      const Part part =
-          compose(communicator, make_hollow_dense(1000, kPixelBytes8, true), scheme.name);
+      const OwnedPixels part =
+          compose(communicator, make_metadata_only_dense(1000, kPixelBytes8, true), scheme.name);
       for (const PixelRange& range : part.ranges) pixels += range.size();
     });
     EXPECT_EQ(pixels, 1000U) << scheme.name;

@@ -101,7 +101,7 @@ struct Case {
 
 Image8 composed(comm::Communicator& communicator, const Case& c) {
   auto layer = c.codec.make(partial_image(communicator.rank(), c.width, c.height), c.how);
-  composite::Part part =
+  composite::OwnedPixels part =
       composite::compose(communicator, std::move(layer), c.scheme.name, {.interlace = c.interlace});
   return composite::take_image<Rgba8>(
       composite::gather(communicator, std::move(part), communicator.size() / 2));

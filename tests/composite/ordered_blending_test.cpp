@@ -70,7 +70,7 @@ std::array<double, 4> exact(int ranks, std::size_t pixel) {
 template <class Colour>
 BasicImage<Colour> composed(comm::Communicator& communicator, const char* scheme,
                             const Codec& codec, int width, int height) {
-  Part part = compose(
+  OwnedPixels part = compose(
       communicator,
       codec.make(layer_of<Colour>(communicator.rank(), width, height), Operator::over), scheme);
   return take_image<Colour>(gather(communicator, std::move(part), 0));

@@ -151,14 +151,14 @@ ImageF blended_reference(int ranks, Size size) {
 struct Kind {
   std::string name;
   std::function<std::unique_ptr<Layer>(int rank, Size size)> make;
-  std::function<bool(Part&& gathered, int ranks, Size size)> equals_reference;
+  std::function<bool(OwnedPixels&& gathered, int ranks, Size size)> equals_reference;
 };
 
 template <class Colour>
 Kind opaque(const Codec& codec, const std::string& colour) {
   return {codec.name + (" " + colour),
           [&codec](int rank, Size size) { return codec.make(partial_image<Colour>(rank, size)); },
-          [](Part&& gathered, int ranks, Size size) {
+          [](OwnedPixels&& gathered, int ranks, Size size) {
             return same(take_image<Colour>(std::move(gathered)), reference<Colour>(ranks, size));
           }};
 }
@@ -170,7 +170,7 @@ std::vector<Kind> kinds() {
     result.push_back(opaque<RgbaF>(codec, "of floats"));
   }
   result.push_back({"deep", [](int rank, Size size) { return make_deep(deep_image(rank, size)); },
-                    [](Part&& gathered, int ranks, Size size) {
+                    [](OwnedPixels&& gathered, int ranks, Size size) {
                       return same(flatten<RgbaF>(take_deep<RgbaF>(std::move(gathered))),
                                   blended_reference(ranks, size));
                     }});
@@ -181,7 +181,7 @@ void expect_reference(comm::Communicator& communicator, const char* scheme, cons
                       Size size, int root, const ComposeOptions& options = {}) {
   SCOPED_TRACE(std::string(scheme) + ", " + kind.name + ", " + std::to_string(communicator.size()) +
                " ranks, " + std::to_string(size.width) + " x " + std::to_string(size.height));
-  Part part = compose(communicator, kind.make(communicator.rank(), size), scheme, options);
+  OwnedPixels part = compose(communicator, kind.make(communicator.rank(), size), scheme, options);
   part = gather(communicator, std::move(part), root);
   if (communicator.rank() != root) {
     EXPECT_TRUE(part.ranges.empty());
@@ -260,7 +260,7 @@ TEST(Schemes, GatherColoursAlone) {
     SCOPED_TRACE(codec.name);
     comm::run_threads(5, 1, [&](comm::Communicator& communicator) {
       auto layer = codec.make(partial_image<Rgba8>(communicator.rank(), size));
-      Part part = compose(communicator, std::move(layer), "direct-send");
+      OwnedPixels part = compose(communicator, std::move(layer), "direct-send");
       forget_depth<Rgba8>(part);
       part = gather(communicator, std::move(part), 3);
       if (communicator.rank() != 3) return;
@@ -296,7 +296,7 @@ TEST(Schemes, LeaveEveryPixelOnExactlyOneRank) {
         std::mutex mutex;
         comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
           auto layer = make_dense(partial_image<Rgba8>(communicator.rank(), size));
-          Part part = scheme.compose(communicator, std::move(layer), {kSamples});
+          OwnedPixels part = scheme.compose(communicator, std::move(layer), {kSamples});
           const auto ranges = part.ranges;
           const Image8 image = take_image<Rgba8>(std::move(part));
           const std::scoped_lock lock(mutex);
@@ -323,7 +323,7 @@ TEST(Schemes, MayFollowEachOtherOnOneCommunicator) {
     for (int frame = 0; frame < 5; ++frame) {
       for (const Scheme& scheme : schemes()) {
         auto layer = make_dense(partial_image<Rgba8>(communicator.rank(), size));
-        Part part = scheme.compose(communicator, std::move(layer), {});
+        OwnedPixels part = scheme.compose(communicator, std::move(layer), {});
         part = gather(communicator, std::move(part), 2);
         if (communicator.rank() != 2) continue;
         EXPECT_TRUE(same(take_image<Rgba8>(std::move(part)), reference<Rgba8>(6, size)));

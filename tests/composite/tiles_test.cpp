@@ -25,7 +25,7 @@ Image8 drawn_by(int rank, int frame) {
   return image;
 }
 
-void expect_nearest(const Part& part, int frame) {
+void expect_nearest(const OwnedPixels& part, int frame) {
   const Image8& image = dynamic_cast<const ImageLayer<image::Rgba8>&>(*part.layer).image();
   ASSERT_FALSE(part.ranges.empty());
   for (const PixelRange& range : part.ranges)
@@ -58,7 +58,7 @@ TEST(Tiles, OfTheNextFrameWaitForThoseOfThisOne) {
       if (rank == 2 && frame < 3) communicator.receive(0, kTagGo);
       hand_over(1);
       if (rank == 0 && frame > 0) communicator.send(2, kTagGo, comm::Buffer());
-      const Part part = compositor.finish();
+      const OwnedPixels part = compositor.finish();
       if (all_have_pixels) expect_nearest(part, frame);
     }
   });

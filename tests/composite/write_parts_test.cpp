@@ -45,8 +45,8 @@ TEST(WriteParts, GivesTheGatheredPicture) {
         comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
           auto layer = find_codec("active")->make(
               partial_image(communicator.rank(), size.width, size.height));
-          Part part = compose(communicator, std::move(layer), scheme,
-                              {.interlace = std::string(scheme) == "direct-send"});
+          OwnedPixels part = compose(communicator, std::move(layer), scheme,
+                                     {.interlace = std::string(scheme) == "direct-send"});
           write_parts(communicator, part, path);
           part = gather(communicator, std::move(part), 0);
           if (communicator.rank() == 0) expected = take_image<image::RgbaF>(std::move(part));
@@ -70,7 +70,7 @@ TEST(WriteParts, LeavesNothingWhereItCannotWrite) {
                         [&](comm::Communicator& communicator) {
                           auto layer =
                               find_codec("dense")->make(partial_image(communicator.rank(), 20, 20));
-                          const Part part = compose(communicator, std::move(layer), "tree");
+                          const OwnedPixels part = compose(communicator, std::move(layer), "tree");
                           write_parts(communicator, part, "/nonexistent/folder/a.exr");
                         }),
       files::FileError);

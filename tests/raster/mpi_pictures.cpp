@@ -21,7 +21,7 @@ constexpr int kSkipped = 77;
 
 // Of all pictures, numbered from 1, those whose number is a multiple of `step`; of these every
 // `slices`-th.
-struct Share {
+struct PartialImage {
   int step = 1, slice = 0, slices = 1;
   bool has(int number) const { return number % step == 0 && number / step % slices == slice; }
 };
@@ -45,7 +45,7 @@ class Progress {
   int pictures_ = 0;
 };
 
-int wrong_pictures(comm::Communicator& communicator, const Share& share) {
+int wrong_pictures(comm::Communicator& communicator, const PartialImage& share) {
   int number = 0, wrong = 0;
   Progress progress;
   for (const raster::KindOfPicture& kind : raster::kinds_of_picture(53, 39)) {
@@ -79,7 +79,7 @@ int wrong_pictures(comm::Communicator& communicator, const Share& share) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Share share;
+  PartialImage share;
   if (std::getenv("DELRAY_FULL_TESTS") == nullptr) share.step = 41;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "if-full") == 0) {

@@ -36,14 +36,14 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   const geometry::Rect frame_rect = screen.frame();
   const TileJobs jobs = make_tile_jobs(screen, {&frame_rect, 1});
   const DrawIntoTiles task{
-      screen, list, draws, jobs.wanted, true, [](std::uint32_t, int, int) { return true; }, {}};
+      screen, list, draws, jobs.clip, true, [](std::uint32_t, int, int) { return true; }, {}};
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
-  LaterTriangles later;
+  DeferredTriangles deferred;
   DrawCosts costs;
   tiles.begin(screen, jobs);
-  draw_into_tiles(task, tiles, workers, later, costs);
-  for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, later.large, tiles);
+  draw_into_tiles(task, tiles, workers, deferred, costs);
+  for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, deferred.large, tiles);
 
   const FrameShading frame = make_frame_shading(screen, shader, list, lighting, width % 2 == 0);
   SeenTriangles seen;

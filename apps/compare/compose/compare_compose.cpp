@@ -38,8 +38,8 @@
 namespace delray::apps {
 namespace {
 
-using composite::HollowImages;
 using composite::MachineModel;
+using composite::MetadataOnlyImages;
 
 // Of this many ranks at most samples are taken for the model of this machine.
 constexpr int kMostFittedRanks = 16;
@@ -123,8 +123,8 @@ class Comparison {
 
   composite::ComposeOptions options() const { return {.interlace = request_.interlace}; }
 
-  HollowImages hollow(int ranks, const std::string& codec) {
-    return shapes(ranks).hollow(codec, request_.render.width);
+  MetadataOnlyImages metadata_only(int ranks, const std::string& codec) {
+    return shapes(ranks).metadata_only(codec, request_.render.width);
   }
 
   // Transparent layers are lists of surfaces, for which there is one codec.
@@ -151,7 +151,7 @@ class Comparison {
 
   // On every rank. All schemes and codecs take turns, so that none has the better minutes of the
   // machine.
-  void measure_all(comm::Communicator& communicator, const raster::Share& share) {
+  void measure_all(comm::Communicator& communicator, const raster::PartialImage& share) {
     const int ranks = communicator.size();
     const bool root = communicator.rank() == 0;
     ShareLayers layers(share);
@@ -190,7 +190,7 @@ class Comparison {
     return session_.under_mpi ? session_ranks_ : shown;
   }
 
-  void show_fastest(comm::Communicator& communicator, const raster::Share& share) {
+  void show_fastest(comm::Communicator& communicator, const raster::PartialImage& share) {
     std::string name;
     if (communicator.rank() == 0) {
       const ComparedScheme& best = *fastest(rows_, communicator.size()).front();
@@ -208,7 +208,7 @@ class Comparison {
   }
 
   void measure_threads(int ranks) {
-    std::vector<raster::Share> shares;
+    std::vector<raster::PartialImage> shares;
     parallel::Arena(parallel::arena_threads()).execute([&] {
       ShareDrawer drawer(request_, prepared_, steps_.inside());
       for (int rank = 0; rank < ranks; ++rank) {
@@ -229,13 +229,14 @@ class Comparison {
       comm::handshake(communicator, scene_facts(prepared_));
       session_ranks_ = communicator.size();
       communicator.mark(comm::Phase::rasterize, 0);
-      const raster::Share share = comm::all_or_none(communicator, comm::Phase::rasterize, [&] {
-        ShareDrawer drawer(request_, prepared_, steps_.inside());
-        if (communicator.rank() == 0 && communicator.size() <= kMostMeasuredRanks) {
-          shapes_.emplace(communicator.size(), drawer.shapes(communicator.size()));
-        }
-        return drawer.draw(communicator.rank(), communicator.size());
-      });
+      const raster::PartialImage share =
+          comm::all_or_none(communicator, comm::Phase::rasterize, [&] {
+            ShareDrawer drawer(request_, prepared_, steps_.inside());
+            if (communicator.rank() == 0 && communicator.size() <= kMostMeasuredRanks) {
+              shapes_.emplace(communicator.size(), drawer.shapes(communicator.size()));
+            }
+            return drawer.draw(communicator.rank(), communicator.size());
+          });
       measure_all(communicator, share);
     });
   }
@@ -260,7 +261,7 @@ class Comparison {
   }
 
   void predict(const std::string& codec, const std::vector<int>& counts) {
-    if (!composite::hollow_of(codec)) {
+    if (!composite::metadata_only_of(codec)) {
       spdlog::warn("nothing is predicted of codec {}, whose messages depend on what pixels show",
                    codec);
       return;
@@ -270,7 +271,7 @@ class Comparison {
         flat != nullptr ? measure_layer_costs(*flat) : composite::measure_deep_layer_costs();
     const std::vector<composite::TimedScheme> samples = samples_of(codec);
     for (const int ranks : counts) {
-      const HollowImages images = hollow(ranks, codec);
+      const MetadataOnlyImages images = metadata_only(ranks, codec);
       std::array<Machines, kHalves> machines;  // by the half that a scheme is in
       for (std::size_t half = 0; half < kHalves; ++half) {
         for (const comm::NamedNetwork& named : comm::networks()) {
@@ -330,7 +331,7 @@ class Comparison {
 
   // Counted and predicted at once.
   ComparedScheme simulated_row(const std::string& scheme, const std::string& codec,
-                               const HollowImages& images, const Machines& machines) {
+                               const MetadataOnlyImages& images, const Machines& machines) {
     ComparedScheme row;
     row.scheme = scheme;
     row.codec = codec;
@@ -343,7 +344,7 @@ class Comparison {
   }
 
   // The machines at the same time. Returns any one, as what is counted is the same on all.
-  composite::Simulated predict(ComparedScheme& row, const HollowImages& images,
+  composite::Simulated predict(ComparedScheme& row, const MetadataOnlyImages& images,
                                const Machines& machines) {
     std::vector<composite::Simulated> runs(machines.size());
     parallel::parallel_for(0, machines.size(), 1, [&](std::size_t i) {
@@ -361,7 +362,7 @@ class Comparison {
     for (const ComparedScheme& row : rows_) {
       if (row.codec != codec || row.ranks > kMostFittedRanks || row.ranks < 2) continue;
       if (!row.compose_seconds) continue;
-      samples.push_back({row.scheme, hollow(row.ranks, codec),
+      samples.push_back({row.scheme, metadata_only(row.ranks, codec),
                          std::max(1e-9, row.compose_seconds->median), 1, options()});
     }
     return samples;

@@ -13,7 +13,7 @@
 
 namespace delray::apps {
 
-void ShareShapes::add(const raster::Share& share) {
+void ShareShapes::add(const raster::PartialImage& share) {
   if (const auto* image = std::get_if<image::Image8>(&share)) {
     masks_.push_back(maker_.add(image->depth.span()));
   } else {
@@ -21,8 +21,9 @@ void ShareShapes::add(const raster::Share& share) {
   }
 }
 
-composite::HollowImages ShareShapes::hollow(const std::string& codec, int width) const {
-  return {masks_, *composite::hollow_of(codec), composite::kPixelBytes8,
+composite::MetadataOnlyImages ShareShapes::metadata_only(const std::string& codec,
+                                                         int width) const {
+  return {masks_, *composite::metadata_only_of(codec), composite::kPixelBytes8,
           static_cast<std::uint64_t>(width), deep_};
 }
 
@@ -33,14 +34,14 @@ ShareDrawer::ShareDrawer(const CompareRequest& request, const Prepared& prepared
   options_.height = request.render.height;
 }
 
-raster::Share ShareDrawer::draw(int rank, int ranks) {
+raster::PartialImage ShareDrawer::draw(int rank, int ranks) {
   return renderer_.draw_share(rank, ranks, prepared_.camera, options_, progress_);
 }
 
 ShareShapes ShareDrawer::shapes(int ranks) {
   ShareShapes result;
   for (int rank = 0; rank < ranks; ++rank) {
-    raster::Share share = draw(rank, ranks);
+    raster::PartialImage share = draw(rank, ranks);
     result.add(share);
     if (auto* image = std::get_if<image::Image8>(&share)) renderer_.recycle(std::move(*image));
   }
@@ -56,7 +57,7 @@ void measure(comm::Communicator& communicator, ShareLayers& layers, const Compar
   // The first wait may be long, and who has slept comes out late; the last is over at once.
   for (int i = 0; i < 3; ++i) comm::barrier(communicator);
   const double begin = communicator.seconds();
-  composite::Part part =
+  composite::OwnedPixels part =
       composite::compose(used, std::move(layer), measured.scheme, {.interlace = request.interlace});
   const double composed = communicator.seconds();
   comm::barrier(communicator);

@@ -18,10 +18,10 @@ namespace delray::apps {
 class ShareShapes {
  public:
   // The next rank's.
-  void add(const raster::Share& share);
-  // REQUIRES: all shares were transparent for codec "deep", and flat for others, which hollow
-  // layers can stand for. Valid as long as this is.
-  composite::HollowImages hollow(const std::string& codec, int width) const;
+  void add(const raster::PartialImage& share);
+  // REQUIRES: all shares were transparent for codec "deep", and flat for others, which
+  // metadata-only layers can stand for. Valid as long as this is.
+  composite::MetadataOnlyImages metadata_only(const std::string& codec, int width) const;
   bool are_transparent() const { return !deep_.empty(); }
 
  private:
@@ -35,7 +35,7 @@ class ShareDrawer {
  public:
   ShareDrawer(const CompareRequest& request, const Prepared& prepared,
               parallel::Progress* progress);
-  raster::Share draw(int rank, int ranks);
+  raster::PartialImage draw(int rank, int ranks);
   // Of all ranks, from the first to the last.
   ShareShapes shapes(int ranks);
 

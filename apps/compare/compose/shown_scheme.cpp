@@ -58,7 +58,7 @@ image::Image8 reduced(const image::Image8& image, int side) {
   return result;
 }
 
-ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& share,
+ShownScheme show_scheme(comm::Communicator& communicator, const raster::PartialImage& share,
                         const std::string& scheme, const std::string& codec,
                         const CompareRequest& request, const Prepared& prepared) {
   const bool root = communicator.rank() == 0;
@@ -81,7 +81,7 @@ ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& s
   result.scheme = scheme;
   result.codec = codec;
   ShareLayers layers(share);
-  composite::Part whole;
+  composite::OwnedPixels whole;
   whole.layer = layers.make(codec);
   image::Image8 own = layers.image_of(std::move(whole));
   for (std::size_t i = 0; i < own.pixels(); ++i)  // what nothing covers may hold anything
@@ -96,7 +96,7 @@ ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& s
     // As when times are measured: who has slept in the first one comes out late.
     for (int i = 0; i < 3; ++i) comm::barrier(communicator);
     const double begin = communicator.seconds();
-    composite::Part part =
+    composite::OwnedPixels part =
         composite::compose(recording, std::move(layer), scheme, {.interlace = request.interlace});
     const std::vector<composite::PixelRange> owned = part.ranges;
     part = composite::gather(recording, std::move(part), 0);

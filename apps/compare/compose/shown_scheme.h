@@ -22,7 +22,7 @@ struct ShownScheme {
 inline constexpr int kShownRuns = 5;
 
 // Collective: composites copies of the shares once more. The result is rank 0's.
-ShownScheme show_scheme(comm::Communicator& communicator, const raster::Share& share,
+ShownScheme show_scheme(comm::Communicator& communicator, const raster::PartialImage& share,
                         const std::string& scheme, const std::string& codec,
                         const CompareRequest& request, const Prepared& prepared);
 

@@ -91,7 +91,7 @@ void expect_dense(const BasicImage<Colour>& own, const BasicImage<Colour>& other
                   Side side) {
   ActiveLayer<Colour> active(copy(own)), sender(copy(other));
   DenseLayer<Colour> dense(copy(own)), dense_sender(copy(other));
-  const comm::Buffer sent = sender.cut(range), dense_sent = dense_sender.cut(range);
+  const comm::Buffer sent = sender.encode(range), dense_sent = dense_sender.encode(range);
   const std::uint64_t covered = count_covered(other, range);
   const std::uint64_t groups = (range.size() + 4095) / 4096;
   EXPECT_LE(sent.size(),

@@ -65,12 +65,12 @@ TEST(DeepShape, ChangesAsADeepLayerDoes) {
       std::vector<DeepShape::Surface> surfaces;
       other_shape.read(range, pixels, surfaces);
       if (rank == 2) {
-        layer.replace(range, other.cut(range));
+        layer.replace(range, other.encode(range));
         shape.remove(range);
         shape.merge(range, {pixels, surfaces});
       } else {
         EXPECT_EQ(shape.merge(range, {pixels, surfaces}),
-                  layer.merge(range, other.cut(range), Side::higher));
+                  layer.merge(range, other.encode(range), Side::higher));
       }
       expect_same(shape, layer.image(), {0, layer.pixels()});
       expect_same(shape, layer.image(), range);

@@ -90,7 +90,7 @@ TEST(DeepImage, TakesTheListsOfTiles) {
 
 TEST(DeepLayer, ReplaceTakesWhateverWasCut) {
   DeepLayer<RgbaF> layer(partial_image(9, 7, 0, 2, 1)), other(partial_image(9, 7, 1, 2, 1));
-  layer.replace({5, 60}, other.cut({5, 60}));
+  layer.replace({5, 60}, other.encode({5, 60}));
   for (std::size_t i = 0; i < 63; ++i) {
     const DeepImage<RgbaF> expected = partial_image(9, 7, i >= 5 && i < 60 ? 1 : 0, 2, 1);
     ASSERT_EQ(layer.image().at(i).size(), expected.at(i).size()) << i;
@@ -107,7 +107,7 @@ TEST(DeepLayer, IsEmptyWithoutFragments) {
   EXPECT_FALSE(DeepLayer<RgbaF>(partial_image(3, 4, 0, 1, 1)).empty());
   DeepLayer<RgbaF> nothing(DeepImage<RgbaF>(3, 4));
   EXPECT_EQ(
-      nothing.merge({0, 12}, DeepLayer<RgbaF>(DeepImage<RgbaF>(3, 4)).cut({0, 12}), Side::lower),
+      nothing.merge({0, 12}, DeepLayer<RgbaF>(DeepImage<RgbaF>(3, 4)).encode({0, 12}), Side::lower),
       0U);
   EXPECT_TRUE(nothing.empty());
 }
@@ -130,7 +130,7 @@ TEST(DeepLayer, EverySchemeBlendsTheSamePicture) {
       const auto expected = flatten<RgbaF>(all);
       comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
         auto layer = make_deep(partial_image(width, height, communicator.rank(), ranks, seed));
-        Part part =
+        OwnedPixels part =
             gather(communicator, scheme.compose(communicator, std::move(layer), {}), /*root=*/0);
         if (communicator.rank() != 0) return;
         const auto image = flatten<RgbaF>(take_deep<RgbaF>(std::move(part)));
@@ -190,7 +190,7 @@ TEST(DeepLayer, CarriesWhateverTheOwnerShades) {
   for (const Scheme& scheme : schemes()) {
     comm::run_threads(kRanks, 2, [&](comm::Communicator& communicator) {
       const auto rank = static_cast<unsigned>(communicator.rank());
-      Part part = scheme.compose(
+      OwnedPixels part = scheme.compose(
           communicator, make_deep(deep_image(kWidth, kHeight, surfaces(kPixels, rank))), {});
       part = gather(communicator, std::move(part), 1);
       if (rank != 1) return;
@@ -225,7 +225,7 @@ TEST(DeepLayer, KeepsMemoryInProportionToItsFragments) {
   DeepLayer<RgbaF> layer(glass(0));
   for (std::uint64_t primitive = 1; primitive < 30; ++primitive) {
     DeepLayer<RgbaF> other(glass(primitive));
-    layer.merge({0, kPixels}, other.cut({0, kPixels}), Side::higher);
+    layer.merge({0, kPixels}, other.encode({0, kPixels}), Side::higher);
     const std::size_t used = kPixels / 2 * (primitive + 1);
     EXPECT_GE(size_of(layer), used);
     EXPECT_LE(size_of(layer), 2 * used);
@@ -237,7 +237,7 @@ TEST(DeepLayer, KeepsMemoryInProportionToItsFragments) {
     }
   }
   DeepLayer<RgbaF> nothing(DeepImage<RgbaF>(kPixels, 1));
-  layer.replace({0, kPixels}, nothing.cut({0, kPixels}));
+  layer.replace({0, kPixels}, nothing.encode({0, kPixels}));
   EXPECT_EQ(size_of(layer), 0U);
 }
 
@@ -249,19 +249,20 @@ TEST(DeepLayer, SendsFourBytesPerPixelAndItsFragments) {
     covered += layer.image().at(i).empty() ? 0 : 1;
     fragments += layer.image().at(i).size();
   }
-  const comm::Buffer message = layer.cut({10, 8990});
+  const comm::Buffer message = layer.encode({10, 8990});
   const std::size_t bytes = 4 * covered + (sizeof(Surface) + 12) * fragments;
   EXPECT_GE(message.size(), bytes + 8);
   EXPECT_LE(message.size(), bytes + 8 + 8980 * 13 / 100);
-  EXPECT_EQ(layer.cut({8990, 8990}).size(), 8U);
-  EXPECT_EQ(layer.merge({10, 8990}, DeepLayer<Surface>(DeepImage<Surface>(9000, 1)).cut({10, 8990}),
-                        Side::lower),
-            0U);
-  const comm::Buffer all = layer.cut({0, 9000});
-  EXPECT_EQ(layer.cut({10, 8990}).size(), message.size());
+  EXPECT_EQ(layer.encode({8990, 8990}).size(), 8U);
+  EXPECT_EQ(
+      layer.merge({10, 8990}, DeepLayer<Surface>(DeepImage<Surface>(9000, 1)).encode({10, 8990}),
+                  Side::lower),
+      0U);
+  const comm::Buffer all = layer.encode({0, 9000});
+  EXPECT_EQ(layer.encode({10, 8990}).size(), message.size());
   DeepLayer<Surface> copy(DeepImage<Surface>(9000, 1));
   copy.merge({0, 9000}, all, Side::lower);
-  const comm::Buffer again = copy.cut({0, 9000});
+  const comm::Buffer again = copy.encode({0, 9000});
   ASSERT_EQ(again.size(), all.size());
   EXPECT_EQ(std::memcmp(again.data(), all.data(), all.size()), 0);
 }

@@ -23,7 +23,7 @@ Image8 picture(std::uint8_t who) {
 TEST(DenseLayer, MergesOnlyTheRangeAndTheLowerSideWinsTies) {
   for (const Side side : {Side::lower, Side::higher}) {
     DenseLayer<Rgba8> layer(picture(1)), other(picture(2));
-    EXPECT_EQ(layer.merge({2, 6}, other.cut({2, 6}), side), 4U);
+    EXPECT_EQ(layer.merge({2, 6}, other.encode({2, 6}), side), 4U);
     for (std::size_t i = 0; i < 10; ++i) {
       const bool taken = side == Side::lower && i >= 2 && i < 6;
       EXPECT_EQ(layer.image().colour[i].r, i == 3 ? 0 : taken ? 2 : 1) << i;
@@ -34,7 +34,7 @@ TEST(DenseLayer, MergesOnlyTheRangeAndTheLowerSideWinsTies) {
 TEST(DenseLayer, ReplaceTakesWhateverWasCut) {
   DenseLayer<Rgba8> layer(picture(1)), other(picture(2));
   other.image().depth[5] = 9;
-  layer.replace({3, 7}, other.cut({3, 7}));
+  layer.replace({3, 7}, other.encode({3, 7}));
   EXPECT_EQ(layer.image().colour[2].r, 1);
   EXPECT_EQ(layer.image().colour[3].r, 0);
   EXPECT_EQ(layer.image().colour[4].r, 2);
@@ -44,8 +44,8 @@ TEST(DenseLayer, ReplaceTakesWhateverWasCut) {
 
 TEST(DenseLayer, CutsEmptyRanges) {
   DenseLayer<Rgba8> layer(picture(1));
-  EXPECT_TRUE(layer.cut({4, 4}).empty());
-  EXPECT_EQ(layer.merge({10, 10}, layer.cut({10, 10}), Side::lower), 0U);
+  EXPECT_TRUE(layer.encode({4, 4}).empty());
+  EXPECT_EQ(layer.merge({10, 10}, layer.encode({10, 10}), Side::lower), 0U);
 }
 
 TEST(DenseLayer, IsEmptyWhenNothingIsCovered) {
@@ -69,7 +69,7 @@ TEST(DenseLayer, LargeRangesAreSplitOverThreads) {
   }
   DenseLayer<Rgba8> layer(std::move(farther)), other(std::move(nearer));
   const PixelRange range{1, 299999};
-  EXPECT_EQ(layer.merge(range, other.cut(range), Side::higher), range.size());
+  EXPECT_EQ(layer.merge(range, other.encode(range), Side::higher), range.size());
   for (std::size_t i = 0; i < other.image().pixels(); ++i) {
     const bool taken = i % 2 == 1 && i < range.end;
     ASSERT_EQ(layer.image().colour[i], taken ? other.image().colour[i] : (Rgba8{9, 9, 9, 255}))

@@ -20,7 +20,7 @@ class SlowLayer final : public ImageLayer<image::Rgba8> {
  public:
   using ImageLayer<image::Rgba8>::ImageLayer;
 
-  comm::Buffer cut(PixelRange range) override {
+  comm::Buffer encode(PixelRange range) override {
     cut_pixels += range.size();
     comm::Buffer message(range.size() * bytes_per_pixel());
     for (int i = 0; i < (cuts_take_long ? 100 : 1); ++i) {
@@ -58,7 +58,7 @@ LayerCosts measure(bool slow_cuts, bool slow_merges) {
 
 // Of an image of kPixels in one dense message.
 double cut_seconds(const LayerCosts& costs) {
-  return costs.cut + kPixels * (costs.cut_pixel + 8 * costs.cut_byte);
+  return costs.encode + kPixels * (costs.encode_pixel + 8 * costs.encode_byte);
 }
 double merge_seconds(const LayerCosts& costs) {
   return costs.merge + kPixels * (costs.merge_pixel + costs.merge_covered);
@@ -67,7 +67,7 @@ double merge_seconds(const LayerCosts& costs) {
 TEST(LayerCosts, AreOfEveryCodecAndNeverNegative) {
   for (const Codec& codec : codecs()) {
     const LayerCosts costs = measure_layer_costs(codec, kPixels);
-    for (const double cost : {costs.cut, costs.cut_pixel, costs.cut_byte, costs.merge,
+    for (const double cost : {costs.cut, costs.encode_pixel, costs.encode_byte, costs.merge,
                               costs.merge_pixel, costs.merge_covered}) {
       EXPECT_GE(cost, 0) << codec.name;
       EXPECT_TRUE(std::isfinite(cost)) << codec.name;
@@ -79,7 +79,7 @@ TEST(LayerCosts, AreOfEveryCodecAndNeverNegative) {
 
 TEST(LayerCosts, AreOfDeepLayersToo) {
   const LayerCosts costs = measure_deep_layer_costs(kPixels);
-  for (const double cost : {costs.cut, costs.cut_pixel, costs.cut_byte, costs.merge,
+  for (const double cost : {costs.cut, costs.encode_pixel, costs.encode_byte, costs.merge,
                             costs.merge_pixel, costs.merge_covered}) {
     EXPECT_GE(cost, 0);
     EXPECT_TRUE(std::isfinite(cost));

@@ -95,21 +95,21 @@ std::vector<std::int64_t> drawn(const Screen& screen, const scenes::Scene& scene
   const DrawIntoTiles task{screen,
                            list,
                            draws,
-                           jobs.wanted,
+                           jobs.clip,
                            setting.skip_hidden,
                            [](std::uint32_t, int, int) {
         return true; },
                            {}};
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
-  LaterTriangles later;
+  DeferredTriangles deferred;
   DrawCosts costs;
   std::vector<std::int64_t> keys(static_cast<std::size_t>(screen.width) * screen.height);
   parallel::Arena(setting.threads).execute([&] {
     for (int frame = 0; frame < 2; ++frame) {  // the second finds the memory of the first
       tiles.begin(screen, jobs);
-      counts = draw_into_tiles(task, tiles, workers, later, costs);
-      for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, later.large, tiles);
+      counts = draw_into_tiles(task, tiles, workers, deferred, costs);
+      for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, deferred.large, tiles);
     }
   });
   for (const TileJob& job : jobs.jobs) {

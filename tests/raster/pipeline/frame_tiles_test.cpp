@@ -17,8 +17,8 @@ class Blocks {
   static constexpr int kDown = 2 * VisibilityTile::kBlocks / VisibilityTile::kBlocksX;
 
   explicit Blocks(unsigned seed) : random_(seed) {
-    const geometry::Rect wanted{0, 0, 2 * kTileSize, 2 * kTileSize};
-    tiles_.begin(screen_, make_tile_jobs(screen_, {&wanted, 1}));
+    const geometry::Rect clip{0, 0, 2 * kTileSize, 2 * kTileSize};
+    tiles_.begin(screen_, make_tile_jobs(screen_, {&clip, 1}));
     for (const int tile : {0, 3, 4}) {
       VisibilityTile& open = tiles_.open(tile);
       for (int block = 0; block < VisibilityTile::kBlocks; ++block)

@@ -15,7 +15,7 @@ namespace delray::raster {
 
 struct FrameMemory;
 
-struct Rank {
+struct RankContext {
   comm::Communicator& communicator;
   const scenes::Scene& scene;
   std::span<const std::uint64_t> first_primitives;
@@ -95,20 +95,20 @@ auto timed(const comm::Communicator& communicator, double& seconds, F&& f) {
   return result;
 }
 
-Picture sort_first(Rank& rank);
+Picture sort_first(RankContext& rank);
 // With options.schedule.
-Picture sort_first_scheduled(Rank& rank);
-Picture sort_middle(Rank& rank);
-Picture sort_last(Rank& rank);
+Picture sort_first_scheduled(RankContext& rank);
+Picture sort_middle(RankContext& rank);
+Picture sort_last(RankContext& rank);
 // Finishes a drawing of the whole frame and composites it meanwhile, by the scheme `tiles`: a tile
 // goes to its owner as soon as it is finished here. The part is in samples. Collective.
 //
 // REQUIRES: nothing is transparent; pixels are shaded before they are composited.
 template <class Colour>
-composite::Part hand_over_tiles(Rank& rank, RegionDrawing& drawing);
-std::unique_ptr<FrameSteps> sort_last_steps(Rank& rank);
+composite::OwnedPixels hand_over_tiles(RankContext& rank, RegionDrawing& drawing);
+std::unique_ptr<FrameSteps> sort_last_steps(RankContext& rank);
 // What sort_last composites, of a rank that need not have others. REQUIRES: one sample per pixel.
-Share sort_last_share(Rank& rank);
-Picture hybrid(Rank& rank);
+PartialImage sort_last_share(RankContext& rank);
+Picture hybrid(RankContext& rank);
 
 }  // namespace delray::raster

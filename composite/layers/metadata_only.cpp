@@ -1,28 +1,28 @@
 // Layers of the codecs active and bounds that hold masks in place of pixels, and of dense that hold
 // nothing. Their messages tell the size that a real one would have, and carry the coverage where
 // there is a mask; merging adds it. Degenerate: a message of nothing carries no coverage.
-#include "composite/hollow.h"
+#include "composite/metadata_only.h"
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
 #include "composite/layers/bounding_rectangle.h"
-#include "composite/layers/hollow_layer.h"
+#include "composite/layers/metadata_only_layer.h"
 
 namespace delray::composite {
 namespace {
 
-using internal::HollowLayer;
+using internal::MetadataOnlyLayer;
 
-class HollowDenseLayer final : public HollowLayer {
+class MetadataOnlyDenseLayer final : public MetadataOnlyLayer {
  public:
-  HollowDenseLayer(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
-                   const LayerClock& clock)
-      : HollowLayer(pixel_bytes, clock), pixels_(pixels), empty_(empty) {}
+  MetadataOnlyDenseLayer(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
+                         const LayerClock& clock)
+      : MetadataOnlyLayer(pixel_bytes, clock), pixels_(pixels), empty_(empty) {}
 
   std::uint64_t pixels() const override { return pixels_; }
-  comm::Buffer cut(PixelRange range) override {
+  comm::Buffer encode(PixelRange range) override {
     const std::size_t bytes = range.size() * pixel_bytes();
     charge_cut(range, bytes);
     return comm::Buffer::standing_for(bytes, {});
@@ -47,16 +47,16 @@ class HollowDenseLayer final : public HollowLayer {
 
 // Knows which pixels are covered. A message holds how many pixels travel and which are covered, and
 // nothing where none is.
-class HollowMaskLayer : public HollowLayer {
+class MetadataOnlyMaskLayer : public MetadataOnlyLayer {
  public:
-  HollowMaskLayer(ImageMasks&& image, std::size_t pixel_bytes, std::size_t bytes_of_nothing,
-                  const LayerClock& clock)
-      : HollowLayer(pixel_bytes, clock),
+  MetadataOnlyMaskLayer(ImageMasks&& image, std::size_t pixel_bytes, std::size_t bytes_of_nothing,
+                        const LayerClock& clock)
+      : MetadataOnlyLayer(pixel_bytes, clock),
         image_(std::move(image)),
         bytes_of_nothing_(bytes_of_nothing) {}
 
   std::uint64_t pixels() const override { return image_.covered.pixels(); }
-  comm::Buffer cut(PixelRange range) override {
+  comm::Buffer encode(PixelRange range) override {
     // Most messages between thousands of ranks are of nothing.
     if (image_.covered.empty(range)) {
       charge_cut(range, bytes_of_nothing_);
@@ -143,10 +143,10 @@ class HollowMaskLayer : public HollowLayer {
   std::size_t bytes_of_nothing_;  // of a message of pixels none of which is covered
 };
 
-class HollowActiveLayer final : public HollowMaskLayer {
+class MetadataOnlyActiveLayer final : public MetadataOnlyMaskLayer {
  public:
-  HollowActiveLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
-      : HollowMaskLayer(std::move(image), pixel_bytes, sizeof(std::uint64_t), clock) {}
+  MetadataOnlyActiveLayer(ImageMasks&& image, std::size_t pixel_bytes, const LayerClock& clock)
+      : MetadataOnlyMaskLayer(std::move(image), pixel_bytes, sizeof(std::uint64_t), clock) {}
 
  private:
   Sizes sizes_of(PixelRange, const Coverage& coverage) const override {
@@ -154,11 +154,11 @@ class HollowActiveLayer final : public HollowMaskLayer {
   }
 };
 
-class HollowBoundsLayer final : public HollowMaskLayer {
+class MetadataOnlyBoundsLayer final : public MetadataOnlyMaskLayer {
  public:
-  HollowBoundsLayer(ImageMasks&& image, std::uint64_t width, std::size_t pixel_bytes,
-                    const LayerClock& clock)
-      : HollowMaskLayer(std::move(image), pixel_bytes, sizeof(internal::Bounds), clock),
+  MetadataOnlyBoundsLayer(ImageMasks&& image, std::uint64_t width, std::size_t pixel_bytes,
+                          const LayerClock& clock)
+      : MetadataOnlyMaskLayer(std::move(image), pixel_bytes, sizeof(internal::Bounds), clock),
         width_(width) {}
 
  private:
@@ -176,27 +176,27 @@ class HollowBoundsLayer final : public HollowMaskLayer {
 
 }  // namespace
 
-std::optional<Hollow> hollow_of(std::string_view codec) {
-  if (codec == "dense") return Hollow::dense;
-  if (codec == "bounds") return Hollow::bounds;
-  if (codec == "active") return Hollow::active;
-  if (codec == "deep") return Hollow::deep;
+std::optional<MetadataOnly> metadata_only_of(std::string_view codec) {
+  if (codec == "dense") return MetadataOnly::dense;
+  if (codec == "bounds") return MetadataOnly::bounds;
+  if (codec == "active") return MetadataOnly::active;
+  if (codec == "deep") return MetadataOnly::deep;
   return std::nullopt;
 }
 
-std::unique_ptr<Layer> make_hollow_dense(std::uint64_t pixels, std::size_t pixel_bytes, bool empty,
-                                         const LayerClock& clock) {
-  return std::make_unique<HollowDenseLayer>(pixels, pixel_bytes, empty, clock);
+std::unique_ptr<Layer> make_metadata_only_dense(std::uint64_t pixels, std::size_t pixel_bytes,
+                                                bool empty, const LayerClock& clock) {
+  return std::make_unique<MetadataOnlyDenseLayer>(pixels, pixel_bytes, empty, clock);
 }
 
-std::unique_ptr<Layer> make_hollow_active(ImageMasks&& image, std::size_t pixel_bytes,
-                                          const LayerClock& clock) {
-  return std::make_unique<HollowActiveLayer>(std::move(image), pixel_bytes, clock);
+std::unique_ptr<Layer> make_metadata_only_active(ImageMasks&& image, std::size_t pixel_bytes,
+                                                 const LayerClock& clock) {
+  return std::make_unique<MetadataOnlyActiveLayer>(std::move(image), pixel_bytes, clock);
 }
 
-std::unique_ptr<Layer> make_hollow_bounds(ImageMasks&& image, std::uint64_t width,
-                                          std::size_t pixel_bytes, const LayerClock& clock) {
-  return std::make_unique<HollowBoundsLayer>(std::move(image), width, pixel_bytes, clock);
+std::unique_ptr<Layer> make_metadata_only_bounds(ImageMasks&& image, std::uint64_t width,
+                                                 std::size_t pixel_bytes, const LayerClock& clock) {
+  return std::make_unique<MetadataOnlyBoundsLayer>(std::move(image), width, pixel_bytes, clock);
 }
 
 }  // namespace delray::composite

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "composite/layers/hollow_layer.h"
+#include "composite/layers/metadata_only_layer.h"
 
 namespace delray::composite {
 namespace {
@@ -14,13 +14,13 @@ using Pixel = DeepShape::Pixel;
 using Surface = DeepShape::Surface;
 
 // A message holds the surfaces of the range.
-class HollowDeepLayer final : public internal::HollowLayer {
+class MetadataOnlyDeepLayer final : public internal::MetadataOnlyLayer {
  public:
-  HollowDeepLayer(DeepShape&& image, std::size_t fragment_bytes, const LayerClock& clock)
-      : HollowLayer(fragment_bytes, clock), image_(std::move(image)) {}
+  MetadataOnlyDeepLayer(DeepShape&& image, std::size_t fragment_bytes, const LayerClock& clock)
+      : MetadataOnlyLayer(fragment_bytes, clock), image_(std::move(image)) {}
 
   std::uint64_t pixels() const override { return image_.pixels(); }
-  comm::Buffer cut(PixelRange range) override {
+  comm::Buffer encode(PixelRange range) override {
     std::vector<Pixel> pixels;
     std::vector<Surface> surfaces;
     image_.read(range, pixels, surfaces);
@@ -82,9 +82,9 @@ class HollowDeepLayer final : public internal::HollowLayer {
 
 }  // namespace
 
-std::unique_ptr<Layer> make_hollow_deep(DeepShape image, std::size_t fragment_bytes,
-                                        const LayerClock& clock) {
-  return std::make_unique<HollowDeepLayer>(std::move(image), fragment_bytes, clock);
+std::unique_ptr<Layer> make_metadata_only_deep(DeepShape image, std::size_t fragment_bytes,
+                                               const LayerClock& clock) {
+  return std::make_unique<MetadataOnlyDeepLayer>(std::move(image), fragment_bytes, clock);
 }
 
 }  // namespace delray::composite

@@ -15,9 +15,10 @@ namespace delray::composite::internal {
 // under those tags. A rank that is not listed has rank() -1 and may ask for nothing else.
 //
 // REQUIRES: `all` outlives it; `ranks` are the same on every member, each once.
-class Members final : public comm::Communicator {
+class SubCommunicator final : public comm::Communicator {
  public:
-  Members(comm::Communicator& all, std::vector<int> ranks) : all_(all), ranks_(std::move(ranks)) {
+  SubCommunicator(comm::Communicator& all, std::vector<int> ranks)
+      : all_(all), ranks_(std::move(ranks)) {
     rank_ = member_of(all.rank());
   }
 

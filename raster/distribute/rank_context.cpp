@@ -3,14 +3,14 @@
 //
 // A single rank remembers which tiles it left clear in a picture's memory, and does not clear them
 // again. Degenerate: with fewer primitives than ranks some have none.
-#include "raster/distribute/rank.h"
+#include "raster/distribute/rank_context.h"
 
 #include "raster/distribute/gather_regions.h"
 #include "raster/pipeline/samples.h"
 
 namespace delray::raster {
 
-std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives(int holders) const {
+std::pair<std::uint64_t, std::uint64_t> RankContext::own_primitives(int holders) const {
   const std::uint64_t all = first_primitives.back();
   const auto n = static_cast<std::uint64_t>(holders);
   const auto k = static_cast<std::uint64_t>(number());
@@ -20,7 +20,7 @@ std::pair<std::uint64_t, std::uint64_t> Rank::own_primitives(int holders) const 
   return {begin(k), begin(k + 1)};
 }
 
-RegionDrawing Rank::begin(const DrawList& list, std::span<const geometry::Rect> regions) {
+RegionDrawing RankContext::begin(const DrawList& list, std::span<const geometry::Rect> regions) {
   std::vector<geometry::Rect> in_samples;
   for (const geometry::Rect& r : regions)
     in_samples.push_back(samples_of(r, options.supersampling));
@@ -28,19 +28,19 @@ RegionDrawing Rank::begin(const DrawList& list, std::span<const geometry::Rect> 
       {screen, list, shader, options, in_samples, depths_are_distances(), progress}, scratch);
 }
 
-void Rank::tell_work(const RegionCounts& done) const {
+void RankContext::tell_work(const RegionCounts& done) const {
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
 }
 
-void Rank::end(RegionDrawing& drawing, FinishTile finish_tile) {
+void RankContext::end(RegionDrawing& drawing, FinishTile finish_tile) {
   const RegionCounts done = drawing.finish(finish_tile);
   if (!in_steps) tell_work(done);
   counts += done;
 }
 
-void Rank::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
-                    parallel::FunctionRef<void(int, int)> rows_finished) {
+void RankContext::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
+                           parallel::FunctionRef<void(int, int)> rows_finished) {
   drawing.finish_rows(first, rows, finish_tile, [&](int begin, int end, const RegionCounts& done) {
     tell_work(done);
     counts += done;
@@ -48,8 +48,8 @@ void Rank::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile fini
   });
 }
 
-void Rank::render(const DrawList& list, std::span<const geometry::Rect> regions,
-                  FinishTile finish_tile) {
+void RankContext::render(const DrawList& list, std::span<const geometry::Rect> regions,
+                         FinishTile finish_tile) {
   communicator.mark(comm::Phase::rasterize, 0);
   RegionDrawing drawing = begin(list, regions);
   drawing.draw_all();
@@ -77,7 +77,7 @@ void store_samples(std::span<const geometry::Rect> rects, TileView& tile, int n,
 }
 
 template <class Colour>
-void Rank::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
+void RankContext::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) {
   const Window<Colour> window = window_of(image);
   // Tiles that were left clear in the same memory before need not be cleared again.
   const bool whole = ranks() == 1 && options.supersampling == 1;
@@ -97,8 +97,8 @@ void Rank::end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image) 
 }
 
 template <class Colour>
-void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
-                         image::BasicImage<Colour>& image) {
+void RankContext::render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
+                                image::BasicImage<Colour>& image) {
   communicator.mark(comm::Phase::rasterize, 0);
   RegionDrawing drawing = begin(list, regions);
   drawing.draw_all();
@@ -106,7 +106,7 @@ void Rank::render_pixels(const DrawList& list, std::span<const geometry::Rect> r
 }
 
 template <class Colour>
-image::BasicImage<Colour> Rank::end_samples(RegionDrawing& drawing) {
+image::BasicImage<Colour> RankContext::end_samples(RegionDrawing& drawing) {
   const int n = options.supersampling;
   image::BasicImage<Colour> image =
       take_image<Colour>(options.width * samples_per_pixel(), options.height);
@@ -117,7 +117,8 @@ image::BasicImage<Colour> Rank::end_samples(RegionDrawing& drawing) {
 }
 
 template <class Colour>
-Picture Rank::gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image) {
+Picture RankContext::gather(const loadbalance::Partition& partition,
+                            image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();
   gather_regions(communicator, partition, image);
@@ -127,7 +128,7 @@ Picture Rank::gather(const loadbalance::Partition& partition, image::BasicImage<
 }
 
 template <class Colour>
-image::BasicImage<Colour> Rank::take_image(int width, int height) {
+image::BasicImage<Colour> RankContext::take_image(int width, int height) {
   // Whoever changes the image without saying what is clear leaves nothing known of it.
   scratch.taken = std::exchange(scratch.clear_in, nullptr);
   if (auto* const spare = std::get_if<image::BasicImage<Colour>>(&scratch.spare);
@@ -137,16 +138,18 @@ image::BasicImage<Colour> Rank::take_image(int width, int height) {
   return image::BasicImage<Colour>(width, height);
 }
 
-template void Rank::end_pixels(RegionDrawing&, image::Image8&);
-template void Rank::end_pixels(RegionDrawing&, image::ImageF&);
-template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::Image8&);
-template void Rank::render_pixels(const DrawList&, std::span<const geometry::Rect>, image::ImageF&);
-template image::Image8 Rank::end_samples(RegionDrawing&);
-template image::ImageF Rank::end_samples(RegionDrawing&);
-template Picture Rank::gather(const loadbalance::Partition&, image::Image8&&);
-template Picture Rank::gather(const loadbalance::Partition&, image::ImageF&&);
-template image::Image8 Rank::take_image(int, int);
-template image::ImageF Rank::take_image(int, int);
+template void RankContext::end_pixels(RegionDrawing&, image::Image8&);
+template void RankContext::end_pixels(RegionDrawing&, image::ImageF&);
+template void RankContext::render_pixels(const DrawList&, std::span<const geometry::Rect>,
+                                         image::Image8&);
+template void RankContext::render_pixels(const DrawList&, std::span<const geometry::Rect>,
+                                         image::ImageF&);
+template image::Image8 RankContext::end_samples(RegionDrawing&);
+template image::ImageF RankContext::end_samples(RegionDrawing&);
+template Picture RankContext::gather(const loadbalance::Partition&, image::Image8&&);
+template Picture RankContext::gather(const loadbalance::Partition&, image::ImageF&&);
+template image::Image8 RankContext::take_image(int, int);
+template image::ImageF RankContext::take_image(int, int);
 
 template void store_pixels(std::span<const geometry::Rect>, TileView&, int,
                            const Window<image::Rgba8>&);

@@ -3,28 +3,28 @@
 
 #include <cmath>
 
-#include "composite/hollow.h"
+#include "composite/metadata_only.h"
 
 namespace delray::composite::internal {
 
-class HollowLayer : public Layer {
+class MetadataOnlyLayer : public Layer {
  public:
-  HollowLayer(std::size_t pixel_bytes, const LayerClock& clock)
+  MetadataOnlyLayer(std::size_t pixel_bytes, const LayerClock& clock)
       : pixel_bytes_(pixel_bytes), clock_(clock) {}
 
  protected:
   std::size_t pixel_bytes() const { return pixel_bytes_; }
 
   void charge_cut(PixelRange range, std::size_t bytes) const {
-    charge(clock_.costs.cut + clock_.costs.cut_pixel * static_cast<double>(range.size()) +
-           clock_.costs.cut_byte * static_cast<double>(bytes));
+    charge(clock_.costs.encode + clock_.costs.encode_pixel * static_cast<double>(range.size()) +
+           clock_.costs.encode_byte * static_cast<double>(bytes));
   }
   void charge_merge(PixelRange range) const {
     charge(clock_.costs.merge + clock_.costs.merge_pixel * static_cast<double>(range.size()));
   }
   // Bytes are written once more, into the image.
   void charge_replace(std::size_t bytes) const {
-    charge(clock_.costs.merge + clock_.costs.cut_byte * static_cast<double>(bytes));
+    charge(clock_.costs.merge + clock_.costs.encode_byte * static_cast<double>(bytes));
   }
 
  private:

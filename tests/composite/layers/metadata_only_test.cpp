@@ -1,4 +1,4 @@
-#include "composite/hollow.h"
+#include "composite/metadata_only.h"
 
 #include <gtest/gtest.h>
 
@@ -80,11 +80,11 @@ void expect_equal(const comm::Totals& a, const comm::Totals& b) {
 }
 
 void expect_equal_counts(const std::vector<comm::Tally>& real,
-                         const std::vector<comm::Tally>& hollow) {
+                         const std::vector<comm::Tally>& metadata_only) {
   for (std::size_t rank = 0; rank < real.size(); ++rank) {
     SCOPED_TRACE("rank " + std::to_string(rank));
     for (const comm::Phase phase : {comm::Phase::compose, comm::Phase::gather}) {
-      expect_equal(real[rank].totals(phase), hollow[rank].totals(phase));
+      expect_equal(real[rank].totals(phase), metadata_only[rank].totals(phase));
     }
   }
 }
@@ -124,24 +124,25 @@ void compare(const Scheme& scheme, const std::string& codec, const Case& c, int 
   const auto real = counts_of(scheme, ranks, options, [&](int rank) {
     return find_codec(codec)->make(partial_image<Image>(rank, size), c.how);
   });
-  const auto hollow = counts_of(scheme, ranks, options, [&](int rank) {
+  const auto metadata_only = counts_of(scheme, ranks, options, [&](int rank) {
     ImageMasks& image = masks.at(rank);
-    switch (*hollow_of(codec)) {
-      case Hollow::dense:
-        return make_hollow_dense(image.covered.pixels(), c.pixel_bytes, image.covered.empty());
-      case Hollow::bounds:
-        return make_hollow_bounds(image.copy(), static_cast<std::uint64_t>(size.width),
-                                  c.pixel_bytes);
-      case Hollow::active:
-      case Hollow::deep:
+    switch (*metadata_only_of(codec)) {
+      case MetadataOnly::dense:
+        return make_metadata_only_dense(image.covered.pixels(), c.pixel_bytes,
+                                        image.covered.empty());
+      case MetadataOnly::bounds:
+        return make_metadata_only_bounds(image.copy(), static_cast<std::uint64_t>(size.width),
+                                         c.pixel_bytes);
+      case MetadataOnly::active:
+      case MetadataOnly::deep:
         break;
     }
-    return make_hollow_active(image.copy(), c.pixel_bytes);
+    return make_metadata_only_active(image.copy(), c.pixel_bytes);
   });
-  expect_equal_counts(real, hollow);
+  expect_equal_counts(real, metadata_only);
 }
 
-TEST(HollowLayers, CountWhatRealOnesDo) {
+TEST(MetadataOnlyLayers, CountWhatRealOnesDo) {
   std::size_t turn = 0;
   for (const int ranks : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 16, 17, 64}) {
     for (const Size size : {Size{1, 1}, Size{7, 3}, ranks < 10 ? Size{149, 127} : Size{97, 61}}) {
@@ -180,7 +181,7 @@ DeepImage<image::RgbaF> deep_image(int rank, int ranks, Size size) {
   return image;
 }
 
-TEST(HollowLayers, CountWhatDeepOnesDo) {
+TEST(MetadataOnlyLayers, CountWhatDeepOnesDo) {
   bool interlace = false;
   for (const int ranks : {1, 2, 3, 5, 8, 13, 31}) {
     for (const Size size : {Size{1, 1}, Size{7, 3}, Size{97, 61}}) {
@@ -192,27 +193,27 @@ TEST(HollowLayers, CountWhatDeepOnesDo) {
         const auto real = counts_of(scheme, ranks, options, [&](int rank) {
           return make_deep(deep_image(rank, ranks, size));
         });
-        const auto hollow = counts_of(scheme, ranks, options, [&](int rank) {
-          return make_hollow_deep(DeepShape(deep_image(rank, ranks, size)));
+        const auto metadata_only = counts_of(scheme, ranks, options, [&](int rank) {
+          return make_metadata_only_deep(DeepShape(deep_image(rank, ranks, size)));
         });
-        expect_equal_counts(real, hollow);
+        expect_equal_counts(real, metadata_only);
         ASSERT_FALSE(::testing::Test::HasFailure());
       }
     }
   }
 }
 
-TEST(HollowLayers, TakeTheTimeThatTheirCostsSay) {
+TEST(MetadataOnlyLayers, TakeTheTimeThatTheirCostsSay) {
   const auto finished = comm::run_simulated(2, {}, 1, [](comm::Communicator& communicator) {
     LayerClock clock{&communicator, {}};
     clock.costs = {.cut = 1,
-                   .cut_pixel = 0.5,
-                   .cut_byte = 0.25,
+                   .encode_pixel = 0.5,
+                   .encode_byte = 0.25,
                    .merge = 1000,
                    .merge_pixel = 7,
                    .merge_covered = 1e9};
-    const auto layer = make_hollow_dense(100, kPixelBytes8, false, clock);
-    const comm::Buffer message = layer->cut({10, 20});
+    const auto layer = make_metadata_only_dense(100, kPixelBytes8, false, clock);
+    const comm::Buffer message = layer->encode({10, 20});
     if (communicator.rank() == 1) {
       EXPECT_EQ(layer->merge({10, 20}, message, Side::lower), 10U);
     }
