@@ -106,7 +106,7 @@ void expect_dense(const BasicImage<Colour>& own, const BasicImage<Colour>& other
   dense.merge(range, dense_sent, side);
   ASSERT_TRUE(same(active.image(), dense.image())) << "merged";
   ActiveLayer<Colour> third(copy(own));  // takes coverage that has grown
-  third.replace(range, active.cut(range));
+  third.replace(range, active.encode(range));
   ASSERT_TRUE(same(third.image(), active.image())) << "replaced by a merged one";
   active.replace(range, sent);
   dense.replace(range, dense_sent);
