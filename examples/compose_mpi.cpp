@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
 
-// Any renderer's picture: here a disc for each rank, tilted so that each hides a part of the one before.
+// Any renderer's picture: here a disc for each rank, tilted so that each hides a part of the one
+// before.
 image::Image8 draw(int rank, int ranks) {
   image::Image8 picture(kWidth, kHeight);
   image::clear(picture);
@@ -40,7 +41,7 @@ int render_together(MPI_Comm renderers, const char* file) {
   image::Image8 picture = draw(communicator->rank(), communicator->size());
 
   auto layer = composite::find_codec("active")->make(std::move(picture));
-  composite::Part part = composite::compose(*communicator, std::move(layer), "radix-k");
+  composite::OwnedPixels part = composite::compose(*communicator, std::move(layer), "radix-k");
   part = composite::gather(*communicator, std::move(part), 0);
   if (communicator->rank() != 0) return 0;
 

@@ -18,8 +18,9 @@ using composite::Side;
 
 namespace {
 
-composite::Part chains(comm::Communicator& communicator, std::unique_ptr<composite::Layer> layer,
-                       const composite::ComposeOptions& options) {
+composite::OwnedPixels chains(comm::Communicator& communicator,
+                              std::unique_ptr<composite::Layer> layer,
+                              const composite::ComposeOptions& options) {
   const int rank = communicator.rank(), ranks = communicator.size();
   const std::uint64_t samples = static_cast<std::uint64_t>(options.samples_per_pixel);
   const std::uint64_t pixels = layer->pixels() / samples;
@@ -65,7 +66,7 @@ std::string compose(const composite::Scheme& scheme, int ranks) {
     comm::Tally tally(communicator.rank());
     comm::Recording recording(communicator, tally);
     auto layer = composite::find_codec("active")->make(draw(communicator.rank()));
-    composite::Part part = scheme.compose(recording, std::move(layer), {});
+    composite::OwnedPixels part = scheme.compose(recording, std::move(layer), {});
     part = composite::gather(communicator, std::move(part), 0);
     if (communicator.rank() != 0) return;
     const comm::Totals& totals = tally.totals(comm::Phase::compose);
