@@ -67,7 +67,7 @@ double merge_seconds(const LayerCosts& costs) {
 TEST(LayerCosts, AreOfEveryCodecAndNeverNegative) {
   for (const Codec& codec : codecs()) {
     const LayerCosts costs = measure_layer_costs(codec, kPixels);
-    for (const double cost : {costs.cut, costs.encode_pixel, costs.encode_byte, costs.merge,
+    for (const double cost : {costs.encode, costs.encode_pixel, costs.encode_byte, costs.merge,
                               costs.merge_pixel, costs.merge_covered}) {
       EXPECT_GE(cost, 0) << codec.name;
       EXPECT_TRUE(std::isfinite(cost)) << codec.name;
@@ -79,7 +79,7 @@ TEST(LayerCosts, AreOfEveryCodecAndNeverNegative) {
 
 TEST(LayerCosts, AreOfDeepLayersToo) {
   const LayerCosts costs = measure_deep_layer_costs(kPixels);
-  for (const double cost : {costs.cut, costs.encode_pixel, costs.encode_byte, costs.merge,
+  for (const double cost : {costs.encode, costs.encode_pixel, costs.encode_byte, costs.merge,
                             costs.merge_pixel, costs.merge_covered}) {
     EXPECT_GE(cost, 0);
     EXPECT_TRUE(std::isfinite(cost));

@@ -206,7 +206,7 @@ TEST(MetadataOnlyLayers, CountWhatDeepOnesDo) {
 TEST(MetadataOnlyLayers, TakeTheTimeThatTheirCostsSay) {
   const auto finished = comm::run_simulated(2, {}, 1, [](comm::Communicator& communicator) {
     LayerClock clock{&communicator, {}};
-    clock.costs = {.cut = 1,
+    clock.costs = {.encode = 1,
                    .encode_pixel = 0.5,
                    .encode_byte = 0.25,
                    .merge = 1000,
