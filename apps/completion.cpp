@@ -53,9 +53,10 @@ std::string bash(const CommandText& program) {
           option.values.empty()
               ? "_files"
               : (option.files ? "_words_or_files " : "_words ") + quoted(joined(option.values));
-      for (const std::string& name : option.names)
+      for (const std::string& name : option.names) {
         values += fmt::format("    {}) _delray{}; return ;;\n",
                               quoted(fmt::format("{}:{}", path, name)), offer);
+      }
     }
     if (!path.empty()) paths += fmt::format("      {}) path=$next ;;\n", quoted(path));
     words += fmt::format("    {}) options={} words={} ;;\n", quoted(path), quoted(joined(options)),
@@ -119,9 +120,10 @@ std::string zsh(const CommandText& program) {
                                 : option.values.empty() ? ":value:_files"
                                 : option.files ? ":value:{compadd -- " + names + "; _files}"
                                                : ":value:(" + names + ")";
-      for (const std::string& one : option.names)
+      for (const std::string& one : option.names) {
         arguments += fmt::format(
             " \\\n    {}", quoted(fmt::format("{}[{}]{}", one, plain(option.description), value)));
+      }
     }
     if (command.commands.empty()) {
       functions +=
@@ -167,9 +169,10 @@ std::string fish(const CommandText& program) {
         below.empty() ? "" : fmt::format("not __fish_seen_subcommand_from {}", below);
     const std::string here =
         when + (when.empty() || none_below.empty() ? "" : "; and ") + none_below;
-    for (const CommandText& one : command.commands)
+    for (const CommandText& one : command.commands) {
       result += fmt::format("complete -c delray -n {} -f -a {} -d {}\n", quoted(here),
                             quoted(one.name), quoted(one.description));
+    }
     for (const OptionText& option : command.options) {
       if (option.positional) continue;
       std::string line = fmt::format("complete -c delray -n {}", quoted(here));

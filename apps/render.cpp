@@ -105,9 +105,10 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
                  animation.empty_frames, frames);
   }
   std::string stages;
-  for (std::size_t i = 0; i < animation.stages.size(); ++i)
+  for (std::size_t i = 0; i < animation.stages.size(); ++i) {
     stages += fmt::format("{}{} {:.3f} s", i == 0 ? "" : ", ", animation.stages[i],
                           animation.alone.stages[i]);
+  }
   spdlog::info("a frame alone: {}; up to {} at once: {:.2f} times as fast, predicted {:.2f}",
                stages, animation.slots, animation.speed_up(), animation.predicted_speed_up());
 }

@@ -28,9 +28,10 @@ namespace delray::comm {
 namespace {
 
 void check_rank(const Communicator& communicator, int rank) {
-  if (rank < 0 || rank >= communicator.size())
+  if (rank < 0 || rank >= communicator.size()) {
     throw std::invalid_argument("rank " + std::to_string(rank) + " is none of " +
                                 std::to_string(communicator.size()));
+  }
 }
 
 // Several buffers in one: their number, their sizes, their bytes.

@@ -243,16 +243,18 @@ HybridPartition hybrid_partition(std::span<const WeightedBox> boxes, Rect frame,
     items.push_back({visible, boxes[i].cost, covered, static_cast<std::uint32_t>(i)});
     all += boxes[i].cost;
   }
-  if (ranks > 1)
+  if (ranks > 1) {
     std::erase_if(items, [&](const Item& item) {
       if (item.cost * ranks <= options.largest_box * all) return false;
       result.owners[item.index] = kEverybody;
       everybodys.push_back(item);
       return true;
     });
-  if (!frame.empty())
+  }
+  if (!frame.empty()) {
     Sweep(frame, options.pixel_cost, std::move(everybodys), result)
         .split(frame, std::move(items), 0, ranks, 0);
+  }
   return result;
 }
 

@@ -16,9 +16,10 @@ KeptPartition::KeptPartition(const Partitioner& partitioner, int ranks, double f
       ranks_(ranks),
       factor_(factor),
       regions_per_rank_(regions_per_rank) {
-  if (ranks < 1 || regions_per_rank < 1 || !(factor >= 1))
+  if (ranks < 1 || regions_per_rank < 1 || !(factor >= 1)) {
     throw std::invalid_argument(
         "there is at least one rank with a region, and at least an equal share to keep");
+  }
 }
 
 bool KeptPartition::may_keep(const Costs& costs) const {

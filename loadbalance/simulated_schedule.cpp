@@ -32,10 +32,12 @@ SimulatedSchedule simulate(const Schedule& schedule, const TaskGrid& tasks,
           });
     });
   });
-  for (const RankReport& rank : result.ranks)
-    for (const Interval& interval : rank.timeline)
+  for (const RankReport& rank : result.ranks) {
+    for (const Interval& interval : rank.timeline) {
       if (interval.kind == Interval::Kind::work)
         result.seconds = std::max(result.seconds, interval.end);
+    }
+  }
   return result;
 }
 

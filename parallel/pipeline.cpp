@@ -61,7 +61,7 @@ void run_on_threads(std::size_t items, std::size_t slots, std::span<const Pipeli
     }
   };
   std::vector<std::jthread> threads;
-  for (std::size_t slot = 0; slot < std::min(slots, items); ++slot)
+  for (std::size_t slot = 0; slot < std::min(slots, items); ++slot) {
     threads.emplace_back([&, slot] {
       for (std::size_t item = slot; item < items; item += slots) {
         try {
@@ -75,6 +75,7 @@ void run_on_threads(std::size_t items, std::size_t slots, std::span<const Pipeli
         if (error) return;
       }
     });
+  }
   threads.clear();
   if (error) std::rethrow_exception(error);
 }

@@ -31,12 +31,13 @@ void add_compositing(RenderOptions options, Ways& ways) {
 void add_partitions_and_schedules(RenderOptions options, Ways& ways) {
   for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
     options.partition = partitioner.name;
-    for (const Travel travel : {Travel::geometry, Travel::numbers})
+    for (const Travel travel : {Travel::geometry, Travel::numbers}) {
       for (const int regions : {1, 3}) {
         options.travel = travel;
         options.regions_per_rank = regions;
         ways.push_back(options);
       }
+    }
     options.regions_per_rank = 1;
     for (const loadbalance::Schedule& schedule : loadbalance::schedules()) {
       options.schedule = schedule.name;
@@ -47,8 +48,8 @@ void add_partitions_and_schedules(RenderOptions options, Ways& ways) {
 }
 
 void add_partitions_and_groups(RenderOptions options, Ways& ways) {
-  for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
-    for (const Groups groups : {Groups::one, Groups::two})
+  for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
+    for (const Groups groups : {Groups::one, Groups::two}) {
       for (const Redistribution redistribution :
            {Redistribution::at_end, Redistribution::immediate}) {
         options.partition = partitioner.name;
@@ -56,6 +57,8 @@ void add_partitions_and_groups(RenderOptions options, Ways& ways) {
         options.redistribution = redistribution;
         ways.push_back(options);
       }
+    }
+  }
 }
 
 }  // namespace
@@ -84,18 +87,21 @@ Ways combinations(const RenderOptions& base) {
 std::string name_of(const RenderOptions& options) {
   const std::string travel = options.travel == Travel::numbers ? "/numbers" : "/geometry";
   const Strategy& strategy = *find_strategy(options.strategy);
-  if (strategy.composites)
+  if (strategy.composites) {
     return options.strategy + "/" + options.scheme + "/" +
            (options.shade == Shade::composited ? "composited" : options.codec);
-  if (strategy.schedules)
+  }
+  if (strategy.schedules) {
     return options.strategy + "/" + options.partition + travel +
            (options.regions_per_rank > 1 ? "/regions" + std::to_string(options.regions_per_rank)
                                          : "") +
            (options.schedule.empty() ? "" : "/" + options.schedule);
-  if (strategy.groups)
+  }
+  if (strategy.groups) {
     return options.strategy + "/" + options.partition +
            (options.groups == Groups::two ? "/two-groups" : "/one-group") +
            (options.redistribution == Redistribution::at_end ? "/at-end" : "/immediate");
+  }
   return options.strategy + travel;
 }
 

@@ -49,17 +49,19 @@ void check(const RenderOptions& options, int ranks) {
   if (n != 1 && n != 2 && n != 4)
     throw std::invalid_argument("a pixel has 1, 2 or 4 samples in either direction");
   const int longest = std::max(options.width, options.height);
-  if (std::min(options.width, options.height) < 1 || longest > kLargestSide / n)
+  if (std::min(options.width, options.height) < 1 || longest > kLargestSide / n) {
     throw std::invalid_argument("a picture's sides are from 1 to " + std::to_string(kLargestSide) +
                                 " samples");
+  }
   if (!options.schedule.empty()) {
     known(loadbalance::find_schedule(options.schedule) != nullptr, "schedule", options.schedule);
     if (!strategy->schedules || options.block < 1)
       throw std::invalid_argument("schedules hand out sort-first's blocks of at least a pixel");
   }
-  if (options.regions_per_rank < 1 || !(options.keep_factor >= 1))
+  if (options.regions_per_rank < 1 || !(options.keep_factor >= 1)) {
     throw std::invalid_argument(
         "a rank has at least one region, kept up to a factor of at least 1");
+  }
   if (options.shade == Shade::composited &&
       (!strategy->composites || options.lighting != Lighting::phong))
     throw std::invalid_argument("only sort-last shades after compositing, and only with phong");
@@ -69,10 +71,11 @@ void check(const RenderOptions& options, int ranks) {
   if (options.geometry_ranks < 0 ||
       (options.geometry_ranks > 0 && (options.groups != Groups::two || !strategy->groups)))
     throw std::invalid_argument("ranks for geometry are of two groups, with sort-middle");
-  if (options.groups == Groups::two && ranks > 1 && options.geometry_ranks >= ranks)
+  if (options.groups == Groups::two && ranks > 1 && options.geometry_ranks >= ranks) {
     throw std::invalid_argument("of " + std::to_string(ranks) + " ranks " +
                                 std::to_string(ranks - 1) +
                                 " at most can be for geometry, since others have to draw");
+  }
 }
 
 bool is_finite(const glm::vec3& v) {
@@ -84,9 +87,10 @@ void check(const scenes::Camera& camera) {
   if (!is_finite(camera.eye) || !is_finite(camera.at) || !is_finite(camera.up) ||
       !(camera.vertical_fov > 0 && camera.vertical_fov < 180) || !(camera.near >= 0) ||
       !(camera.aperture >= 0) || !(camera.focus >= 0) ||
-      !std::isfinite(camera.near + camera.aperture + camera.focus + camera.height + camera.far))
+      !std::isfinite(camera.near + camera.aperture + camera.focus + camera.height + camera.far)) {
     throw std::invalid_argument(
         "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
+  }
 }
 
 void to_distances(std::span<float> depths, const scenes::View& view) {
@@ -226,9 +230,10 @@ struct Renderer::Frame {
     result.statistics = summarize(reports);
     if (options.strategy != "sort-last")
       result.statistics.partition = rank.memory.screen.statistics();
-    if (!rank.depths_are_distances())
+    if (!rank.depths_are_distances()) {
       std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); },
                  result.picture);
+    }
     return result;
   }
 

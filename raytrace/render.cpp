@@ -33,15 +33,17 @@ void check(const RenderOptions& options) {
     throw std::invalid_argument("there is no schedule '" + options.schedule + "'");
   if (!options.partition.empty() && loadbalance::find_partitioner(options.partition) == nullptr)
     throw std::invalid_argument("there is no partition '" + options.partition + "'");
-  if (options.tile < 0 || options.tile % kTaskSide != 0)
+  if (options.tile < 0 || options.tile % kTaskSide != 0) {
     throw std::invalid_argument("the side of a tile is a multiple of " + std::to_string(kTaskSide) +
                                 " pixels");
+  }
   if (options.width < 0 || options.height < 0 || options.samples < 1 || options.trace.depth < 0 ||
       options.regions_per_rank < 1 || !(options.keep_factor >= 1) || options.part.samples < 0 ||
-      options.part.first_sample < 0)
+      options.part.first_sample < 0) {
     throw std::invalid_argument(
         "sizes, samples, depth and regions of a picture are not negative, nor is there less than "
         "a sample, a region for each rank and an equal share to keep");
+  }
   const geometry::Rect frame{0, 0, options.width, options.height};
   if (!options.part.window.empty() &&
       !(geometry::intersection(options.part.window, frame) == options.part.window))
@@ -57,9 +59,10 @@ void check(const scenes::Camera& camera) {
   if (!is_finite(camera.eye) || !is_finite(camera.at) || !is_finite(camera.up) ||
       !(camera.vertical_fov > 0 && camera.vertical_fov < 180) || !(camera.near >= 0) ||
       !(camera.aperture >= 0) || !(camera.focus >= 0) ||
-      !std::isfinite(camera.near + camera.aperture + camera.focus + camera.height + camera.far))
+      !std::isfinite(camera.near + camera.aperture + camera.focus + camera.height + camera.far)) {
     throw std::invalid_argument(
         "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
+  }
 }
 
 std::uint64_t sum(const RayCounts& rays) { return rays.primary + rays.shadow + rays.secondary; }

@@ -139,9 +139,10 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   std::memcpy(message.data(), &count, sizeof(count));
   if (!known.empty())
     std::memcpy(message.data() + sizeof(count), known.data(), known.size() * sizeof(Known));
-  if (!boxes.empty())
+  if (!boxes.empty()) {
     std::memcpy(message.data() + sizeof(count) + known.size() * sizeof(Known), boxes.data(),
                 boxes.size() * sizeof(geometry::Box3));
+  }
 
   std::vector<ClusterBox> all_boxes;
   std::uint32_t first_mine = 0;

@@ -50,11 +50,12 @@ std::vector<Tick> Axis::ticks() const {
   const int stride = std::max(1, static_cast<int>(decades / 7));
   const auto add_powers = [&](std::initializer_list<double> factors) {
     result.clear();
-    for (int power = first; power <= last; power += stride)
+    for (int power = first; power <= last; power += stride) {
       for (const double factor : factors) {
         const double value = factor * std::pow(10.0, power);
         if (value >= low_ * (1 - 1e-9) && value <= high_ * (1 + 1e-9)) add(value);
       }
+    }
   };
   if (decades > 3)
     add_powers({1});

@@ -43,9 +43,10 @@ Html bar_chart(const BarChart& chart) {
         end, y + kBar / 2, short_number(bar.value));
     y += kBar;
   }
-  if (chart.mark > 0)
+  if (chart.mark > 0) {
     marks += fmt::format("<line class=\"mark\" x1=\"{0:.2f}%\" x2=\"{0:.2f}%\" y2=\"{1:.1f}\"/>",
                          position(chart.mark) * 100, height);
+  }
   return fmt::format(
       "<figure class=\"chart\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
       "</figure>\n",

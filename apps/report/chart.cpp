@@ -56,21 +56,24 @@ class LinePlot {
     const std::vector<Tick> ticks = y_.ticks();
     for (const Tick& tick : ticks)
       margins.left = std::max(margins.left, internal::text_width(tick.label) + 10);
-    for (std::size_t i = 0; i < chart_.series.size(); ++i)
+    for (std::size_t i = 0; i < chart_.series.size(); ++i) {
       if (strong_[i])
         margins.right = std::max(margins.right, internal::text_width(chart_.series[i].name) + 12);
+    }
     margins.right = std::max(margins.right, 24.0);
     Html lines;
     const std::vector<double> names = name_positions();
     // Strong ones above the others.
-    for (const bool strong : {false, true})
+    for (const bool strong : {false, true}) {
       for (std::size_t i = 0; i < chart_.series.size(); ++i)
         if (strong_[i] == strong) lines += line(i, names[i]);
-    if (lines.empty())
+    }
+    if (lines.empty()) {
       lines = fmt::format(
           "<text class=\"axis\" x=\"50%\" y=\"{:.0f}\" text-anchor=\"middle\">nothing but "
           "zeros</text>",
           kHeight / 2);
+    }
     return internal::plot(chart_.title, margins, kHeight, grid(ticks, margins.left) + lines);
   }
 
@@ -96,9 +99,10 @@ class LinePlot {
   template <class F>
   static std::vector<double> values(const LineChart& chart, F&& of_point) {
     std::vector<double> result;
-    for (const Series& series : chart.series)
+    for (const Series& series : chart.series) {
       for (const ChartPoint& p : series.points)
         for (const double v : of_point(p)) result.push_back(v);
+    }
     return result;
   }
 
@@ -118,11 +122,12 @@ class LinePlot {
 
   Html grid(const std::vector<Tick>& y_ticks, double left) const {
     Html result;
-    for (const Tick& tick : y_ticks)
+    for (const Tick& tick : y_ticks) {
       result += fmt::format(
           "<line class=\"grid\" x2=\"100%\" y1=\"{0:.1f}\" y2=\"{0:.1f}\"/><text class=\"tick\" "
           "x=\"-6\" y=\"{0:.1f}\" text-anchor=\"end\" dominant-baseline=\"middle\">{1}</text>",
           at_y(tick.value), escaped(tick.label));
+    }
     std::vector<Tick> ticks = Axis::ticks_at(xs_);
     if (!chart_.ticks_at_points || ticks.size() > kMostTicksAtPoints) ticks = x_.ticks();
     result += internal::ticks_across(
@@ -170,11 +175,12 @@ class LinePlot {
     for (const ChartPoint& p : series.points) {
       if (!is_shown(p.x, p.y)) continue;
       path += fmt::format("{}{:.2f} {:.1f}", path.empty() ? "M" : "L", at_x(p.x), at_y(p.y));
-      if (p.high > p.low && is_shown(p.x, p.low))
+      if (p.high > p.low && is_shown(p.x, p.low)) {
         spreads += fmt::format(
             "<line class=\"spread\" x1=\"{0:.2f}%\" x2=\"{0:.2f}%\" y1=\"{1:.1f}\" "
             "y2=\"{2:.1f}\"/>",
             at_x(p.x), at_y(p.low), at_y(p.high));
+      }
       points += point(series, p, look.mark, strong_[i]);
     }
     if (path.empty()) return "";
@@ -213,13 +219,14 @@ class LinePlot {
 // How often each series is the best of its group at one of the chart's x.
 std::vector<int> times_best(const LineChart& chart) {
   std::map<std::pair<std::string, double>, std::pair<double, std::size_t>> best;
-  for (std::size_t i = 0; i < chart.series.size(); ++i)
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
     for (const ChartPoint& p : chart.series[i].points) {
       if (!std::isfinite(p.y)) continue;
       const double y = chart.more_is_better ? -p.y : p.y;
       const auto [at, is_new] = best.try_emplace({group_of(chart, i), p.x}, y, i);
       if (!is_new && y < at->second.first) at->second = {y, i};
     }
+  }
   std::vector<int> result(chart.series.size());
   for (const auto& [where, value] : best) ++result[value.second];
   return result;

@@ -33,16 +33,18 @@ Html matrix(const Matrix& matrix, double most) {
       kLeft + kSide / 2, escaped(matrix.column_name), kTop + kSide / 2, escaped(matrix.row_name));
   // Numbers of rows and columns, as many as there is room for.
   const auto stride = [](int count) { return std::max(1, (count + 15) / 16); };
-  for (int i = 0; i < matrix.columns; i += stride(matrix.columns))
+  for (int i = 0; i < matrix.columns; i += stride(matrix.columns)) {
     svg +=
         fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
                     kLeft + (i + 0.5) * width, kTop - 5, i);
-  for (int j = 0; j < matrix.rows; j += stride(matrix.rows))
+  }
+  for (int j = 0; j < matrix.rows; j += stride(matrix.rows)) {
     svg += fmt::format(
         "<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\" "
         "dominant-baseline=\"middle\">{}</text>",
         kLeft - 4, kTop + (j + 0.5) * height, j);
-  for (int j = 0; j < matrix.rows; ++j)
+  }
+  for (int j = 0; j < matrix.rows; ++j) {
     for (int i = 0; i < matrix.columns; ++i) {
       const double value = matrix.values[static_cast<std::size_t>(j) * matrix.columns + i];
       if (!(value > 0)) continue;
@@ -53,15 +55,18 @@ Html matrix(const Matrix& matrix, double most) {
           escaped(matrix.row_name), j, escaped(matrix.column_name), i, short_number(value),
           escaped(matrix.unit), name_of(matrix.source));
     }
+  }
   Html legend;
-  if (std::none_of(matrix.values.begin(), matrix.values.end(), [](double v) { return v > 0; }))
+  if (std::none_of(matrix.values.begin(), matrix.values.end(), [](double v) { return v > 0; })) {
     legend = "<span class=\"key\">nothing</span>";
-  else
-    for (const double part : {1.0, 0.25, 0.01})
+  } else {
+    for (const double part : {1.0, 0.25, 0.01}) {
       legend += fmt::format(
           "<span class=\"key\"><svg viewBox=\"0 0 24 8\"><rect class=\"cell\" width=\"24\" "
           "height=\"8\" fill-opacity=\"{:.3f}\"/></svg>{} {}</span>",
           shade_of(part, 1), short_number(part * most), escaped(matrix.unit));
+    }
+  }
   return fmt::format(
       "<figure class=\"matrix\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
       "</svg><div class=\"legend\">{}</div></figure>\n",

@@ -44,25 +44,29 @@ std::string borders(const Overlay& overlay) {
     return groups[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) +
                   static_cast<std::size_t>(i)];
   };
-  for (const Area& area : overlay.areas)
-    for (int j = area.rect.y0 / kBorderCell; j * kBorderCell < area.rect.y1 && j < rows; ++j)
+  for (const Area& area : overlay.areas) {
+    for (int j = area.rect.y0 / kBorderCell; j * kBorderCell < area.rect.y1 && j < rows; ++j) {
       for (int i = area.rect.x0 / kBorderCell; i * kBorderCell < area.rect.x1 && i < columns; ++i)
         at(i, j) = area.group;
+    }
+  }
   std::string path;
-  for (int j = 1; j < rows; ++j)
+  for (int j = 1; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       if (at(i, j) == at(i, j - 1)) continue;
       const int begin = i;
       while (i < columns && at(i, j) != at(i, j - 1)) ++i;
       path += fmt::format("M{} {}H{}", begin * kBorderCell, j * kBorderCell, i * kBorderCell);
     }
-  for (int i = 1; i < columns; ++i)
+  }
+  for (int i = 1; i < columns; ++i) {
     for (int j = 0; j < rows; ++j) {
       if (at(i, j) == at(i - 1, j)) continue;
       const int begin = j;
       while (j < rows && at(i, j) != at(i - 1, j)) ++j;
       path += fmt::format("M{} {}V{}", i * kBorderCell, begin * kBorderCell, j * kBorderCell);
     }
+  }
   return path;
 }
 

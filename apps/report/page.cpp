@@ -95,9 +95,10 @@ Html page(const Page& page) {
   result += "</head>\n<body>" + std::string(internal::kMarks) + "<header><h1>" +
             escaped(page.title) + "</h1>\n";
   if (!page.machine.empty()) result += "<p class=\"machine\">" + escaped(page.machine) + "</p>\n";
-  if (page.unfinished)
+  if (page.unfinished) {
     result +=
         "<p class=\"unfinished\">This report was interrupted: it shows what had been finished.</p>";
+  }
   result += "<div class=\"answer\">" + page.answer + "</div></header>\n";
   result += "<nav role=\"tablist\">" + tabs;
   result += "<button type=\"button\" id=\"csv\">Save CSV</button></nav>\n<main>" + panels;

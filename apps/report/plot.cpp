@@ -42,10 +42,11 @@ Html ticks_across(std::span<const Tick> ticks, const std::function<double(double
   for (std::size_t i = 0; i < ticks.size(); ++i)
     if (!touches(ticks, position, i, always, kNarrow)) always.push_back(i);
   wide = always;
-  for (std::size_t i = 0; i < ticks.size(); ++i)
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
     if (std::find(wide.begin(), wide.end(), i) == wide.end() &&
         !touches(ticks, position, i, wide, kWide))
       wide.push_back(i);
+  }
   Html result;
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const double x = position(ticks[i].value) * 100;

@@ -28,9 +28,10 @@ std::vector<Series> series_by(const Rows& rows, Name&& name, Look&& look, Source
   std::vector<Series> result;
   for (const auto& one : unique_of(rows, name)) {
     Series series{std::string(one), source, {}, look(one)};
-    for (const auto& row : rows)
+    for (const auto& row : rows) {
       if (name(row) == one)
         if (const std::optional<ChartPoint> at = point(row)) series.points.push_back(*at);
+    }
     if (!series.points.empty()) result.push_back(std::move(series));
   }
   return result;

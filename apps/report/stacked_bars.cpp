@@ -38,7 +38,7 @@ Html stacked_bars(const StackedBars& chart) {
     double before = 0;
     for (std::size_t i = 0; i < bar.parts.size(); ++i) {
       const double part = bar.parts[i] * (chart.shares ? scale : 1);
-      if (part > 0)
+      if (part > 0) {
         marks += fmt::format(
             "<rect class=\"span c{}\" x=\"{:.3f}%\" y=\"{:.1f}\" width=\"{:.3f}%\" height=\"{}\">"
             "<title>{}: {} {} {}, {:.1f} % ({})</title></rect>",
@@ -46,14 +46,16 @@ Html stacked_bars(const StackedBars& chart) {
             (position(before + part) - position(before)) * 100, kBar - 4, escaped(bar.name),
             escaped(chart.kinds[i]), short_number(bar.parts[i]), escaped(chart.unit),
             bar.parts[i] * scale, name_of(chart.source));
+      }
       before += part;
     }
     y += kBar;
   }
   Html legend;
-  for (std::size_t i = 0; i < chart.kinds.size(); ++i)
+  for (std::size_t i = 0; i < chart.kinds.size(); ++i) {
     legend += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>{}</span>", i % 8,
                           escaped(chart.kinds[i]));
+  }
   return fmt::format(
       "<figure class=\"chart\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
       "<div class=\"legend\">{}</div></figure>\n",

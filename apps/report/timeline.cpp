@@ -14,11 +14,12 @@ namespace delray::apps::report {
 Html timeline(const Timeline& timeline) {
   constexpr double kLane = 18;
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
-  for (const Lane& lane : timeline.lanes)
+  for (const Lane& lane : timeline.lanes) {
     for (const Span& span : lane.spans) {
       begin = std::min(begin, span.begin);
       end = std::max(end, span.end);
     }
+  }
   if (!(end >= begin)) begin = end = 0;
   const std::vector<double> values = {0, (end - begin) * 1e3};
   const Axis axis(values, Scale::linear);
@@ -38,7 +39,7 @@ Html timeline(const Timeline& timeline) {
         "<text class=\"tick\" x=\"-6\" y=\"{:.1f}\" text-anchor=\"end\" "
         "dominant-baseline=\"middle\">{}</text>",
         y + kLane / 2, escaped(lane.name));
-    for (const Span& span : lane.spans)
+    for (const Span& span : lane.spans) {
       marks += fmt::format(
           "<rect class=\"span {}\" x=\"{:.3f}%\" y=\"{:.1f}\" width=\"{:.3f}%\" height=\"{}\">"
           "<title>{}: {} {} ms ({}){}</title></rect>",
@@ -47,12 +48,14 @@ Html timeline(const Timeline& timeline) {
           escaped(timeline.kinds[static_cast<std::size_t>(span.kind)]),
           short_number((span.end - span.begin) * 1e3), name_of(timeline.source),
           span.note.empty() ? "" : "; " + escaped(span.note));
+    }
     y += kLane;
   }
   Html legend;
-  for (std::size_t i = 0; i < timeline.kinds.size(); ++i)
+  for (std::size_t i = 0; i < timeline.kinds.size(); ++i) {
     legend += fmt::format("<span class=\"key\"><i class=\"span {}\"></i>{}</span>",
                           look(static_cast<int>(i)), escaped(timeline.kinds[i]));
+  }
   return fmt::format(
       "<figure class=\"timeline\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
       "<div class=\"legend\">{}</div></figure>\n",

@@ -226,12 +226,13 @@ int main(int count, char** words) {
   app.add_option("scenes", arguments.scenes);
   CLI11_PARSE(app, count, words);
   try {
-    if (arguments.alone)
+    if (arguments.alone) {
       std::printf("%-24s %7s %5s %10s %10s %10s %10s %10s\n", "scene", "threads", "cull",
                   "frame ms", "transform", "bin", "rasterize", "shade");
-    else
+    } else {
       std::printf("%-24s %10s %7s %5s %10s %10s %8s %10s\n", "scene", "triangles", "threads",
                   "cull", "llvmpipe", "delray ms", "ratio", "over first");
+    }
     bool good = true;
     for (const std::string& scene : arguments.scenes) good &= compare(scene, arguments);
     return good ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -14,7 +14,7 @@ using namespace delray;
 int main(int argc, char** argv) {
   std::vector<std::string> names(argv + 1, argv + argc);
   if (names.empty()) names = {"gen:terrain:1000000", "gen:terrain:10000000", "gen:field"};
-  for (const std::string& name : names)
+  for (const std::string& name : names) {
     for (const int threads : {1, 2}) {
       const scenes::Scene scene = scenes::generate(name);
       const auto shader = std::make_shared<const shading::Shader>(shading::make_shader(scene));
@@ -39,4 +39,5 @@ int main(int argc, char** argv) {
                   static_cast<unsigned long long>(statistics.triangles_rasterized),
                   static_cast<double>(used) / static_cast<double>(statistics.triangles_rasterized));
     }
+  }
 }

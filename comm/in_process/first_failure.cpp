@@ -16,9 +16,10 @@ std::string describe_pattern(int from_or_any, Tag tag_or_any) {
 }
 
 void check_message(int to, int size, Tag tag) {
-  if (to < 0 || to >= size || tag < 0)
+  if (to < 0 || to >= size || tag < 0) {
     throw std::invalid_argument("there is no rank " + std::to_string(to) + " of " +
                                 std::to_string(size) + ", or no tag " + std::to_string(tag));
+  }
 }
 
 std::string describe(const std::exception_ptr& exception) {

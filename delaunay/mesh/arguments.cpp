@@ -11,10 +11,11 @@ namespace delray::delaunay::internal {
 
 void check_simplices(int dim, std::span<const std::uint32_t> vertices, std::size_t rows) {
   check_dim(dim);
-  if (vertices.size() % (static_cast<std::size_t>(dim) + 1) != 0)
+  if (vertices.size() % (static_cast<std::size_t>(dim) + 1) != 0) {
     throw std::invalid_argument(std::to_string(vertices.size()) +
                                 " vertices do not make whole simplices of " +
                                 std::to_string(dim + 1));
+  }
   constexpr std::size_t kGrain = 1 << 18;  // vertices: about 0.05 ms
   const std::uint32_t highest = parallel::parallel_reduce(
       0, vertices.size(), kGrain, std::uint32_t{0},
@@ -23,9 +24,10 @@ void check_simplices(int dim, std::span<const std::uint32_t> vertices, std::size
                                  vertices.begin() + static_cast<std::ptrdiff_t>(last));
       },
       [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
-  if (!vertices.empty() && highest >= rows)
+  if (!vertices.empty() && highest >= rows) {
     throw std::invalid_argument("vertex " + std::to_string(highest) + " is no row of " +
                                 std::to_string(rows));
+  }
 }
 
 void check_place(const glm::dvec3& place) {
@@ -36,16 +38,18 @@ void check_place(const glm::dvec3& place) {
 void check_attributes(const PointCloud& points) {
   for (const std::size_t size :
        {points.colours.size(), points.intensity.size(), points.classification.size()}) {
-    if (size != 0 && size != points.size())
+    if (size != 0 && size != points.size()) {
       throw std::invalid_argument(std::to_string(size) + " attributes for " +
                                   std::to_string(points.size()) + " points");
+    }
   }
 }
 
 void check_values(std::size_t values, std::size_t rows) {
-  if (values < rows)
+  if (values < rows) {
     throw std::invalid_argument(std::to_string(values) + " values are too few for " +
                                 std::to_string(rows) + " rows");
+  }
 }
 
 }  // namespace delray::delaunay::internal

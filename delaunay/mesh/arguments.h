@@ -22,13 +22,15 @@ template <class Scalar>
 void check_view(const PointView<Scalar>& points, int dim) {
   check_dim(dim);
   if (points.count == 0) return;
-  if (points.data == nullptr)
+  if (points.data == nullptr) {
     throw std::invalid_argument("a view of " + std::to_string(points.count) +
                                 " points has no memory");
-  if (points.stride < static_cast<std::size_t>(dim) * sizeof(Scalar))
+  }
+  if (points.stride < static_cast<std::size_t>(dim) * sizeof(Scalar)) {
     throw std::invalid_argument("points that lie " + std::to_string(points.stride) +
                                 " bytes apart do not have " + std::to_string(dim) +
                                 " coordinates of " + std::to_string(sizeof(Scalar)) + " bytes");
+  }
 }
 
 // Whether simplices have dim + 1 vertices each, which are rows below `rows`. O(vertices).

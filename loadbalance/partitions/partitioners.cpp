@@ -44,9 +44,10 @@ void internal::check_costs(const Costs& costs, geometry::Rect frame, int parts) 
   const auto cells = static_cast<std::size_t>(std::max(0, costs.columns)) *
                      static_cast<std::size_t>(std::max(0, costs.rows));
   if (costs.cells.size() != cells || costs.cross_right.size() != cells ||
-      costs.cross_down.size() != cells)
+      costs.cross_down.size() != cells) {
     throw std::invalid_argument("the costs are not of " + std::to_string(costs.columns) + " x " +
                                 std::to_string(costs.rows) + " cells");
+  }
   const auto is_cost = [](double cost) { return std::isfinite(cost) && cost >= 0; };
   if (!std::ranges::all_of(costs.cells, is_cost) ||
       !std::ranges::all_of(costs.boxes, is_cost, &WeightedBox::cost))

@@ -25,9 +25,10 @@ TaskRunner::TaskRunner(comm::Communicator& communicator, const ScheduleOptions& 
     : communicator_(communicator), work_(work), start_(std::chrono::steady_clock::now()) {
   constexpr int kMostThreads = 4096;
   if (options.threads < 0 || options.threads > kMostThreads || options.fan_out < 2 ||
-      !(options.share > 0))
+      !(options.share > 0)) {
     throw std::invalid_argument(
         "a schedule's threads are from 0 to 4096, its fan-out at least 2, its share above 0");
+  }
   const int threads = options.threads > 0 ? options.threads : parallel::arena_threads();
   lanes_.resize(works ? static_cast<std::size_t>(std::max(1, threads)) : 1);
   report.rank = communicator.rank();

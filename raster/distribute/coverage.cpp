@@ -28,7 +28,7 @@ double part_inside(const ScreenTriangle& triangle, std::int64_t x, std::int64_t 
                    std::int64_t side) {
   constexpr int kPoints = 4;  // in either direction
   int inside = 0;
-  for (int j = 0; j < kPoints; ++j)
+  for (int j = 0; j < kPoints; ++j) {
     for (int i = 0; i < kPoints; ++i) {
       const std::int64_t px = x + side * (2 * i + 1) / (2 * kPoints);
       const std::int64_t py = y + side * (2 * j + 1) / (2 * kPoints);
@@ -40,6 +40,7 @@ double part_inside(const ScreenTriangle& triangle, std::int64_t x, std::int64_t 
       }
       inside += in;
     }
+  }
   return static_cast<double>(inside) / (kPoints * kPoints);
 }
 
@@ -59,10 +60,12 @@ geometry::Rect Coverage::squares_of(const geometry::Rect& box) {
 template <class F>
 void Coverage::for_each_square(const geometry::Rect& box, F&& f) const {
   const geometry::Rect squares = squares_of(box);
-  for (int y = squares.y0; y < squares.y1; ++y)
-    for (int x = squares.x0; x < squares.x1; ++x)
+  for (int y = squares.y0; y < squares.y1; ++y) {
+    for (int x = squares.x0; x < squares.x1; ++x) {
       f(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
         static_cast<std::size_t>(x));
+    }
+  }
 }
 
 double Coverage::layers(const Square& square, bool blended) const {
@@ -84,7 +87,7 @@ double Coverage::add_large(const ScreenTriangle& triangle, const Surface& surfac
   const std::int64_t side = std::int64_t{kSide} * n_ * kSubpixels;
   const double most = static_cast<double>(kSide * kSide) * n_ * n_;
   double all = 0;
-  for (int j = squares.y0; j < squares.y1; ++j)
+  for (int j = squares.y0; j < squares.y1; ++j) {
     for (int i = squares.x0; i < squares.x1; ++i) {
       const double samples =
           most * part_inside(triangle, i * side - std::int64_t{screen_.centre_x} * kSubpixels,
@@ -95,6 +98,7 @@ double Coverage::add_large(const ScreenTriangle& triangle, const Surface& surfac
       (surface.blended ? square.large_blended : square.large_opaque) += samples;
       all += samples;
     }
+  }
   return all;
 }
 
@@ -128,7 +132,7 @@ double Coverage::seen(const geometry::Rect& box, bool blended) const {
 std::vector<loadbalance::WeightedBox> Coverage::costs_of_large(double seen_price,
                                                                double drawn_price) const {
   std::vector<loadbalance::WeightedBox> boxes;
-  for (int j = 0; j < rows_; ++j)
+  for (int j = 0; j < rows_; ++j) {
     for (int i = 0; i < columns_; ++i) {
       const Square& square =
           squares_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) +
@@ -141,6 +145,7 @@ std::vector<loadbalance::WeightedBox> Coverage::costs_of_large(double seen_price
       boxes.push_back(
           {geometry::intersection(pixels, frame_), seen_price * seen + drawn_price * drawn, 0, 0});
     }
+  }
   return boxes;
 }
 

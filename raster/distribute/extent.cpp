@@ -35,9 +35,10 @@ Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t 
       cluster_ = &cluster;
       draw_ = &draw;
     }
-    for (; t < std::min(end, cluster.first + cluster.count); ++t)
+    for (; t < std::min(end, cluster.first + cluster.count); ++t) {
       set_up(screen_, draw, vertices_, corners_at(block, cluster, t - cluster.first), t, 0,
              include);
+    }
   }
   if (result.triangles == 0) result.box = {};
   return result;

@@ -15,9 +15,10 @@ template <class F>
 void for_each_row(const loadbalance::Partition& partition, int owner, int image_width, F&& f) {
   for (const loadbalance::Region& region : partition.regions) {
     if (region.owner != owner || region.rect.empty()) continue;
-    for (int y = region.rect.y0; y < region.rect.y1; ++y)
+    for (int y = region.rect.y0; y < region.rect.y1; ++y) {
       f(static_cast<std::size_t>(y) * image_width + region.rect.x0,
         static_cast<std::size_t>(region.rect.width()));
+    }
   }
 }
 

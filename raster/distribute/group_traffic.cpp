@@ -25,9 +25,10 @@ comm::Buffer join(std::span<const std::uint64_t> forgotten, const comm::Buffer& 
   std::memcpy(message.data(), &count, sizeof(count));
   if (count > 0)
     std::memcpy(message.data() + sizeof(count), forgotten.data(), forgotten.size_bytes());
-  if (!pieces.empty())
+  if (!pieces.empty()) {
     std::memcpy(message.data() + sizeof(count) + forgotten.size_bytes(), pieces.data(),
                 pieces.size());
+  }
   return message;
 }
 
@@ -78,12 +79,13 @@ void GroupTraffic::need(const RankContext& rank, std::span<const Piece> groups, 
 }
 
 void GroupTraffic::forget_unneeded(std::span<const Piece> groups) {
-  for (std::size_t i = 0; i < groups.size(); ++i)
+  for (std::size_t i = 0; i < groups.size(); ++i) {
     std::erase_if(holders_[i], [&](const Holder& holder) {
       if (holder.last_needed + kFramesKept > frame_) return false;
       outgoing_[holder.rank].forgotten.push_back(groups[i].primitive);
       return true;
     });
+  }
 }
 
 void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {

@@ -28,9 +28,10 @@ std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, std::span<c
   std::vector<PrimitiveRange> ranges;
   if (std::find(owners.begin(), owners.end(), loadbalance::kEverybody) == owners.end())
     return ranges;
-  for (std::size_t i = 0; i < groups.size(); ++i)
+  for (std::size_t i = 0; i < groups.size(); ++i) {
     if (owners[shares.first + i] == loadbalance::kEverybody)
       ranges.push_back({groups[i].primitive, groups[i].primitive + groups[i].count});
+  }
   const std::vector<comm::Buffer> all = comm::all_gather(
       rank.communicator, comm::Buffer::of(std::span<const PrimitiveRange>(ranges)));
   ranges.clear();

@@ -44,9 +44,10 @@ PreparedFrame::PreparedFrame(const RegionTask& task)
 void PreparedFrame::add_draws(const RegionTask& task) {
   const std::vector<Draw>& draws = task.list.draws;
   for (std::size_t i = 0; i < draws_.size(); ++i) draws_[i].draw = &draws[i];
-  for (std::size_t i = draws_.size(); i < draws.size(); ++i)
+  for (std::size_t i = draws_.size(); i < draws.size(); ++i) {
     draws_.push_back(
         prepare_draw(task.screen, draws[i], task.shader, task.options.cull_single_sided));
+  }
   raster::add_draws(shading_);
 }
 
@@ -181,9 +182,10 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
         tile = &mine.visibility;
         tile->clear(scratch_.tiles.rect(index));
       }
-      if (tile != nullptr)
+      if (tile != nullptr) {
         shaded_here += draw_large(into_tiles_, index, scratch_.deferred.large,
                                   scratch_.tiles.rect(index), *tile);
+      }
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
                    scratch_.deferred.blended.of_tile(index), tile, mine.blended);
       clock.finish(0);

@@ -61,12 +61,13 @@ void cut_scene(const RankContext& rank, SceneCells& known) {
     const scenes::Mesh& mesh = scene.meshes[instance.mesh];
     MeshClusters& of_mesh = *rank.clusters.of(mesh);
     of_mesh.make(mesh, 0, static_cast<std::uint32_t>(mesh.triangles.size()));
-    for (const auto& block : of_mesh.blocks)
+    for (const auto& block : of_mesh.blocks) {
       for (const MeshCluster& cluster : block->clusters) {
         clusters.push_back({i, cluster.first});
         boxes.push_back(transformed(instance.transform, cluster.box));
         triangles.push_back(cluster.count);
       }
+    }
   }
   known.cells = loadbalance::cut_space(boxes, triangles, rank.ranks());
   known.pieces.clear();

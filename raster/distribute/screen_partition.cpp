@@ -48,11 +48,13 @@ loadbalance::RasterCostModel cost_model(Lighting lighting) {
 
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {
   std::vector<Piece> groups;
-  for (const Piece& piece : pieces)
-    for (std::uint32_t done = 0; done < piece.count; done += triangles)
+  for (const Piece& piece : pieces) {
+    for (std::uint32_t done = 0; done < piece.count; done += triangles) {
       groups.push_back({piece.mesh, piece.transform, piece.first + done,
                         std::min(triangles, piece.count - done), piece.primitive + done,
                         piece.clusters});
+    }
+  }
   return groups;
 }
 
@@ -141,9 +143,10 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(RankContext& ran
   }
   statistics_.reset();
   SeenSamples seen_of_groups;
-  if (seen_samples != nullptr)
+  if (seen_samples != nullptr) {
     seen_of_groups = {model.per_pixel, std::vector<double>(groups.size()),
                       std::vector<double>(groups.size())};
+  }
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (boxes[i].box.empty()) continue;
     const double seen = coverage.seen(boxes[i].box, surface(i).blended);
@@ -178,9 +181,10 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank,
   }
   cut_before_ = true;
   reported_ = options.report_partition;
-  if (!kept_ || !(kind == kind_))
+  if (!kept_ || !(kind == kind_)) {
     kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
                   options.regions_per_rank);
+  }
   kind_ = kind;
 
   const geometry::Rect frame = rank.frame();

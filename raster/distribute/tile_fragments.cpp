@@ -53,11 +53,12 @@ bool is_in(std::span<const PrimitiveRange> ranges, std::uint64_t primitive) {
 bool shows_any(const TileView& tile, const geometry::Rect& rect,
                std::span<const PrimitiveRange> ranges) {
   if (ranges.empty()) return false;
-  for (int y = rect.y0; y < rect.y1; ++y)
+  for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::uint32_t number = tile.opaque_number(x, y);
       if (number != kNothing && is_in(ranges, tile.frame().list.primitive_of(number))) return true;
     }
+  }
   return false;
 }
 
@@ -95,7 +96,7 @@ void append_opaque(TileView& tile, const geometry::Rect& rect,
   }
   const Window<Colour> window = tile_window<Colour>(rect);
   tile.shade(rect, window);
-  for (int y = rect.y0; y < rect.y1; ++y)
+  for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::uint32_t number = tile.opaque_number(x, y);
       if (number == kNothing) continue;
@@ -104,14 +105,16 @@ void append_opaque(TileView& tile, const geometry::Rect& rect,
       seen.fragments.push_back(
           fragment_of(window.colour[i], window.depth[i], list.primitive_of(number)));
     }
+  }
 }
 
 template <class Payload>
 comm::Buffer pack_tiles(std::span<const TileSpan<Payload>> tiles) {
   std::size_t bytes = 0;
-  for (const TileSpan<Payload>& tile : tiles)
+  for (const TileSpan<Payload>& tile : tiles) {
     bytes +=
         sizeof(Header) + tile.fragments.size_bytes() + bytes_of_positions(tile.positions.size());
+  }
   comm::Buffer message(bytes);
   std::byte* to = message.data();
   const auto append = [&](const void* from, std::size_t size) {
@@ -152,19 +155,21 @@ void keep_nearest(std::span<const TileSpan<Colour>> seen, const geometry::Rect& 
                   const Window<Colour>& window) {
   static thread_local std::array<const composite::DeepFragment<Colour>*, kTilePixels> nearest;
   nearest.fill(nullptr);
-  for (const TileSpan<Colour>& span : seen)
+  for (const TileSpan<Colour>& span : seen) {
     for (std::size_t i = 0; i < span.fragments.size(); ++i) {
       const auto*& best = nearest[span.positions[i]];
       if (best == nullptr || composite::in_front(span.fragments[i], *best))
         best = &span.fragments[i];
     }
-  for (int y = rect.y0; y < rect.y1; ++y)
+  }
+  for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const auto* const best = nearest[position_of(x, y)];
       const std::size_t i = window.at(x, y);
       window.colour[i] = best == nullptr ? Colour{} : best->payload;
       window.depth[i] = best == nullptr ? image::kEmptyDepth : best->depth;
     }
+  }
 }
 
 template <class Colour>
@@ -178,9 +183,10 @@ void blend_surfaces(std::span<const TileSpan<image::RgbaF>> seen, const geometry
   static thread_local std::vector<Placed> placed;
   static thread_local std::vector<composite::Fragment> fragments;
   placed.clear();
-  for (const TileSpan<image::RgbaF>& span : seen)
+  for (const TileSpan<image::RgbaF>& span : seen) {
     for (std::size_t i = 0; i < span.fragments.size(); ++i)
       placed.push_back({span.positions[i], &span.fragments[i]});
+  }
   std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
     return a.position != b.position ? a.position < b.position
                                     : composite::in_front(*a.fragment, *b.fragment);
@@ -188,9 +194,10 @@ void blend_surfaces(std::span<const TileSpan<image::RgbaF>> seen, const geometry
   for (auto next = placed.begin(); next != placed.end();) {
     const std::uint16_t position = next->position;
     fragments.clear();
-    for (; next != placed.end() && next->position == position; ++next)
+    for (; next != placed.end() && next->position == position; ++next) {
       if (fragments.empty() || !composite::is_opaque(fragments.back().payload))
         fragments.push_back(*next->fragment);
+    }
     const std::size_t i = at(window, rect, position);
     window.depth[i] = fragments.front().depth;
     composite::store(composite::blend(fragments), window.colour[i]);

@@ -122,14 +122,16 @@ void unpack(const Section& section) {
   scenes::Mesh& mesh = section.mesh->mesh;
   ClusterBlock& block = *section.mesh->clusters.blocks[0];
   const auto* const corners = reinterpret_cast<const std::uint8_t*>(section.content);
-  for (std::uint32_t k = 0; k < 3; ++k)
+  for (std::uint32_t k = 0; k < 3; ++k) {
     std::copy_n(
         corners + std::size_t{k} * cluster.count, cluster.count,
         block.corners.data() + cluster.first_corner + std::size_t{k} * cluster.corner_stride());
-  for (std::uint32_t t = 0; t < cluster.count; ++t)
+  }
+  for (std::uint32_t t = 0; t < cluster.count; ++t) {
     mesh.triangles[cluster.first + t] =
         glm::uvec3(corners[t], corners[t + cluster.count], corners[t + 2 * cluster.count]) +
         cluster.first_vertex;
+  }
   std::iota(block.vertices.begin() + cluster.first_vertex,
             block.vertices.begin() + cluster.first_vertex + cluster.vertices, cluster.first_vertex);
 

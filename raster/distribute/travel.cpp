@@ -128,9 +128,10 @@ comm::Buffer pack_numbers(std::span<const Piece> pieces) {
 void unpack_numbers(const comm::Buffer& message, const scenes::Scene& scene,
                     std::span<const std::uint64_t> first_primitives, Arrivals& arrivals) {
   const std::span<const std::uint64_t> ranges = message.as<std::uint64_t>();
-  for (std::size_t i = 0; i + 1 < ranges.size(); i += 2)
+  for (std::size_t i = 0; i + 1 < ranges.size(); i += 2) {
     for (const Piece& piece : pieces_of(scene, first_primitives, ranges[i], ranges[i + 1]))
       arrivals.pieces.push_back(piece);
+  }
 }
 
 }  // namespace delray::raster

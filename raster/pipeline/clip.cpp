@@ -99,9 +99,10 @@ ScreenPolygon clip(const Screen& screen, const std::array<glm::vec3, 3>& view,
 
   ScreenPolygon result;
   result.size = size >= 3 ? size : 0;
-  for (int i = 0; i < result.size; ++i)
+  for (int i = 0; i < result.size; ++i) {
     result.vertex[i] =
         polygon[i].screen.x == kOutside ? project(screen, polygon[i].view) : polygon[i].screen;
+  }
   return result;
 }
 

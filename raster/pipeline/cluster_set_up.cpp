@@ -306,9 +306,10 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
         HWY_ALIGN std::int32_t which[kMostLanes];
         append(places_here, alone, which);
         const std::size_t count = hn::CountTrue(d, alone);
-        for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t k = 0; k < count; ++k) {
           set_up_place(screen, draw, block, places, cluster.vertices,
                        static_cast<std::uint32_t>(which[k]), first_number, clip, result);
+        }
         set_up_alone += count;
         in_range = hn::AndNot(alone, in_range);
       }
@@ -328,9 +329,10 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
     kept += hn::CountTrue(d, keep);
     const I pixel_x0 = hn::Add(box.x0, origin.x), pixel_y0 = hn::Add(box.y0, origin.y);
     const I pixel_x1 = hn::Add(box.x1, origin.x), pixel_y1 = hn::Add(box.y1, origin.y);
-    if (cluster.around.may_hide)
+    if (cluster.around.may_hide) {
       keep = hn::AndNot(hidden_of(cluster, keep, a, b, c, pixel_x0, pixel_y0, pixel_x1, pixel_y1),
                         keep);
+    }
     if (hn::AllFalse(d, keep)) continue;
     // Triangles of a few pixels are drawn pixel by pixel, those that are wider window by window if
     // they lie in one tile.
@@ -384,9 +386,10 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
     result.number.resize(2 * most);
   }
   result.windows.reserve(result.windows.size + medium.size + kMostLanes);
-  for (std::size_t i = 0; i < medium.size; i += lanes)
+  for (std::size_t i = 0; i < medium.size; i += lanes) {
     set_up_windows(cluster, medium, i, std::min(lanes, medium.size - i), first_number,
                    result.windows);
+  }
   for (std::size_t i = 0; i < small.size; i += lanes)
     draw_small(cluster, small, i, std::min(lanes, small.size - i), first_number, result);
 }

@@ -26,11 +26,12 @@ TileJobs make_tile_jobs(const Screen& screen, std::span<const geometry::Rect> re
   for (const geometry::Rect& region : regions) {
     const geometry::Rect r = geometry::intersection(region, screen.frame());
     if (r.empty()) continue;
-    for (int y = r.y0 / kTileSize; y <= (r.y1 - 1) / kTileSize; ++y)
+    for (int y = r.y0 / kTileSize; y <= (r.y1 - 1) / kTileSize; ++y) {
       for (int x = r.x0 / kTileSize; x <= (r.x1 - 1) / kTileSize; ++x) {
         const int tile = y * screen.tiles_x + x;
         overlaps.push_back({tile, geometry::intersection(r, screen.tile(tile))});
       }
+    }
   }
   std::stable_sort(overlaps.begin(), overlaps.end(),
                    [](const Overlap& a, const Overlap& b) { return a.tile < b.tile; });
@@ -99,12 +100,13 @@ void FrameTiles::look_around(const geometry::Rect& pixels, float depth,
   result.y0 = y0;
   result.width = width;
   std::int32_t nearest = kEmptyCode;
-  for (int y = 0; y < height; ++y)
+  for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       std::int32_t& here = result.farthest[y * width + x];
       here = farthest_of(x0 + x, y0 + y);
       nearest = std::min(nearest, here);
     }
+  }
   result.may_hide = nearest < code_of_depth(depth);
   if (!result.may_hide) return;
   for (int y = 0; y < height; ++y) {
@@ -121,7 +123,7 @@ bool FrameTiles::is_hidden(const geometry::Rect& pixels, float depth) const {
   const int x0 = pixels.x0 / kTileSize, x1 = (pixels.x1 - 1) / kTileSize;
   const int y0 = pixels.y0 / kTileSize, y1 = (pixels.y1 - 1) / kTileSize;
   if ((x1 - x0 + 1) * (y1 - y0 + 1) > kMostTiles) return false;
-  for (int y = y0; y <= y1; ++y)
+  for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       const int index = y * tiles_x_ + x;
       const State now = state(index);
@@ -133,10 +135,12 @@ bool FrameTiles::is_hidden(const geometry::Rect& pixels, float depth) const {
           std::min(pixels.x1 - 1 - x * kTileSize, kTileSize - 1) / VisibilityTile::kBlockWidth;
       const int j1 =
           std::min(pixels.y1 - 1 - y * kTileSize, kTileSize - 1) / VisibilityTile::kBlockHeight;
-      for (int j = j0; j <= j1; ++j)
+      for (int j = j0; j <= j1; ++j) {
         for (int i = i0; i <= i1; ++i)
           if (code <= tiles_[index].farthest_of(j * VisibilityTile::kBlocksX + i)) return false;
+      }
     }
+  }
   return true;
 }
 

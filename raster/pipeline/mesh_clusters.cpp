@@ -133,9 +133,10 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
       }
       ++cluster.count;
     }
-    for (const auto& corner : corners)
+    for (const auto& corner : corners) {
       block->corners.insert(block->corners.end(), corner.begin(),
                             corner.begin() + cluster.corner_stride());
+    }
     bound(mesh, *block, cluster);
     cluster.normals_agree = normals_agree(mesh, cluster);
     block->box.include(cluster.box);

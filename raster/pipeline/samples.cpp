@@ -62,12 +62,13 @@ void resolve_pixel(const Colour* colours, const float* depths, std::size_t strid
                    Colour& colour, float& depth) {
   auto sum = sum_of(colours);
   float nearest = image::kEmptyDepth;
-  for (int j = 0; j < n; ++j)
+  for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
       const std::size_t at = static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i);
       sum.add(colours[at]);
       nearest = std::min(nearest, depths[at]);
     }
+  }
   colour = sum.mean(n * n);
   depth = nearest;
 }
@@ -77,20 +78,21 @@ void resolve_pixel(const Colour* colours, const float* depths, std::size_t strid
 template <class Colour>
 void resolve(const Window<Colour>& samples, int n, const geometry::Rect& pixels,
              const Window<Colour>& window) {
-  for (int y = pixels.y0; y < pixels.y1; ++y)
+  for (int y = pixels.y0; y < pixels.y1; ++y) {
     for (int x = pixels.x0; x < pixels.x1; ++x) {
       const std::size_t from = samples.at(x * n, y * n), to = window.at(x, y);
       resolve_pixel(samples.colour + from, samples.depth + from,
                     static_cast<std::size_t>(samples.stride), n, window.colour[to],
                     window.depth[to]);
     }
+  }
 }
 
 template <class Colour>
 void gather_samples(const Window<Colour>& samples, int n, const geometry::Rect& pixels,
                     image::BasicImage<Colour>& image) {
   const auto count = static_cast<std::size_t>(n);
-  for (int y = pixels.y0; y < pixels.y1; ++y)
+  for (int y = pixels.y0; y < pixels.y1; ++y) {
     for (int x = pixels.x0; x < pixels.x1; ++x) {
       std::size_t to = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                        static_cast<std::size_t>(x) * count * count;
@@ -100,6 +102,7 @@ void gather_samples(const Window<Colour>& samples, int n, const geometry::Rect& 
         std::copy_n(samples.depth + from, count, image.depth.data() + to);
       }
     }
+  }
 }
 
 template <class Colour>

@@ -17,9 +17,10 @@ inline void append_triangle(const Screen& screen, const geometry::Rect& clip,
   auto& entries = large ? result.large_entries : result.entries;
   const auto entry = static_cast<std::uint32_t>(triangles.size()) | (masked ? kMasked : 0);
   triangles.push_back(triangle);
-  for (int y = y0; y <= y1; ++y)
+  for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x)
       entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
+  }
 }
 
 inline void append_blended(const Screen& screen, const geometry::Rect& clip,
@@ -29,9 +30,10 @@ inline void append_blended(const Screen& screen, const geometry::Rect& clip,
   if (pixels.empty()) return;
   const auto entry = static_cast<std::uint32_t>(result.blended_triangles.size());
   result.blended_triangles.push_back(triangle);
-  for (int y = pixels.y0 / kTileSize; y <= (pixels.y1 - 1) / kTileSize; ++y)
+  for (int y = pixels.y0 / kTileSize; y <= (pixels.y1 - 1) / kTileSize; ++y) {
     for (int x = pixels.x0 / kTileSize; x <= (pixels.x1 - 1) / kTileSize; ++x)
       result.blended_entries.push_back({static_cast<std::uint32_t>(y * screen.tiles_x + x), entry});
+  }
 }
 
 // Clips and culls it too; counts what became of it.

@@ -105,10 +105,11 @@ ToView to_view(const scenes::View& view, const glm::mat4x3& transform) {
   const glm::dvec3 axes[3] = {view.right, view.up, view.forward};
   const glm::dmat4x3 to_world(transform);
   ToView result;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; ++k) {
     result.row[k] = glm::vec4(glm::dot(axes[k], to_world[0]), glm::dot(axes[k], to_world[1]),
                               glm::dot(axes[k], to_world[2]),
                               glm::dot(axes[k], to_world[3] - glm::dvec3(view.eye)));
+  }
   return result;
 }
 

@@ -103,9 +103,10 @@ void refresh(int block, VisibilityTile& tile) {
   const int i0 = block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
   const int j0 = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight;
   auto farthest = hn::Zero(d);
-  for (int j = j0; j < j0 + VisibilityTile::kBlockHeight; ++j)
+  for (int j = j0; j < j0 + VisibilityTile::kBlockHeight; ++j) {
     for (int i = i0; i < i0 + VisibilityTile::kBlockWidth; i += static_cast<int>(hn::Lanes(d)))
       farthest = hn::Max(farthest, hn::Load(d, tile.key + j * kTileSize + i));
+  }
   HWY_ALIGN std::int64_t lanes[16];
   hn::Store(farthest, d, lanes);
   std::int64_t key = 0;
@@ -126,7 +127,7 @@ void draw_blocks(const TileTriangle& t, std::uint32_t number, int bx0, int bx1, 
                  VisibilityTile& tile) {
   constexpr int kRight = VisibilityTile::kBlockWidth - 1;
   constexpr int kDown = VisibilityTile::kBlockHeight - 1;
-  for (int by = by0; by <= by1; ++by)
+  for (int by = by0; by <= by1; ++by) {
     for (int bx = bx0; bx <= bx1; ++bx) {
       const int block = by * VisibilityTile::kBlocksX + bx;
       const int i = bx * VisibilityTile::kBlockWidth;
@@ -153,6 +154,7 @@ void draw_blocks(const TileTriangle& t, std::uint32_t number, int bx0, int bx1, 
       refresh(block, tile);
       tile.stale &= ~(1U << block);
     }
+  }
 }
 
 void rasterize(const Screen& screen, const geometry::Rect& rect,
@@ -184,12 +186,13 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
 
     std::uint32_t touched = 0;
     bool hidden = true;
-    for (int by = by0; by <= by1; ++by)
+    for (int by = by0; by <= by1; ++by) {
       for (int bx = bx0; bx <= bx1; ++bx) {
         const int block = by * VisibilityTile::kBlocksX + bx;
         touched |= 1U << block;
         hidden &= nearest > tile.farthest[block];
       }
+    }
     if (hidden) continue;
     TileTriangle t;
     if (!make_tile_triangle(triangle, screen, tile_x, tile_y, t)) continue;

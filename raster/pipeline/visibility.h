@@ -151,9 +151,10 @@ void for_each_covered(const Screen& screen, const geometry::Rect& rect,
       geometry::intersection(centres_in_box(v[0], v[1], v[2], screen), rect);
   TileTriangle t;
   if (pixels.empty() || !make_tile_triangle(triangle, screen, tile_x, tile_y, t)) return;
-  for (int j = pixels.y0 - tile_y; j < pixels.y1 - tile_y; ++j)
+  for (int j = pixels.y0 - tile_y; j < pixels.y1 - tile_y; ++j) {
     for (int i = pixels.x0 - tile_x; i < pixels.x1 - tile_x; ++i)
       if (covers(t, i, j)) f(i, j, key_of(depth_at(t, i, j), triangle.number));
+  }
 }
 
 // The same for masked entries alone: a pixel counts as covered if solid(number, x, y) says so.

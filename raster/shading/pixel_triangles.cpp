@@ -137,11 +137,12 @@ void set_up_planes(const Screen& screen, const ScreenVertices& vertices, std::si
   const hn::Rebind<std::uint8_t, Ints> d8;
   const std::size_t lanes = hn::Lanes(d);
   alignas(64) std::int32_t rows[kClusterVertices + ScreenVertices::kPadding][4];
-  for (std::size_t i = 0; i < vertex_count; i += lanes)
+  for (std::size_t i = 0; i < vertex_count; i += lanes) {
     store_rows(di,
                FourVectors<I>{{hn::Load(di, vertices.x + i), hn::Load(di, vertices.y + i),
                                hn::BitCast(di, hn::Load(d, vertices.depth + i)), hn::Zero(di)}},
                [&](std::size_t k) HWY_ATTR { return rows[i + k]; });
+  }
   facing = {};
   const I first_number = hn::Set(di, static_cast<std::int32_t>(first_vertex));
   for (std::size_t i = 0; i < count; i += lanes) {
@@ -180,9 +181,10 @@ void set_up_colours(const TrianglePlanes& planes, const glm::vec4* radiances, st
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t i = 0; i < count; i += lanes) {
     FourVectors<F> radiance[3];
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       radiance[k] = load_rows(
           d, [&](std::size_t m) HWY_ATTR { return &radiances[planes.corner[k][i + m]].x; });
+    }
     store_triangles(planes, i, radiance, triangles + i);
   }
 }

@@ -25,9 +25,10 @@ HWY_INLINE void store_planes(const TrianglePlanes& barycentrics, std::size_t fir
     const F p = hn::LoadU(d, row[0] + first), q = hn::LoadU(d, row[1] + first),
             r = hn::LoadU(d, row[2] + first);
     FourVectors<F> sums;
-    for (int k = 0; k < 4; ++k)
+    for (int k = 0; k < 4; ++k) {
       sums.v[k] = hn::Add(hn::Add(hn::Mul(p, values[0].v[k]), hn::Mul(q, values[1].v[k])),
                           hn::Mul(r, values[2].v[k]));
+    }
     return sums;
   };
   store_rows(d, weighted(barycentrics.a), [&](std::size_t m) HWY_ATTR { return to[m].a; });

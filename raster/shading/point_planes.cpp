@@ -116,9 +116,10 @@ void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std
   const Floats d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     FourVectors<F> values[3];
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       values[k] =
           load_rows(d, [&](std::size_t m) HWY_ATTR { return vertices.row[corners.of[k][i + m]]; });
+    }
     store_planes(barycentrics, first + i, values, planes + first + i);
   }
 }
@@ -215,9 +216,10 @@ HWY_INLINE void set_some(const PointPlanes& planes, const PixelBlock& block, std
     store(times(of(colour), share), points.colour, to);
     hn::Store(hn::Mul(colour.v[3], share), d, points.colour_alpha.lane + to);
   }
-  if (!planes.uv.empty())
+  if (!planes.uv.empty()) {
     set_texture_points(lanes, {planes.uv, planes.texture_sets}, planes.position.data(), share, to,
                        points);
+  }
   if (!planes.tangent.empty()) {
     const Vector tangent = times(of(lanes.sums(planes.tangent.data())), share);
     const Vector nothing = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};

@@ -171,9 +171,10 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
     result.uv2[k] = result.has_uv2 ? mesh.uvs2[i] : glm::vec2(0.0F);
     result.colour[k] = mesh.colours.empty() ? glm::vec4(1.0F) : mesh.colours[i];
     result.tangent[k] = glm::vec4(0.0F);
-    if (result.has_tangent)
+    if (result.has_tangent) {
       result.tangent[k] =
           transformed == nullptr ? tangent_in_world(draw, shaded, i) : mesh.tangents[i];
+    }
   }
   if (result.barycentrics.proper) make_planes(result);
   return result;

@@ -140,10 +140,11 @@ void GouraudTile::set_up_textures(const FrameShading& frame, const ClusterMember
   const scenes::Material& material = shading::material(frame.shader, mesh.material);
   const bool blended = frame.draws[draw].blended;
   any_special_ |= blended || material.base_colour_texture != scenes::kNone;
-  if (frame.texture_sets > 0 || frame.any_blended)
+  if (frame.texture_sets > 0 || frame.any_blended) {
     std::fill_n(surfaces_.begin() + group.first, group.count,
                 Surface{static_cast<std::uint32_t>(&material - frame.shader.materials.data()),
                         material.base_colour_texture, blended});
+  }
   if (blended && !mesh.colours.empty()) {  // whose alpha counts
     for (std::size_t i = 0; i < group.count; ++i) triangles_.leave_to_shade_pixel(group.first + i);
   }
@@ -180,9 +181,10 @@ void GouraudTile::shade_special(const FrameShading& frame, shading::LaneMask lan
 }
 
 void GouraudTile::leave_triangles_without_normals() {
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
     for (const auto& corner : triangles_.planes().corner)
       if (radiances_[corner[t]].w == 0) triangles_.leave_to_shade_pixel(t);
+  }
 }
 
 // Triangles without normals are left to shade_pixel.

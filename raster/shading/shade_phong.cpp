@@ -88,9 +88,10 @@ void PhongTile::set_up_group(const FrameShading& frame, const ClusterMembers& me
     };
     set_up_values(members, planes_.tangent,
                   [&](std::uint32_t v) { return glm::vec4(glm::vec3(tangent_of(v)), 0); });
-    for (std::size_t i = 0; i < group.count; ++i)
+    for (std::size_t i = 0; i < group.count; ++i) {
       planes_.geometric[group.first + i].w =
           tangent_of(members.vertices[members.corners.of[0][i]]).w;
+    }
   }
 
   const auto material = static_cast<std::uint32_t>(&shading::material(frame.shader, mesh.material) -

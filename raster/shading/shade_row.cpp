@@ -127,11 +127,12 @@ HWY_INLINE void sums_of_run(const PixelTriangle& t, float column, float y, int f
   const F a = hn::LoadDup128(d, t.a), rest = hn::LoadDup128(d, row_sums);
   const F pixel = hn::ConvertTo(d, hn::ShiftRight<2>(hn::Iota(Ints(), 0)));
   float at = column - t.x;
-  for (int i = first; i < last; i += kAtOnce)
+  for (int i = first; i < last; i += kAtOnce) {
     for (int k = 0; k < kAtOnce; k += kPixels, at += static_cast<float>(kPixels)) {
       const F dx = hn::Add(hn::Set(d, at), pixel);  // whole numbers: exact
       hn::StoreU(hn::Add(hn::Mul(a, dx), rest), d, sums.of[i + k]);
     }
+  }
 }
 #endif
 
@@ -196,9 +197,10 @@ HWY_INLINE Codes encoded(const Colours& colours) {
       off[k] = hn::Abs(hn::Sub(value[k], hn::Sub(rounded[k], rounder)));
     }
     const F farthest = hn::Max(hn::Max(off[0], off[1]), off[2]);
-    if (HWY_LIKELY(hn::AllTrue(d, hn::Lt(farthest, hn::Set(d, 0.5F - kCodeError)))))
+    if (HWY_LIKELY(hn::AllTrue(d, hn::Lt(farthest, hn::Set(d, 0.5F - kCodeError))))) {
       return {hn::BitCast(di, rounded[0]), hn::BitCast(di, rounded[1]),
               hn::BitCast(di, rounded[2])};
+    }
   }
   return {looked_up_code(colours.red), looked_up_code(colours.green), looked_up_code(colours.blue)};
 }
@@ -342,10 +344,11 @@ HWY_INLINE void store_block(const shading::Vectors16& colours, std::uint32_t sho
                             Colour* pixels) {
   const Floats d;
   const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t i = 0; i < kBlockSize; i += lanes)
+  for (std::size_t i = 0; i < kBlockSize; i += lanes) {
     store({hn::Load(d, colours.x.lane + i), hn::Load(d, colours.y.lane + i),
            hn::Load(d, colours.z.lane + i)},
           mask_of(shown >> i), pixels + i);
+  }
 }
 void store_colours8(const shading::Vectors16& colours, std::uint32_t shown, image::Rgba8* pixels) {
   store_block(colours, shown, pixels);

@@ -201,10 +201,12 @@ std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const V
     return true;
   };
   std::uint64_t shaded = 0;
-  for (int y0 = rect.y0; y0 < rect.y1; y0 += kSquare)
-    for (int x0 = rect.x0; x0 < rect.x1; x0 += kSquare)
+  for (int y0 = rect.y0; y0 < rect.y1; y0 += kSquare) {
+    for (int x0 = rect.x0; x0 < rect.x1; x0 += kSquare) {
       for (int y = y0; y < std::min(y0 + kSquare, rect.y1); ++y)
         for (int x = x0; x < std::min(x0 + kSquare, rect.x1); ++x) shaded += shade_one(x, y);
+    }
+  }
   return shaded;
 }
 

@@ -35,12 +35,13 @@ void TileGroups::number_triangles() {
   std::uint16_t* indices = indices_.data();
   for (Group& group : groups_) {
     group.first = static_cast<std::uint16_t>(size);
-    for (std::uint32_t word = 0; word < kClusterTriangles / 64; ++word)
+    for (std::uint32_t word = 0; word < kClusterTriangles / 64; ++word) {
       for (std::uint64_t bits = group.places[word]; bits != 0; bits &= bits - 1) {
         const std::uint32_t place = word * 64 + static_cast<std::uint32_t>(std::countr_zero(bits));
         indices[place] = static_cast<std::uint16_t>(size);
         places_[size++] = static_cast<std::uint8_t>(place);
       }
+    }
     group.count = static_cast<std::uint16_t>(size - group.first);
     indices += kClusterTriangles;
   }

@@ -113,9 +113,10 @@ void TileTriangles::set_up_planes(const FrameShading& frame, const ClusterMember
             members.vertices, screen_vertices_);
   raster::set_up_planes(frame.screen, screen_vertices_, members.vertices.size(), members.corners,
                         group.count, first_vertex, planes_, group.first, facing);
-  if (screen_vertices_.any_outside)
+  if (screen_vertices_.any_outside) {
     for (std::size_t i = 0; i < group.count; ++i)
       if (is_in(facing.outside, i)) set_up_clipped(frame, members, i, facing);
+  }
   for (std::size_t i = 0; i < group.count; ++i)
     if (!is_in(facing.proper, i)) leave_to_shade_pixel(group.first + i);
 }
@@ -160,9 +161,10 @@ void TileTriangles::for_each_group(const FrameShading& frame, Wanted clip, SetUp
 
 std::uint64_t TileTriangles::left_of(const RowRuns& row, int count) const {
   std::uint64_t left = 0;
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i) {
     if ((row.shown >> i & 1) != 0 && is_left(indices().of(row.numbers[i])))
       left |= std::uint64_t{1} << i;
+  }
   return left;
 }
 

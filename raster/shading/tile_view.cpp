@@ -11,9 +11,10 @@ namespace delray::raster {
 image::RgbaF TileView::colour(std::uint32_t number, int x, int y) {
   if (shaded_ != nullptr && tile_ != nullptr) {
     const int pixel = y % kTileSize * kTileSize + x % kTileSize;
-    if (number_of(tile_->key[pixel]) == number)
+    if (number_of(tile_->key[pixel]) == number) {
       return shaded_[static_cast<std::ptrdiff_t>(y % kTileSize) * frame_.screen.width +
                      x % kTileSize];
+    }
   }
   ++shaded_now_;
   return colour_at(frame_, memory_.seen, number, x, y);
@@ -34,7 +35,7 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
     shaded_now_ += shown;
     return;
   }
-  for (int y = rect.y0; y < rect.y1; ++y)
+  for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::int64_t key = tile_->key[y % kTileSize * kTileSize + x % kTileSize];
       const std::size_t to = window.at(x, y);
@@ -44,6 +45,7 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
       ++shown_;
       composite::store(colour(number_of(key), x, y), window.colour[to]);
     }
+  }
 }
 
 void TileView::shade_asked() {
@@ -79,9 +81,10 @@ void TileView::shade_surfaces(const geometry::Rect& rect, bool blended_only) {
   std::iota(open.begin(), open.end(), 0U);
   for (std::uint32_t layer = 0; !open.empty(); ++layer) {
     memory_.asked.clear();
-    for (const std::uint32_t i : open)
+    for (const std::uint32_t i : open) {
       memory_.asked.push_back(
           {number_of(surfaces[pixels[i].first + layer].key), pixels[i].x, pixels[i].y});
+    }
     shade_asked();
     std::size_t still_open = 0;
     for (std::size_t k = 0; k < open.size(); ++k) {

@@ -80,9 +80,10 @@ class TileView {
   template <class F>
   void for_each_surface(const geometry::Rect& rect, F&& f) {
     shade_surfaces(rect, false);
-    for (const PixelSurfaces& pixel : memory_.pixels)
+    for (const PixelSurfaces& pixel : memory_.pixels) {
       f(pixel.x, pixel.y,
         std::span<const SurfaceSeen>(memory_.surfaces).subspan(pixel.first, pixel.count));
+    }
   }
 
   // The colour of a triangle at a pixel, premultiplied.
@@ -116,7 +117,7 @@ template <class F>
 void TileView::for_each_list(const geometry::Rect& rect, F&& f) {
   if (empty()) return;
   auto blended = memory_.blended.begin();
-  for (int y = rect.y0; y < rect.y1; ++y)
+  for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::uint32_t pixel = pixel_of(x, y);
       while (blended != memory_.blended.end() && blended->pixel < pixel) ++blended;
@@ -127,6 +128,7 @@ void TileView::for_each_list(const geometry::Rect& rect, F&& f) {
         memory_.keys.push_back(key);
       if (!memory_.keys.empty()) f(x, y, std::span<const std::int64_t>(memory_.keys));
     }
+  }
 }
 
 }  // namespace delray::raster

@@ -54,9 +54,10 @@ void to_world(const glm::mat4x3& m, const glm::mat3& n, const glm::vec3* positio
       q[2][k] = normal.z;
     }
     const Vector position = load(p);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       hn::Store(hn::Add(product(m[0][k], m[1][k], m[2][k], position), hn::Set(d, m[3][k])), d,
                 vertices.position[k] + i);
+    }
 
     const Vector normal = load(q);
     const F x = product(n[0][0], n[1][0], n[2][0], normal);

@@ -49,11 +49,12 @@ class Drawing {
     for (std::size_t i = 0; i < shares.boxes.size(); ++i) {
       const Rect& box = shares.boxes[i].box;
       const int owner = shares.partition.owners[i];
-      if (owner == rank.number())
+      if (owner == rank.number()) {
         drawn_ = {std::min(drawn_.x0, box.x0), std::min(drawn_.y0, box.y0),
                   std::max(drawn_.x1, box.x1), std::max(drawn_.y1, box.y1)};
-      else if (owner != loadbalance::kEverybody)
+      } else if (owner != loadbalance::kEverybody) {
         contest(samples_of(geometry::intersection(box, own_), samples()));
+      }
     }
   }
 
@@ -80,26 +81,29 @@ class Drawing {
   // Sends others what was seen in their regions and composites what they saw in this rank's.
   void compose() {
     std::vector<std::vector<Span>> tiles_for(static_cast<std::size_t>(rank_.ranks()));
-    for (std::size_t k = 0; k < leaving_.size(); ++k)
+    for (std::size_t k = 0; k < leaving_.size(); ++k) {
       for (const Leaving& leaving : leaving_[k]) {
         tiles_for[leaving.owner].push_back(span_of(static_cast<int>(k), leaving.seen));
         rank_.fragments_travelled += leaving.seen.fragments.size();
       }
+    }
     std::vector<comm::Parcel> parcels;
-    for (int k = 0; k < rank_.ranks(); ++k)
+    for (int k = 0; k < rank_.ranks(); ++k) {
       if (!tiles_for[k].empty())
         parcels.push_back({k, pack_tiles(std::span<const Span>(tiles_for[k]))});
+    }
     const std::vector<comm::Parcel> arrived =
         comm::exchange(rank_.communicator, std::move(parcels));
 
     std::vector<std::vector<Span>> seen(contested_.size());
     std::uint64_t composited = 0;
-    for (const comm::Parcel& parcel : arrived)
+    for (const comm::Parcel& parcel : arrived) {
       for (const Span& span : unpack_tiles<Payload>(parcel.message)) {
         assert(contested_[span.tile]);
         seen[span.tile].push_back(span);
         composited += span.fragments.size();
       }
+    }
     parallel::parallel_for(0, contested_.size(), 1, [&](std::size_t k) {
       if (!contested_[k]) return;
       seen[k].push_back(span_of(static_cast<int>(k), kept_[k]));
@@ -121,9 +125,10 @@ class Drawing {
 
   void contest(const Rect& rect) {
     if (rect.empty()) return;
-    for (int y = rect.y0 / kTileSize; y <= (rect.y1 - 1) / kTileSize; ++y)
+    for (int y = rect.y0 / kTileSize; y <= (rect.y1 - 1) / kTileSize; ++y) {
       for (int x = rect.x0 / kTileSize; x <= (rect.x1 - 1) / kTileSize; ++x)
         contested_[y * rank_.screen.tiles_x + x] = 1;
+    }
   }
 
   static void append(TileView& tile, const Rect& rect, std::span<const PrimitiveRange> passed_over,

@@ -54,9 +54,10 @@ Bins bin_clusters(const RankContext& rank, const DrawList& list, const PreparedF
   });
   const loadbalance::TaskGrid grid = blocks.grid();
   const auto for_each_block = [&](const geometry::Rect& rect, auto&& f) {
-    for (int y = rect.y0; y < rect.y1; ++y)
+    for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x)
         f(static_cast<std::size_t>(y) * grid.columns + static_cast<std::size_t>(x));
+    }
   };
   Bins bins;
   bins.first.resize(std::size_t{grid.count()} + 1);

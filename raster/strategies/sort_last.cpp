@@ -65,11 +65,12 @@ composite::OwnedPixels flatten(RankContext& rank, composite::OwnedPixels&& part,
     const image::RgbaF colour = colour_of(payload);
     return colour.a > 0 ? std::optional(colour) : std::nullopt;
   };
-  for (const composite::PixelRange& range : result.ranges)
+  for (const composite::PixelRange& range : result.ranges) {
     parallel::parallel_blocks(
         range.begin, range.end, kGrain, [&](std::size_t begin, std::size_t end) {
           seconds.measure([&] { composite::flatten(deep, begin, end, image, colour_if_seen); });
         });
+  }
   rank.counts.phases.shade += seconds.seconds();
   result.layer = composite::make_dense(std::move(image));
   return result;
@@ -108,10 +109,11 @@ composite::OwnedPixels stored(composite::OwnedPixels&& part) {
     result.ranges = part.ranges;
     image::ImageF light = composite::take_image<image::RgbaF>(std::move(part));
     image::BasicImage<Colour> image(light.width, light.height);
-    for (const composite::PixelRange& range : result.ranges)
+    for (const composite::PixelRange& range : result.ranges) {
       parallel::parallel_for(range.begin, range.end, kGrain, [&](std::size_t i) {
         composite::store(light.colour[i], image.colour[i]);
       });
+    }
     image.depth = std::move(light.depth);
     result.layer = composite::make_dense(std::move(image));
     return result;
@@ -204,13 +206,14 @@ class Steps final : public FrameSteps {
           rank_.communicator, std::move(layer_), rank_.options.scheme,
           {.samples_per_pixel = rank_.samples_per_pixel(), .order = std::move(order_)});
     });
-    if (shades_last())
+    if (shades_last()) {
       part = two_sets() ? shade_points<Colour, SeenPoint>(rank_, std::move(part))
                         : shade_points<Colour, PlainSeenPoint>(rank_, std::move(part));
-    else if (has_cells())
+    } else if (has_cells()) {
       part = stored<Colour>(std::move(part));
-    else if (rank_.transparent)
+    } else if (rank_.transparent) {
       part = blend_surfaces<Colour>(rank_, std::move(part));
+    }
     return picture_of(std::move(part));
   }
 

@@ -71,9 +71,10 @@ class TilesToHandOver {
                        [](bool finished) { return finished; });
   }
   bool has_something_in(const geometry::Rect& rect) const {
-    for (int y = rect.y0; y < rect.y1; y = (y / kTileSize + 1) * kTileSize)
+    for (int y = rect.y0; y < rect.y1; y = (y / kTileSize + 1) * kTileSize) {
       for (int x = rect.x0; x < rect.x1; x = (x / kTileSize + 1) * kTileSize)
         if (has_something_[tile_at(x, y)] != 0) return true;
+    }
     return false;
   }
 

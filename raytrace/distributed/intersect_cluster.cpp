@@ -141,10 +141,11 @@ void intersect_cluster(const Cluster& cluster, const shading::Shader& shader,
       some.clear();
       for (auto& ray : all)
         if ((ray.return_address.coherent != 0) == coherent) some.push_back(&ray);
-      for (std::size_t i = 0; i < some.size(); i += kPacketRays)
+      for (std::size_t i = 0; i < some.size(); i += kPacketRays) {
         intersect_packet(
             std::span(some).subspan(i, std::min<std::size_t>(kPacketRays, some.size() - i)),
             coherent);
+      }
     }
   };
   in_packets(waiting.rays, [&](auto rays, bool coherent) { intersect(cluster, rays, coherent); });

@@ -147,7 +147,7 @@ void reorder(const std::vector<std::uint32_t>& old_number, std::vector<Value>& v
 void number_vertices_as_used(Mesh& mesh) {
   std::vector<std::uint32_t> number(mesh.positions.size(), kNone), old_number;
   old_number.reserve(number.size());
-  for (glm::uvec3& triangle : mesh.triangles)
+  for (glm::uvec3& triangle : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
       std::uint32_t& vertex = triangle[k];
       if (number[vertex] == kNone) {
@@ -156,6 +156,7 @@ void number_vertices_as_used(Mesh& mesh) {
       }
       vertex = number[vertex];
     }
+  }
   for (std::uint32_t i = 0; i < number.size(); ++i)
     if (number[i] == kNone) old_number.push_back(i);
   reorder(old_number, mesh.positions);

@@ -56,10 +56,11 @@ std::vector<Json> least_of(const std::vector<Json>& rows, const char* time, doub
   const Json& least = *std::min_element(
       rows.begin(), rows.end(),
       [&](const Json& a, const Json& b) { return a["seconds"][time] < b["seconds"][time]; });
-  for (const Json& row : rows)
+  for (const Json& row : rows) {
     if (!differ(row["spread"][time], least["spread"][time]) ||
         row["seconds"][time] <= least["seconds"][time].get<double>() * equal)
       result.push_back(row);
+  }
   return result;
 }
 
@@ -79,9 +80,10 @@ Best best_of(const Json& rows, int ranks, const char* over_share) {
   for (const Json& row : all)
     if (row[over_share] <= least * 1.05) even.push_back(row);
   const bool drawn = all[0]["seconds"]["busiest"].is_number();
-  if (drawn)
+  if (drawn) {
     for (const Json& row : least_of(all, "busiest", 1.05))
       if (row[over_share] <= least * 1.05) both.push_back(row);
+  }
   Best best;
   best.contradicted = drawn && both.empty();
   for (const Json& row : least_of(both.empty() ? even : both, "cut", 1))

@@ -93,9 +93,10 @@ TEST(CompareCompose, SimulatesListsOfSurfacesAsItCountsThem) {
   for (int i = 0; i < 300; ++i) {
     const int x = i * 37 % 101, y = i * 59 % 97, z = i * 83 % 89;
     scene += "usemtl " + std::string(i % 3 == 0 ? "wall" : "glass");
-    for (const int k : {0, 12, 25})
+    for (const int k : {0, 12, 25}) {
       scene += "\nv " + std::to_string(x + k % 2 * 9) + " " + std::to_string(y + k) + " " +
                std::to_string(z + k / 2);
+    }
     scene += "\nf -3 -2 -1\n";
   }
   folder.write("glass.obj", scene);
@@ -201,12 +202,13 @@ TEST(CompareCompose, RefusesWhatItCannotDo) {
     EXPECT_EQ(ran.out, "");
   }
   // Where nothing can be written it says so before anything is read or run.
-  for (const std::string output : {"-o no/report.html", "--stats no/f.json"})
+  for (const std::string output : {"-o no/report.html", "--stats no/f.json"}) {
     for (const std::string report : {"compose", "partition", "schedule", "triangulate"}) {
       const Ran ran = run("delray compare " + report + " missing.obj " + output, folder.path());
       EXPECT_EQ(ran.exit_code, 1) << report << ran.err;
       EXPECT_NE(ran.err.find("cannot write"), std::string::npos) << ran.err;
     }
+  }
 }
 
 TEST(CompareCompose, ListsSchemesCodecsAndNetworks) {

@@ -87,9 +87,10 @@ TEST(Outputs, DoNotOverwriteFilesThatTheSceneNames) {
     expect_refused(command, folder);
   }
   EXPECT_EQ(content(), before);
-  for (const std::string scene : {"s/a.obj", "s/a.gltf"})
+  for (const std::string scene : {"s/a.obj", "s/a.gltf"}) {
     EXPECT_EQ(run("delray render " + scene + " --size 64x48 -o s/b.png", folder.path()).exit_code,
               0);
+  }
 }
 
 TEST(Outputs, DoNotOverwriteEachOther) {

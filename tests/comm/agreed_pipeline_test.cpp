@@ -40,8 +40,8 @@ std::vector<parallel::PipelineStage> stages_of(Communicator& communicator, std::
 }
 
 TEST(AgreedPipeline, CommunicatesForEveryItemInOrder) {
-  for (const int ranks : {1, 2, 5})
-    for (const int threads : {1, 3})
+  for (const int ranks : {1, 2, 5}) {
+    for (const int threads : {1, 3}) {
       run_threads(ranks, threads, [&](Communicator& communicator) {
         std::vector<int> sums(kItems, -1), slots(kSlots);
         const auto stages = stages_of(communicator, sums, slots, [](std::size_t, std::size_t) {});
@@ -51,11 +51,13 @@ TEST(AgreedPipeline, CommunicatesForEveryItemInOrder) {
         for (std::size_t i = 0; i < kItems; ++i)
           EXPECT_EQ(sums[i], static_cast<int>(i) * ranks + ranks * (ranks - 1) / 2);
       });
+    }
+  }
 }
 
 TEST(AgreedPipeline, EndsAlikeOnAllRanksWhereverOneFails) {
-  for (const std::size_t stage : {0U, 2U})
-    for (const std::size_t item : {std::size_t{0}, std::size_t{5}, kItems - 1})
+  for (const std::size_t stage : {0U, 2U}) {
+    for (const std::size_t item : {std::size_t{0}, std::size_t{5}, kItems - 1}) {
       for (const int threads : {1, 3}) {
         SCOPED_TRACE("stage " + std::to_string(stage) + ", item " + std::to_string(item));
         std::atomic<int> ended = 0;
@@ -81,6 +83,8 @@ TEST(AgreedPipeline, EndsAlikeOnAllRanksWhereverOneFails) {
         EXPECT_EQ(ended, 3);
         EXPECT_FALSE(after);
       }
+    }
+  }
 }
 
 TEST(AgreedPipeline, FailuresOfTheCollectiveStageEndTheRun) {

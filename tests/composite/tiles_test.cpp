@@ -28,7 +28,7 @@ Image8 drawn_by(int rank, int frame) {
 void expect_nearest(const OwnedPixels& part, int frame) {
   const Image8& image = dynamic_cast<const ImageLayer<image::Rgba8>&>(*part.layer).image();
   ASSERT_FALSE(part.ranges.empty());
-  for (const PixelRange& range : part.ranges)
+  for (const PixelRange& range : part.ranges) {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       Image8 nearest = drawn_by(0, frame);
       for (int rank = 1; rank < kRanks; ++rank) {
@@ -38,6 +38,7 @@ void expect_nearest(const OwnedPixels& part, int frame) {
       EXPECT_EQ(image.colour[i], nearest.colour[i]) << "frame " << frame << ", pixel " << i;
       EXPECT_EQ(image.depth[i], nearest.depth[i]);
     }
+  }
 }
 
 // A rank that is done speaks of the next frame's tiles to one that still waits for a third.

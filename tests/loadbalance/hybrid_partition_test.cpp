@@ -18,17 +18,19 @@ using geometry::Rect;
 std::vector<double> costs_of_owners(const HybridPartition& partition,
                                     std::span<const WeightedBox> boxes, int ranks) {
   std::vector<double> costs(static_cast<std::size_t>(ranks));
-  for (std::size_t i = 0; i < boxes.size(); ++i)
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (partition.owners[i] >= 0) {
       costs[partition.owners[i]] += boxes[i].cost;
     } else if (partition.owners[i] == kEverybody) {
       const Rect visible = geometry::intersection(boxes[i].box, partition.regions.frame);
-      for (const Region& region : partition.regions.regions)
+      for (const Region& region : partition.regions.regions) {
         costs[region.owner] +=
             boxes[i].cost *
             static_cast<double>(geometry::intersection(visible, region.rect).area()) /
             static_cast<double>(visible.area());
+      }
     }
+  }
   return costs;
 }
 
@@ -40,9 +42,10 @@ std::int64_t pixels_sent(const HybridPartition& partition, std::span<const Weigh
     return static_cast<std::size_t>(y - frame.y0) * frame.width() + (x - frame.x0);
   };
   std::vector<int> owner_of(static_cast<std::size_t>(frame.area()), kNobody);
-  for (const Region& region : partition.regions.regions)
+  for (const Region& region : partition.regions.regions) {
     for (int y = region.rect.y0; y < region.rect.y1; ++y)
       for (int x = region.rect.x0; x < region.rect.x1; ++x) owner_of[at(x, y)] = region.owner;
+  }
   std::int64_t sent = 0;
   std::vector<bool> covered;
   for (int rank = 0; rank < ranks; ++rank) {
@@ -50,11 +53,12 @@ std::int64_t pixels_sent(const HybridPartition& partition, std::span<const Weigh
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (partition.owners[i] != rank) continue;
       const Rect box = geometry::intersection(boxes[i].box, frame);
-      for (int y = box.y0; y < box.y1; ++y)
+      for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
           if (owner_of[at(x, y)] != rank && !covered[at(x, y)]) ++sent;
           covered[at(x, y)] = true;
         }
+      }
     }
   }
   return sent;
@@ -84,9 +88,10 @@ void expect_valid(const HybridPartition& partition, std::span<const WeightedBox>
     ASSERT_GE(region.owner, 0);
     ASSERT_LT(region.owner, ranks);
     ASSERT_EQ(++regions[region.owner], 1);
-    for (int y = region.rect.y0; y < region.rect.y1; ++y)
+    for (int y = region.rect.y0; y < region.rect.y1; ++y) {
       for (int x = region.rect.x0; x < region.rect.x1; ++x)
         ++times[static_cast<std::size_t>(y - frame.y0) * frame.width() + (x - frame.x0)];
+    }
   }
   for (const int n : times) ASSERT_EQ(n, 1);
 }
@@ -123,11 +128,13 @@ TEST(HybridPartition, GivesEachBoxOneOwnerAndCoversTheFrameOnce) {
 
 TEST(HybridPartition, TakesTinyAndEmptyFramesAndNoBoxes) {
   const WeightedBox everywhere[] = {{{-9, -9, 99, 99}, 3}, {{-9, -9, 99, 99}, 0}};
-  for (const Rect frame : {Rect{0, 0, 0, 0}, Rect{5, 5, 5, 90}, Rect{3, 4, 4, 5}, Rect{0, 0, 1, 9}})
+  for (const Rect frame :
+       {Rect{0, 0, 0, 0}, Rect{5, 5, 5, 90}, Rect{3, 4, 4, 5}, Rect{0, 0, 1, 9}}) {
     for (const int ranks : {1, 2, 7, 64}) {
       expect_valid(hybrid_partition({}, frame, ranks, {1, 0.5}), {}, frame, ranks);
       expect_valid(hybrid_partition(everywhere, frame, ranks, {1, 0.5}), everywhere, frame, ranks);
     }
+  }
 }
 
 TEST(HybridPartition, WithoutBoxesCutsByArea) {

@@ -29,9 +29,10 @@ TEST(OwnedBlocks, GiveEveryBlockToOneOwner) {
         const Partition partition = partitioner.partition(costs, frame, owners);
         const Blocks blocks{frame, side, side};
         std::vector<int> times(blocks.grid().count());
-        for (int owner = 0; owner < owners; ++owner)
+        for (int owner = 0; owner < owners; ++owner) {
           for (const TaskRange& range : owned_blocks(partition, blocks, owner))
             for (std::uint32_t block = range.first; block < range.last; ++block) ++times[block];
+        }
         for (const int n : times) ASSERT_EQ(n, 1) << partitioner.name << ' ' << side;
       }
     }

@@ -49,13 +49,15 @@ TEST(Combinations, GiveOnePicture) {
   int turn = 0;
   for (const KindOfPicture& kind : kinds_of_picture(53, 39)) {
     const Picture expected = rendered(kind, kind.options, 1, 1);
-    for (const RenderOptions& options : combinations(kind.options))
-      for (int ranks = 1; ranks <= 9; ++ranks)
+    for (const RenderOptions& options : combinations(kind.options)) {
+      for (int ranks = 1; ranks <= 9; ++ranks) {
         for (int threads = 1; threads <= 3; ++threads) {
           if (++turn % step != 0) continue;
           ASSERT_TRUE(same_bytes(rendered(kind, options, ranks, threads), expected))
               << kind.name << ": " << name_of(options) << " " << ranks << " x " << threads;
         }
+      }
+    }
   }
 }
 

@@ -32,10 +32,12 @@ inline void count(const Screen& screen, const ScreenTriangle& triangle, std::vec
     const geometry::Rect rect = screen.tile(k);
     tile.clear(rect);
     rasterize(screen, rect, {&triangle, 1}, {&entry, 1}, tile);
-    for (int y = rect.y0; y < rect.y1; ++y)
-      for (int x = rect.x0; x < rect.x1; ++x)
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      for (int x = rect.x0; x < rect.x1; ++x) {
         pixels[y * screen.width + x] +=
             number_of(tile.key[(y - rect.y0) * kTileSize + x - rect.x0]) != kNothing;
+      }
+    }
   }
 }
 

@@ -21,9 +21,9 @@ struct KindOfPicture {
 inline std::vector<KindOfPicture> kinds_of_picture(int width, int height) {
   std::vector<KindOfPicture> kinds;
   unsigned seed = 40;
-  for (const bool transparent : {false, true})
-    for (const int samples : {1, 2, 4})
-      for (const Lighting lighting : {Lighting::phong, Lighting::gouraud})
+  for (const bool transparent : {false, true}) {
+    for (const int samples : {1, 2, 4}) {
+      for (const Lighting lighting : {Lighting::phong, Lighting::gouraud}) {
         for (const bool immediate : {false, true}) {
           ++seed;
           RenderOptions options;
@@ -40,6 +40,9 @@ inline std::vector<KindOfPicture> kinds_of_picture(int width, int height) {
                    (immediate ? " immediate" : "") + (options.float_pixels ? " float" : ""),
                transparent ? transparent_scene(seed) : random_scene(seed), options});
         }
+      }
+    }
+  }
   return kinds;
 }
 

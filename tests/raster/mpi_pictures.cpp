@@ -54,7 +54,7 @@ int wrong_pictures(comm::Communicator& communicator, const PartialImage& share) 
       expected =
           raster::render(alone, kind.scene, raster::random_scene_camera(), kind.options).picture;
     });
-    for (const raster::RenderOptions& options : raster::combinations(kind.options))
+    for (const raster::RenderOptions& options : raster::combinations(kind.options)) {
       for (int threads = 1; threads <= 3; ++threads) {
         if (!share.has(++number)) continue;
         parallel::Arena arena(threads);
@@ -69,10 +69,12 @@ int wrong_pictures(comm::Communicator& communicator, const PartialImage& share) 
         std::printf("%s: %s, %d ranks x %d\n", kind.name.c_str(), raster::name_of(options).c_str(),
                     communicator.size(), threads);
       }
+    }
   }
-  if (communicator.rank() == 0)
+  if (communicator.rank() == 0) {
     std::printf("%d ranks: %d pictures, %d wrong\n", communicator.size(), progress.pictures(),
                 wrong);
+  }
   return wrong;
 }
 

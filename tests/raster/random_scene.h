@@ -24,10 +24,11 @@ inline scenes::Scene random_scene(unsigned seed, int triangles_per_mesh = 40) {
   for (scenes::Texture& texture : scene.textures) {
     texture.width = 8;
     texture.height = 6;
-    for (int i = 0; i < 48; ++i)
+    for (int i = 0; i < 48; ++i) {
       texture.texels.push_back(
           {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
            static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random() % 2 * 255)});
+    }
   }
   scene.textures[1].srgb = false;
   for (std::uint32_t m = 0; m < 4; ++m) {

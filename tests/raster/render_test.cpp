@@ -48,8 +48,8 @@ std::vector<RenderOptions> some_combinations(const RenderOptions& base, int turn
 }
 
 TEST(Render, ShadingAtOnceGivesTheSamePictureAndShadesMore) {
-  for (const bool transparent : {false, true})
-    for (const Lighting lighting : {Lighting::phong, Lighting::gouraud})
+  for (const bool transparent : {false, true}) {
+    for (const Lighting lighting : {Lighting::phong, Lighting::gouraud}) {
       for (const int samples : {1, 2}) {
         const scenes::Scene scene = transparent ? transparent_scene(9) : random_scene(9);
         RenderOptions options;
@@ -67,6 +67,8 @@ TEST(Render, ShadingAtOnceGivesTheSamePictureAndShadesMore) {
           EXPECT_GT(immediate.statistics.shaded, deferred.statistics.shaded);
         }
       }
+    }
+  }
 }
 
 TEST(Render, AveragesSamplesInLinearLight) {
@@ -84,17 +86,18 @@ TEST(Render, AveragesSamplesInLinearLight) {
     options.height *= n;
     const Result fine = rendered(scene, random_scene_camera(), options);
     const auto& samples = std::get<image::ImageF>(fine.picture);
-    for (int y = 0; y < pixels.height; ++y)
+    for (int y = 0; y < pixels.height; ++y) {
       for (int x = 0; x < pixels.width; ++x) {
         image::RgbaF sum;
         float depth = image::kEmptyDepth;
-        for (int j = 0; j < n; ++j)
+        for (int j = 0; j < n; ++j) {
           for (int i = 0; i < n; ++i) {
             const int at = (y * n + j) * samples.width + x * n + i;
             const image::RgbaF& sample = samples.colour[at];
             sum = {sum.r + sample.r, sum.g + sample.g, sum.b + sample.b, sum.a + sample.a};
             depth = std::min(depth, samples.depth[at]);
           }
+        }
         const int at = y * pixels.width + x;
         const float count = static_cast<float>(n * n);
         EXPECT_FLOAT_EQ(pixels.colour[at].r, sum.r / count);
@@ -102,6 +105,7 @@ TEST(Render, AveragesSamplesInLinearLight) {
         EXPECT_FLOAT_EQ(pixels.colour[at].a, sum.a / count);
         EXPECT_EQ(pixels.depth[at], depth);
       }
+    }
     options = {};
     options.width = 30;
     options.height = 22;
@@ -145,12 +149,12 @@ TEST(Render, BlendsFrontToBack) {
   base.width = 20;
   base.height = 10;
   base.float_pixels = true;
-  for (const RenderOptions& options : some_combinations(base, 1))
+  for (const RenderOptions& options : some_combinations(base, 1)) {
     for (const int ranks : {1, 2, 3, 8}) {
       SCOPED_TRACE(described(options, ranks, 1));
       const Result result = rendered(scene, camera, options, ranks);
       const auto& picture = std::get<image::ImageF>(result.picture);
-      for (int y = 0; y < 10; ++y)
+      for (int y = 0; y < 10; ++y) {
         for (int x = 0; x < 20; ++x) {
           const image::RgbaF& pixel = picture.colour[y * 20 + x];
           const float through = 0.75F * 0.5F * 0.25F;
@@ -161,7 +165,9 @@ TEST(Render, BlendsFrontToBack) {
           EXPECT_NEAR(pixel.a, x < 10 ? 1.0F : 1 - through, 1e-6F);
           EXPECT_NEAR(picture.depth[y * 20 + x], 2.0F, 1e-5F);
         }
+      }
     }
+  }
 }
 
 TEST(Render, SimulatedRanksGiveTheSamePicture) {
@@ -170,7 +176,7 @@ TEST(Render, SimulatedRanksGiveTheSamePicture) {
   base.width = 70;
   base.height = 50;
   const Result expected = rendered(scene, random_scene_camera(), base);
-  for (const RenderOptions& options : some_combinations(base, 2))
+  for (const RenderOptions& options : some_combinations(base, 2)) {
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       Picture picture;
       comm::run_simulated(3 + static_cast<int>(seed), comm::any_order(), seed,
@@ -181,6 +187,7 @@ TEST(Render, SimulatedRanksGiveTheSamePicture) {
                           });
       EXPECT_TRUE(same_bytes(picture, expected.picture)) << described(options, 3, 1);
     }
+  }
 }
 
 TEST(Render, EveryInstructionSetGivesTheSamePicture) {
@@ -232,7 +239,7 @@ TEST(Render, EmptyScenesAndTinyPicturesWork) {
     RenderOptions base;
     base.width = width;
     base.height = height;
-    for (const RenderOptions& options : some_combinations(base, 3))
+    for (const RenderOptions& options : some_combinations(base, 3)) {
       for (const int ranks : {1, 2, 7}) {
         SCOPED_TRACE(described(options, ranks, 1));
         const Result empty = rendered(nothing, {}, options, ranks);
@@ -249,6 +256,7 @@ TEST(Render, EmptyScenesAndTinyPicturesWork) {
           EXPECT_NEAR(covered.depth[i], 1.0F, 1e-5F);
         }
       }
+    }
   }
 }
 
@@ -273,12 +281,12 @@ TEST(Render, NearerWinsAndEqualDepthsGoToTheFirst) {
   base.width = 20;
   base.height = 10;
   base.float_pixels = true;
-  for (const RenderOptions& options : some_combinations(base, 4))
+  for (const RenderOptions& options : some_combinations(base, 4)) {
     for (const int ranks : {1, 2, 3, 6}) {
       SCOPED_TRACE(described(options, ranks, 1));
       const Result result = rendered(scene, camera, options, ranks);
       const auto& picture = std::get<image::ImageF>(result.picture);
-      for (int y = 0; y < 10; ++y)
+      for (int y = 0; y < 10; ++y) {
         for (int x = 0; x < 20; ++x) {
           const image::RgbaF& pixel = picture.colour[y * 20 + x];
           EXPECT_EQ(pixel.g, 0.0F);  // the second is never seen
@@ -286,7 +294,9 @@ TEST(Render, NearerWinsAndEqualDepthsGoToTheFirst) {
           EXPECT_EQ(pixel.b, x < 10 ? 1.0F : 0.0F);
           EXPECT_NEAR(picture.depth[y * 20 + x], x < 10 ? 1.5F : 2.0F, 1e-5F);
         }
+      }
     }
+  }
 }
 
 TEST(Render, CullsBackFacesOnlyOfSingleSidedMaterialsWhenAsked) {
@@ -302,9 +312,9 @@ TEST(Render, CullsBackFacesOnlyOfSingleSidedMaterialsWhenAsked) {
   }
   glm::mat4x3 mirrored(1.0F);
   mirrored[2].z = -1;
-  for (const std::uint32_t mesh : {0U, 1U})
-    for (const bool mirror : {false, true})
-      for (const bool behind : {false, true})
+  for (const std::uint32_t mesh : {0U, 1U}) {
+    for (const bool mirror : {false, true}) {
+      for (const bool behind : {false, true}) {
         for (const bool cull : {false, true}) {
           scene.instances = {{mesh, mirror ? mirrored : glm::mat4x3(1.0F)}};
           scenes::Camera camera;
@@ -317,6 +327,9 @@ TEST(Render, CullsBackFacesOnlyOfSingleSidedMaterialsWhenAsked) {
           EXPECT_EQ(rendered(scene, camera, options).statistics.fragments, hidden ? 0U : 81U)
               << mesh << mirror << behind << cull;
         }
+      }
+    }
+  }
 }
 
 TEST(Render, CountsWhatTravels) {
@@ -416,7 +429,7 @@ TEST(Render, StopsWhenAsked) {
 // Wherever a mesh has the coordinates of a texture, and whoever shades what.
 TEST(Render, TexturesOfASecondSetLookAsThoseOfTheFirst) {
   int turn = 0;
-  for (const Lighting lighting : {Lighting::phong, Lighting::gouraud})
+  for (const Lighting lighting : {Lighting::phong, Lighting::gouraud}) {
     for (const bool transparent : {false, true}) {
       scenes::Scene scene = transparent ? transparent_scene(17) : random_scene(17);
       scene.materials[3].base_colour_texture = 0;  // beside a normal texture
@@ -428,15 +441,17 @@ TEST(Render, TexturesOfASecondSetLookAsThoseOfTheFirst) {
       const scenes::Scene moved = with_second_uvs(scene);
       EXPECT_TRUE(
           same_bytes(rendered(moved, random_scene_camera(), options).picture, expected.picture));
-      for (const RenderOptions& way : some_combinations(options, ++turn))
+      for (const RenderOptions& way : some_combinations(options, ++turn)) {
         EXPECT_TRUE(
             same_bytes(rendered(moved, random_scene_camera(), way, 3).picture, expected.picture))
             << described(way, 3, 1);
+      }
       if (lighting == Lighting::gouraud) continue;
       options.shade = Shade::composited;
       EXPECT_TRUE(
           same_bytes(rendered(moved, random_scene_camera(), options, 3).picture, expected.picture));
     }
+  }
 }
 
 TEST(Render, PicturesOfGeneratedScenesDoNotDependOnRanks) {
@@ -447,10 +462,11 @@ TEST(Render, PicturesOfGeneratedScenesDoNotDependOnRanks) {
     options.width = 257;
     options.height = 190;
     const Result expected = rendered(scene, scene.cameras[0], options, 1, 2);
-    for (const RenderOptions& way : some_combinations(options, 5))
+    for (const RenderOptions& way : some_combinations(options, 5)) {
       EXPECT_TRUE(
           same_bytes(rendered(scene, scene.cameras[0], way, 4, 1).picture, expected.picture))
           << name << " " << described(way, 4, 1);
+    }
   }
 }
 

@@ -51,9 +51,10 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   const auto by_vectors = std::make_unique<Tile>();
   image::BasicImage<Colour> expected(width, height), image(width, height);
   std::uint64_t shown = 0;
-  for (const TileJob& job : jobs.jobs)
+  for (const TileJob& job : jobs.jobs) {
     shown +=
         shade_tile(frame, seen, tiles.open(job.tile), screen.tile(job.tile), window_of(expected));
+  }
   tests::for_each_target([&] {
     image::clear(image);
     std::uint64_t shown_by_vectors = 0;
@@ -62,10 +63,12 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
       const geometry::Rect r = screen.tile(job.tile);
       const int x = job.tile % 2 == 0 ? r.x1 : std::min(r.x0 + 23, r.x1);
       for (const geometry::Rect& part :
-           {geometry::Rect{r.x0, r.y0, x, r.y1}, geometry::Rect{x, r.y0, r.x1, r.y1}})
-        if (!part.empty())
+           {geometry::Rect{r.x0, r.y0, x, r.y1}, geometry::Rect{x, r.y0, r.x1, r.y1}}) {
+        if (!part.empty()) {
           shown_by_vectors +=
               by_vectors->shade(frame, seen, tiles.open(job.tile), part, window_of(image));
+        }
+      }
     }
     EXPECT_EQ(shown_by_vectors, shown);
     expect_same(image, expected);

@@ -100,15 +100,16 @@ void expect_ground_once(float extent, unsigned seed) {
   const int reach = 1 << 20;
   const Mesh2 flat = random_triangulation(random, reach, 1, 40);
   scenes::Mesh mesh;
-  for (const glm::ivec2& p : flat.points)
+  for (const glm::ivec2& p : flat.points) {
     mesh.positions.emplace_back(static_cast<float>(p.x) / reach * extent, -1.0F,
                                 static_cast<float>(p.y) / reach * extent);
+  }
   mesh.triangles = flat.triangles;
   const SetUpMesh set_up = set_up_mesh(screen, mesh);
   EXPECT_GT(set_up.counts.clipped, 0U) << "seed " << seed;
   std::vector<int> pixels(90 * 66);
   for (const ScreenTriangle& t : set_up.triangles) count(screen, t, pixels);
-  for (int y = 0; y < 66; ++y)
+  for (int y = 0; y < 66; ++y) {
     for (int x = 0; x < 90; ++x) {
       const glm::vec3 ray =
           screen.view.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
@@ -123,6 +124,7 @@ void expect_ground_once(float extent, unsigned seed) {
         ASSERT_LE(n, 1);
       }
     }
+  }
 }
 
 TEST(Watertight, GroundThroughTheNearPlaneIsCoveredOnce) {
@@ -151,10 +153,11 @@ TEST(Watertight, WildTrianglesAreHarmless) {
                           -std::numeric_limits<float>::infinity(),
                           std::nanf("")};
   scenes::Mesh mesh;
-  for (int i = 0; i < 3000; ++i)
+  for (int i = 0; i < 3000; ++i) {
     mesh.positions.emplace_back(values[random() % std::size(values)],
                                 values[random() % std::size(values)],
                                 values[random() % std::size(values)]);
+  }
   std::uint32_t n = static_cast<std::uint32_t>(mesh.positions.size());
   for (int i = 0; i < 20000; ++i)
     mesh.triangles.emplace_back(random() % n, random() % n, random() % n);

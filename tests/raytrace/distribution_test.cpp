@@ -39,11 +39,12 @@ Result shared_out(const scenes::Scene& scene, const RenderOptions& options,
 
 std::size_t different(const Result& a, const Result& b) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < a.image.pixels(); ++i)
+  for (std::size_t i = 0; i < a.image.pixels(); ++i) {
     count += std::memcmp(&a.image.colour[i], &b.image.colour[i], sizeof(image::RgbaF)) != 0 ||
                      a.image.depth[i] != b.image.depth[i]
                  ? 1
                  : 0;
+  }
   return count;
 }
 
@@ -176,9 +177,10 @@ TEST(SharedScene, NoRankHoldsMoreThanItsPartAndTheCache) {
   options.tile = 16;
   const Tracer tracer = make_tracer(scene);
   std::uint64_t replicated = tracer.embree.memory();
-  for (const scenes::Mesh& mesh : scene.meshes)
+  for (const scenes::Mesh& mesh : scene.meshes) {
     replicated += mesh.positions.size() * (2 * sizeof(glm::vec3) + sizeof(glm::vec4)) +
                   mesh.triangles.size() * sizeof(glm::uvec3);
+  }
   Result whole;
   comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
     whole = Renderer(tracer).render(communicator, scene.cameras[0], options);

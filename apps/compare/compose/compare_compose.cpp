@@ -156,9 +156,10 @@ class Comparison {
     const bool root = communicator.rank() == 0;
     ShareLayers layers(share);
     std::vector<MeasuredScheme> all;
-    for (const std::string& codec : codecs(is_transparent(share)))
+    for (const std::string& codec : codecs(is_transparent(share))) {
       for (const std::string& scheme : schemes_of(request_))
         all.push_back({scheme, codec, {}, {}, {}, {}, {}});
+    }
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     for (int turn = 0; turn <= repeats(ranks); ++turn) {
@@ -306,10 +307,11 @@ class Comparison {
   bool takes_long(const std::string& scheme, const std::string& codec, int ranks) const {
     if (request_.most_messages == 0) return false;
     const ComparedScheme* known = nullptr;
-    for (const ComparedScheme& row : rows_)
+    for (const ComparedScheme& row : rows_) {
       if (row.scheme == scheme && row.codec == codec && row.ranks < ranks &&
           (known == nullptr || row.ranks > known->ranks))
         known = &row;
+    }
     if (known == nullptr) return false;
     const double growth = static_cast<double>(ranks) / known->ranks;
     return static_cast<double>(known->counts.messages) * growth * growth >

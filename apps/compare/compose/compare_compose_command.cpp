@@ -35,11 +35,12 @@ void check_codecs(const CompareRequest& request, bool asked) {
   const bool simulates = asked && std::any_of(request.ranks.begin(), request.ranks.end(),
                                               [](int ranks) { return ranks > kMostMeasuredRanks; });
   for (const std::string& codec : request.codecs) {
-    if (simulates && !composite::metadata_only_of(codec))
+    if (simulates && !composite::metadata_only_of(codec)) {
       throw UsageError(
           fmt::format("--codec {}: what it sends depends on what pixels show, so that more than {} "
                       "ranks cannot be simulated",
                       codec, kMostMeasuredRanks));
+    }
   }
 }
 

@@ -41,11 +41,12 @@ double total(const Predicted& predicted) { return predicted.seconds + predicted.
 // With as many ranks the one that takes least after the best.
 const ComparedScheme* next_of(const Rows& rows, const Winners& best) {
   const ComparedScheme* next = nullptr;
-  for (const ComparedScheme& row : rows)
+  for (const ComparedScheme& row : rows) {
     if (row.ranks == best.front()->ranks && row.total_seconds &&
         std::find(best.begin(), best.end(), &row) == best.end() &&
         (next == nullptr || row.total_seconds->median < next->total_seconds->median))
       next = &row;
+  }
   return next;
 }
 
@@ -60,12 +61,14 @@ Html measured_sentence(const ComposeComparison& comparison, const Winners& best,
                                          strong(listed(names)), escaped(names[0]));
   text += fmt::format("{} with the gather, {}.", measured_text(*first.total_seconds),
                       counts_text(first));
-  if (const ComparedScheme* next = next_of(comparison.rows, best))
+  if (const ComparedScheme* next = next_of(comparison.rows, best)) {
     text += fmt::format(" {} takes {:.0f} % more.", escaped(names_of({next}, codecs)[0]),
                         (next->total_seconds->median / first.total_seconds->median - 1) * 100);
-  if (first.ranks > comparison.cores)
+  }
+  if (first.ranks > comparison.cores) {
     text += fmt::format(" They share {}: that tells nothing of a machine with a core for each.",
                         cores_text(comparison.cores));
+  }
   return text + "</p>\n";
 }
 
@@ -171,9 +174,10 @@ Html omissions(const std::vector<LeftOut>& left_out) {
   std::string text;
   for (const int ranks : unique_of(left_out, [](const LeftOut& one) { return one.ranks; })) {
     std::vector<std::string> names;
-    for (const LeftOut& one : left_out)
+    for (const LeftOut& one : left_out) {
       if (one.ranks == ranks && std::find(names.begin(), names.end(), one.scheme) == names.end())
         names.push_back(one.scheme);
+    }
     text += fmt::format("{}{} ranks without {}", text.empty() ? "" : "; ", ranks,
                         fmt::join(names, ", "));
   }
@@ -188,10 +192,12 @@ std::vector<std::string> codecs_of(const Rows& rows) {
 
 std::vector<std::string> networks_of(const Rows& rows) {
   std::vector<std::string> result;
-  for (const ComparedScheme& row : rows)
-    for (const Predicted& p : row.predicted)
+  for (const ComparedScheme& row : rows) {
+    for (const Predicted& p : row.predicted) {
       if (std::find(result.begin(), result.end(), p.network) == result.end())
         result.push_back(p.network);
+    }
+  }
   return result;
 }
 

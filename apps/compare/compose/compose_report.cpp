@@ -105,8 +105,8 @@ Html bytes(const std::vector<ComparedScheme>& rows) {
 Html predictions(const ComposeComparison& comparison) {
   const std::vector<ComparedScheme>& rows = comparison.rows;
   std::vector<Html> charts;
-  for (const std::string& network : networks_of(rows))
-    for (const std::string& codec : codecs_of(rows))
+  for (const std::string& network : networks_of(rows)) {
+    for (const std::string& codec : codecs_of(rows)) {
       charts.push_back(chart_over_ranks(
           rows, codec, "Compositing over " + network, "time, ms", Source::predicted,
           [&](const ComparedScheme& row) -> std::optional<ChartPoint> {
@@ -115,9 +115,12 @@ Html predictions(const ComposeComparison& comparison) {
             const double ms = p->seconds * 1e3;
             return ChartPoint{static_cast<double>(row.ranks), ms, ms, ms};
           }));
-  if (charts.empty())
+    }
+  }
+  if (charts.empty()) {
     return paragraph(comparison.unfinished ? "Predictions had not begun."
                                            : "Nothing is predicted of these layers.");
+  }
   return in_columns(charts) + omissions(comparison.left_out) +
          paragraph(
              "Predicted: the schemes' own code runs on a simulated machine whose ranks "
@@ -163,7 +166,7 @@ std::vector<Html> byte_matrices(const ShownScheme& shown) {
   const int ranks = static_cast<int>(shown.ledger.ranks.size());
   std::map<std::pair<bool, int>, std::vector<double>> rounds;
   double most = 0;
-  for (int rank = 0; rank < ranks; ++rank)
+  for (int rank = 0; rank < ranks; ++rank) {
     for (const comm::Event& event : shown.ledger.ranks[static_cast<std::size_t>(rank)]) {
       if (event.kind != comm::Event::Kind::send || event.peer == rank) continue;
       const bool gather = event.phase == comm::Phase::gather;
@@ -174,6 +177,7 @@ std::vector<Html> byte_matrices(const ShownScheme& shown) {
       here += static_cast<double>(event.amount);
       most = std::max(most, here);
     }
+  }
   std::vector<Html> result;
   for (auto& [key, sent] : rounds) {
     Matrix m;

@@ -29,9 +29,10 @@ image::Image8 unpacked(const comm::Buffer& buffer, int width, int height) {
 // What the part does not own becomes transparent.
 void keep_owned(const std::vector<composite::PixelRange>& ranges, image::Image8& image) {
   std::vector<bool> owned(image.pixels());
-  for (const composite::PixelRange& range : ranges)
+  for (const composite::PixelRange& range : ranges) {
     std::fill(owned.begin() + static_cast<std::ptrdiff_t>(range.begin),
               owned.begin() + static_cast<std::ptrdiff_t>(range.end), true);
+  }
   for (std::size_t i = 0; i < owned.size(); ++i)
     if (!owned[i]) image.colour[i] = {};
 }
@@ -40,21 +41,23 @@ void keep_owned(const std::vector<composite::PixelRange>& ranges, image::Image8&
 
 image::Image8 reduced(const image::Image8& image, int side) {
   image::Image8 result((image.width + side - 1) / side, (image.height + side - 1) / side);
-  for (int y = 0; y < result.height; ++y)
+  for (int y = 0; y < result.height; ++y) {
     for (int x = 0; x < result.width; ++x) {
       std::array<unsigned, 4> sum{};
       unsigned count = 0;
-      for (int j = y * side; j < std::min((y + 1) * side, image.height); ++j)
+      for (int j = y * side; j < std::min((y + 1) * side, image.height); ++j) {
         for (int i = x * side; i < std::min((x + 1) * side, image.width); ++i, ++count) {
           const image::Rgba8& c = image.colour[static_cast<std::size_t>(j) * image.width + i];
           sum[0] += c.r, sum[1] += c.g, sum[2] += c.b, sum[3] += c.a;
         }
+      }
       const auto mean = [&](unsigned k) {
         return static_cast<std::uint8_t>((sum[k] + count / 2) / count);
       };
       result.colour[static_cast<std::size_t>(y) * result.width + x] = {mean(0), mean(1), mean(2),
                                                                        mean(3)};
     }
+  }
   return result;
 }
 

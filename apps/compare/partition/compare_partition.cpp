@@ -45,9 +45,10 @@ DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::stri
         static_cast<double>(rank.triangles), static_cast<double>(rank.shaded)));
   }
   result.work_imbalance = loadbalance::imbalance(result.work);
-  if (alone_work > 0)
+  if (alone_work > 0) {
     result.work_over_share = *std::max_element(result.work.begin(), result.work.end()) *
                              static_cast<double>(result.work.size()) / alone_work;
+  }
   result.bytes_next = bytes(frames.next.front().statistics);
   std::vector<double> busiest, imbalance;
   std::vector<std::vector<double>> by_rank(first.ranks.size());
@@ -112,21 +113,24 @@ class Comparison {
 
   std::vector<const loadbalance::Partitioner*> partitions() const {
     std::vector<const loadbalance::Partitioner*> result;
-    for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners())
+    for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
       if (request_.partitions.empty() ||
           std::find(request_.partitions.begin(), request_.partitions.end(), partitioner.name) !=
               request_.partitions.end())
         result.push_back(&partitioner);
+    }
     return result;
   }
 
   // Numbers of ranks and of regions for each.
   std::vector<std::pair<int, int>> variants() const {
     std::vector<std::pair<int, int>> result;
-    for (const int ranks : request_.ranks)
-      for (const int regions : request_.regions)
+    for (const int ranks : request_.ranks) {
+      for (const int regions : request_.regions) {
         if (regions == request_.regions.front() || ranks == shown_ranks(request_))
           result.emplace_back(ranks, regions);
+      }
+    }
     return result;
   }
   std::size_t measured_ranks() const {
@@ -165,10 +169,11 @@ class Comparison {
   }
 
   const loadbalance::Costs& costs(int regions) {
-    if (costs_of_ != regions)
+    if (costs_of_ != regions) {
       costs_ = parallel::Arena(parallel::arena_threads()).execute([&] {
         return renderer_.costs(regions, prepared_.camera, options_);
       });
+    }
     costs_of_ = regions;
     return costs_;
   }
@@ -205,9 +210,10 @@ class Comparison {
         row.predicted_imbalance = loadbalance::imbalance(cut->loads);
         row.predicted_over_share = cut->over_share;
       }
-      if (cut && ranks == shown_ranks(request_) && regions == request_.regions.front())
+      if (cut && ranks == shown_ranks(request_) && regions == request_.regions.front()) {
         result_.shown.push_back(
             {row.partition, cut->partition, cut->loads, row.drawn->work, row.drawn->busy});
+      }
     }
     result_.rows.push_back(std::move(row));
   }
@@ -280,9 +286,10 @@ PartitionChoice choose_partition(const std::vector<ComparedPartition>& rows, int
   std::stable_sort(drawn.begin(), drawn.end(), [](const auto* a, const auto* b) {
     return a->drawn->busiest.median < b->drawn->busiest.median;
   });
-  for (const ComparedPartition* row : drawn)
+  for (const ComparedPartition* row : drawn) {
     if (!takes_longer(row->drawn->busiest, drawn.front()->drawn->busiest))
       choice.quick.push_back(row);
+  }
   Rows both;
   std::copy_if(choice.even.begin(), choice.even.end(), std::back_inserter(both),
                [&](const ComparedPartition* row) {

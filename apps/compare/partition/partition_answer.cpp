@@ -53,12 +53,13 @@ std::string processor_time(const PartitionChoice& choice, const ComparedPartitio
   const ComparedPartition& quickest = *choice.quick.front();
   std::string text = fmt::format(" With {} the busiest rank takes {} of processor time for a frame",
                                  escaped(best.partition), measured_text(best.drawn->busiest));
-  if (!choice.agree)
+  if (!choice.agree) {
     return text + fmt::format(
                       ". That contradicts what is counted: with {} it takes {}. Try both: ranks "
                       "that take turns share a core's caches.",
                       strong(listed(names_of(choice.quick))),
                       measured_text(quickest.drawn->busiest));
+  }
   text += choice.quick.size() > 1
               ? fmt::format(", and with no partition measurably less by more than {:.0f} %.",
                             (kAsEven - 1) * 100)
@@ -66,9 +67,10 @@ std::string processor_time(const PartitionChoice& choice, const ComparedPartitio
   std::vector<std::string> slower;
   for (const ComparedPartition* row : choice.even)
     if (takes_longer(row->drawn->busiest, best.drawn->busiest)) slower.push_back(row->partition);
-  if (!slower.empty())
+  if (!slower.empty()) {
     text += fmt::format(" By what is counted {} {} as even, but the busiest rank takes longer.",
                         escaped(listed(slower)), slower.size() == 1 ? "is" : "are");
+  }
   return text;
 }
 
@@ -76,10 +78,11 @@ std::string processor_time(const PartitionChoice& choice, const ComparedPartitio
 std::string evener(const Rows& rows, const ComparedPartition& best) {
   if (!best.drawn) return "";
   const ComparedPartition* evenest = &best;
-  for (const ComparedPartition& row : rows)
+  for (const ComparedPartition& row : rows) {
     if (row.ranks == best.ranks && row.regions_per_rank == best.regions_per_rank && row.drawn &&
         row.drawn->imbalance.median < evenest->drawn->imbalance.median)
       evenest = &row;
+  }
   if (!differ(evenest->drawn->imbalance, best.drawn->imbalance)) return "";
   const Spread &own = best.drawn->busiest, &other = evenest->drawn->busiest;
   const char* worth = !takes_longer(own, other) && !takes_longer(other, own)
@@ -108,9 +111,10 @@ Spread finish_of(const PartitionComparison& comparison, const ComparedPartition&
 std::string anew(const PartitionComparison& comparison, const ComparedPartition& best) {
   if (!best.drawn) return "";
   Partitions drawn;
-  for (const ComparedPartition& row : comparison.rows)
+  for (const ComparedPartition& row : comparison.rows) {
     if (row.ranks == best.ranks && row.regions_per_rank == best.regions_per_rank && row.drawn)
       drawn.push_back(&row);
+  }
   const Partitions first = winners<ComparedPartition>(
       drawn, [&](const ComparedPartition& row) { return finish_of(comparison, row); });
   if (std::find(first.begin(), first.end(), &best) != first.end()) return "";
@@ -128,9 +132,10 @@ Html sentence(const PartitionComparison& comparison, int ranks) {
   const char* source = best.drawn ? "counted" : "predicted";
   Html text =
       fmt::format("<p>For {} ranks cut the screen by {}", best.ranks, strong(best.partition));
-  if (choice.best.size() > 1)
+  if (choice.best.size() > 1) {
     text += fmt::format(" (no difference to {})",
                         escaped(listed(names_of({choice.best.begin() + 1, choice.best.end()}))));
+  }
   text += fmt::format(
       ": the busiest rank does {:.3g} times an equal share of the work of one alone ({}), cutting "
       "takes {}, and a primitive goes to {:.3g} ranks on average (counted).",
@@ -138,10 +143,11 @@ Html sentence(const PartitionComparison& comparison, int ranks) {
   const ComparedPartition* evenest = &best;
   for (const ComparedPartition* row : choice.even)
     if (over_share(*row) < over_share(*evenest)) evenest = row;
-  if (evenest != &best)
+  if (evenest != &best) {
     text += fmt::format(" {} shares out more evenly, {:.3g} ({}), and is cut in {}.",
                         escaped(evenest->partition), over_share(*evenest), source,
                         measured_text(evenest->cut_seconds));
+  }
   text += processor_time(choice, best) + evener(comparison.rows, best) + anew(comparison, best) +
           "</p>\n";
   return text + fmt::format("<p>One rank alone takes {} for a frame. {}</p>\n",

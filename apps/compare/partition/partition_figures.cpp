@@ -11,12 +11,13 @@ namespace {
 
 Json frames_of(const DrawnFrames& drawn, int ranks) {
   Json result = Json::array();
-  for (const PredictedFrame& one : drawn.predicted)
+  for (const PredictedFrame& one : drawn.predicted) {
     result.push_back({{"network", one.network},
                       {"ranks", ranks},
                       {"seconds", one.seconds},
                       {"spread", spread_json(one.spread)},
                       {"first_seconds", one.first_seconds}});
+  }
   return result;
 }
 

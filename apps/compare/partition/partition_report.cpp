@@ -164,9 +164,10 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   bars.source = Source::counted;
   bars.mark = mean;
   const auto busiest = std::max_element(shown.work.begin(), shown.work.end());
-  for (std::size_t rank = 0; rank < shown.work.size(); ++rank)
+  for (std::size_t rank = 0; rank < shown.work.size(); ++rank) {
     bars.bars.push_back({fmt::format("rank {}", rank), shown.work[rank], told(rank),
                          shown.work.begin() + static_cast<std::ptrdiff_t>(rank) == busiest});
+  }
   return "<div>" + overlay(drawn, kPicture) + bar_chart(bars) + "</div>";
 }
 

@@ -106,11 +106,12 @@ class Comparison {
 
   std::vector<const loadbalance::Schedule*> schedules() const {
     std::vector<const loadbalance::Schedule*> result;
-    for (const loadbalance::Schedule& schedule : loadbalance::schedules())
+    for (const loadbalance::Schedule& schedule : loadbalance::schedules()) {
       if (request_.schedules.empty() ||
           std::find(request_.schedules.begin(), request_.schedules.end(), schedule.name) !=
               request_.schedules.end())
         result.push_back(&schedule);
+    }
     return result;
   }
 

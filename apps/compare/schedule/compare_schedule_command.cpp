@@ -26,9 +26,10 @@ int run(Session& session, const CLI::App& command, ScheduleRequest request) {
   if (request.list) return list();
   if (session.under_mpi)
     throw UsageError("compare schedule: its ranks are simulated in one process; leave out mpirun");
-  if (request.tile % raytrace::kTaskSide != 0)
+  if (request.tile % raytrace::kTaskSide != 0) {
     throw UsageError("--tile: " + std::to_string(request.tile) + " is no multiple of " +
                      std::to_string(raytrace::kTaskSide));
+  }
   request.render.engine = Engine::raytrace;
   return run_scene_comparison(
       session, command, request, [&](const Prepared& prepared, parallel::Progress& progress) {

@@ -24,7 +24,7 @@ Json row_of(const ComparedSchedule& row) {
   one["seconds"] = {{"frame", row.traced ? Json(row.traced->seconds.median) : Json(nullptr)}};
   one["spread"] = {{"frame", row.traced ? spread_json(row.traced->seconds) : Json(nullptr)}};
   one["predicted"] = Json::array();
-  for (const ScheduleOver& over : row.over)
+  for (const ScheduleOver& over : row.over) {
     one["predicted"].push_back({{"network", over.network},
                                 {"ranks", row.ranks},
                                 {"seconds", over.seconds},
@@ -35,6 +35,7 @@ Json row_of(const ComparedSchedule& row) {
                                 {"requests", over.requests},
                                 {"steals", over.steals},
                                 {"messages", over.messages}});
+  }
   one["image_hash"] = row.traced ? Json(row.traced->hash) : Json(nullptr);
   return one;
 }

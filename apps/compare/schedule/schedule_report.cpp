@@ -102,10 +102,11 @@ Html advice(const ScheduleRequest& request, const ScheduleComparison& comparison
     return std::find(winners.begin(), winners.end(), &row) != winners.end();
   };
   const ComparedSchedule* next = nullptr;
-  for (const ComparedSchedule& row : comparison.rows)
+  for (const ComparedSchedule& row : comparison.rows) {
     if (!is_winner(row) && row.ranks == ranks &&
         (next == nullptr || row.over.front().seconds < next->over.front().seconds))
       next = &row;
+  }
   const auto more = [&](const ComparedSchedule& row) {
     return (row.over.front().seconds / over.seconds - 1) * 100;
   };
@@ -244,7 +245,7 @@ Html traced_here(const ScheduleComparison& comparison) {
 Html times(const ScheduleComparison& comparison) {
   std::vector<Html> charts;
   const std::vector<ScheduleOver>& over = comparison.rows.front().over;
-  for (std::size_t i = 0; i < over.size(); ++i)
+  for (std::size_t i = 0; i < over.size(); ++i) {
     charts.push_back(chart_by_ranks(comparison,
                                     "Until the last tile is done, over " + over[i].network,
                                     "time, ms", Source::predicted, Scale::logarithmic,
@@ -253,6 +254,7 @@ Html times(const ScheduleComparison& comparison) {
                                       return ChartPoint{static_cast<double>(row.ranks),
                                                         s.median * 1e3, s.low * 1e3, s.high * 1e3};
                                     }));
+  }
   return in_columns(charts) + traced_here(comparison);
 }
 
@@ -289,10 +291,11 @@ Html tile_owners(const ScheduleRequest& request, const ScheduleComparison& compa
   for (const ShownSchedule& shown : comparison.shown) {
     Overlay map{shown.name, Source::counted, request.render.width, request.render.height,
                 {},         Shading::group};
-    for (std::size_t i = 0; i < comparison.tiles.size(); ++i)
+    for (std::size_t i = 0; i < comparison.tiles.size(); ++i) {
       map.areas.push_back(
           {comparison.tiles[i].pixels, shown.owners[i], 1,
            fmt::format("rank {}, {} rays", shown.owners[i], comparison.tiles[i].rays)});
+    }
     maps.push_back(overlay(map, kFrame));
   }
   return beside(maps);

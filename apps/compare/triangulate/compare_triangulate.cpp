@@ -237,20 +237,22 @@ std::string name_of(const delaunay::Options& how) {
 }
 
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row) {
-  for (const ComparedTriangulation& other : rows)
+  for (const ComparedTriangulation& other : rows) {
     // Alone it makes no difference which points are whose.
     if (other.points == row.points && other.how.threads == 1 &&
         other.how.method == row.how.method && other.how.location == row.how.location)
       return row.seconds.median > 0 ? other.seconds.median / row.seconds.median : 0;
+  }
   return 0;
 }
 
 std::vector<const ComparedTriangulation*> fastest(const std::vector<ComparedTriangulation>& rows,
                                                   std::size_t points, int threads) {
   std::vector<const ComparedTriangulation*> wanted;
-  for (const ComparedTriangulation& row : rows)
+  for (const ComparedTriangulation& row : rows) {
     if (row.points == points && (threads == 0 || row.how.threads == threads))
       wanted.push_back(&row);
+  }
   return winners<ComparedTriangulation>(
       wanted, [](const ComparedTriangulation& row) { return row.seconds; });
 }

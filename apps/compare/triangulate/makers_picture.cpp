@@ -68,11 +68,11 @@ class Canvas {
   image::Image8 picture(std::span<const std::uint16_t> makers) const {
     const bool draws_edges = edges() < kMostEdges * static_cast<double>(shown_.size());
     image::Image8 result(width_ / kSamples, height_ / kSamples);
-    for (int y = 0; y < result.height; ++y)
+    for (int y = 0; y < result.height; ++y) {
       for (int x = 0; x < result.width; ++x) {
         std::array<float, 3> light{};
         int covered = 0;
-        for (int j = 0; j < kSamples; ++j)
+        for (int j = 0; j < kSamples; ++j) {
           for (int i = 0; i < kSamples; ++i) {
             const std::uint32_t number = at(kSamples * x + i, kSamples * y + j);
             if (number == kNobody) continue;
@@ -82,6 +82,7 @@ class Canvas {
             for (std::size_t k = 0; k < 3; ++k)
               light[k] += image::decode_srgb(colour[k]) * (edge ? kEdge : 1.0F);
           }
+        }
         constexpr float kAll = kSamples * kSamples;
         const auto encoded = [&](std::size_t k) { return image::encode_srgb(light[k] / kAll); };
         result.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(result.width) +
@@ -89,6 +90,7 @@ class Canvas {
             encoded(0), encoded(1), encoded(2),
             static_cast<std::uint8_t>(std::lround(255.0F * static_cast<float>(covered) / kAll))};
       }
+    }
     return result;
   }
 
@@ -124,11 +126,12 @@ struct Cut {
 Cut cut(const std::array<glm::dvec3, 4>& corners, const std::array<double, 4>& heights) {
   std::array<std::size_t, 4> above{}, below{};
   std::size_t n_above = 0, n_below = 0;
-  for (std::size_t k = 0; k < 4; ++k)
+  for (std::size_t k = 0; k < 4; ++k) {
     if (heights[k] > 0)
       above[n_above++] = k;
     else
       below[n_below++] = k;
+  }
   Cut result;
   const auto add = [&](std::size_t i, std::size_t j) {
     const double t = heights[i] / (heights[i] - heights[j]);

@@ -35,12 +35,13 @@ std::string others_sentence(const Rows& rows, const Winners& best) {
   if (!equals.empty())
     text += fmt::format(" There is no difference to {}.", escaped(listed(equals)));
   const Row* next = nullptr;
-  for (const Row& row : rows)
+  for (const Row& row : rows) {
     if (row.points == first.points &&
         std::ranges::none_of(best,
                              [&](const Row* one) { return one->how.method == row.how.method; }) &&
         (next == nullptr || row.seconds.median < next->seconds.median))
       next = &row;
+  }
   if (next == nullptr) return text;
   const double times = next->seconds.median / first.seconds.median;
   return text + fmt::format(" {}, the next method, takes {}{}.", escaped(way_text(*next)),
@@ -66,16 +67,18 @@ std::string reason(const Rows& rows, const Row& best) {
   std::vector<std::string> reasons;
   const std::uint64_t own_locks = best.statistics.synchronization.lock_calls;
   const std::uint64_t most_locks = locks->statistics.synchronization.lock_calls;
-  if (own_locks > 0)
+  if (own_locks > 0) {
     reasons.push_back(
         fmt::format("asks for locks {:.3g} times a point", per_point(own_locks, best)));
-  else if (most_locks > 0)
+  } else if (most_locks > 0) {
     reasons.push_back(fmt::format("takes no locks, which {} asks for {:.3g} times a point",
                                   locks->how.method, per_point(most_locks, *locks)));
-  if (best.statistics.dag_nodes == 0 && history->statistics.dag_nodes > 0)
+  }
+  if (best.statistics.dag_nodes == 0 && history->statistics.dag_nodes > 0) {
     reasons.push_back(fmt::format("keeps no history, of which {} has {:.3g} nodes a point",
                                   history->how.method,
                                   per_point(history->statistics.dag_nodes, *history)));
+  }
   if (reasons.empty()) return "";
   return fmt::format("It {} (counted).", fmt::join(reasons, ", and "));
 }
@@ -86,11 +89,12 @@ std::string scaling(const TriangulateComparison& comparison, const Row& best) {
   if (base == nullptr) return "";
   if (best.how.threads == 1) {
     const Row* more = nullptr;
-    for (const Row& row : comparison.rows)
+    for (const Row& row : comparison.rows) {
       if (row.points == best.points && row.how.method == best.how.method && row.how.threads > 1 &&
           row.how.threads <= comparison.cores &&
           (more == nullptr || row.seconds.median < more->seconds.median))
         more = &row;
+    }
     if (more == nullptr) return "";
     return fmt::format(" {}: {} with {}.",
                        differ(more->seconds, best.seconds) ? "More threads did not help"
@@ -106,15 +110,17 @@ std::string scaling(const TriangulateComparison& comparison, const Row& best) {
 std::string agreement(const TriangulateComparison& comparison, const Row& best) {
   const Rows same = rows_of(comparison.rows, [&](const Row& r) { return r.points == best.points; });
   const bool agree = std::ranges::all_of(same, [&](const Row& r) { return r.hash == best.hash; });
-  if (!agree)
+  if (!agree) {
     return "<strong>The ways to triangulate did not give the same simplices: that is a defect, "
            "please tell us.</strong>";
+  }
   const char* what = simplices_text(comparison.dim);
-  if (best.simplices == 0)
+  if (best.simplices == 0) {
     return fmt::format(
         "The points are too few or lie on a {}: there are no {}, and {} ways to triangulate find "
         "that out (counted). Their times tell nothing of points that are not so.",
         comparison.dim == 2 ? "line" : "plane", what, same.size());
+  }
   return fmt::format("All {} ways to triangulate gave the same {} {} (counted; hash {}).",
                      same.size(), best.simplices, what, best.hash);
 }

@@ -149,7 +149,7 @@ Html speed_ups(const TriangulateComparison& comparison) {
   }
   const auto sequential = std::ranges::find_if(
       all, [&](const Row& row) { return row.points == points && name_of(row.how) == kSequential; });
-  if (sequential != all.end())
+  if (sequential != all.end()) {
     charts.push_back(
         over_threads(rows_of(all, [&](const Row& row) { return row.points == points; }),
                      {"Times as fast as the report's sequential algorithm, which is " +
@@ -158,6 +158,7 @@ Html speed_ups(const TriangulateComparison& comparison) {
                      [&](const Row& row) {
                        return ratio_at(row.how.threads, sequential->seconds, row.seconds, 1);
                      }));
+  }
   std::erase(charts, Html());
   if (charts.empty()) return paragraph("One number of threads tells nothing about speed-up.");
   return in_columns(charts) + paragraph(
@@ -189,18 +190,20 @@ Html phases(const TriangulateComparison& comparison) {
   for (const int threads : counts) {
     StackedBars chart = phase_bars(
         fmt::format("Shares of the phases, {}, {} points", threads_text(threads), points));
-    for (const Row& row : rows)
+    for (const Row& row : rows) {
       if (row.points == points && row.how.threads == threads)
         chart.bars.push_back(phases_of(name_of(row.how), row));
+    }
     if (!chart.bars.empty()) result.push_back(stacked_bars(chart));
   }
   for (const std::string& name :
        unique_of(rows, [](const Row& row) { return is_alone(row) ? name_of(row.how) : ""; })) {
     if (name.empty()) continue;
     StackedBars chart = phase_bars("Shares of the phases against points, " + name);
-    for (const Row& row : rows)
+    for (const Row& row : rows) {
       if (name_of(row.how) == name)
         chart.bars.push_back(phases_of(fmt::format("{} points", row.points), row));
+    }
     result.push_back(stacked_bars(chart));
   }
   return in_columns(result) +
@@ -248,9 +251,10 @@ Html locks(const TriangulateComparison& comparison) {
     const delaunay::Synchronization& s = row.statistics.synchronization;
     std::vector<std::string> line = {std::to_string(row.points), name_of(row.how),
                                      std::to_string(row.how.threads)};
-    for (const std::uint64_t count : {s.lock_calls, s.already_locked, s.free, s.waits})
+    for (const std::uint64_t count : {s.lock_calls, s.already_locked, s.free, s.waits}) {
       line.push_back(
           fmt::format("{:.4g}", static_cast<double>(count) / static_cast<double>(row.points)));
+    }
     for (const std::uint64_t count :
          {s.deadlocks, s.rollbacks, s.burglaries, s.repaired, s.rebuilds})
       line.push_back(std::to_string(count));
@@ -278,14 +282,16 @@ Html fragments(const TriangulateComparison& comparison) {
         simplices_text(comparison.dim), threads_text(threads),
         comparison.dim == 3 ? ", where a plane through the middle cuts them" : ""));
     result += "<div class=\"legend\">";
-    for (int thread = 0; thread < threads; ++thread)
+    for (int thread = 0; thread < threads; ++thread) {
       result += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>thread {}</span>",
                             thread % 8, thread);
+    }
     result += "</div>\n";
     std::vector<Html> pictures;
-    for (const PictureOfMakers& one : comparison.pictures)
+    for (const PictureOfMakers& one : comparison.pictures) {
       pictures.push_back(picture(one.picture, fmt::format("{}, {} points: {} fragments (counted)",
                                                           one.name, one.points, one.fragments)));
+    }
     result += beside(pictures);
   }
   const Html chart = over_points(

@@ -37,12 +37,14 @@ TEST(Extent, ContainsEveryPixel) {
     std::vector<int> pixels(150 * 90);
     for (const ScreenTriangle& triangle : set_up.triangles)
       if (prepared.list.triangle_of(triangle.number) == t) count(screen, triangle, pixels);
-    for (int y = 0; y < 90; ++y)
-      for (int x = 0; x < 150; ++x)
+    for (int y = 0; y < 90; ++y) {
+      for (int x = 0; x < 150; ++x) {
         if (pixels[y * 150 + x] != 0) {
           ASSERT_TRUE(e.box.contains(x, y));
           ++with_pixels;
         }
+      }
+    }
   }
   EXPECT_GT(with_pixels, 1000U);
 }

@@ -22,7 +22,7 @@ std::vector<Surfaces> random_surfaces(std::mt19937& random, const geometry::Rect
   std::uint64_t primitive = 1;
   for (Surfaces& seen : ranks) {
     primitive += std::uint64_t{random() % 3} << 32;
-    for (int y = rect.y0; y < rect.y1; ++y)
+    for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
         const std::uint64_t depths = opaque ? random() % 2 : random() % 4;
         float depth = -1;
@@ -38,6 +38,7 @@ std::vector<Surfaces> random_surfaces(std::mt19937& random, const geometry::Rect
                                     static_cast<std::uint32_t>(primitive >> 32)});
         }
       }
+    }
   }
   return ranks;
 }
@@ -81,15 +82,16 @@ TEST(TileFragments, AreBlendedByDepthAndPrimitiveWhoeverSawThem) {
     const bool opaque = seed % 2 == 0;
     const std::vector<Surfaces> ranks = random_surfaces(random, rect, opaque);
     std::map<int, std::vector<composite::Fragment>> at;
-    for (const Surfaces& seen : ranks)
+    for (const Surfaces& seen : ranks) {
       for (std::size_t i = 0; i < seen.positions.size(); ++i)
         at[seen.positions[i]].push_back(seen.fragments[i]);
+    }
     auto spans = spans_of(ranks);
     std::shuffle(spans.begin(), spans.end(), random);
     image::ImageF blended(128, 64), nearest(128, 64);
     blend_surfaces<image::RgbaF>(spans, rect, window_of(blended));
     if (opaque) keep_nearest<image::RgbaF>(spans, rect, window_of(nearest));
-    for (int y = rect.y0; y < rect.y1; ++y)
+    for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
         std::vector<composite::Fragment> fragments = at[y * kTileSize + x % kTileSize];
         std::sort(fragments.begin(), fragments.end(), composite::in_front<image::RgbaF>);
@@ -105,6 +107,7 @@ TEST(TileFragments, AreBlendedByDepthAndPrimitiveWhoeverSawThem) {
         EXPECT_EQ(nearest.colour[i], blended.colour[i]);
         EXPECT_EQ(nearest.depth[i], depth);
       }
+    }
   }
 }
 

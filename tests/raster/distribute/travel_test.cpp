@@ -31,7 +31,7 @@ TEST(Travel, GeometryArrivesAsItLeft) {
     EXPECT_EQ(piece.count, sent[k].count);
     EXPECT_EQ(*piece.transform, *sent[k].transform);
     EXPECT_EQ(piece.mesh->material, sent[k].mesh->material);
-    for (std::uint32_t t = 0; t < piece.count; ++t)
+    for (std::uint32_t t = 0; t < piece.count; ++t) {
       for (int c = 0; c < 3; ++c) {
         const std::uint32_t from = sent[k].mesh->triangles[sent[k].first + t][c];
         const std::uint32_t to = piece.mesh->triangles[piece.first + t][c];
@@ -42,6 +42,7 @@ TEST(Travel, GeometryArrivesAsItLeft) {
         expect_same(sent[k].mesh->tangents, piece.mesh->tangents, from, to);
         expect_same(sent[k].mesh->colours, piece.mesh->colours, from, to);
       }
+    }
   }
 }
 

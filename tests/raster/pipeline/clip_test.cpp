@@ -32,9 +32,10 @@ float random_coordinate(std::mt19937& random) {
 
 std::vector<std::array<double, 3>> corners_of(const ScreenPolygon& polygon) {
   std::vector<std::array<double, 3>> corners;
-  for (int i = 0; i < polygon.size; ++i)
+  for (int i = 0; i < polygon.size; ++i) {
     corners.push_back({static_cast<double>(polygon.vertex[i].x),
                        static_cast<double>(polygon.vertex[i].y), double{polygon.vertex[i].depth}});
+  }
   std::sort(corners.begin(), corners.end());
   return corners;
 }
@@ -80,12 +81,13 @@ TEST(Clip, KeepsWhatIsInFrontOfTheNearPlane) {
 
 TEST(Clip, DropsWhatIsNotFinite) {
   const Screen screen = make_screen(plain_view(100, 100));
-  for (const float bad : {std::numeric_limits<float>::infinity(), std::nanf("")})
+  for (const float bad : {std::numeric_limits<float>::infinity(), std::nanf("")}) {
     for (int k = 0; k < 3; ++k) {
       Corners view{glm::vec3(0, 0, 1), {1, 0, 1}, {0, 1, 1}};
       view[1][k] = bad;
       EXPECT_EQ(clipped(screen, view).size, 0);
     }
+  }
 }
 
 }  // namespace

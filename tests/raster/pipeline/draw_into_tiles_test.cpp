@@ -20,18 +20,21 @@ const parallel::AllowThreads kThreads(12);
 scenes::Mesh wall(std::mt19937& random, std::uint32_t n, float width, float roughness) {
   std::uniform_real_distribution<float> both(-1, 1);
   scenes::Mesh mesh;
-  for (std::uint32_t j = 0; j <= n; ++j)
-    for (std::uint32_t i = 0; i <= n; ++i)
+  for (std::uint32_t j = 0; j <= n; ++j) {
+    for (std::uint32_t i = 0; i <= n; ++i) {
       mesh.positions.emplace_back(
           width * (2.0F * static_cast<float>(i) / static_cast<float>(n) - 1),
           width * (2.0F * static_cast<float>(j) / static_cast<float>(n) - 1),
           -2 + roughness * both(random));
-  for (std::uint32_t j = 0; j < n; ++j)
+    }
+  }
+  for (std::uint32_t j = 0; j < n; ++j) {
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t v = j * (n + 1) + i;
       mesh.triangles.emplace_back(v, v + 1, v + n + 2);
       mesh.triangles.emplace_back(v, v + n + 2, v + n + 1);
     }
+  }
   return mesh;
 }
 
@@ -114,11 +117,14 @@ std::vector<std::int64_t> drawn(const Screen& screen, const scenes::Scene& scene
   });
   for (const TileJob& job : jobs.jobs) {
     const geometry::Rect tile = screen.tile(job.tile);
-    for (const geometry::Rect& r : jobs.rects_of(job))
-      for (int y = r.y0; y < r.y1; ++y)
-        for (int x = r.x0; x < r.x1; ++x)
+    for (const geometry::Rect& r : jobs.rects_of(job)) {
+      for (int y = r.y0; y < r.y1; ++y) {
+        for (int x = r.x0; x < r.x1; ++x) {
           keys[y * screen.width + x] =
               tiles.open(job.tile).key[(y - tile.y0) * kTileSize + x - tile.x0];
+        }
+      }
+    }
   }
   return keys;
 }
@@ -140,7 +146,7 @@ std::vector<std::int64_t> expected_keys(const Screen& screen, const scenes::Scen
     transform(draw.to_view, screen, draw.draw->mesh->positions,
               block.vertices_of(block.clusters[cluster.part]), vertices);
     const auto draw_one = [&](const ScreenTriangle& triangle, const geometry::Rect& pixels) {
-      for (int y = pixels.y0; y < pixels.y1; ++y)
+      for (int y = pixels.y0; y < pixels.y1; ++y) {
         for (int x = pixels.x0; x < pixels.x1; ++x) {
           const int tile_x = x / kTileSize * kTileSize, tile_y = y / kTileSize * kTileSize;
           TileTriangle t;
@@ -150,10 +156,12 @@ std::vector<std::int64_t> expected_keys(const Screen& screen, const scenes::Scen
           std::int64_t& key = keys[y * screen.width + x];
           key = std::min(key, key_of(depth_at(t, x - tile_x, y - tile_y), triangle.number));
         }
+      }
     };
-    for (std::uint32_t place = cluster.begin; place < cluster.end; ++place)
+    for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
       set_up(screen, draw, vertices, corners_at(block, block.clusters[cluster.part], place),
              cluster.first + place, k << kClusterBits | place, draw_one);
+    }
   }
   return keys;
 }
@@ -164,12 +172,13 @@ TEST(DrawIntoTiles, OrderIsNearDrawsFirstAndOfADrawWhatFacesTheEye) {
   const Screen screen = make_screen(plain_view(301, 205));
   scenes::Mesh ball;
   constexpr std::uint32_t kRound = 64, kPatch = 8;
-  for (std::uint32_t j = 0; j <= kRound; ++j)
+  for (std::uint32_t j = 0; j <= kRound; ++j) {
     for (std::uint32_t i = 0; i < kRound; ++i) {
       const double a = 6.283185307 * i / kRound, b = 3.141592654 * j / kRound;
       ball.positions.emplace_back(std::cos(a) * std::sin(b), std::cos(b),
                                   -std::sin(a) * std::sin(b));
     }
+  }
   for (std::uint32_t k = 0; k < kRound * kRound; ++k) {  // patch by patch
     const std::uint32_t patch = k / (kPatch * kPatch), place = k % (kPatch * kPatch);
     const std::uint32_t i = patch % (kRound / kPatch) * kPatch + place % kPatch;
@@ -236,7 +245,7 @@ TEST(DrawIntoTiles, GivesWhatTrianglesOneByOneGive) {
     const scenes::Scene scene = walls(seed);
     for (const bool cull : {false, true}) {
       const std::vector<std::int64_t> expected = expected_keys(screen, scene, cull);
-      for (const bool skip_hidden : {false, true})
+      for (const bool skip_hidden : {false, true}) {
         for (const int threads : {1, 3}) {
           TriangleCounts counts;
           EXPECT_EQ(drawn(screen, scene, {&frame, 1}, {cull, skip_hidden, threads}, counts),
@@ -248,6 +257,7 @@ TEST(DrawIntoTiles, GivesWhatTrianglesOneByOneGive) {
           EXPECT_EQ(counts.hidden > 0, skip_hidden);
           EXPECT_EQ(counts.clipped, 2U);
         }
+      }
     }
   }
 }
@@ -268,11 +278,13 @@ TEST(DrawIntoTiles, RegionsShowTheirPartOfTheFrame) {
   const geometry::Rect regions[] = {{10, 20, 70, 30}, {100, 3, 101, 180}, {64, 190, 301, 205}};
   const scenes::Scene scene = walls(3);
   std::vector<std::int64_t> expected = expected_keys(screen, scene, false);
-  for (int y = 0; y < screen.height; ++y)
-    for (int x = 0; x < screen.width; ++x)
+  for (int y = 0; y < screen.height; ++y) {
+    for (int x = 0; x < screen.width; ++x) {
       if (std::none_of(std::begin(regions), std::end(regions),
                        [&](const geometry::Rect& r) { return r.contains(x, y); }))
         expected[y * screen.width + x] = 0;
+    }
+  }
   for (const bool skip_hidden : {false, true}) {
     TriangleCounts counts;
     EXPECT_EQ(drawn(screen, scene, regions, {false, skip_hidden, 2}, counts), expected);

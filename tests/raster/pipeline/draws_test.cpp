@@ -49,12 +49,13 @@ TEST(Draws, NumbersAscendAsPrimitivesDoAndLeadBackToThem) {
     std::vector<std::pair<const scenes::Mesh*, std::uint32_t>> expected;
     for (std::uint64_t at = 0; at < first.back();) {
       const std::uint64_t end = std::min(at + 1 + random() % 900, first.back());
-      if (random() % 3 != 0)
+      if (random() % 3 != 0) {
         for (const Piece& piece : pieces_of(scene, first, at, end)) {
           pieces.push_back(piece);
           for (std::uint32_t i = 0; i < piece.count; ++i)
             expected.emplace_back(piece.mesh, piece.first + i);
         }
+      }
       at = end;
     }
     std::shuffle(pieces.begin(), pieces.end(), random);

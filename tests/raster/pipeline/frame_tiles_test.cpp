@@ -63,14 +63,16 @@ TEST(FrameTiles, TellHowFarBlocksAroundAreAtMost) {
     ASSERT_EQ(around->may_hide, any_nearer);
     if (!any_nearer) continue;
     ++hiding;
-    for (int y = by0; y <= by1; ++y)
+    for (int y = by0; y <= by1; ++y) {
       for (int x = bx0; x <= bx1; ++x) {
         std::int32_t expected = 0;
-        for (int j = y; j <= std::min(y + 1, by1); ++j)
+        for (int j = y; j <= std::min(y + 1, by1); ++j) {
           for (int i = x; i <= std::min(x + 1, bx1); ++i)
             expected = std::max(expected, blocks.farthest(i, j));
+        }
         ASSERT_EQ(around->farthest[(y - around->y0) * around->width + x - around->x0], expected);
       }
+    }
   }
   EXPECT_GT(hiding, 50);
 }
@@ -80,9 +82,10 @@ TEST(FrameTiles, DoNotLookAroundFar) {
   FrameTiles tiles;
   const geometry::Rect all = screen.frame();
   tiles.begin(screen, make_tile_jobs(screen, {&all, 1}));
-  for (int tile = 0; tile < screen.tiles(); ++tile)
+  for (int tile = 0; tile < screen.tiles(); ++tile) {
     for (int block = 0; block < VisibilityTile::kBlocks; ++block)
       tiles.open(tile).set_farthest(block, 1);
+  }
   const auto around = std::make_unique<DepthsAround>();
   tiles.look_around({0, 0, 200, 100}, -0.5F, *around);
   EXPECT_TRUE(around->may_hide);

@@ -43,12 +43,13 @@ void expect_clusters(const scenes::Mesh& mesh, const MeshClusters& clusters) {
 }
 
 TEST(MeshClusters, CoverTheMeshInOrder) {
-  for (const char* name : {"gen:terrain:150000", "gen:field:30000", "gen:city:3000"})
+  for (const char* name : {"gen:terrain:150000", "gen:field:30000", "gen:city:3000"}) {
     for (const scenes::Mesh& mesh : scenes::generate(name).meshes) {
       MeshClusters clusters;
       clusters.make(mesh, 0, static_cast<std::uint32_t>(mesh.triangles.size()));
       expect_clusters(mesh, clusters);
     }
+  }
 }
 
 TEST(MeshClusters, MostTrianglesOfASmoothMeshAreInClustersWithCones) {

@@ -21,10 +21,11 @@ ScreenTriangle random_triangle(std::mt19937& random, int reach, int step) {
   std::uniform_real_distribution<float> depth(-1.0F, -0.001F);
   ScreenTriangle t;
   do {
-    for (ScreenVertex& v : t.vertex)
+    for (ScreenVertex& v : t.vertex) {
       v = {std::clamp(place(random) * step + kHalfPixel, -kGuardSubpixels, kGuardSubpixels),
            std::clamp(place(random) * step + kHalfPixel, -kGuardSubpixels, kGuardSubpixels),
            depth(random)};
+    }
   } while (doubled_area(t.vertex[0], t.vertex[1], t.vertex[2]) == 0);
   if (doubled_area(t.vertex[0], t.vertex[1], t.vertex[2]) < 0) std::swap(t.vertex[1], t.vertex[2]);
   return t;
@@ -38,12 +39,13 @@ void expect_exact_coverage(int reach, int step, int rounds, unsigned seed) {
     const ScreenTriangle t = random_triangle(random, reach, step);
     std::vector<int> pixels(kWidth * kHeight);
     count(screen, t, pixels);
-    for (int y = 0; y < kHeight; ++y)
+    for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         ASSERT_EQ(pixels[y * kWidth + x], covered_by_definition(t, screen, x, y))
             << "seed " << seed << " round " << round << " pixel " << x << ", " << y;
         covered += pixels[y * kWidth + x];
       }
+    }
   }
   EXPECT_GT(covered, 0);
 }
@@ -90,12 +92,13 @@ Pixels drawn(const Screen& screen, std::span<const ScreenTriangle> triangles,
     rasterize(screen, rect, triangles, entries, tile);
     rasterize_masked(
         screen, rect, triangles, entries, [](std::uint32_t, int, int) { return true; }, tile);
-    for (int y = rect.y0; y < rect.y1; ++y)
+    for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
         const int i = (y - rect.y0) * kTileSize + x - rect.x0;
         pixels.depth[y * screen.width + x] = depth_of(tile.key[i]);
         pixels.number[y * screen.width + x] = number_of(tile.key[i]);
       }
+    }
   }
   return pixels;
 }
@@ -131,8 +134,8 @@ TEST(Visibility, LeavesTheLeastDepthAndNumberInAnyOrderOnEveryTarget) {
 
   Pixels expected{std::vector<float>(kWidth * kHeight, image::kEmptyDepth),
                   std::vector<std::uint32_t>(kWidth * kHeight, kNothing)};
-  for (const ScreenTriangle& t : triangles)
-    for (int y = 0; y < kHeight; ++y)
+  for (const ScreenTriangle& t : triangles) {
+    for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         if (!covered_by_definition(t, screen, x, y)) continue;
         TileTriangle plane;
@@ -144,6 +147,8 @@ TEST(Visibility, LeavesTheLeastDepthAndNumberInAnyOrderOnEveryTarget) {
           expected.number[y * kWidth + x] = t.number;
         }
       }
+    }
+  }
   tests::for_each_target([&] {
     for (int round = 0; round < 4; ++round) {
       EXPECT_EQ(drawn(screen, triangles, entries), expected) << "round " << round;
@@ -168,9 +173,10 @@ TEST(Visibility, MaskedPixelsAreLeftOut) {
   rasterize_masked(
       screen, screen.frame(), {&t, 1}, {&entry, 1},
       [](std::uint32_t number, int x, int y) { return number == 3 && x > y; }, tile);
-  for (int y = 0; y < 64; ++y)
+  for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x)
       ASSERT_EQ(number_of(tile.key[y * kTileSize + x]), x > y ? 3U : kNothing) << x << ", " << y;
+  }
 }
 
 TEST(Visibility, DepthIsLinearOnTheScreenAndWithinTheTriangle) {
@@ -185,7 +191,7 @@ TEST(Visibility, DepthIsLinearOnTheScreenAndWithinTheTriangle) {
       const geometry::Rect rect = screen.tile(k);
       TileTriangle plane;
       if (!make_tile_triangle(t, screen, rect.x0, rect.y0, plane)) continue;
-      for (int y = rect.y0; y < rect.y1; ++y)
+      for (int y = rect.y0; y < rect.y1; ++y) {
         for (int x = rect.x0; x < rect.x1; ++x) {
           if (!covers(plane, x - rect.x0, y - rect.y0)) continue;
           ++pixels;
@@ -203,6 +209,7 @@ TEST(Visibility, DepthIsLinearOnTheScreenAndWithinTheTriangle) {
           EXPECT_GE(depth, plane.nearest);
           EXPECT_LE(depth, plane.farthest);
         }
+      }
     }
   }
   EXPECT_GT(pixels, 10000);

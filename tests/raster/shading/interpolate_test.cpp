@@ -57,7 +57,7 @@ TEST(Interpolate, DerivativesMatchDifferences) {
   const glm::vec2 uv[3] = {{0, 0}, {1, 0}, {0, 1}};
   const Barycentrics t = make_barycentrics(screen, v);
   const auto uv_at = [&](int x, int y) { return interpolate(weights_at(t, x, y), uv); };
-  for (int y = 90; y < 110; y += 5)
+  for (int y = 90; y < 110; y += 5) {
     for (int x = 150; x < 170; x += 5) {
       const Weights w = weights_at(t, x, y);
       const glm::vec2 dx = derivative(w, t.a, uv, uv_at(x, y));
@@ -69,6 +69,7 @@ TEST(Interpolate, DerivativesMatchDifferences) {
         EXPECT_NEAR(dy[k], difference_y[k], 2e-5F);
       }
     }
+  }
 }
 
 TEST(Interpolate, ScreenPlanesHoldEveryPixelThatIsCovered) {
@@ -131,7 +132,7 @@ TEST(Interpolate, DegenerateTrianglesGiveFiniteWeights) {
       {glm::vec3(1e-40F, 0, 1e-40F), glm::vec3(0, 1e-40F, 1e-40F), glm::vec3(0, 0, 1e-40F)}};
   for (const auto& v : cases) {
     const Barycentrics t = make_barycentrics(screen, v);
-    for (const int x : {0, 160, 319})
+    for (const int x : {0, 160, 319}) {
       for (const int y : {0, 100, 199}) {
         const Weights w = weights_at(t, x, y);
         float sum = 0;
@@ -142,6 +143,7 @@ TEST(Interpolate, DegenerateTrianglesGiveFiniteWeights) {
         }
         EXPECT_NEAR(sum, 1.0F, 1e-5F);
       }
+    }
   }
 }
 

@@ -18,9 +18,10 @@ TEST(ShadePhong, MixesKindsOfMaterials) {
     scenes::Scene scene = random_scene(seed);
     scenes::Texture texture;
     texture.width = texture.height = 4;
-    for (std::size_t i = 0; i < 16; ++i)
+    for (std::size_t i = 0; i < 16; ++i) {
       texture.texels.push_back(
           {static_cast<std::uint8_t>(16 * i), static_cast<std::uint8_t>(255 - 9 * i), 128, 255});
+    }
     scene.textures.push_back(texture);
     const auto number = static_cast<std::uint32_t>(scene.textures.size() - 1);
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {

@@ -28,13 +28,14 @@ TEST(TileRuns, ChangesAreWhereNeighboursDiffer) {
       }
       find_runs(*tile, j0, j1, *runs);
       const auto at = [&](int i, int j) { return number_of(tile->key[j * kTileSize + i]); };
-      for (int j = j0; j < j1; ++j)
+      for (int j = j0; j < j1; ++j) {
         for (int i = 0; i < kTileSize; ++i) {
           ASSERT_EQ(runs->numbers()[j * kTileSize + i], at(i, j));
           ASSERT_EQ(runs->changes_along[j] >> i & 1, i == 0 || at(i, j) != at(i - 1, j));
           ASSERT_EQ(runs->shown[j] >> i & 1, at(i, j) != kNothing);
           ASSERT_EQ(runs->changes_down[j] >> i & 1, j == j0 || at(i, j) != at(i, j - 1));
         }
+      }
     }
   });
 }

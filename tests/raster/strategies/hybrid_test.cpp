@@ -53,11 +53,14 @@ Drawn drawn(const scenes::Scene& scene, const RenderOptions& options, int ranks,
 // Small triangles in many groups, none of which is much of the whole.
 scenes::Scene many_groups(bool transparent) {
   scenes::Scene scene = transparent ? transparent_scene(21, 600) : random_scene(21, 600);
-  for (scenes::Mesh& mesh : scene.meshes)
-    for (std::size_t i = 0; i < mesh.positions.size(); i += 3)
-      for (const std::size_t k : {1U, 2U})
+  for (scenes::Mesh& mesh : scene.meshes) {
+    for (std::size_t i = 0; i < mesh.positions.size(); i += 3) {
+      for (const std::size_t k : {1U, 2U}) {
         mesh.positions[i + k] =
             glm::mix(mesh.positions[i], mesh.positions[i + k], i % 24 == 0 ? 0.3F : 0.8F);
+      }
+    }
+  }
   return scene;
 }
 

@@ -104,8 +104,8 @@ TEST(SortFirst, WhatWasNotNeededForLongIsForgottenAndSentAgain) {
 TEST(SortFirst, MeasuredCostsAndMoreRegionsThanRanksGiveTheSamePictures) {
   const scenes::Scene scene = random_scene(11);
   const std::vector<scenes::Camera> around = scenes::turntable(random_scene_camera(), 7);
-  for (const CostSource costs : {CostSource::model, CostSource::measured})
-    for (const int regions : {1, 3})
+  for (const CostSource costs : {CostSource::model, CostSource::measured}) {
+    for (const int regions : {1, 3}) {
       for (const double factor : {1.0, 1.5}) {
         RenderOptions options = sort_first_options();
         options.costs = costs;
@@ -120,6 +120,8 @@ TEST(SortFirst, MeasuredCostsAndMoreRegionsThanRanksGiveTheSamePictures) {
           EXPECT_GE(frame.partition->overlap, 1);
         }
       }
+    }
+  }
 }
 
 // One of the ranks takes ten times as long for everything.
@@ -194,7 +196,7 @@ TEST(SortFirst, ARendererMayServeOneNumberOfRanksAfterAnother) {
   Picture pictures[2];
   std::vector<Renderer> renderers;
   for (int i = 0; i < 4; ++i) renderers.emplace_back(scene);
-  for (const int ranks : {3, 2, 3, 4, 2, 3})
+  for (const int ranks : {3, 2, 3, 4, 2, 3}) {
     comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
       Result result =
           renderers[communicator.rank()].render(communicator, random_scene_camera(), options);
@@ -208,6 +210,7 @@ TEST(SortFirst, ARendererMayServeOneNumberOfRanksAfterAnother) {
         }
       }
     });
+  }
 }
 
 }  // namespace

@@ -46,13 +46,14 @@ Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
 std::vector<RenderOptions> variants(RenderOptions options) {
   std::vector<RenderOptions> result;
   options.strategy = "sort-middle";
-  for (const Groups groups : {Groups::one, Groups::two})
+  for (const Groups groups : {Groups::one, Groups::two}) {
     for (const Redistribution redistribution :
          {Redistribution::immediate, Redistribution::at_end}) {
       options.groups = groups;
       options.redistribution = redistribution;
       result.push_back(options);
     }
+  }
   return result;
 }
 
@@ -71,19 +72,20 @@ RenderOptions small_picture() {
 void expect_one_picture(const scenes::Scene& scene, const scenes::Camera& camera,
                         const RenderOptions& base, std::span<const int> rank_counts) {
   const Picture expected = rendered(scene, camera, base).picture;
-  for (const RenderOptions& options : variants(base))
+  for (const RenderOptions& options : variants(base)) {
     for (const int ranks : rank_counts) {
       const int threads = 1 + (ranks + static_cast<int>(options.groups)) % 3;
       EXPECT_TRUE(same_bytes(rendered(scene, camera, options, ranks, threads).picture, expected))
           << described(options) << ", " << ranks << " ranks x " << threads;
     }
+  }
 }
 
 constexpr int kAllRankCounts[] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
 
 TEST(SortMiddle, OnePictureWithEveryKindOfShading) {
-  for (const Lighting lighting : {Lighting::phong, Lighting::gouraud})
-    for (const bool transparent : {false, true})
+  for (const Lighting lighting : {Lighting::phong, Lighting::gouraud}) {
+    for (const bool transparent : {false, true}) {
       for (const int samples : {1, 2}) {
         SCOPED_TRACE(::testing::Message()
                      << "gouraud " << (lighting == Lighting::gouraud) << " transparent "
@@ -102,6 +104,8 @@ TEST(SortMiddle, OnePictureWithEveryKindOfShading) {
         expect_one_picture(transparent ? transparent_scene(seed) : random_scene(seed),
                            random_scene_camera(), options, std::array{4});
       }
+    }
+  }
 }
 
 // Vertices without normals are lit for every triangle, so that a cluster has three for each of its
@@ -138,9 +142,10 @@ TEST(SortMiddle, ClustersWithMoreLitVerticesThanABytesNumbersAreCutInTwo) {
   for (std::uint32_t i = 0; i < places.size(); ++i) {
     const glm::uvec3& was = scene.meshes[0].triangles[i];
     const glm::uvec3& is = meshes[0].mesh.triangles[i];
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < 3; ++k) {
       EXPECT_EQ(meshes[0].mesh.positions[is[k]],
                 draws[0].to_view(scene.meshes[0].positions[was[k]]));
+    }
   }
   EXPECT_EQ(meshes[0].vertices.radiances.size(), 3 * places.size());
   EXPECT_EQ(arrived.clusters[0].end + arrived.clusters[1].end, static_cast<int>(places.size()));
@@ -148,7 +153,7 @@ TEST(SortMiddle, ClustersWithMoreLitVerticesThanABytesNumbersAreCutInTwo) {
 
 TEST(SortMiddle, CamerasAmidTheSceneAndAtItsEdges) {
   const scenes::Scene scene = random_scene(31, 150);
-  for (const glm::vec3 eye : {glm::vec3(0, 0, 0.2F), glm::vec3(0.3F, -0.2F, 0.9F)})
+  for (const glm::vec3 eye : {glm::vec3(0, 0, 0.2F), glm::vec3(0.3F, -0.2F, 0.9F)}) {
     for (const Lighting lighting : {Lighting::phong, Lighting::gouraud}) {
       scenes::Camera camera = random_scene_camera();
       camera.eye = eye;
@@ -157,6 +162,7 @@ TEST(SortMiddle, CamerasAmidTheSceneAndAtItsEdges) {
       options.lighting = lighting;
       expect_one_picture(scene, camera, options, std::array{3, 6});
     }
+  }
 }
 
 // Two meshes of the same triangles: of those at one place the first is seen, whatever comes first.
@@ -170,8 +176,8 @@ TEST(SortMiddle, EqualDepthsGoToTheLowestPrimitiveWhateverArrivesFirst) {
                      {4, glm::mat4x3(1.0F)}};
   const RenderOptions base = small_picture();
   const Picture expected = rendered(scene, random_scene_camera(), base).picture;
-  for (const RenderOptions& options : variants(base))
-    for (std::uint64_t seed = 0; seed < 6; ++seed)
+  for (const RenderOptions& options : variants(base)) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
       comm::run_simulated(3 + static_cast<int>(seed), comm::any_order(), seed,
                           [&](comm::Communicator& communicator) {
                             const Result result =
@@ -180,6 +186,8 @@ TEST(SortMiddle, EqualDepthsGoToTheLowestPrimitiveWhateverArrivesFirst) {
                             EXPECT_TRUE(same_bytes(result.picture, expected))
                                 << described(options) << ", seed " << seed;
                           });
+    }
+  }
 }
 
 TEST(SortMiddle, FewerTrianglesThanRanks) {
@@ -210,7 +218,7 @@ TEST(SortMiddle, CountsWhatTravels) {
       if (communicator.rank() == 0) result.statistics = std::move(mine.statistics);
     });
     std::uint64_t received = 0;
-    for (const auto& events : ledger.ranks)
+    for (const auto& events : ledger.ranks) {
       for (const comm::Event& event : events) {
         if (event.phase != comm::Phase::redistribute || event.tag >= comm::kReservedTags) continue;
         if (event.kind == comm::Event::Kind::receive) received += event.amount;
@@ -218,6 +226,7 @@ TEST(SortMiddle, CountsWhatTravels) {
         result.bytes += event.amount;
         ++result.messages;
       }
+    }
     EXPECT_EQ(result.bytes, received);
     return result;
   };
@@ -284,13 +293,14 @@ TEST(SortMiddle, ImmediateBatchesAreDrawnAsTheyCome) {
         comm::Recording recording(communicator, events[communicator.rank()]);
         render(recording, scene, scene.cameras[0], options);
       });
-      for (const int receiver : {1, 2})
+      for (const int receiver : {1, 2}) {
         for (const comm::Event& event : events[receiver]) {
           if (event.kind != comm::Event::Kind::receive || event.tag >= comm::kReservedTags)
             continue;
           ++messages;
           rounds.insert(event.round);
         }
+      }
     }
     const bool immediate = options.redistribution == Redistribution::immediate;
     EXPECT_EQ(messages > 4 * kOrders, immediate);

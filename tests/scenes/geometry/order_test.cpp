@@ -21,19 +21,21 @@ Mesh shuffled_grid(std::uint32_t n, unsigned seed) {
   mesh.positions.resize(number.size());
   mesh.uvs.resize(number.size());
   mesh.uvs2.resize(number.size());
-  for (std::uint32_t j = 0; j <= n; ++j)
+  for (std::uint32_t j = 0; j <= n; ++j) {
     for (std::uint32_t i = 0; i <= n; ++i) {
       const std::uint32_t v = number[j * (n + 1) + i];
       mesh.positions[v] = {i, j, 0};
       mesh.uvs[v] = {i, j};
       mesh.uvs2[v] = {j, i};
     }
-  for (std::uint32_t j = 0; j < n; ++j)
+  }
+  for (std::uint32_t j = 0; j < n; ++j) {
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t v = j * (n + 1) + i;
       mesh.triangles.emplace_back(number[v], number[v + 1], number[v + n + 2]);
       mesh.triangles.emplace_back(number[v], number[v + n + 2], number[v + n + 1]);
     }
+  }
   std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
   return mesh;
 }

@@ -151,9 +151,10 @@ TEST(Batch, LightsComeOneByOne) {
       evaluate(c.batch, m, c.points, c.views, kAllLanes, surfaces);
       std::vector<LaneMask> mattering;
       std::vector<Arriving> arriving(c.shader.lights.size());
-      for (std::size_t l = 0; l < c.shader.lights.size(); ++l)
+      for (std::size_t l = 0; l < c.shader.lights.size(); ++l) {
         mattering.push_back(
             reflect_light(c.batch, l, surfaces, c.views, kAllLanes & ~1U, arriving[l]));
+      }
       for (int i = 1; i < kBlockPoints; ++i) {
         const Surface surface = c.surface(m, i);
         std::vector<LaneMask> asked(c.shader.lights.size());
