@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "comm/collectives.h"
 #include "comm/mpi.h"
 #include "comm/threads.h"
@@ -81,6 +82,7 @@ void compare(comm::Communicator& communicator, bool over_mpi, int repeats) {
     const double mine = median(ours), other = over_mpi ? median(theirs) : 0;
     fmt::print("{:10} {:14.1f} {:12.1f} {:7.2f}\n", size, mine * 1e6, other * 1e6,
                over_mpi ? mine / other : 0);
+    if (over_mpi) report_ratio(std::to_string(size) + " bytes", mine / other);
   }
 }
 

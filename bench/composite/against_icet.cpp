@@ -19,6 +19,7 @@
 
 #include "bench/measure.h"
 #include "bench/peers/icet.h"
+#include "bench/ratio.h"
 #include "comm/collectives.h"
 #include "comm/mpi.h"
 #include "comm/threads.h"
@@ -329,7 +330,8 @@ double error_promised(const std::string& kind, int ranks) {
   return kind == "blended" && ranks > 1 ? ranks - 1.5 : 0;
 }
 
-void print(const std::vector<Row>& rows) {
+// `label` begins the names of the ratios that are kept.
+void print(const std::vector<Row>& rows, const std::string& label) {
   const auto best_of = [&](Side side) {
     double best = 1e9;
     for (const Row& row : rows) {
@@ -357,10 +359,16 @@ void print(const std::vector<Row>& rows) {
                1e3 * median(row.processor), seconds / best,
                other > 0 && row.side != Side::icet ? fmt::format("{:.2f}", seconds / other) : "",
                row.error);
+    if (other > 0 && row.side == Side::shared) {
+      report_ratio(label + ", " + row.method + " " + row.codec, seconds / other);
+    }
   }
   fmt::print("best of ours / IceT's best: {:.2f} shared memory, {:.2f} MPI, {:.2f} threads\n",
              best_of(Side::shared) / best, best_of(Side::mpi) / best,
              best_of(Side::in_process) / best);
+  report_ratio(label + ", best, shared memory", best_of(Side::shared) / best);
+  report_ratio(label + ", best, MPI", best_of(Side::mpi) / best);
+  report_ratio(label + ", best, threads", best_of(Side::in_process) / best);
 }
 
 void measure(const Communicators& communicators, const Options& options, const std::string& kind) {
@@ -387,7 +395,7 @@ void measure(const Communicators& communicators, const Options& options, const s
   const auto wrong = std::count_if(rows.begin(), rows.end(), is_wrong);
   fmt::print("\n{}: {} ranks, {} x {}{}\n", kind, communicator.size(), options.width,
              options.height, wrong > 0 ? fmt::format("; {} of ours are WRONG", wrong) : "");
-  print(rows);
+  print(rows, kind + ", " + std::to_string(communicator.size()) + " ranks");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "composite/codec.h"
 #include "composite/deep.h"
 #include "image/image.h"
@@ -131,6 +132,7 @@ void print(const Options& options) {
     fmt::print("{:24} {:10.3f} {:9.2f} {:9.2f} {:12.2f}\n", row.name,
                static_cast<double>(row.bytes) / 1e6, 1e3 * median(row.cut), 1e3 * median(row.merge),
                median(row.merge) / base);
+    report_ratio("merge of " + row.name, median(row.merge) / base);
   }
 }
 

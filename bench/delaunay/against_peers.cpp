@@ -27,6 +27,7 @@
 #ifdef DELRAY_HXT
 #include "bench/peers/hxt.h"
 #endif
+#include "bench/ratio.h"
 #include "delaunay/generate.h"
 #include "delaunay/read_points.h"
 #include "delaunay/triangulate.h"
@@ -176,6 +177,10 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
     const double hxt_seconds = with_hxt ? bench::median(hxt[kind]) : 0;
     if (beside > 0) row["parallel_cgal_seconds"] = beside;
     if (hxt_seconds > 0) row["hxt_seconds"] = hxt_seconds;
+    const std::string label =
+        name + " " + std::to_string(points.size()) + ", " + bench::thread_count(threads);
+    bench::report_ratio(label, ratio);
+    if (hxt_seconds > 0) bench::report_ratio(label + ", over HXT", seconds / hxt_seconds);
     const double uniform = uniform_ratio(rows, threads);
     if (uniform > 0) row["over_uniform"] = ratio / uniform;
     std::printf("%-20s %9zu %7d %9.4f ", name.c_str(), points.size(), threads, bench::median(cgal));

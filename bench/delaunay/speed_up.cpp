@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "delaunay/generate.h"
 #include "delaunay/methods.h"
 #include "delaunay/read_points.h"
@@ -71,7 +72,7 @@ delaunay::Triangulation run(const std::vector<glm::dvec3>& points, const Runner&
       [&] { return delaunay::triangulate(delaunay::view(points), runner.options); });
 }
 
-bool compare(const std::vector<glm::dvec3>& points, int dim, int turns,
+bool compare(const std::vector<glm::dvec3>& points, const std::string& kind, int dim, int turns,
              const std::vector<int>& threads, const std::vector<std::string>& wanted) {
   std::vector<Runner> runners = runners_of(dim, threads, wanted);
   const delaunay::Hash128 expected = delaunay::hash(run(points, runners.front()));
@@ -95,6 +96,10 @@ bool compare(const std::vector<glm::dvec3>& points, int dim, int turns,
     const double seconds = bench::median(runner.seconds);
     std::printf("%-20s %7d %9.4f %9.2f\n", runner.name.c_str(), runner.options.threads, seconds,
                 base / seconds);
+    if (&runner == &runners.front()) continue;
+    bench::report_ratio(kind + " " + std::to_string(points.size()) + ", " + runner.name + ", " +
+                            bench::thread_count(runner.options.threads),
+                        base / seconds, bench::Better::higher);
   }
   return true;
 }
@@ -119,7 +124,9 @@ int main(int count, char** words) {
   try {
     const auto cloud = file.empty() ? delaunay::generate_points(kind, n, dim, /*seed=*/1)
                                     : delaunay::read_points(file);
-    return compare(cloud.positions, dim, turns, threads, methods) ? EXIT_SUCCESS : EXIT_FAILURE;
+    const std::string name = file.empty() ? kind : file.substr(file.rfind('/') + 1);
+    return compare(cloud.positions, name, dim, turns, threads, methods) ? EXIT_SUCCESS
+                                                                        : EXIT_FAILURE;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return EXIT_FAILURE;

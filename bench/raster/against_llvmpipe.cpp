@@ -23,6 +23,7 @@
 
 #include "bench/measure.h"
 #include "bench/peers/llvmpipe.h"
+#include "bench/ratio.h"
 #include "comm/threads.h"
 #include "parallel/arena.h"
 #include "raster/render.h"
@@ -207,6 +208,9 @@ bool compare(const std::string& path, const Arguments& arguments) {
                   static_cast<std::size_t>(scenes::triangle_count(scene)), arguments.threads[i],
                   cull ? "yes" : "no", medians[i].peer * kMilli, seconds * kMilli,
                   seconds / medians[i].peer, seconds / medians[0].ours[cull]);
+      bench::report_ratio(
+          name + (cull ? ", culling, " : ", ") + bench::thread_count(arguments.threads[i]),
+          seconds / medians[i].peer);
     }
   }
   std::fflush(stdout);

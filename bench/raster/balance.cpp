@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/ratio.h"
 #include "comm/threads.h"
 #include "loadbalance/cost_model.h"
 #include "loadbalance/partition.h"
@@ -113,6 +114,10 @@ int main(int argc, char** argv) {
                     all[i].imbalance, all[i].partition->seconds * 1e3,
                     fitted.per_triangle / fitted.per_pixel);
         std::fflush(stdout);
+        bench::report_ratio(name.substr(name.rfind('/') + 1) + ", " +
+                                loadbalance::partitioners()[i].name + ", " + std::to_string(ranks) +
+                                " ranks",
+                            largest / share);
       }
     }
   }

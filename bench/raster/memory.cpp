@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "comm/threads.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
 
 using namespace delray;
+
+constexpr double kMostBytes = 24;  // for each triangle that is drawn
 
 // [SCENE ...]
 int main(int argc, char** argv) {
@@ -34,10 +37,13 @@ int main(int argc, char** argv) {
       });
       const std::size_t picture = std::size_t{1920} * 1080 * 8;
       const std::size_t used = bench::peak_memory(false) - before - picture;
+      const double each =
+          static_cast<double>(used) / static_cast<double>(statistics.triangles_rasterized);
       std::printf("%-22s %d threads: %6.1f MB, %llu triangles rasterized, %.1f bytes each\n",
                   name.c_str(), threads, static_cast<double>(used) * 1e-6,
-                  static_cast<unsigned long long>(statistics.triangles_rasterized),
-                  static_cast<double>(used) / static_cast<double>(statistics.triangles_rasterized));
+                  static_cast<unsigned long long>(statistics.triangles_rasterized), each);
+      bench::report_ratio(name + ", bytes a triangle, " + bench::thread_count(threads), each,
+                          bench::Better::lower, kMostBytes);
     }
   }
 }

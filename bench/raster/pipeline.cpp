@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "comm/agreed_pipeline.h"
 #include "comm/threads.h"
 #include "image/io.h"
@@ -83,6 +84,9 @@ void compare(const std::string& name, const Scene& scene, const raster::RenderOp
   const double whole = bench::median(sequential), overlapped = bench::median(in_pipeline);
   std::printf("   %8.1f %8.1f %8.2f %8.2f\n", whole / kFrames * 1e3, overlapped / kFrames * 1e3,
               whole / overlapped, whole / bench::median(predicted));
+  bench::report_ratio(
+      name + ", " + std::to_string(ranks) + " x " + bench::thread_count(threads) + ", gain",
+      whole / overlapped, bench::Better::higher);
   std::fflush(stdout);
 }
 

@@ -26,6 +26,7 @@
 
 #include "bench/measure.h"
 #include "bench/peers/embree.h"
+#include "bench/ratio.h"
 #include "comm/threads.h"
 #include "parallel/arena.h"
 #include "raytrace/integrator.h"
@@ -210,6 +211,11 @@ void compare(const std::string& name, const Arguments& arguments) {
         "  %d threads: %.1f ms, %.2f million rays/s; bare %.2f; ratio %.3f (%.3f); speed-up %.2f\n",
         threads, 1e3 * seconds, millions / seconds, bare ? millions / bench::median(theirs) : 0.0,
         bench::median(ratios), bench::median(processor), first / seconds);
+    if (!bare) continue;
+    bench::report_ratio(integrator + " " + file.substr(file.rfind('/') + 1) + ", " +
+                            bench::thread_count(threads) +
+                            (arguments.same_answers ? ", same answers" : ""),
+                        bench::median(ratios), bench::Better::higher);
   }
 }
 

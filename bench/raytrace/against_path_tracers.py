@@ -11,6 +11,7 @@ Debian's embree-tools (its benchmark counts the rays); where it is missing nothi
 """
 import argparse
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -120,6 +121,10 @@ def main():
             if blender:
                 line += f" {cycles(blender, model, camera, threads, asked.bounces):.3f}"
             print(line, flush=True)
+            if "DELRAY_RATIOS" in os.environ:  # for scripts/bench, as bench/ratio.h does
+                name = f"{pathlib.Path(model).name}, {threads} thread" + "s" * (threads > 1)
+                with open(os.environ["DELRAY_RATIOS"], "a") as file:
+                    print(json.dumps({"name": name, "ratio": ratio, "better": "higher"}), file=file)
 
 
 main()

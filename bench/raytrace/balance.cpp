@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/ratio.h"
 #include "comm/simulated.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
@@ -116,6 +117,10 @@ int main(int argc, char** argv) {
                     static_cast<unsigned long long>(requests),
                     static_cast<unsigned long long>(steals), static_cast<double>(bytes) / 1024,
                     seconds_of(s));
+        bench::report_ratio(name + ", " + std::to_string(n) + " ranks, tiles of " +
+                                std::to_string(tile) + ", " + c.schedule +
+                                (c.partition.empty() ? "" : " over " + c.partition),
+                            s.imbalance_rays);
         for (const raytrace::RankStatistics& rank : s.ranks) {
           if (!each) break;
           std::printf("      rays %9llu tiles %5llu idle %.4f\n",
