@@ -286,7 +286,11 @@ Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Sh
       std::unique_ptr<Memory>(new Memory{scene, std::move(shader), scenes::first_primitives(scene),
                                          blended, SceneClusters(scene.meshes)});
 }
-void Renderer::recycle(Picture&& picture) { memory_->scratch.spare = std::move(picture); }
+void Renderer::recycle(Picture&& picture) {
+  // Ranks that are not shown the picture keep memory of their own.
+  const bool is_empty = std::visit([](const auto& image) { return image.width == 0; }, picture);
+  if (!is_empty) memory_->scratch.spare = std::move(picture);
+}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

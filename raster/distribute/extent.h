@@ -1,7 +1,7 @@
 // How much of the screen triangles take up.
 #pragma once
 
-#include "raster/pipeline/prepared_draw.h"
+#include "raster/pipeline/triangle_boxes.h"
 
 namespace delray::raster {
 
@@ -14,11 +14,8 @@ struct Extent {
   std::uint64_t pixels = 0;
 };
 
-// Triangles whose box has more pixels are large: they may be anywhere in it.
-inline constexpr std::int64_t kLargeBox = 64 * 64;
-
-// Finds extents, best one after the other along a mesh: the vertices of the last cluster are kept.
-// One per thread.
+// Finds extents, best one after the other along a mesh: the boxes of the last cluster's triangles
+// are kept. One per thread.
 class Extents {
  public:
   // Refers to the screen.
@@ -30,10 +27,15 @@ class Extents {
             std::vector<ScreenTriangle>& large);
 
  private:
+  void look_at(const PreparedDraw& draw, const ClusterBlock& block, const MeshCluster& cluster);
+
   const Screen& screen_;
+  // The last cluster, and whether anything of it may be seen.
   const PreparedDraw* draw_ = nullptr;
   const MeshCluster* cluster_ = nullptr;
-  ScreenVertices vertices_;  // of the cluster
+  bool may_be_seen_ = false;
+  ScreenVertices vertices_;
+  TriangleBoxes boxes_;  // if no vertex is outside
 };
 
 }  // namespace delray::raster

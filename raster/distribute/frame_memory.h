@@ -1,16 +1,39 @@
 // What strategies remember from frame to frame, on one rank.
 #pragma once
 
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
 #include "raster/distribute/group_traffic.h"
 #include "raster/distribute/hybrid_shares.h"
 #include "raster/distribute/scene_cells.h"
 #include "raster/distribute/screen_partition.h"
+#include "raster/distribute/transformed_clusters.h"
 
 namespace delray::raster {
 
+// What a rank of sort-first drew.
+struct SortedFirst {
+  std::optional<Travel> travel;  // none: there was no frame
+  std::uint64_t version = 0;     // of the screen's partition
+  GroupTraffic traffic;
+  DrawList list;
+};
+
+// What a rank of sort-middle drew.
+struct SortedMiddle {
+  std::uint64_t version = 0;         // of the screen's partition; 0: there was no frame
+  DrawList list;                     // numbered over all ranks
+  std::deque<ArrivedMesh> arrived;   // from other ranks; of the list, too
+  std::vector<std::uint32_t> drawn;  // clusters of the list
+};
+
 struct FrameMemory {
   ScreenPartition screen;
-  GroupTraffic traffic;
+  SortedFirst sorted_first;
+  SortedMiddle sorted_middle;
   SharedOut shared_out;  // of hybrid
   SceneCells cells;      // of sort-last, blended in order
 };

@@ -2,9 +2,10 @@
 // 1995: only what comes into a region is sent).
 //
 // The owner of a group lists the ranks that hold it and the frame in which each needed it last. A
-// rank that is not listed is sent the group; one that has not needed it for kFramesKept frames is
-// told to forget it. A message holds what to forget, then what is new. O(groups x holders) a frame,
-// messages for changes only.
+// rank that is not listed is sent the group; one that no longer needs it is told so, and one that
+// has not for kFramesKept frames to forget it. A message holds what to forget, what not to draw for
+// now and what to draw again, then what is new. O(groups x holders) a frame, messages for changes
+// only.
 //
 // Degenerate: ranks that do not remember the same frames forget all and begin anew.
 #include "raster/distribute/group_traffic.h"
@@ -18,28 +19,37 @@
 namespace delray::raster {
 namespace {
 
-// A message: how many groups are forgotten, their first primitives, then the groups that are new.
-comm::Buffer join(std::span<const std::uint64_t> forgotten, const comm::Buffer& pieces) {
-  const std::uint64_t count = forgotten.size();
-  comm::Buffer message(sizeof(count) + forgotten.size_bytes() + pieces.size());
-  std::memcpy(message.data(), &count, sizeof(count));
-  if (count > 0)
-    std::memcpy(message.data() + sizeof(count), forgotten.data(), forgotten.size_bytes());
-  if (!pieces.empty()) {
-    std::memcpy(message.data() + sizeof(count) + forgotten.size_bytes(), pieces.data(),
-                pieces.size());
+// A message: the counts of three lists of first primitives, the lists, then the groups that are
+// new.
+struct Lists {
+  std::span<const std::uint64_t> forgotten, parked, resumed;
+
+  std::size_t bytes() const {
+    return (kLists + forgotten.size() + parked.size() + resumed.size()) * sizeof(std::uint64_t);
   }
+  static constexpr std::size_t kLists = 3;
+};
+
+comm::Buffer join(const Lists& lists, const comm::Buffer& pieces) {
+  comm::Buffer message(lists.bytes() + pieces.size());
+  auto* to = reinterpret_cast<std::uint64_t*>(message.data());
+  for (const auto& list : {lists.forgotten, lists.parked, lists.resumed}) *to++ = list.size();
+  for (const auto& list : {lists.forgotten, lists.parked, lists.resumed})
+    to = std::copy(list.begin(), list.end(), to);
+  if (!pieces.empty()) std::memcpy(to, pieces.data(), pieces.size());
   return message;
 }
 
-std::span<const std::uint64_t> forgotten_in(const comm::Buffer& message) {
-  std::uint64_t count = 0;
-  std::memcpy(&count, message.data(), sizeof(count));
-  return {reinterpret_cast<const std::uint64_t*>(message.data() + sizeof(count)), count};
+Lists lists_in(const comm::Buffer& message) {
+  const auto* const counts = reinterpret_cast<const std::uint64_t*>(message.data());
+  const std::uint64_t* const first = counts + Lists::kLists;
+  return {{first, counts[0]},
+          {first + counts[0], counts[1]},
+          {first + counts[0] + counts[1], counts[2]}};
 }
 
 comm::Buffer pieces_in(const comm::Buffer& message) {
-  const std::size_t begin = sizeof(std::uint64_t) + forgotten_in(message).size_bytes();
+  const std::size_t begin = lists_in(message).bytes();
   return comm::Buffer::of(
       std::span<const std::byte>(message.data() + begin, message.size() - begin));
 }
@@ -71,6 +81,8 @@ void GroupTraffic::need(const RankContext& rank, std::span<const Piece> groups, 
   const auto holder = std::find_if(holders.begin(), holders.end(),
                                    [&](const Holder& h) { return h.rank == owner; });
   if (holder != holders.end()) {
+    if (holder->last_needed + 1 < frame_)
+      outgoing_[owner].resumed.push_back(groups[group].primitive);
     holder->last_needed = frame_;
     return;
   }
@@ -78,18 +90,22 @@ void GroupTraffic::need(const RankContext& rank, std::span<const Piece> groups, 
   outgoing_[owner].pieces.push_back(groups[group]);
 }
 
-void GroupTraffic::forget_unneeded(std::span<const Piece> groups) {
-  for (std::size_t i = 0; i < groups.size(); ++i) {
+void GroupTraffic::park_or_forget(std::span<const Piece> groups) {
+  for (std::size_t i = 0; i < groups.size(); ++i)
     std::erase_if(holders_[i], [&](const Holder& holder) {
+      if (holder.last_needed + 1 == frame_)
+        outgoing_[holder.rank].parked.push_back(groups[i].primitive);
       if (holder.last_needed + kFramesKept > frame_) return false;
       outgoing_[holder.rank].forgotten.push_back(groups[i].primitive);
       return true;
     });
-  }
 }
 
 void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {
-  for (const std::uint64_t primitive : forgotten_in(message)) held_.erase(primitive);
+  const Lists lists = lists_in(message);
+  for (const std::uint64_t primitive : lists.parked) held_.at(primitive).needed = false;
+  for (const std::uint64_t primitive : lists.resumed) held_.at(primitive).needed = true;
+  for (const std::uint64_t primitive : lists.forgotten) held_.erase(primitive);
   Arrivals arrivals;
   if (travel_ == Travel::numbers) {
     unpack_numbers(pieces_in(message), rank.scene, rank.first_primitives, arrivals);
@@ -111,20 +127,21 @@ void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {
 }
 
 std::vector<Piece> GroupTraffic::finish_frame(RankContext& rank, std::span<const Piece> groups) {
-  forget_unneeded(groups);
+  park_or_forget(groups);
   std::vector<comm::Parcel> parcels;
   for (auto& [to, outgoing] : outgoing_) {
     for (const Piece& piece : outgoing.pieces) rank.triangles_travelled += piece.count;
-    parcels.push_back({to, join(outgoing.forgotten, travel_ == Travel::geometry
-                                                        ? pack_geometry(outgoing.pieces)
-                                                        : pack_numbers(outgoing.pieces))});
+    parcels.push_back({to, join({outgoing.forgotten, outgoing.parked, outgoing.resumed},
+                                travel_ == Travel::geometry ? pack_geometry(outgoing.pieces)
+                                                            : pack_numbers(outgoing.pieces))});
   }
   std::sort(parcels.begin(), parcels.end(),
             [](const comm::Parcel& a, const comm::Parcel& b) { return a.rank < b.rank; });
   for (const comm::Parcel& parcel : comm::exchange(rank.communicator, std::move(parcels)))
     keep(rank, parcel.message);
   std::vector<Piece> pieces = std::move(staying_);
-  for (const auto& [primitive, held] : held_) pieces.push_back(held.piece);
+  for (const auto& [primitive, held] : held_)
+    if (held.needed) pieces.push_back(held.piece);
   return pieces;
 }
 

@@ -15,14 +15,14 @@ namespace delray::raster {
 
 // What travels in a frame is what a rank needs and was not sent before (Mueller 1995: only
 // primitives that come into a region are sent). A rank keeps what it was sent until it has not
-// needed it for kFramesKept frames, and is told by the sender, which is the one that knows; it
-// draws all that it keeps, and what lies outside its regions is culled.
+// needed it for kFramesKept frames, and draws what it needs; it is told by the sender, which is the
+// one that knows, where that changes. Frames are calls: there is none where nothing has changed.
 class GroupTraffic {
  public:
   static constexpr std::uint64_t kFramesKept = 8;
 
   // Group i of this rank's own is needed by the ranks needed_by(i, ranks) writes. Returns what this
-  // rank is to draw: its own groups that it needs, and what others sent it, now or before.
+  // rank is to draw: its own groups that it needs, and those that others sent it, now or before.
   // Collective. The pieces stay valid until the next call.
   //
   // If not all remember the same frames all begin anew. REQUIRES: for the same number of groups,
@@ -49,17 +49,19 @@ class GroupTraffic {
     std::unique_ptr<glm::mat4x3> transform;
     std::unique_ptr<MeshClusters> clusters;
     Piece piece;
+    bool needed = true;  // in this frame
   };
   // What one rank is sent in a frame.
   struct Outgoing {
     std::vector<Piece> pieces;
-    std::vector<std::uint64_t> forgotten;  // first primitives of groups
+    // First primitives of groups that it holds: no longer, for now not needed, needed again.
+    std::vector<std::uint64_t> forgotten, parked, resumed;
   };
 
   void begin_frame(RankContext& rank, std::size_t groups);
   void need(const RankContext& rank, std::span<const Piece> groups, std::size_t group, int owner);
   std::vector<Piece> finish_frame(RankContext& rank, std::span<const Piece> groups);
-  void forget_unneeded(std::span<const Piece> groups);
+  void park_or_forget(std::span<const Piece> groups);
   void keep(RankContext& rank, const comm::Buffer& message);
 
   Agreement agreement_;

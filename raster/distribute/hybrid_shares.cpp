@@ -1,5 +1,6 @@
 // Shares out screen and primitives together (Samanta et al. 2000): bounds groups, exchanges their
-// boxes and costs, computes the same partition on every rank, and sends each group to its owner.
+// boxes and costs, computes the same partition on every rank, and sends each group to its owner,
+// unless that was sent it lately.
 //
 // A group that everybody draws goes to the ranks whose regions it touches, and the ranges of such
 // groups are exchanged, since their pixels need not travel. O(groups) for each rank, and a message
@@ -22,15 +23,16 @@ constexpr std::uint64_t kGroupsPerRank = 250;
 constexpr std::uint64_t kLargestGroup = 256;  // triangles
 
 // The ranges of everybody's groups on all ranks. A message only where there are any.
-std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, std::span<const Piece> groups,
-                                            const Shares& shares) {
+std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, const CostedGroups& costed,
+                                            const VisibleGroups& visible, const Shares& shares) {
   const std::vector<int>& owners = shares.partition.owners;
   std::vector<PrimitiveRange> ranges;
   if (std::find(owners.begin(), owners.end(), loadbalance::kEverybody) == owners.end())
     return ranges;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (owners[shares.first + i] == loadbalance::kEverybody)
-      ranges.push_back({groups[i].primitive, groups[i].primitive + groups[i].count});
+  for (std::size_t i = 0; i < visible.numbers.size(); ++i) {
+    if (owners[shares.first + i] != loadbalance::kEverybody) continue;
+    const Piece& group = costed.groups[visible.numbers[i]];
+    ranges.push_back({group.primitive, group.primitive + group.count});
   }
   const std::vector<comm::Buffer> all = comm::all_gather(
       rank.communicator, comm::Buffer::of(std::span<const PrimitiveRange>(ranges)));
@@ -42,37 +44,61 @@ std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, std::span<c
   return ranges;
 }
 
-}  // namespace
-
-VisibleGroups find_visible_groups(RankContext& rank) {
+const CostedGroups& cost_groups(RankContext& rank) {
   const std::uint64_t all = rank.first_primitives.back();
   const std::uint64_t triangles =
       std::clamp(all / (kGroupsPerRank * static_cast<std::uint64_t>(rank.ranks())),
                  std::uint64_t{1}, kLargestGroup);
   const auto [first, last] = rank.own_primitives();
-  std::vector<Piece> groups = groups_of(pieces_of(rank.scene, rank.first_primitives, first, last),
-                                        static_cast<std::uint32_t>(triangles));
-  SeenSamples seen;
-  const std::vector<loadbalance::WeightedBox> boxes =
-      rank.memory.screen.boxes_of(rank, groups, &seen);
-  const double per_pixel = 1.0 / rank.samples_per_pixel();
-  std::vector<GroupBox> visible;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const auto& [x0, y0, x1, y1] = boxes[i].box;
-    if (boxes[i].box.empty()) continue;
-    const double cost = boxes[i].cost / seen.price + seen.large[i];
-    const double setup = std::max(0.0, cost - seen.all[i]);
-    groups[visible.size()] = groups[i];
-    visible.push_back({static_cast<std::uint16_t>(x0), static_cast<std::uint16_t>(y0),
-                       static_cast<std::uint16_t>(x1), static_cast<std::uint16_t>(y1),
-                       static_cast<float>(cost * per_pixel),
-                       static_cast<float>(setup * per_pixel)});
-  }
-  groups.resize(visible.size());
-  return {std::move(groups), std::move(visible)};
+  return rank.memory.screen.groups(rank, {first, last, static_cast<std::uint32_t>(triangles)},
+                                   true);
 }
 
-Shares share_out(const RankContext& rank, const VisibleGroups& visible) {
+// What this rank draws: its own groups and those that are sent to it, now or before. Collective.
+DrawList exchange_groups(RankContext& rank, const CostedGroups& costed,
+                         const VisibleGroups& visible, SharedOut& out) {
+  const Shares& shares = out.shares;
+  const loadbalance::RegionIndex index(shares.partition.regions);
+  std::size_t next = 0;  // of the visible groups
+  return make_draw_list(
+      out.traffic.exchange(rank, costed.groups,
+                           [&](std::size_t group, std::vector<int>& owners) {
+                             owners.clear();
+                             if (next == visible.numbers.size() || visible.numbers[next] != group)
+                               return;
+                             const std::size_t i = shares.first + next++;
+                             const int owner = shares.partition.owners[i];
+                             if (owner == loadbalance::kEverybody)
+                               index.owners_of(shares.boxes[i].box, owners);
+                             else if (owner != loadbalance::kNobody)
+                               owners = {owner};
+                           }),
+      &rank.clusters);
+}
+
+}  // namespace
+
+VisibleGroups find_visible_groups(const RankContext& rank, const CostedGroups& costed) {
+  const SeenSamples& seen = costed.seen;
+  const double per_pixel = 1.0 / rank.samples_per_pixel();
+  VisibleGroups visible;
+  for (std::size_t i = 0; i < costed.groups.size(); ++i) {
+    const loadbalance::WeightedBox& group = costed.boxes[i];
+    const auto& [x0, y0, x1, y1] = group.box;
+    if (group.box.empty()) continue;
+    const double cost = group.cost / seen.price + seen.large[i];
+    const double setup = std::max(0.0, cost - seen.all[i]);
+    visible.numbers.push_back(static_cast<std::uint32_t>(i));
+    visible.boxes.push_back({static_cast<std::uint16_t>(x0), static_cast<std::uint16_t>(y0),
+                             static_cast<std::uint16_t>(x1), static_cast<std::uint16_t>(y1),
+                             static_cast<float>(cost * per_pixel),
+                             static_cast<float>(setup * per_pixel)});
+  }
+  return visible;
+}
+
+Shares share_out(const RankContext& rank, const CostedGroups& costed,
+                 const VisibleGroups& visible) {
   Shares shares;
   const std::vector<comm::Buffer> all =
       comm::all_gather(rank.communicator, comm::Buffer::of(std::span(visible.boxes)));
@@ -82,37 +108,27 @@ Shares share_out(const RankContext& rank, const VisibleGroups& visible) {
       shares.boxes.push_back({{box.x0, box.y0, box.x1, box.y1}, box.cost, box.setup});
   }
   shares.partition = loadbalance::hybrid_partition(shares.boxes, rank.frame(), rank.ranks());
-  shares.everybodys = find_everybodys(rank, visible.groups, shares);
+  shares.everybodys = find_everybodys(rank, costed, visible, shares);
   return shares;
 }
 
-std::vector<Piece> send_to_owners(RankContext& rank, std::span<const Piece> groups,
-                                  const Shares& shares, Arrivals& arrivals) {
-  std::vector<std::vector<Piece>> leaving(static_cast<std::size_t>(rank.ranks()));
-  const loadbalance::RegionIndex index(shares.partition.regions);
-  std::vector<int> owners;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    owners = {shares.partition.owners[shares.first + i]};
-    if (owners.front() == loadbalance::kEverybody)
-      index.owners_of(shares.boxes[shares.first + i].box, owners);
-    for (const int owner : owners) leaving[owner].push_back(groups[i]);
-  }
-  std::vector<Piece> staying = std::move(leaving[rank.number()]);
-  const bool geometry_travels = rank.options.travel == Travel::geometry;
-  std::vector<comm::Parcel> parcels;
-  for (int k = 0; k < rank.ranks(); ++k) {
-    if (k == rank.number() || leaving[k].empty()) continue;
-    for (const Piece& piece : leaving[k]) rank.triangles_travelled += piece.count;
-    parcels.push_back({k, geometry_travels ? pack_geometry(leaving[k]) : pack_numbers(leaving[k])});
-  }
-  for (const comm::Parcel& parcel : comm::exchange(rank.communicator, std::move(parcels))) {
-    if (geometry_travels)
-      unpack_geometry(parcel.message, arrivals);
-    else
-      unpack_numbers(parcel.message, rank.scene, rank.first_primitives, arrivals);
-  }
-  staying.insert(staying.end(), arrivals.pieces.begin(), arrivals.pieces.end());
-  return staying;
+const SharedOut& share_out_frame(RankContext& rank) {
+  comm::Communicator& communicator = rank.communicator;
+  communicator.mark(comm::Phase::transform, 0);
+  const CostedGroups& costed = cost_groups(rank);
+  SharedOut& out = rank.memory.shared_out;
+  const std::uint64_t version = rank.memory.screen.version();
+  communicator.mark(comm::Phase::redistribute, 0);
+  if (out.travel == rank.options.travel && out.version == version) return out;
+  timed(communicator, rank.counts.phases.redistribute, [&] {
+    const VisibleGroups visible = find_visible_groups(rank, costed);
+    out.shares = share_out(rank, costed, visible);
+    out.list = exchange_groups(rank, costed, visible, out);
+    out.travel = rank.options.travel;
+    out.version = version;
+    return true;
+  });
+  return out;
 }
 
 }  // namespace delray::raster

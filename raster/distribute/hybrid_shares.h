@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "loadbalance/hybrid_partition.h"
+#include "raster/distribute/group_traffic.h"
 #include "raster/distribute/rank_context.h"
+#include "raster/distribute/screen_partition.h"
 #include "raster/distribute/tile_fragments.h"
-#include "raster/distribute/travel.h"
 
 namespace delray::raster {
 
@@ -20,12 +21,12 @@ struct GroupBox {
   float cost, setup;
 };
 
-// This rank's own groups that are seen, and their boxes. Collective.
+// This rank's own groups that are seen: element i of both is of one group.
 struct VisibleGroups {
-  std::vector<Piece> groups;
+  std::vector<std::uint32_t> numbers;  // among all of this rank's, ascending
   std::vector<GroupBox> boxes;
 };
-VisibleGroups find_visible_groups(RankContext& rank);
+VisibleGroups find_visible_groups(const RankContext& rank, const CostedGroups& costed);
 
 // The same on all ranks.
 struct Shares {
@@ -35,19 +36,19 @@ struct Shares {
   std::vector<PrimitiveRange> everybodys;  // primitives of groups that everybody draws, ascending
 };
 // Collective: every rank gets all boxes, and then the ranges of everybody's groups, if any.
-Shares share_out(const RankContext& rank, const VisibleGroups& visible);
+Shares share_out(const RankContext& rank, const CostedGroups& costed, const VisibleGroups& visible);
 
 // How a frame was shared out, and what a rank draws of it.
 struct SharedOut {
-  Shares shares;
-  Arrivals arrivals;
-  std::vector<Piece> pieces;
   std::optional<Travel> travel;  // none: there was no frame
+  std::uint64_t version = 0;     // of the groups' costs
+  Shares shares;
+  GroupTraffic traffic;
+  DrawList list;
 };
 
-// Sends every group to its owner, everybody's to the ranks whose regions they touch. Returns this
-// rank's, with those that arrived. Collective.
-std::vector<Piece> send_to_owners(RankContext& rank, std::span<const Piece> groups,
-                                  const Shares& shares, Arrivals& arrivals);
+// Shares out screen and groups, unless all is as in the last frame, and sends every group to its
+// owner, everybody's to the ranks whose regions they touch, where these do not have it. Collective.
+const SharedOut& share_out_frame(RankContext& rank);
 
 }  // namespace delray::raster

@@ -123,8 +123,9 @@ Picture RankContext::gather(const loadbalance::Partition& partition,
   const double before = communicator.seconds();
   gather_regions(communicator, partition, image);
   counts.phases.gather += communicator.seconds() - before;
-  if (number() != 0) return image::BasicImage<Colour>();
-  return std::move(image);
+  if (number() == 0) return std::move(image);
+  if (image.width > 0) scratch.spare = std::move(image);  // for the next frame
+  return image::BasicImage<Colour>();
 }
 
 template <class Colour>

@@ -4,16 +4,17 @@
 // A group's cost is a price for its triangles and one for the part of its samples that is expected
 // to be seen (coverage.cpp); large triangles add theirs to the grid, square by square. Where costs
 // are measured, prices are fitted to what ranks did in the last frame and regions are scaled to
-// what they took. O(triangles) to bound, in parallel.
+// what they took. O(triangles) to bound, by vectors and in parallel.
 //
-// Degenerate: where nothing has changed for any rank, the last boxes and cuts serve again, and
-// nothing but the agreement travels.
+// Degenerate: where camera and options are those of the last frame for all ranks, its groups and
+// cuts serve again: nothing is bounded, and nothing but the agreement travels.
 #include "raster/distribute/screen_partition.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <mutex>
+#include <tuple>
 
 #include "comm/collectives.h"
 #include "loadbalance/balance.h"
@@ -48,13 +49,11 @@ loadbalance::RasterCostModel cost_model(Lighting lighting) {
 
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {
   std::vector<Piece> groups;
-  for (const Piece& piece : pieces) {
-    for (std::uint32_t done = 0; done < piece.count; done += triangles) {
+  for (const Piece& piece : pieces)
+    for (std::uint32_t done = 0; done < piece.count; done += triangles)
       groups.push_back({piece.mesh, piece.transform, piece.first + done,
                         std::min(triangles, piece.count - done), piece.primitive + done,
                         piece.clusters});
-    }
-  }
   return groups;
 }
 
@@ -62,37 +61,60 @@ std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int part
   return static_cast<std::uint32_t>(loadbalance::primitives_per_box(triangles, parts));
 }
 
-std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(RankContext& rank,
-                                                                std::span<const Piece> groups,
-                                                                SeenSamples* seen_samples) {
-  loadbalance::RasterCostModel model = cost_model(rank.options.lighting);
-  samples_.clear();
-  if (rank.options.costs == CostSource::measured && rank.ranks() > 1) {
-    for (const comm::Buffer& from :
-         comm::all_gather(rank.communicator, comm::Buffer::of_value(sample_)))
-      samples_.push_back(from.as<loadbalance::RasterSample>()[0]);
-    if (loadbalance::has_seconds(samples_)) model = loadbalance::fit(samples_);
-  }
+bool ScreenPartition::Basis::operator==(const Basis& other) const {
+  const auto fields = [](const Basis& b) {
+    const scenes::View& v = b.view;
+    return std::tie(b.rank, b.ranks, b.supersampling, b.lighting, b.costs, b.cull_single_sided,
+                    b.tells_seen, v.eye, v.right, v.up, v.forward, v.scale, v.half_width,
+                    v.half_height, v.near, v.width, v.height, v.orthographic, v.far, v.viewpoint);
+  };
+  return fields(*this) == fields(other);
+}
 
-  const DrawList list = make_draw_list({groups.begin(), groups.end()}, &rank.clusters);
-  const std::vector<PreparedDraw> draws =
-      prepare_draws(rank.screen, list, rank.shader, rank.options.cull_single_sided);
+// Prices, fitted to what all ranks did in the last frame where costs are measured. Collective then.
+loadbalance::RasterCostModel ScreenPartition::model_of(RankContext& rank) {
+  const loadbalance::RasterCostModel model = cost_model(rank.options.lighting);
+  samples_.clear();
+  if (rank.options.costs != CostSource::measured || rank.ranks() == 1) return model;
+  for (const comm::Buffer& from :
+       comm::all_gather(rank.communicator, comm::Buffer::of_value(sample_)))
+    samples_.push_back(from.as<loadbalance::RasterSample>()[0]);
+  return loadbalance::has_seconds(samples_) ? loadbalance::fit(samples_) : model;
+}
+
+// The groups stay as long as the rank's share of the scene does, wherever the camera goes.
+void ScreenPartition::group(RankContext& rank, const Grouping& grouping) {
+  if (grouping_ == grouping) return;
+  grouping_ = grouping;
+  std::vector<Piece>& groups = costed_.groups;
+  groups = groups_of(pieces_of(rank.scene, rank.first_primitives, grouping.begin, grouping.end),
+                     grouping.triangles);
+  list_ = make_draw_list(groups, &rank.clusters);
   // Draws are numbered in the order in which groups first name them.
-  std::vector<std::uint32_t> draw_of(groups.size());
+  draw_of_.resize(groups.size());
   std::uint32_t draw = 0;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (i > 0 && groups[i].transform != groups[i - 1].transform) ++draw;
-    draw_of[i] = draw;
+    draw_of_[i] = draw;
   }
-  std::vector<loadbalance::WeightedBox> boxes(groups.size());
-  std::vector<double> samples(groups.size()), large_samples(groups.size());
-  Coverage coverage(rank.screen, rank.options.supersampling);
+}
+
+// Boxes, and costs of triangles; samples go into the coverage.
+ScreenPartition::Bounded ScreenPartition::bound(RankContext& rank,
+                                                const loadbalance::RasterCostModel& model,
+                                                Coverage& coverage) {
+  const std::vector<Piece>& groups = costed_.groups;
+  std::vector<loadbalance::WeightedBox>& boxes = costed_.boxes;
+  boxes.assign(groups.size(), {});
+  Bounded bounded{std::vector<double>(groups.size()), std::vector<double>(groups.size()),
+                  std::vector<Coverage::Surface>(groups.size())};
+  const std::vector<PreparedDraw> draws =
+      prepare_draws(rank.screen, list_, rank.shader, rank.options.cull_single_sided);
+  std::vector<Coverage::Surface> of_draw;
+  for (const PreparedDraw& prepared : draws)
+    of_draw.push_back({prepared.blended, mean_opacity(rank.shader, *prepared.draw->mesh)});
   constexpr std::size_t kGrain = 1024;  // triangles
   const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
-  std::vector<Coverage::Surface> surfaces;
-  for (const PreparedDraw& prepared : draws)
-    surfaces.push_back({prepared.blended, mean_opacity(rank.shader, *prepared.draw->mesh)});
-  const auto surface = [&](std::size_t group) { return surfaces[draw_of[group]]; };
   std::mutex adds_large;
   ProcessorSeconds seconds;
   parallel::parallel_blocks(0, groups.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -100,72 +122,77 @@ std::vector<loadbalance::WeightedBox> ScreenPartition::boxes_of(RankContext& ran
     std::vector<ScreenTriangle> large;
     seconds.measure([&] {
       for (std::size_t i = begin; i < end; ++i) {
+        bounded.surfaces[i] = of_draw[draw_of_[i]];
         large.clear();
-        const Extent e = extents.of(draws[draw_of[i]], groups[i].first, groups[i].count, large);
+        const Extent e = extents.of(draws[draw_of_[i]], groups[i].first, groups[i].count, large);
         if (e.triangles == 0) continue;
         boxes[i].box = pixels_of(e.box, rank.options.supersampling);
         // A border crosses about the root of a patch's triangles.
         boxes[i].cost = model.setup(static_cast<double>(e.triangles));
         boxes[i].setup = model.setup(std::sqrt(static_cast<double>(e.triangles)));
         boxes[i].primitives = e.triangles;
-        samples[i] = static_cast<double>(e.pixels);
+        bounded.samples[i] = static_cast<double>(e.pixels);
         if (large.empty()) continue;
         const std::lock_guard lock(adds_large);
         for (const ScreenTriangle& triangle : large)
-          large_samples[i] += coverage.add_large(triangle, surface(i));
+          bounded.large_samples[i] += coverage.add_large(triangle, bounded.surfaces[i]);
       }
     });
   });
   for (std::size_t i = 0; i < groups.size(); ++i)
-    coverage.add(boxes[i].box, samples[i], surface(i));
+    coverage.add(boxes[i].box, bounded.samples[i], bounded.surfaces[i]);
   rank.counts.phases.bin += seconds.seconds();
-  unchanged_ = false;
-  if (rank.ranks() > 1) {
-    Contribution mine{rank.number(),
-                      rank.ranks(),
-                      rank.screen.frame(),
-                      rank.samples_per_pixel(),
-                      model,
-                      seen_samples != nullptr,
-                      boxes,
-                      samples,
-                      large_samples,
-                      coverage.squares()};
-    unchanged_ = agreement_.holds(rank.communicator,
-                                  rank.options.costs == CostSource::model && mine == last_);
-    if (unchanged_) {
-      if (seen_samples != nullptr) *seen_samples = answer_.seen;
-      return answer_.boxes;
-    }
-    cut_before_ = reported_ = false;
-    last_ = std::move(mine);
-    coverage.sum_over_ranks(rank.communicator);
-  }
-  statistics_.reset();
-  SeenSamples seen_of_groups;
-  if (seen_samples != nullptr) {
-    seen_of_groups = {model.per_pixel, std::vector<double>(groups.size()),
-                      std::vector<double>(groups.size())};
-  }
-  for (std::size_t i = 0; i < groups.size(); ++i) {
+  return bounded;
+}
+
+// What of the groups is seen, by the coverage of all ranks, and what that costs.
+void ScreenPartition::add_seen(const loadbalance::RasterCostModel& model, const Coverage& coverage,
+                               const Bounded& bounded, bool tells_seen) {
+  std::vector<loadbalance::WeightedBox>& boxes = costed_.boxes;
+  costed_.seen = {};
+  if (tells_seen)
+    costed_.seen = {model.per_pixel, std::vector<double>(boxes.size()),
+                    std::vector<double>(boxes.size())};
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].box.empty()) continue;
-    const double seen = coverage.seen(boxes[i].box, surface(i).blended);
-    boxes[i].cost += model.per_pixel * samples[i] * (seen + kDrawn);
-    if (seen_samples == nullptr) continue;
-    seen_of_groups.all[i] = seen * (samples[i] + large_samples[i]);
-    seen_of_groups.large[i] = seen * large_samples[i];
+    const double seen = coverage.seen(boxes[i].box, bounded.surfaces[i].blended);
+    boxes[i].cost += model.per_pixel * bounded.samples[i] * (seen + kDrawn);
+    if (!tells_seen) continue;
+    costed_.seen.all[i] = seen * (bounded.samples[i] + bounded.large_samples[i]);
+    costed_.seen.large[i] = seen * bounded.large_samples[i];
   }
+}
+
+const CostedGroups& ScreenPartition::groups(RankContext& rank, const Grouping& grouping,
+                                            bool tells_seen) {
+  const Basis basis{rank.number(),
+                    rank.ranks(),
+                    rank.screen.view,
+                    rank.options.supersampling,
+                    rank.options.lighting,
+                    rank.options.costs,
+                    rank.options.cull_single_sided,
+                    tells_seen};
+  unchanged_ = rank.options.costs == CostSource::model && basis_ == basis && grouping_ == grouping;
+  if (rank.ranks() > 1) unchanged_ = agreement_.holds(rank.communicator, unchanged_);
+  if (unchanged_) return costed_;
+  ++version_;
+  cut_before_ = reported_ = false;
+  statistics_.reset();
+  basis_ = basis;
+  const loadbalance::RasterCostModel model = model_of(rank);
+  group(rank, grouping);
+  Coverage coverage(rank.screen, rank.options.supersampling);
+  const Bounded bounded = bound(rank, model, coverage);
+  if (rank.ranks() > 1) coverage.sum_over_ranks(rank.communicator);
+  add_seen(model, coverage, bounded, tells_seen);
   large_.clear();
   if (rank.number() == 0)
     large_ = coverage.costs_of_large(model.per_pixel, model.per_pixel * kDrawn);
-  if (seen_samples != nullptr) *seen_samples = seen_of_groups;
-  if (rank.ranks() > 1) answer_ = {boxes, std::move(seen_of_groups)};
-  return boxes;
+  return costed_;
 }
 
-const loadbalance::Partition& ScreenPartition::cut(RankContext& rank,
-                                                   std::span<const loadbalance::WeightedBox> boxes,
-                                                   int parts, int first_rank) {
+const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts, int first_rank) {
   const RenderOptions& options = rank.options;
   const Kind kind{options.partition, rank.ranks(), parts, options.regions_per_rank,
                   options.keep_factor};
@@ -179,16 +206,17 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank,
     }
     return kept_->again();
   }
+  ++version_;
   cut_before_ = true;
   reported_ = options.report_partition;
-  if (!kept_ || !(kind == kind_)) {
+  if (!kept_ || !(kind == kind_))
     kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
                   options.regions_per_rank);
-  }
   kind_ = kind;
 
   const geometry::Rect frame = rank.frame();
-  std::vector<loadbalance::WeightedBox> all = loadbalance::gather_boxes(boxes, rank.communicator);
+  std::vector<loadbalance::WeightedBox> all =
+      loadbalance::gather_boxes(costed_.boxes, rank.communicator);
   all.insert(all.end(), large_.begin(), large_.end());
   const bool cuts_here = rank.number() == 0;
   loadbalance::Costs costs;
@@ -201,11 +229,18 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank,
   const std::uint64_t recomputed = kept_->recomputed();
   const double before = rank.communicator.seconds();
   const loadbalance::Partition& partition = kept_->next(costs, rank.communicator);
+  const double taken = rank.communicator.seconds() - before;
   statistics_.reset();
   if (!options.report_partition || !cuts_here) return partition;
-  statistics_.emplace();
+  report(costs, partition, parts);
   statistics_->kept = kept_->recomputed() == recomputed;
-  if (!statistics_->kept) statistics_->seconds = rank.communicator.seconds() - before;
+  if (!statistics_->kept) statistics_->seconds = taken;
+  return partition;
+}
+
+void ScreenPartition::report(const loadbalance::Costs& costs,
+                             const loadbalance::Partition& partition, int parts) {
+  statistics_.emplace();
   statistics_->predicted = loadbalance::imbalance(loadbalance::loads(costs, partition, parts));
   loadbalance::Balance balance = loadbalance::balance(partition, costs.boxes, parts);
   statistics_->over_share = balance.over_share;
@@ -214,15 +249,13 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank,
   statistics_->shared = balance.shared;
   statistics_->partition = partition;
   statistics_->loads = std::move(balance.loads);
-  return partition;
 }
 
 loadbalance::Costs ScreenPartition::costs(RankContext& rank, int regions) {
   assert(rank.ranks() == 1);
   const auto [begin, end] = rank.own_primitives();
   std::vector<loadbalance::WeightedBox> boxes =
-      boxes_of(rank, groups_of(pieces_of(rank.scene, rank.first_primitives, begin, end),
-                               group_triangles(rank.first_primitives.back(), regions)));
+      groups(rank, {begin, end, group_triangles(rank.first_primitives.back(), regions)}).boxes;
   boxes.insert(boxes.end(), large_.begin(), large_.end());
   return costs_of(rank.frame(), regions, boxes);
 }

@@ -21,11 +21,28 @@ struct RankContext;
 // each other.
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles);
 
-// What boxes_of expects to be seen of each group, in samples, and what one costs: where a group is
-// drawn by one rank as a whole, its large triangles belong to its cost.
+// The primitives that are bounded and shared out in groups of at most so many triangles.
+struct Grouping {
+  std::uint64_t begin = 0, end = 0;
+  std::uint32_t triangles = 1;
+  bool operator==(const Grouping&) const = default;
+};
+
+// What is expected to be seen of each group, in samples, and what one costs: where a group is drawn
+// by one rank as a whole, its large triangles belong to its cost.
 struct SeenSamples {
   double price = 1;  // in the unit of the boxes' costs
   std::vector<double> all, large;
+};
+
+// This rank's groups. Element i of all is of group i.
+struct CostedGroups {
+  std::vector<Piece> groups;
+  // The box on the screen, in pixels, and what the group may cost: its triangles, and the part of
+  // its pixels that is seen if all groups lie behind each other at random. Without the pixels of
+  // large triangles, of which cut() knows more exactly than by a box. Empty boxes cost nothing.
+  std::vector<loadbalance::WeightedBox> boxes;
+  SeenSamples seen;  // if asked for
 };
 
 // Cuts the screen frame after frame, by what the frames before have taught. One per rank.
@@ -34,24 +51,20 @@ class ScreenPartition {
   // The triangles to take together for `parts` regions, of so many in the scene.
   static std::uint32_t group_triangles(std::uint64_t triangles, int parts);
 
-  // The box of every group on the screen, in pixels, and what it may cost: its triangles, and the
-  // part of its pixels that is seen if all groups lie behind each other at random; cut() knows of
-  // those of large triangles, more exactly than by a box. Empty boxes cost nothing. Collective:
-  // unless nothing has changed for any rank since the last frame, a grid of 16 x 16 pixels is
-  // summed over ranks and, where costs are measured, every rank says what it did.
-  std::vector<loadbalance::WeightedBox> boxes_of(RankContext& rank, std::span<const Piece> groups,
-                                                 SeenSamples* seen_samples = nullptr);
+  // The groups and their costs. Collective: unless nothing has changed for any rank since the last
+  // frame (view, options, grouping), which is asked before anything is bounded, a grid of 16 x 16
+  // pixels is summed over ranks and, where costs are measured, every rank says what it did. Valid
+  // until the next call.
+  const CostedGroups& groups(RankContext& rank, const Grouping& grouping, bool tells_seen = false);
 
-  // Whether boxes_of gave on all ranks what it gave the last time; never for measured costs.
-  bool unchanged() const { return unchanged_; }
+  // A number for what groups() and cut() gave last: another one where it may not be what they gave
+  // before. It changes on all ranks or on none.
+  std::uint64_t version() const { return version_; }
 
   // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
-  // boxes, or as it was cut for the last frame. Collective; nothing travels if all is unchanged.
-  // Valid until the next call. Owner k is
-  // rank first_rank + k.
-  const loadbalance::Partition& cut(RankContext& rank,
-                                    std::span<const loadbalance::WeightedBox> boxes, int parts,
-                                    int first_rank = 0);
+  // groups, or as it was cut for the last frame. Collective; nothing travels if all is unchanged.
+  // Valid until the next call. Owner k is rank first_rank + k.
+  const loadbalance::Partition& cut(RankContext& rank, int parts, int first_rank = 0);
 
   // The costs of all primitives, to be cut into so many regions. REQUIRES: a single rank.
   loadbalance::Costs costs(RankContext& rank, int regions);
@@ -71,27 +84,37 @@ class ScreenPartition {
     bool operator==(const Kind&) const = default;
   };
 
-  // What this rank puts into the costs of a frame, and what came out for its groups.
-  struct Contribution {
-    int rank = -1, ranks = 0;
-    geometry::Rect frame;
-    int samples_per_pixel = 0;
-    loadbalance::RasterCostModel model;
-    bool tells_seen = false;
-    std::vector<loadbalance::WeightedBox> boxes;
-    std::vector<double> samples, large_samples;
-    std::vector<Coverage::Square> squares;
-    bool operator==(const Contribution&) const = default;
+  // What a rank's groups and their costs depend on, but for the scene.
+  struct Basis {
+    int rank, ranks;
+    scenes::View view;
+    int supersampling;
+    Lighting lighting;
+    CostSource costs;
+    bool cull_single_sided, tells_seen;
+    bool operator==(const Basis& other) const;
   };
-  struct Answer {
-    std::vector<loadbalance::WeightedBox> boxes;
-    SeenSamples seen;
+  // What was found of the groups without looking at other ranks' ones, in samples.
+  struct Bounded {
+    std::vector<double> samples, large_samples;
+    std::vector<Coverage::Surface> surfaces;
   };
 
+  loadbalance::RasterCostModel model_of(RankContext& rank);
+  void group(RankContext& rank, const Grouping& grouping);
+  Bounded bound(RankContext& rank, const loadbalance::RasterCostModel& model, Coverage& coverage);
+  void add_seen(const loadbalance::RasterCostModel& model, const Coverage& coverage,
+                const Bounded& bounded, bool tells_seen);
+  void report(const loadbalance::Costs& costs, const loadbalance::Partition& partition, int parts);
+
   Agreement agreement_;
-  Contribution last_;
-  Answer answer_;
+  std::optional<Basis> basis_;
+  std::optional<Grouping> grouping_;
+  CostedGroups costed_;
+  DrawList list_;                       // of the groups
+  std::vector<std::uint32_t> draw_of_;  // by group
   bool unchanged_ = false;
+  std::uint64_t version_ = 0;
   bool cut_before_ = false, reported_ = false;  // since the ranks agreed
   Kind kind_{};
   std::optional<loadbalance::KeptPartition> kept_;

@@ -1,6 +1,6 @@
 // Finds the ranks that a cluster's triangles go to in sort-middle (Molnar et al. 1994): by the
-// cluster's bounds where these touch one rank's regions only, else by the box of each triangle that
-// is set up.
+// cluster's bounds where these touch one rank's regions only, else by the box of each triangle.
+// Triangles that would not be drawn go nowhere; boxes are found by vectors.
 //
 // A cluster that touches this rank's regions alone is not transformed here. O(triangles x owners).
 // Degenerate: clusters that are outside, or show hidden sides only, go nowhere.
@@ -12,16 +12,19 @@
 #include "raster/distribute/transformed_clusters.h"
 #include "raster/pipeline/cull.h"
 #include "raster/pipeline/samples.h"
+#include "raster/pipeline/set_up.h"
+#include "raster/pipeline/triangle_boxes.h"
 
 namespace delray::raster {
 namespace {
 
-ScreenVertices& vertices() {
-  static thread_local ScreenVertices of_thread;
-  return of_thread;
-}
-ClusterPacker& packer() {
-  static thread_local ClusterPacker of_thread;
+struct Memory {
+  ScreenVertices vertices;
+  TriangleBoxes boxes;
+  ClusterPacker packer;
+};
+Memory& memory() {
+  static thread_local Memory of_thread;
   return of_thread;
 }
 
@@ -38,15 +41,24 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
   places_.clear();
   receivers_.clear();
   const bool one_owner = owners_.size() == 1;
+  const MeshCluster& mesh_cluster = block.clusters[cluster.part];
+  const ScreenVertices& vertices = memory().vertices;
+  TriangleBoxes& boxes = memory().boxes;
+  if (!vertices.any_outside) find_boxes({rank_.screen, draw, block, mesh_cluster, vertices}, boxes);
   for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-    geometry::Rect box{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
-    const Fate fate = set_up(
-        rank_.screen, draw, vertices(), corners_at(block, block.clusters[cluster.part], place),
-        cluster.first + place, 0, [&](const ScreenTriangle&, const geometry::Rect& pixels) {
-          box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0),
-                 std::max(box.x1, pixels.x1), std::max(box.y1, pixels.y1)};
-        });
-    if (fate == Fate::culled) continue;
+    const bool alone = vertices.any_outside || boxes.pixels[place] == TriangleBoxes::kAlone;
+    if (!alone && boxes.pixels[place] == TriangleBoxes::kCulled) continue;
+    geometry::Rect box = boxes.box(place);
+    if (alone) {
+      box = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
+      const Fate fate = set_up(rank_.screen, draw, vertices, corners_at(block, mesh_cluster, place),
+                               cluster.first + place, 0,
+                               [&](const ScreenTriangle&, const geometry::Rect& pixels) {
+                                 box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0),
+                                        std::max(box.x1, pixels.x1), std::max(box.y1, pixels.y1)};
+                               });
+      if (fate == Fate::culled) continue;
+    }
     if (!one_owner) find_owners(box);
     bool travels = false;
     for (const int owner : owners_) {
@@ -64,7 +76,7 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
 
 void TriangleSorter::pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted) {
   if (places_.empty()) return;
-  packer().set(drawing_.frame(), draw, number, places_);
+  memory().packer.set(drawing_.frame(), draw, number, places_);
   std::sort(receivers_.begin(), receivers_.end());
   for (std::size_t first = 0, last; first < receivers_.size(); first = last) {
     which_.clear();
@@ -73,7 +85,7 @@ void TriangleSorter::pack(const PreparedDraw& draw, std::uint32_t number, Sorted
       which_.push_back(receivers_[last].second);
     SortedClusters::Parcel& parcel = sorted.parcel_to(receivers_[first].first);
     parcel.triangles += which_.size();
-    packer().pack(which_, parcel.bytes);
+    memory().packer.pack(which_, parcel.bytes);
   }
 }
 
@@ -94,7 +106,7 @@ void TriangleSorter::sort(std::uint32_t number, SortedClusters& sorted) {
     return;
   }
   transform(draw.to_view, rank_.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
-            vertices());
+            memory().vertices);
   const bool stays = find_receivers(draw, block, cluster);
   if (stays)
     sorted.staying.push_back(number);

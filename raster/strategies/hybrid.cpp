@@ -172,26 +172,12 @@ class Drawing {
 template <class Colour, bool kTransparent>
 Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
-  communicator.mark(comm::Phase::transform, 0);
-  const VisibleGroups visible = find_visible_groups(rank);
-
-  communicator.mark(comm::Phase::redistribute, 0);
-  // As in the last frame, if that is unchanged for all ranks.
-  SharedOut& out = rank.memory.shared_out;
+  const SharedOut& out = share_out_frame(rank);
   const Shares& shares = out.shares;
-  const DrawList list = timed(communicator, rank.counts.phases.redistribute, [&] {
-    if (!rank.memory.screen.unchanged() || out.travel != rank.options.travel) {
-      out = {};
-      out.shares = share_out(rank, visible);
-      out.pieces = send_to_owners(rank, visible.groups, shares, out.arrivals);
-      out.travel = rank.options.travel;
-    }
-    return make_draw_list(out.pieces, &rank.clusters);
-  });
 
   auto image = rank.take_image<Colour>(rank.options.width, rank.options.height);
   Drawing<Colour, kTransparent> drawing(rank, shares, image);
-  drawing.draw(list);
+  drawing.draw(out.list);
   communicator.mark(comm::Phase::compose, 0);
   const double drawn = communicator.seconds();
   drawing.compose();

@@ -75,12 +75,12 @@ Bins bin_clusters(const RankContext& rank, const DrawList& list, const PreparedF
 std::vector<loadbalance::TaskRange> blocks_of_regions(RankContext& rank,
                                                       const loadbalance::Blocks& blocks) {
   const auto [begin, end] = rank.own_primitives();
-  const std::uint32_t triangles = ScreenPartition::group_triangles(
-      rank.first_primitives.back(), rank.ranks() * rank.options.regions_per_rank);
   ScreenPartition& screen = rank.memory.screen;
-  const auto boxes = screen.boxes_of(
-      rank, groups_of(pieces_of(rank.scene, rank.first_primitives, begin, end), triangles));
-  return loadbalance::owned_blocks(screen.cut(rank, boxes, rank.ranks()), blocks, rank.number());
+  screen.groups(rank,
+                {begin, end,
+                 ScreenPartition::group_triangles(rank.first_primitives.back(),
+                                                  rank.ranks() * rank.options.regions_per_rank)});
+  return loadbalance::owned_blocks(screen.cut(rank, rank.ranks()), blocks, rank.number());
 }
 
 // Who has rendered which block: all of it on rank 0, a rank's own elsewhere.

@@ -4,6 +4,7 @@
 // Each cluster of the whole scene has a number that ascends with its primitives, known from a sum
 // over the ranks before. So what arrives may be drawn in any order, and equal depths still go to
 // the lowest primitive. What touches its own rank's regions is drawn as it is, without travelling.
+// Where nothing has changed since the last frame, what arrived for that is drawn again.
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -65,9 +66,9 @@ class Redistributor {
  public:
   // Collective. `boxes` are around everything that this rank may send.
   Redistributor(RankContext& rank, const loadbalance::Partition& partition,
-                std::span<const loadbalance::WeightedBox> boxes, DrawList& list,
+                std::span<const loadbalance::WeightedBox> boxes, SortedMiddle& sorted,
                 RegionDrawing& drawing)
-      : rank_(rank), regions_(partition), list_(list), drawing_(drawing) {
+      : rank_(rank), regions_(partition), sorted_(sorted), drawing_(drawing) {
     // A message at least for each rank that may get something, so that it knows when all is there.
     std::vector<int> senders(static_cast<std::size_t>(rank.ranks())), owners;
     for (const loadbalance::WeightedBox& box : boxes) {
@@ -140,7 +141,7 @@ class Redistributor {
       std::uint32_t is_last = 0;
       std::memcpy(&is_last, bytes.data(), sizeof(is_last));
       senders_left_ -= static_cast<int>(is_last);
-      unpack_clusters(bytes.subspan(sizeof(is_last)), arrived_, list_, here);
+      unpack_clusters(bytes.subspan(sizeof(is_last)), sorted_.arrived, sorted_.list, here);
     }
   }
 
@@ -164,10 +165,9 @@ class Redistributor {
 
   RankContext& rank_;
   const loadbalance::RegionIndex regions_;
-  DrawList& list_;
+  SortedMiddle& sorted_;
   RegionDrawing& drawing_;
   std::map<int, Bucket> buckets_;  // by receiver
-  std::deque<ArrivedMesh> arrived_;
   int senders_left_ = 0;
   double seconds_ = 0;
   std::uint64_t culled_ = 0;
@@ -175,8 +175,8 @@ class Redistributor {
 
 // Everything that touches the rank's regions, once it is there.
 void draw_at_end(RankContext& rank, std::span<const std::uint32_t> own,
-                 Redistributor& redistributor, RegionDrawing& drawing) {
-  std::vector<std::uint32_t> here;
+                 Redistributor& redistributor, RegionDrawing& drawing,
+                 std::vector<std::uint32_t>& here) {
   rank.communicator.mark(comm::Phase::transform, 0);
   redistributor.sort(own, here);
   rank.communicator.mark(comm::Phase::redistribute, 0);
@@ -191,7 +191,8 @@ void draw_at_end(RankContext& rank, std::span<const std::uint32_t> own,
 
 // Whatever is there, while geometry goes on here or elsewhere.
 void draw_at_once(RankContext& rank, std::span<const std::uint32_t> own,
-                  Redistributor& redistributor, RegionDrawing& drawing) {
+                  Redistributor& redistributor, RegionDrawing& drawing,
+                  std::vector<std::uint32_t>& drawn) {
   comm::Communicator& communicator = rank.communicator;
   std::vector<std::uint32_t> here;
   int round = 0;
@@ -204,6 +205,7 @@ void draw_at_once(RankContext& rank, std::span<const std::uint32_t> own,
     });
     communicator.mark(comm::Phase::rasterize, round++);
     if (!here.empty()) drawing.draw(here);
+    drawn.insert(drawn.end(), here.begin(), here.end());
     here.clear();
   };
   const std::vector<std::uint32_t> order = drawing.nearest_first(own);
@@ -221,46 +223,63 @@ void draw_at_once(RankContext& rank, std::span<const std::uint32_t> own,
 }
 
 template <class Colour>
+Picture finish(RankContext& rank, const loadbalance::Partition& partition,
+               std::span<const geometry::Rect> regions, RegionDrawing& drawing) {
+  image::BasicImage<Colour> image;
+  if (rank.number() == 0 || !regions.empty())
+    image = rank.take_image<Colour>(rank.options.width, rank.options.height);
+  rank.end_pixels(drawing, image);
+  rank.memory.screen.measure(rank);
+  return rank.gather(partition, std::move(image));
+}
+
+template <class Colour>
 Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
   communicator.mark(comm::Phase::transform, 0);
   const Roles roles = roles_of(rank);
   const auto [begin, end] = rank.own_primitives(roles.geometry);
   const int drawing_ranks = rank.ranks() - roles.first_rasterizer;
-  const std::vector<Piece> pieces = pieces_of(rank.scene, rank.first_primitives, begin, end);
   ScreenPartition& screen = rank.memory.screen;
-  const std::vector<loadbalance::WeightedBox> boxes =
-      screen.boxes_of(rank, groups_of(pieces, ScreenPartition::group_triangles(
-                                                  rank.first_primitives.back(),
-                                                  drawing_ranks * rank.options.regions_per_rank)));
-  DrawList list = make_draw_list(pieces, &rank.clusters);
+  const CostedGroups& costed = screen.groups(
+      rank, {begin, end,
+             ScreenPartition::group_triangles(rank.first_primitives.back(),
+                                              drawing_ranks * rank.options.regions_per_rank)});
 
   communicator.mark(comm::Phase::redistribute, 0);
   const double before_cut = communicator.seconds();
-  const std::vector<std::uint32_t> own = number_globally(rank, list);
-  loadbalance::Partition partition = screen.cut(rank, boxes, drawing_ranks, roles.first_rasterizer);
+  loadbalance::Partition partition = screen.cut(rank, drawing_ranks, roles.first_rasterizer);
   for (loadbalance::Region& region : partition.regions) region.owner += roles.first_rasterizer;
-  rank.counts.phases.redistribute += communicator.seconds() - before_cut;
   std::vector<geometry::Rect> regions;
   for (const loadbalance::Region& region : partition.regions)
     if (region.owner == rank.number()) regions.push_back(region.rect);
-  RegionDrawing drawing = rank.begin(list, regions);
-  Redistributor redistributor(rank, partition, boxes, list, drawing);
-  if (redistributor.nothing_travels())
+  SortedMiddle& sorted = rank.memory.sorted_middle;
+  if (sorted.version == screen.version()) {
+    // What arrived for the last frame is what would arrive for this one.
+    rank.counts.phases.redistribute += communicator.seconds() - before_cut;
+    RegionDrawing drawing = rank.begin(sorted.list, regions);
+    drawing.draw(sorted.drawn);
+    return finish<Colour>(rank, partition, regions, drawing);
+  }
+  sorted = {};
+  sorted.list =
+      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
+  const std::vector<std::uint32_t> own = number_globally(rank, sorted.list);
+  rank.counts.phases.redistribute += communicator.seconds() - before_cut;
+  RegionDrawing drawing = rank.begin(sorted.list, regions);
+  Redistributor redistributor(rank, partition, costed.boxes, sorted, drawing);
+  if (redistributor.nothing_travels()) {
     drawing.draw(own);
-  else if (rank.options.redistribution == Redistribution::at_end)
-    draw_at_end(rank, own, redistributor, drawing);
-  else
-    draw_at_once(rank, own, redistributor, drawing);
-
-  image::BasicImage<Colour> image;
-  if (rank.number() == 0 || !regions.empty())
-    image = rank.take_image<Colour>(rank.options.width, rank.options.height);
-  rank.end_pixels(drawing, image);
-  screen.measure(rank);
+    sorted.drawn = own;
+  } else if (rank.options.redistribution == Redistribution::at_end) {
+    draw_at_end(rank, own, redistributor, drawing, sorted.drawn);
+  } else {
+    draw_at_once(rank, own, redistributor, drawing, sorted.drawn);
+  }
+  sorted.version = screen.version();
+  Picture picture = finish<Colour>(rank, partition, regions, drawing);
   redistributor.count_geometry();
-
-  return rank.gather(partition, std::move(image));
+  return picture;
 }
 
 }  // namespace

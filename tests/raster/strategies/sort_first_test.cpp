@@ -90,13 +90,18 @@ TEST(SortFirst, WhatWasNotNeededForLongIsForgottenAndSentAgain) {
   elsewhere.at = elsewhere.eye * 2.0F;  // nothing is seen
   RenderOptions options = sort_first_options();
   options.keep_factor = 1e9;  // nothing changes but what is seen
-  std::vector<scenes::Camera> soon(GroupTraffic::kFramesKept, elsewhere);
-  soon.front() = soon.back() = there;
+  // Frames in which nothing moves do not count.
+  const auto turning = [&](std::size_t frames) {
+    std::vector<scenes::Camera> cameras(frames, elsewhere);
+    for (std::size_t i = 0; i < frames; ++i) cameras[i].eye *= 1 + 0.01F * static_cast<float>(i);
+    cameras.front() = cameras.back() = there;
+    return cameras;
+  };
+  const std::vector<scenes::Camera> soon = turning(GroupTraffic::kFramesKept);
   const std::vector<Statistics> back_soon = animated(scene, soon, options, 3);
   EXPECT_GT(back_soon.front().triangles_travelled, 0U);
   EXPECT_EQ(back_soon.back().triangles_travelled, 0U);
-  std::vector<scenes::Camera> late(GroupTraffic::kFramesKept + 2, elsewhere);
-  late.front() = late.back() = there;
+  const std::vector<scenes::Camera> late = turning(GroupTraffic::kFramesKept + 2);
   const std::vector<Statistics> back_late = animated(scene, late, options, 3);
   EXPECT_EQ(back_late.back().triangles_travelled, back_late.front().triangles_travelled);
 }
