@@ -33,13 +33,14 @@ Triangulation rebuild(PointView<double> points, const Options& options) {
   alone.location = "walk";
   alone.order = "brio";
   alone.threads = 1;
-  alone.statistics = nullptr;
+  alone.statistics = false;
+  alone.created_by = false;
   alone.progress = nullptr;
-  return insert_all(points, alone);
+  return insert_all(points, alone).triangulation;
 }
 
 template <int D, bool kCounted>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -65,23 +66,24 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       },
       [&](const Burglar& burglar) {
         robbed |= burglar.access.has_robbed();
-        if (kCounted) add(options.statistics->synchronization, burglar.access.counts());
+        if (kCounted) add(run.statistics.synchronization, burglar.access.counts());
       });
   // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
   // without a burglary; with one, all that came after it may have built on what it left.
   std::optional<std::uint64_t> repaired = 0;
   if (robbed) repaired = repair(triangulation, run.parts());
-  if (kCounted) options.statistics->synchronization.repaired += repaired.value_or(0);
-  Triangulation result = run.finish();
+  if (kCounted) run.statistics.synchronization.repaired += repaired.value_or(0);
+  Result result = run.finish();
   if (repaired) return result;
-  if (kCounted) ++options.statistics->synchronization.rebuilds;
-  if (options.created_by != nullptr) options.created_by->clear();
-  return rebuild(points, options);
+  if (kCounted) ++result.statistics.synchronization.rebuilds;
+  result.triangulation = rebuild(points, options);
+  result.created_by.clear();
+  return result;
 }
 
 }  // namespace
 
-Triangulation insert_by_burglary(PointView<double> points, const Options& options) {
+Result insert_by_burglary(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
     return insert_all_points<D, kCounted>(points, options);
   });

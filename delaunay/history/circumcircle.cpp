@@ -25,7 +25,7 @@ namespace delray::delaunay::internal {
 namespace {
 
 template <bool kCounted>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<2> triangulation = run.triangulation();
@@ -51,19 +51,19 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       },
       [&](const CircleAccess<kCounted>& access) {
         robbed |= access.has_robbed();
-        if (kCounted) add(options.statistics->synchronization, access.counts());
+        if (kCounted) add(run.statistics.synchronization, access.counts());
       });
   // As in the burglary method.
   const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;
-  if (kCounted) options.statistics->synchronization.repaired += repaired;
+  if (kCounted) run.statistics.synchronization.repaired += repaired;
   return run.finish();
 }
 
 }  // namespace
 
-Triangulation insert_by_circles(PointView<double> points, const Options& options) {
-  return options.statistics != nullptr ? insert_all_points<true>(points, options)
-                                       : insert_all_points<false>(points, options);
+Result insert_by_circles(PointView<double> points, const Options& options) {
+  return options.statistics ? insert_all_points<true>(points, options)
+                            : insert_all_points<false>(points, options);
 }
 
 }  // namespace delray::delaunay::internal

@@ -42,7 +42,7 @@ bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber
 }
 
 template <int D, bool kCounted>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -71,14 +71,14 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
         locker.access.commit();
       },
       [&](const Locker& locker) {
-        if (kCounted) add(options.statistics->synchronization, locker.access.counts());
+        if (kCounted) add(run.statistics.synchronization, locker.access.counts());
       });
   return run.finish();
 }
 
 }  // namespace
 
-Triangulation insert_optimistically(PointView<double> points, const Options& options) {
+Result insert_optimistically(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
     return insert_all_points<D, kCounted>(points, options);
   });

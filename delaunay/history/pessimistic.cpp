@@ -22,7 +22,7 @@ namespace delray::delaunay::internal {
 namespace {
 
 template <int D>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -46,13 +46,13 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
         insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
       },
       [](const SoleDagAccess<D>&) {});
-  if (options.statistics != nullptr) options.statistics->synchronization.lock_calls = entered;
+  if (options.statistics) run.statistics.synchronization.lock_calls = entered;
   return run.finish();
 }
 
 }  // namespace
 
-Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
+Result insert_pessimistically(PointView<double> points, const Options& options) {
   return options.dim == 2 ? insert_all_points<2>(points, options)
                           : insert_all_points<3>(points, options);
 }

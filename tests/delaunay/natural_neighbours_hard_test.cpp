@@ -141,7 +141,7 @@ TEST(NaturalNeighbours, AreExactForLinearFunctionsOfHardSets) {
         SCOPED_TRACE(set.name + ", dim " + std::to_string(dim) + ", seed " + std::to_string(seed));
         Options options;
         options.dim = dim;
-        const Triangulation triangulation = triangulate(view(set.points), options);
+        const Triangulation triangulation = triangulate(view(set.points), options).triangulation;
         const Query query(view(set.points), triangulation);
         std::mt19937_64 random(seed);
         for (int round = 0; round < 24; ++round) {
@@ -160,8 +160,8 @@ TEST(NaturalNeighbours, OfABentGridAreThoseOfTheGrid) {
   Options options;
   options.dim = 3;
   const Points bent = lattice(3, 5, 0.1, 0), even = lattice(3, 5, 1, 0);
-  const Triangulation bent_cells = triangulate(view(bent), options);
-  const Triangulation even_cells = triangulate(view(even), options);
+  const Triangulation bent_cells = triangulate(view(bent), options).triangulation;
+  const Triangulation even_cells = triangulate(view(even), options).triangulation;
   const Query bent_query(view(bent), bent_cells), even_query(view(even), even_cells);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<> unit(0.5, 3.5);
