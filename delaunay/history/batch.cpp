@@ -23,7 +23,7 @@
 #include "delaunay/history/request_queue.h"
 #include "delaunay/history/sole_dag_access.h"
 #include "delaunay/insertion/insertion_phases.h"
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -163,7 +163,7 @@ class BatchInsertion {
   std::vector<NodeNumber> suspects_;
   std::deque<RequestQueue> queues_;
   std::vector<Supply> supplies_;
-  Team team_;
+  parallel::Team team_;
 };
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/history/leaf_search.h"
 #include "delaunay/mesh/add_counts.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -53,7 +54,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   bool robbed = false;
   insert_with_team(
       run, supply,
-      [&](Team& team, std::size_t thread) {
+      [&](parallel::Team& team, std::size_t thread) {
         return Burglar{
             {triangulation.dag, team, waits, static_cast<std::uint32_t>(thread), run.parts()},
             {triangulation, options.location}};

@@ -20,6 +20,7 @@
 #include "delaunay/history/insert_with_retry.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/mesh/add_counts.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -34,7 +35,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   bool robbed = false;
   insert_with_team(
       run, supply,
-      [&](Team& team, std::size_t thread) {
+      [&](parallel::Team& team, std::size_t thread) {
         return CircleAccess<kCounted>(triangulation, team, current,
                                       static_cast<std::uint32_t>(thread));
       },

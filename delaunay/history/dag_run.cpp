@@ -12,8 +12,8 @@
 #include "delaunay/history/dag_location.h"
 #include "delaunay/insertion/insertion_start.h"
 #include "delaunay/mesh/stopwatch.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/predicates/conflict.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -50,7 +50,7 @@ void in_parts(std::size_t n, std::size_t threads, F&& f) {
   // A thread takes about as long to start as to look at so many nodes.
   constexpr std::size_t kPerThread = 16384;
   if (n < threads * kPerThread) return f(std::size_t{0}, std::size_t{0}, n);
-  Team team;
+  parallel::Team team;
   team.run(threads, [&](std::size_t i) { f(i, n * i / threads, n * (i + 1) / threads); });
 }
 

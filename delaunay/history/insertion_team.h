@@ -8,7 +8,7 @@
 #include "delaunay/history/dag_run.h"
 #include "delaunay/insertion/insertion_phases.h"
 #include "delaunay/insertion/point_supply.h"
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -21,7 +21,7 @@ namespace delray::delaunay::internal {
 template <int D, class Make, class Insert, class Finish>
 void insert_with_team(DagRun<D>& run, PointSupply& supply, Make&& make, Insert&& insert,
                       Finish&& finish) {
-  Team team;
+  parallel::Team team;
   std::mutex finishing;
   team.run(run.parts(), [&](std::size_t thread) {
     auto worker = make(team, thread);

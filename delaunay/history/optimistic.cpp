@@ -17,6 +17,7 @@
 #include "delaunay/history/leaf_search.h"
 #include "delaunay/history/node_locks.h"
 #include "delaunay/mesh/add_counts.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -54,7 +55,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   };
   insert_with_team(
       run, supply,
-      [&](Team& team, std::size_t thread) {
+      [&](parallel::Team& team, std::size_t thread) {
         return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread),
                        options.deadlocks == "priorities"},
                       {triangulation, options.location}};

@@ -16,6 +16,7 @@
 #include "delaunay/history/insert_in_leaf.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/history/sole_dag_access.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -31,7 +32,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   std::uint64_t entered = 0;
   insert_with_team(
       run, supply,
-      [&](Team&, std::size_t thread) {
+      [&](parallel::Team&, std::size_t thread) {
         return SoleDagAccess<D>(triangulation.dag, static_cast<std::uint32_t>(thread));
       },
       [&](SoleDagAccess<D>& access, VertexNumber vertex, std::vector<NodeNumber>& suspects,
