@@ -1,0 +1,44 @@
+// The header of a LAS or LAZ file and the records behind it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string_view>
+
+#include "delaunay/files/input.h"
+#include "files/geo_keys.h"
+
+namespace delray::delaunay {
+
+// Where a point format keeps what is read, in bytes from the start of a record. All formats begin
+// with x, y, z as int32 and the intensity as uint16.
+struct LasPointFormat {
+  std::size_t size;            // smallest record
+  std::size_t colour;          // three uint16; 0 if there is none
+  std::size_t classification;  // one byte
+  std::uint8_t class_mask;     // the formats before 6 keep flags in the upper bits
+};
+inline constexpr std::size_t kLasIntensity = 12;
+
+struct LasHeader {
+  unsigned format_number = 0;
+  LasPointFormat format{};
+  bool compressed = false;  // LAZ
+  std::size_t size = 0;     // of the header: where records begin
+  std::size_t points_begin = 0, record_size = 0, count = 0;
+  glm::dvec3 scale{1}, offset{0};
+};
+
+// Throws FileError unless the header is one of LAS 1.0 to 1.4 and the points that it announces, if
+// not compressed, are in the file.
+LasHeader parse_las_header(const Input& input);
+
+// The content of the first variable length record of that user and number; empty if there is none.
+std::string_view find_las_record(const Input& input, const LasHeader& header, std::string_view user,
+                                 unsigned number);
+
+// What records between header and points tell about coordinates.
+files::GeoKeys read_las_geo_keys(const Input& input, const LasHeader& header);
+
+}  // namespace delray::delaunay
