@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "comm/collectives.h"
 #include "comm/mpi.h"
 #include "comm/threads.h"
@@ -35,6 +36,7 @@ struct Request {
   std::string strategy;  // empty: all
   int turns = 5, frames = 4;
   raster::Lighting lighting = raster::Lighting::phong;
+  bool phases = false;
 };
 
 struct View {
@@ -59,6 +61,7 @@ View load(const std::string& name) {
 // Milliseconds of frames.
 struct Times {
   std::vector<double> at_rest, turning;
+  raster::Phases phases_at_rest, phases_turning;  // summed
 };
 
 // A strategy on so many ranks. Renderers live as long as it does.
@@ -82,19 +85,25 @@ class Configuration {
   void run_rank(comm::Communicator& communicator, int frames) {
     auto& [renderer, turned] = ranks_memory_[static_cast<std::size_t>(communicator.rank())];
     if (!renderer) renderer.emplace(view_.scene, view_.shader);
-    const auto render = [&](const scenes::Camera& camera, std::vector<double>* times) {
+    const auto render = [&](const scenes::Camera& camera, std::vector<double>* times,
+                            raster::Phases* phases) {
       comm::barrier(communicator);
       const double begin = communicator.seconds();
       raster::Result result = renderer->render(communicator, camera, options_);
       if (communicator.rank() != 0) return;
-      if (times != nullptr) times->push_back((communicator.seconds() - begin) * 1e3);
+      if (times != nullptr) {
+        times->push_back((communicator.seconds() - begin) * 1e3);
+        *phases += result.statistics.phases;
+      }
       renderer->recycle(std::move(result.picture));
     };
-    render(view_.cameras[0], nullptr);
-    for (int i = 0; i < frames; ++i) render(view_.cameras[0], &times_.at_rest);
+    render(view_.cameras[0], nullptr, nullptr);
+    for (int i = 0; i < frames; ++i) {
+      render(view_.cameras[0], &times_.at_rest, &times_.phases_at_rest);
+    }
     for (int i = 0; i < frames; ++i) {
       turned = (turned + 1) % kAround;
-      render(view_.cameras[turned], &times_.turning);
+      render(view_.cameras[turned], &times_.turning, &times_.phases_turning);
     }
   }
 
@@ -103,6 +112,17 @@ class Configuration {
   int threads() const { return threads_; }
   double at_rest() const { return bench::median(times_.at_rest); }
   double turning() const { return bench::median(times_.turning); }
+  void print_phases() const {
+    std::printf("  %-12s %d x %d", strategy_.c_str(), ranks_, threads_);
+    for (const auto& [phases, frames] : {std::pair{times_.phases_at_rest, times_.at_rest.size()},
+                                         std::pair{times_.phases_turning, times_.turning.size()}}) {
+      std::printf("   ");
+      for (const double seconds : {phases.transform, phases.bin, phases.rasterize, phases.shade,
+                                   phases.redistribute, phases.compose, phases.gather})
+        std::printf(" %6.1f", seconds * 1e3 / static_cast<double>(frames));
+    }
+    std::printf("\n");
+  }
 
  private:
   const View& view_;
@@ -156,11 +176,22 @@ void compare(const std::string& name, std::size_t kind, const Request& request) 
   for (const Row& row : rows) {
     std::printf("  %-12s %6.1f %6.1f ms, %6.1f %6.1f ms", row.bars.strategy, row.two.at_rest(),
                 row.four.at_rest(), row.two.turning(), row.four.turning());
-    print_ratio(row.two.at_rest() / alone.at_rest(), row.bars.at_rest[kind]);
-    print_ratio(row.two.turning() / alone.turning(), row.bars.turning[kind]);
-    print_ratio(row.four.at_rest() / row.two.at_rest(), kFourOverTwoAtRest);
-    print_ratio(row.four.turning() / row.two.turning(), kFourOverTwoTurning);
+    const auto ratio = [&](const char* what, double over, double under, double bar) {
+      print_ratio(over / under, bar);
+      bench::report_ratio(name + ", " + row.bars.strategy + ", " + what, over / under,
+                          bench::Better::lower, bar);
+    };
+    ratio("2 ranks over 2 threads", row.two.at_rest(), alone.at_rest(), row.bars.at_rest[kind]);
+    ratio("the same turning", row.two.turning(), alone.turning(), row.bars.turning[kind]);
+    ratio("4 ranks over 2", row.four.at_rest(), row.two.at_rest(), kFourOverTwoAtRest);
+    ratio("4 over 2 turning", row.four.turning(), row.two.turning(), kFourOverTwoTurning);
     std::printf("\n");
+  }
+  if (request.phases) {
+    std::printf(
+        "  summed over ranks, at rest and turning: transform, bin, rasterize, shade, redistribute, "
+        "compose, gather\n");
+    for (const auto& configuration : configurations) configuration->print_phases();
   }
   std::fflush(stdout);
 }
@@ -184,8 +215,8 @@ void measure_mpi(comm::Communicator& world, const Request& request) {
 
 }  // namespace
 
-// [--turns N] [--frames N] [--gouraud] [--strategy NAME] [SCENE ...]: scenes as delray render takes
-// them. Bars are by kind: terrain, city, any other.
+// [--turns N] [--frames N] [--gouraud] [--phases] [--strategy NAME] [SCENE ...]: scenes as delray
+// render takes them. Bars are by kind: terrain, city, any other.
 int main(int argc, char** argv) {
   Request request;
   for (int i = 1; i < argc; ++i) {
@@ -196,6 +227,8 @@ int main(int argc, char** argv) {
       request.frames = std::atoi(argv[++i]);
     else if (is("--strategy") && i + 1 < argc)
       request.strategy = argv[++i];
+    else if (is("--phases"))
+      request.phases = true;
     else if (is("--gouraud"))
       request.lighting = raster::Lighting::gouraud;
     else

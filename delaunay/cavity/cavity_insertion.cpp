@@ -47,8 +47,9 @@ Array<std::uint32_t> take_rows(Array<SpaceVertex>&& vertices, int threads) {
   return rows;
 }
 
-Result run(PointView<double> points, const Options& options) {
-  Statistics seconds;
+Triangulation run(PointView<double> points, const Options& options) {
+  Statistics unused;
+  Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
   Stopwatch watch;
 
   const PointRange range = finite_range(points, options.threads);
@@ -61,12 +62,11 @@ Result run(PointView<double> points, const Options& options) {
   };
   const auto start = first_tetrahedron(n, at);
   if (!start) {
-    Result result;
-    result.statistics = seconds;
-    result.triangulation.dim = 3;
+    Triangulation result;
+    result.dim = 3;
     std::vector<glm::dvec3> all(n);
     for (VertexNumber v = 0; v < n; ++v) all[v] = at(v);
-    result.triangulation.distinct = count_distinct(std::move(all));
+    result.distinct = count_distinct(std::move(all));
     return result;
   }
   const SphereTests tests(range);
@@ -75,22 +75,20 @@ Result run(PointView<double> points, const Options& options) {
   if (options.progress != nullptr) options.progress->advance(start->size());
   const CavityInput input{mesh, 5, *start, order, range, tests};
   const auto insert = options.threads > 1 ? insert_in_parallel : insert_alone;
-  Inserted inserted = insert(input, options);
-  seconds.locate = inserted.locate_seconds;
-  seconds.subdivide = inserted.subdivide_seconds;
+  const std::uint64_t distinct = insert(input, options, options.statistics);
   watch.lap();
   const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
-  Result result = extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads,
-                          std::move(inserted.created_by));
-  result.triangulation.distinct = inserted.distinct;
+  Triangulation result =
+      extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads,
+              options.threads > 1 ? options.created_by : nullptr);
+  result.distinct = distinct;
   seconds.extract = watch.lap();
-  result.statistics = seconds;
   return result;
 }
 
 }  // namespace
 
-Result insert_by_cavities(PointView<double> points, const Options& options) {
+Triangulation insert_by_cavities(PointView<double> points, const Options& options) {
   // An arena takes longer to set up than a thousand points to triangulate.
   if (options.threads <= 1) return run(points, options);
   return parallel::Arena(options.threads).execute([&] { return run(points, options); });

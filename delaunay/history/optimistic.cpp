@@ -17,7 +17,6 @@
 #include "delaunay/history/leaf_search.h"
 #include "delaunay/history/node_locks.h"
 #include "delaunay/mesh/add_counts.h"
-#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -43,7 +42,7 @@ bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber
 }
 
 template <int D, bool kCounted>
-Result insert_all_points(PointView<double> points, const Options& options) {
+Triangulation insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -55,7 +54,7 @@ Result insert_all_points(PointView<double> points, const Options& options) {
   };
   insert_with_team(
       run, supply,
-      [&](parallel::Team& team, std::size_t thread) {
+      [&](Team& team, std::size_t thread) {
         return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread),
                        options.deadlocks == "priorities"},
                       {triangulation, options.location}};
@@ -72,14 +71,14 @@ Result insert_all_points(PointView<double> points, const Options& options) {
         locker.access.commit();
       },
       [&](const Locker& locker) {
-        if (kCounted) add(run.statistics.synchronization, locker.access.counts());
+        if (kCounted) add(options.statistics->synchronization, locker.access.counts());
       });
   return run.finish();
 }
 
 }  // namespace
 
-Result insert_optimistically(PointView<double> points, const Options& options) {
+Triangulation insert_optimistically(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
     return insert_all_points<D, kCounted>(points, options);
   });

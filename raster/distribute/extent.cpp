@@ -2,8 +2,11 @@
 // nothing by their own box or cone are passed over, the others are transformed and bounded by
 // vectors, once for all groups that follow each other in them.
 //
-// O(triangles). Degenerate: clusters that reach outside of the guard band or before the near plane
-// are set up triangle by triangle, as are large triangles.
+// Where triangles are so small that a run has whole clusters, most of these are not looked at:
+// their neighbour's triangles and pixels, and the box of their box, are near enough for costs.
+//
+// O(triangles looked at + clusters). Degenerate: clusters that reach outside of the guard band or
+// before the near plane are set up triangle by triangle, as are large triangles.
 #include "raster/distribute/extent.h"
 
 #include <algorithm>
@@ -27,11 +30,44 @@ void Extents::look_at(const PreparedDraw& draw, const ClusterBlock& block,
   cluster_ = &cluster;
   draw_ = &draw;
   const ClusterBounds bounds = bound(screen_, draw, cluster.box);
+  bounds_ = bounds.pixels;
   may_be_seen_ = !bounds.outside && !shows_hidden_side_only(screen_, draw, cluster, bounds);
   if (!may_be_seen_) return;
   transform(draw.to_view, screen_, draw.draw->mesh->positions, block.vertices_of(cluster),
             vertices_);
-  if (!vertices_.any_outside) find_boxes({screen_, draw, block, cluster, vertices_}, boxes_);
+  if (vertices_.any_outside) return;
+  find_boxes({screen_, draw, block, cluster, vertices_}, boxes_);
+  sum_ = sum_of(boxes_, 0, cluster.count);
+}
+
+// Adds a whole cluster by what its neighbour shows, unless there is reason to look at it: it is the
+// first of its neighbours, has few triangles, or reaches the border; or the neighbour shows
+// nothing.
+bool Extents::estimate(const PreparedDraw& draw, const ClusterBlock& block, std::uint32_t part,
+                       Extent& result) {
+  const MeshCluster& cluster = block.clusters[part];
+  const MeshCluster& neighbour = block.clusters[part / kMeasured * kMeasured];
+  if (&neighbour == &cluster || std::min(cluster.count, neighbour.count) < kClusterTriangles / 2)
+    return false;
+  const auto lies_within = [&](const geometry::Rect& pixels) {
+    return pixels.x0 > 0 && pixels.y0 > 0 && pixels.x1 < screen_.width &&
+           pixels.y1 < screen_.height && pixels.area() <= kLargeBox;
+  };
+  const ClusterBounds bounds = bound(screen_, draw, cluster.box);
+  if (bounds.outside || shows_hidden_side_only(screen_, draw, cluster, bounds)) return true;
+  if (!lies_within(bounds.pixels)) return false;
+  look_at(draw, block, neighbour);
+  if (!may_be_seen_ || vertices_.any_outside || sum_.triangles == 0 || !lies_within(bounds_))
+    return false;
+  // As many for each pixel of the box: the nearer of two is larger.
+  const auto box = static_cast<std::uint64_t>(bounds.pixels.area());
+  const auto like_neighbour = [&](std::uint64_t amount) {
+    return std::max<std::uint64_t>(1, amount * box / static_cast<std::uint64_t>(bounds_.area()));
+  };
+  include(bounds.pixels, result.box);
+  result.triangles += like_neighbour(sum_.triangles);
+  result.pixels += like_neighbour(sum_.pixels);
+  return true;
 }
 
 Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t count,
@@ -53,13 +89,16 @@ Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t 
   const std::uint32_t end = first + count;
   for (std::uint32_t t = first, next; t < end; t = next) {
     const ClusterBlock& block = *draw.draw->clusters->blocks[t >> kBlockBits];
-    const MeshCluster& cluster = block.clusters[part_with(block, t)];
+    const std::uint32_t part = part_with(block, t);
+    const MeshCluster& cluster = block.clusters[part];
     next = std::min(end, cluster.first + cluster.count);
+    const std::uint32_t place = t - cluster.first, last = next - cluster.first;
+    const bool is_whole = last - place == cluster.count;
+    if (is_whole && estimate(draw, block, part, result)) continue;
     look_at(draw, block, cluster);
     if (!may_be_seen_) continue;
-    const std::uint32_t place = t - cluster.first, last = next - cluster.first;
     if (!vertices_.any_outside) {
-      const SumOfBoxes sum = sum_of(boxes_, place, last);
+      const SumOfBoxes sum = is_whole ? sum_ : sum_of(boxes_, place, last);
       result.triangles += sum.triangles;
       result.pixels += sum.pixels;
       if (sum.triangles > 0) include(sum.box, result.box);

@@ -6,7 +6,8 @@
 namespace delray::raster {
 
 // The pixels that the box of triangles touches, clipped to the frame, and how many of them may be
-// seen. For costs: exact where nothing is clipped.
+// seen. For costs: exact where nothing is clipped, but that of small clusters that follow each
+// other in a mesh one in kMeasured is looked at, and what the others show is taken to be like it.
 struct Extent {
   geometry::Rect box;
   std::uint64_t triangles = 0;
@@ -27,15 +28,22 @@ class Extents {
             std::vector<ScreenTriangle>& large);
 
  private:
+  // One in so many neighbours is looked at.
+  static constexpr std::uint32_t kMeasured = 4;
+
   void look_at(const PreparedDraw& draw, const ClusterBlock& block, const MeshCluster& cluster);
+  bool estimate(const PreparedDraw& draw, const ClusterBlock& block, std::uint32_t part,
+                Extent& result);
 
   const Screen& screen_;
   // The last cluster, and whether anything of it may be seen.
   const PreparedDraw* draw_ = nullptr;
   const MeshCluster* cluster_ = nullptr;
   bool may_be_seen_ = false;
+  geometry::Rect bounds_;
   ScreenVertices vertices_;
   TriangleBoxes boxes_;  // if no vertex is outside
+  SumOfBoxes sum_;       // the same
 };
 
 }  // namespace delray::raster

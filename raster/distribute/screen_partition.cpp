@@ -49,11 +49,17 @@ loadbalance::RasterCostModel cost_model(Lighting lighting) {
 
 std::vector<Piece> groups_of(std::span<const Piece> pieces, std::uint32_t triangles) {
   std::vector<Piece> groups;
-  for (const Piece& piece : pieces)
-    for (std::uint32_t done = 0; done < piece.count; done += triangles)
-      groups.push_back({piece.mesh, piece.transform, piece.first + done,
-                        std::min(triangles, piece.count - done), piece.primitive + done,
-                        piece.clusters});
+  for (const Piece& piece : pieces) {
+    const std::uint32_t end = piece.first + piece.count;
+    for (std::uint32_t first = piece.first, next; first < end; first = next) {
+      next = first + triangles;
+      // Full clusters stay whole.
+      if (triangles >= kClusterTriangles) next -= next % kClusterTriangles;
+      next = std::min(next, end);
+      groups.push_back({piece.mesh, piece.transform, first, next - first,
+                        piece.primitive + (first - piece.first), piece.clusters});
+    }
+  }
   return groups;
 }
 

@@ -1,8 +1,10 @@
-// Packs pieces of meshes with the vertices that they use, renumbered by binary search in a sorted
-// list, or as ranges of primitive numbers where the receiver has the scene.
+// Packs pieces of meshes with the vertices that they use, renumbered by a table where these lie
+// close together and else by binary search in a sorted list, or as ranges of primitive numbers
+// where the receiver has the scene.
 #include "raster/distribute/travel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace delray::raster {
@@ -27,17 +29,44 @@ void for_each_attribute(Mesh& mesh, F&& f) {
   f(mesh.uvs2, 16U);
 }
 
-class Writer {
+// The vertices that a piece uses, in the order in which its triangles name them first, and their
+// numbers in that order: open addressing, at most half full.
+class UsedVertices {
  public:
-  template <class T>
-  void write(std::span<const T> values) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(values.data());
-    bytes_.insert(bytes_.end(), bytes, bytes + values.size_bytes());
+  void set(std::span<const glm::uvec3> triangles) {
+    used_.clear();
+    local_.clear();
+    bits_ = std::bit_width(6 * triangles.size());
+    slots_.assign(std::size_t{1} << bits_, {kFree, 0});
+    for (const glm::uvec3& t : triangles) local_.emplace_back(add(t.x), add(t.y), add(t.z));
   }
-  comm::Buffer buffer() const { return comm::Buffer::of(std::span<const std::byte>(bytes_)); }
+  std::span<const std::uint32_t> used() const { return used_; }
+  std::span<const glm::uvec3> triangles() const { return local_; }  // by numbers of those used
 
  private:
-  std::vector<std::byte> bytes_;
+  static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
+  struct Slot {
+    std::uint32_t vertex, number;
+  };
+
+  std::uint32_t add(std::uint32_t vertex) {
+    // Fibonacci hashing (Knuth 1973, 6.4).
+    std::size_t slot = std::uint64_t{vertex * 0x9E3779B9U} << bits_ >> 32;
+    while (slots_[slot].vertex != vertex) {
+      if (slots_[slot].vertex == kFree) {
+        slots_[slot] = {vertex, static_cast<std::uint32_t>(used_.size())};
+        used_.push_back(vertex);
+        break;
+      }
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slots_[slot].number;
+  }
+
+  int bits_ = 0;
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> used_;
+  std::vector<glm::uvec3> local_;
 };
 
 class Reader {
@@ -57,42 +86,40 @@ class Reader {
 }  // namespace
 
 comm::Buffer pack_geometry(std::span<const Piece> pieces) {
-  Writer writer;
-  std::vector<std::uint32_t> used;
+  std::vector<std::byte> bytes;
+  UsedVertices vertices;
   for (const Piece& piece : pieces) {
     const scenes::Mesh& mesh = *piece.mesh;
     const auto triangles = std::span(mesh.triangles).subspan(piece.first, piece.count);
-    used.clear();
-    for (const glm::uvec3& t : triangles) used.insert(used.end(), {t.x, t.y, t.z});
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-
+    vertices.set(triangles);
+    const std::span<const std::uint32_t> used = vertices.used();
     Header header{
         piece.primitive, static_cast<std::uint32_t>(used.size()), piece.count, mesh.material, 0,
         *piece.transform};
+    std::size_t vertex_bytes = sizeof(mesh.positions[0]);
     for_each_attribute(mesh, [&](const auto& attribute, std::uint32_t bit) {
-      if (!attribute.empty()) header.attributes |= bit;
+      if (attribute.empty()) return;
+      header.attributes |= bit;
+      vertex_bytes += sizeof(attribute[0]);
     });
-    writer.write(std::span<const Header>(&header, 1));
-    const auto renumbered = [&](std::uint32_t vertex) {
-      return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), vertex) -
-                                        used.begin());
+    const std::size_t before = bytes.size();
+    bytes.resize(before + sizeof(Header) + triangles.size_bytes() + used.size() * vertex_bytes);
+    std::byte* to = bytes.data() + before;
+    const auto write = [&](const auto& value) {
+      std::memcpy(to, &value, sizeof value);
+      to += sizeof value;
     };
-    for (const glm::uvec3& t : triangles) {
-      const glm::uvec3 local{renumbered(t.x), renumbered(t.y), renumbered(t.z)};
-      writer.write(std::span<const glm::uvec3>(&local, 1));
-    }
+    write(header);
+    for (const glm::uvec3& t : vertices.triangles()) write(t);
     const auto write_used = [&](const auto& attribute) {
-      using Value = typename std::decay_t<decltype(attribute)>::value_type;
-      for (const std::uint32_t vertex : used)
-        writer.write(std::span<const Value>(&attribute[vertex], 1));
+      for (const std::uint32_t vertex : used) write(attribute[vertex]);
     };
     write_used(mesh.positions);
     for_each_attribute(mesh, [&](const auto& attribute, std::uint32_t) {
       if (!attribute.empty()) write_used(attribute);
     });
   }
-  return writer.buffer();
+  return comm::Buffer::of(std::span<const std::byte>(bytes));
 }
 
 void unpack_geometry(const comm::Buffer& message, Arrivals& arrivals) {

@@ -18,7 +18,7 @@ struct Arrivals {
 };
 
 // The pieces with the vertices that they use, renumbered: everything that rendering them needs but
-// materials, textures and lights. O(triangles log triangles) per piece.
+// materials, textures and lights. O(triangles).
 comm::Buffer pack_geometry(std::span<const Piece> pieces);
 // Appends what pack_geometry put in.
 void unpack_geometry(const comm::Buffer& message, Arrivals& arrivals);

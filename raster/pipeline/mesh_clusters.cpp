@@ -75,7 +75,8 @@ void bound(const scenes::Mesh& mesh, const ClusterBlock& block, MeshCluster& clu
     if (a == b || b == c || c == a) continue;
     const glm::dvec3 cross = glm::cross(b - a, c - a);
     const double area = glm::length(cross);
-    const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+    const auto squared = [](const glm::dvec3& edge) { return glm::dot(edge, edge); };
+    const double longest = std::sqrt(std::max({squared(b - a), squared(c - b), squared(a - c)}));
     least_height = std::min(least_height, area / longest);
     if (!(area > 0)) return;
     normals[known++] = cross / area;

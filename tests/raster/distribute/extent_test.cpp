@@ -75,5 +75,60 @@ TEST(Extent, OfARangeIsThatOfItsTriangles) {
   }
 }
 
+// A plane of triangles smaller than pixels: of the clusters that a run has as a whole most are not
+// looked at.
+TEST(Extent, OfWholeSmallClustersIsNearlyThatOfTheirTriangles) {
+  constexpr std::uint32_t kSide = 257;  // vertices
+  scenes::Mesh mesh;
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x)
+      mesh.positions.emplace_back(0.006F * static_cast<float>(x) - 0.77F,
+                                  0.006F * static_cast<float>(y) - 0.77F,
+                                  -2 - 0.002F * static_cast<float>(x));
+  }
+  for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
+    for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+      const std::uint32_t i = y * kSide + x;
+      mesh.triangles.emplace_back(i, i + 1, i + kSide);
+      mesh.triangles.emplace_back(i + 1, i + kSide + 1, i + kSide);
+    }
+  }
+  const Screen screen = make_screen(plain_view(200, 200));
+  const PreparedMesh prepared(screen, mesh);
+  std::vector<ScreenTriangle> large;
+  Extent whole, exact;
+  int estimated = 0;
+  const auto include = [](const Extent& e, Extent& sum) {
+    sum.triangles += e.triangles;
+    sum.pixels += e.pixels;
+  };
+  constexpr std::uint32_t kRun = 2 * kClusterTriangles;
+  const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (std::uint32_t first = 0; first < all; first += kRun) {
+    const Extent run = Extents(screen).of(prepared.draw, first, kRun, large);
+    Extent of_triangles;
+    geometry::Rect box{200, 200, 0, 0};
+    for (std::uint32_t t = first; t < first + kRun; ++t) {
+      const Extent one = Extents(screen).of(prepared.draw, t, 1, large);
+      include(one, of_triangles);
+      if (one.triangles == 0) continue;
+      box = {std::min(box.x0, one.box.x0), std::min(box.y0, one.box.y0),
+             std::max(box.x1, one.box.x1), std::max(box.y1, one.box.y1)};
+    }
+    if (of_triangles.triangles == 0) continue;
+    EXPECT_EQ(geometry::intersection(run.box, box), box) << first;
+    EXPECT_LE(run.box.area(), 3 * box.area() + 300);
+    estimated += run.triangles != of_triangles.triangles;
+    include(run, whole);
+    include(of_triangles, exact);
+  }
+  EXPECT_TRUE(large.empty());
+  EXPECT_GT(estimated, 100);
+  EXPECT_NEAR(static_cast<double>(whole.triangles), static_cast<double>(exact.triangles),
+              0.08 * static_cast<double>(exact.triangles));
+  EXPECT_NEAR(static_cast<double>(whole.pixels), static_cast<double>(exact.pixels),
+              0.08 * static_cast<double>(exact.pixels));
+}
+
 }  // namespace
 }  // namespace delray::raster
