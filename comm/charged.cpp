@@ -3,7 +3,6 @@
 // charged to nobody (direct execution: Covington et al. 1988).
 #include "comm/charged.h"
 
-#include <exception>
 #include <utility>
 
 #include "parallel/processor_time.h"
@@ -17,7 +16,7 @@ class Charged::Call {
  public:
   explicit Call(const Charged& charged) : clock_(*charged.clock_) {
     const std::int64_t passed = processor_nanoseconds() - clock_.resumed;
-    if (passed > 0) charged.inner_.work(Work::seconds_e9, static_cast<std::uint64_t>(passed));
+    if (passed > 0) charged.inner().work(Work::seconds_e9, static_cast<std::uint64_t>(passed));
   }
   ~Call() { clock_.resumed = processor_nanoseconds(); }
   Call(const Call&) = delete;
@@ -27,49 +26,45 @@ class Charged::Call {
   Clock& clock_;
 };
 
-Charged::Charged(Communicator& inner) : inner_(inner), clock_(new Clock{processor_nanoseconds()}) {}
+Charged::Charged(Communicator& inner)
+    : ForwardingCommunicator(inner), clock_(new Clock{processor_nanoseconds()}) {}
 
 Charged::Charged(std::unique_ptr<Communicator> inner, std::shared_ptr<Clock> clock)
-    : owned_(std::move(inner)), inner_(*owned_), clock_(std::move(clock)) {}
+    : ForwardingCommunicator(std::move(inner)), clock_(std::move(clock)) {}
 
 double Charged::seconds() const {
   const Call call(*this);
-  return inner_.seconds();
+  return inner().seconds();
 }
 
 void Charged::send(int to, Tag tag, Buffer&& message) {
   const Call call(*this);
-  inner_.send(to, tag, std::move(message));
+  inner().send(to, tag, std::move(message));
 }
 
 void Charged::multicast(std::span<const int> to, Tag tag, Buffer&& message) {
   const Call call(*this);
-  inner_.multicast(to, tag, std::move(message));
+  inner().multicast(to, tag, std::move(message));
 }
 
 Buffer Charged::receive(int from_or_any, Tag tag_or_any) {
   const Call call(*this);
-  return inner_.receive(from_or_any, tag_or_any);
+  return inner().receive(from_or_any, tag_or_any);
 }
 
 std::optional<Envelope> Charged::probe(int from_or_any, Tag tag_or_any, Deadline deadline) {
   const Call call(*this);
-  return inner_.probe(from_or_any, tag_or_any, deadline);
+  return inner().probe(from_or_any, tag_or_any, deadline);
 }
 
 std::unique_ptr<Communicator> Charged::split(int color, int key) {
   const Call call(*this);
-  return std::unique_ptr<Communicator>(new Charged(inner_.split(color, key), clock_));
+  return std::unique_ptr<Communicator>(new Charged(inner().split(color, key), clock_));
 }
 
 void Charged::mark(Phase phase, int round) {
   const Call call(*this);
-  inner_.mark(phase, round);
-}
-
-void Charged::abort(std::string why) {
-  inner_.abort(std::move(why));
-  std::terminate();  // not reached; not every compiler sees that
+  inner().mark(phase, round);
 }
 
 }  // namespace delray::comm

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "comm/communicator.h"
+#include "comm/forwarding.h"
 
 namespace delray::comm {
 
@@ -15,13 +15,10 @@ namespace delray::comm {
 //
 // REQUIRES: ranks run on one thread, as they do in run_simulated, and loops over parallel/ inside
 // of an arena of one thread, entered before. `inner` outlives this and what is split from it.
-class Charged final : public Communicator {
+class Charged final : public ForwardingCommunicator {
  public:
   explicit Charged(Communicator& inner);
 
-  int rank() const override { return inner_.rank(); }
-  int size() const override { return inner_.size(); }
-  int world_rank(int rank) const override { return inner_.world_rank(rank); }
   double seconds() const override;
 
   void send(int to, Tag tag, Buffer&& message) override;
@@ -31,7 +28,6 @@ class Charged final : public Communicator {
   std::unique_ptr<Communicator> split(int color, int key) override;
   void mark(Phase phase, int round) override;
   void work(Work, std::uint64_t) override {}
-  [[noreturn]] void abort(std::string why) override;
 
  private:
   // Processor time of the thread when the rank's code went on.
@@ -41,8 +37,6 @@ class Charged final : public Communicator {
   class Call;
   Charged(std::unique_ptr<Communicator> inner, std::shared_ptr<Clock> clock);
 
-  std::unique_ptr<Communicator> owned_;  // null when the caller owns the inner one
-  Communicator& inner_;
   std::shared_ptr<Clock> clock_;
 };
 

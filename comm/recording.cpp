@@ -3,19 +3,18 @@
 // receiver, marked as repeated.
 #include "comm/recording.h"
 
-#include <exception>
 #include <utility>
 
 namespace delray::comm {
 
 Recording::Recording(Communicator& inner, std::vector<Event>& events)
-    : inner_(inner), journal_(new Journal{&events, nullptr}) {}
+    : ForwardingCommunicator(inner), journal_(new Journal{&events, nullptr}) {}
 
 Recording::Recording(Communicator& inner, Tally& tally)
-    : inner_(inner), journal_(new Journal{nullptr, &tally}) {}
+    : ForwardingCommunicator(inner), journal_(new Journal{nullptr, &tally}) {}
 
 Recording::Recording(std::unique_ptr<Communicator> inner, std::shared_ptr<Journal> journal)
-    : owned_(std::move(inner)), inner_(*owned_), journal_(std::move(journal)) {}
+    : ForwardingCommunicator(std::move(inner)), journal_(std::move(journal)) {}
 
 Event Recording::event(Event::Kind kind, double begin) const {
   Event event;
@@ -23,7 +22,7 @@ Event Recording::event(Event::Kind kind, double begin) const {
   event.phase = journal_->phase;
   event.round = journal_->round;
   event.begin = begin;
-  event.end = inner_.seconds();
+  event.end = inner().seconds();
   return event;
 }
 
@@ -34,10 +33,10 @@ void Recording::write(const Event& event) {
 
 void Recording::send(int to, Tag tag, Buffer&& message) {
   const std::uint64_t bytes = message.counted_bytes();
-  const double begin = inner_.seconds();
-  inner_.send(to, tag, std::move(message));
+  const double begin = inner().seconds();
+  inner().send(to, tag, std::move(message));
   Event sent = event(Event::Kind::send, begin);
-  sent.peer = inner_.world_rank(to);
+  sent.peer = inner().world_rank(to);
   sent.tag = tag;
   sent.amount = bytes;
   write(sent);
@@ -45,13 +44,13 @@ void Recording::send(int to, Tag tag, Buffer&& message) {
 
 void Recording::multicast(std::span<const int> to, Tag tag, Buffer&& message) {
   const std::uint64_t bytes = message.counted_bytes();
-  const double begin = inner_.seconds();
-  inner_.multicast(to, tag, std::move(message));
+  const double begin = inner().seconds();
+  inner().multicast(to, tag, std::move(message));
   Event sent = event(Event::Kind::send, begin);
   sent.tag = tag;
   sent.amount = bytes;
   for (const int rank : to) {
-    sent.peer = inner_.world_rank(rank);
+    sent.peer = inner().world_rank(rank);
     write(sent);
     sent.is_repeated = true;
     sent.begin = sent.end;
@@ -59,51 +58,42 @@ void Recording::multicast(std::span<const int> to, Tag tag, Buffer&& message) {
 }
 
 Buffer Recording::receive(int from_or_any, Tag tag_or_any) {
-  const double begin = inner_.seconds();
+  const double begin = inner().seconds();
   int from = from_or_any;
   Tag tag = tag_or_any;
   if (from == kAnyRank || tag == kAnyTag) {
     // Only a probe tells who sent it.
-    const auto envelope = inner_.probe(from_or_any, tag_or_any, Deadline::never());
+    const auto envelope = inner().probe(from_or_any, tag_or_any, Deadline::never());
     from = envelope->source;
     tag = envelope->tag;
   }
-  Buffer message = inner_.receive(from, tag);
+  Buffer message = inner().receive(from, tag);
   Event received = event(Event::Kind::receive, begin);
-  received.peer = inner_.world_rank(from);
+  received.peer = inner().world_rank(from);
   received.tag = tag;
   received.amount = message.counted_bytes();
   write(received);
   return message;
 }
 
-std::optional<Envelope> Recording::probe(int from_or_any, Tag tag_or_any, Deadline deadline) {
-  return inner_.probe(from_or_any, tag_or_any, deadline);
-}
-
 std::unique_ptr<Communicator> Recording::split(int color, int key) {
-  return std::unique_ptr<Communicator>(new Recording(inner_.split(color, key), journal_));
+  return std::unique_ptr<Communicator>(new Recording(inner().split(color, key), journal_));
 }
 
 void Recording::mark(Phase phase, int round) {
-  inner_.mark(phase, round);
+  inner().mark(phase, round);
   journal_->phase = phase;
   journal_->round = round;
-  write(event(Event::Kind::mark, inner_.seconds()));
+  write(event(Event::Kind::mark, inner().seconds()));
 }
 
 void Recording::work(Work kind, std::uint64_t amount) {
-  const double begin = inner_.seconds();
-  inner_.work(kind, amount);
+  const double begin = inner().seconds();
+  inner().work(kind, amount);
   Event worked = event(Event::Kind::work, begin);
   worked.work = kind;
   worked.amount = amount;
   write(worked);
-}
-
-void Recording::abort(std::string why) {
-  inner_.abort(std::move(why));
-  std::terminate();  // not reached; not every compiler sees that
 }
 
 }  // namespace delray::comm
