@@ -68,13 +68,7 @@ class Path final : public WavefrontIntegrator {
   }
 
   void shade() override {
-    std::swap(enqueued_, intersected_);
-    std::swap(enqueued_lights_, intersected_lights_);
-    enqueued_.clear();
-    enqueued_lights_.clear();
-    filling_ = straight_ = {};
-    used_lights_ = kPacketRays;
-    texture_sets_ = 0;
+    begin_generation();
     for (std::size_t g = 0; g < batch_.shadows.size(); ++g) {
       add_light(batch_.shadows[g], intersected_lights_[g]);
     }
@@ -86,6 +80,17 @@ class Path final : public WavefrontIntegrator {
     }
     shade_gathered(plain_.take(), false);
     shade_gathered(coloured_.take(), true);
+  }
+
+  // What was enqueued has been intersected, and there is room for the rays that follow.
+  void begin_generation() {
+    std::swap(enqueued_, intersected_);
+    std::swap(enqueued_lights_, intersected_lights_);
+    enqueued_.clear();
+    enqueued_lights_.clear();
+    filling_ = straight_ = {};
+    used_lights_ = kPacketRays;
+    texture_sets_ = 0;
   }
 
   static void spell_out(PathLanes& lanes) {
@@ -177,18 +182,8 @@ class Path final : public WavefrontIntegrator {
 
   // Surfaces side by side, of which lane i is that of hit sources_[i] of the batch.
   void shade_hits(const RayGroup& group, PathLanes& lanes, LaneMask seen) {
-    for (LaneMask rest = seen; rest != 0;) {
-      const LaneMask same = same_material(group, rest);
-      const std::uint32_t material = group.material[std::countr_zero(rest)];
-      shading::evaluate(context_.shader, material, group.points, group.view, same, surfaces_);
-      if (context_.shader.material(material).absorbs) absorb(group, lanes, same);
-      rest &= ~same;
-    }
-    LaneMask alive = 0;
-    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      alive |= may_scatter(lanes, i) ? 1U << i : 0U;
-    }
+    evaluate_surfaces(group, lanes, seen);
+    LaneMask alive = remove_spent_lobes(lanes, seen);
     for (LaneMask rest = emissive_lanes(surfaces_, seen); rest != 0; rest &= rest - 1) {
       add_emission(lanes, std::countr_zero(rest));
     }
@@ -196,12 +191,32 @@ class Path final : public WavefrontIntegrator {
     alive &= ~bsdfs_.black;
     if (alive == 0) return;
     draw_at(lanes, alive, kLight, pairs_);
+    const Vertices vertices{group, lanes, surfaces_};
+    connect(vertices, alive);
+    scatter(vertices, alive);
+  }
+
+  void evaluate_surfaces(const RayGroup& group, PathLanes& lanes, LaneMask seen) {
+    for (LaneMask rest = seen; rest != 0;) {
+      const LaneMask same = same_material(group, rest);
+      const std::uint32_t material = group.material[std::countr_zero(rest)];
+      shading::evaluate(context_.shader, material, group.points, group.view, same, surfaces_);
+      if (context_.shader.material(material).absorbs) absorb(group, lanes, same);
+      rest &= ~same;
+    }
+  }
+
+  // Enqueues a shadow ray from each vertex to a light that is drawn.
+  void connect(const Vertices& vertices, LaneMask alive) {
     context_.lights.sample(context_.shader, surfaces_.position, alive,
                            std::span(pairs_).subspan<kLight, LightTable::kPairs>(), lights_);
     evaluate(bsdfs_, lights_.direction, alive, values_);
-    const Vertices vertices{group, lanes, surfaces_};
     const LaneMask lit = rays_to_lights(vertices, lights_, values_, alive, light_rays_);
     if (lit != 0) enqueue_lights(lit);
+  }
+
+  // Enqueues the rays by which paths go on.
+  void scatter(const Vertices& vertices, LaneMask alive) {
     sample(bsdfs_, pairs_[kLobe].x, pairs_[kDirection].x, pairs_[kDirection].y, alive, scattered_);
     scattered_rays(vertices, scattered_, pairs_[kLobe].y, kCertain, alive, next_rays_);
     if (next_rays_.count != 0) enqueue_scattered();
@@ -219,6 +234,16 @@ class Path final : public WavefrontIntegrator {
       const auto& material = context_.shader.material(group.material[i]).material;
       lanes.throughput.set(i, lanes.throughput.get(i) * shading::transmittance(material, distance));
     }
+  }
+
+  // The lanes that may scatter once more.
+  LaneMask remove_spent_lobes(const PathLanes& lanes, LaneMask seen) {
+    LaneMask alive = 0;
+    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      alive |= may_scatter(lanes, i) ? 1U << i : 0U;
+    }
+    return alive;
   }
 
   // Takes the lobes from a surface of which light has been scattered by its kind as often as it
