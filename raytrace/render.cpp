@@ -191,7 +191,7 @@ struct Renderer::Memory {
   const shading::Shader& shader() const { return tracer ? tracer->shader : scene->shader(); }
   const LightTable& lights() const { return tracer ? tracer->lights : scene->lights(); }
   geometry::Box3 bounds() const {
-    return tracer ? tracer->embree.bounds() : scene->tree().bounds();
+    return tracer ? tracer->embree.bounds() : scene->bounds();
   }
 };
 

@@ -1,9 +1,10 @@
 // Cuts this rank's part of a scene into clusters, tells all ranks their boxes and sizes, and keeps
 // clusters of other ranks in a cache that drops what was not used for longest.
 //
-// Every rank builds the same tree over all boxes. Clusters dealt out at random go by a hash of
-// seed, rank and number. Structures are built in parallel, each thread with a device of its own, so
-// that memory is counted by cluster. O(triangles of the part) and one message to all.
+// Every rank knows all boxes. Its own clusters are one scene, which clusters of the cache join when
+// that pays; all others are in a tree, by which rays find what they have not been tested against.
+// Clusters dealt out at random go by a hash of seed, rank and number. O(triangles of the part) and
+// one message to all.
 //
 // Degenerate: a cluster that is larger than the cache stays until another one comes; a rank may own
 // none.
@@ -12,10 +13,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include "comm/collectives.h"
-#include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::raytrace {
@@ -168,68 +170,135 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
       has_instances_ = has_instances_ || each.instanced != 0;
     }
   }
-  tree_ = ClusterTree(std::move(all_boxes));
+  for (const ClusterBox& box : all_boxes) bounds_.include(box.box);
+  boxes_ = std::move(all_boxes);
+  is_resident_.assign(owners_.size(), 0);
 
   std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
   std::vector<std::uint64_t> degenerate(mine.size());
-  // Each thread builds clusters on a device of its own, so that each knows what it takes.
-  const auto threads = static_cast<std::size_t>(parallel::arena_threads());
-  parallel::parallel_for(0, threads, 1, [&](std::size_t thread) {
-    const EmbreeDevice device = thread == 0 ? device_ : EmbreeDevice(build_);
-    for (std::size_t i = thread; i < mine.size(); i += threads) {
-      ready[i] = std::make_shared<const Cluster>(std::move(mine[i]), build_, device);
-      degenerate[i] = count_degenerate(ready[i]->instances());
-    }
+  parallel::parallel_for(0, mine.size(), 1, [&](std::size_t i) {
+    ready[i] = std::make_shared<const Cluster>(std::move(mine[i]));
+    degenerate[i] = count_degenerate(ready[i]->instances());
   });
   for (std::size_t i = 0; i < ready.size(); ++i) {
-    own_bytes_ += ready[i]->bytes();
     degenerate_ += degenerate[i];
     owned_.emplace(first_mine + static_cast<std::uint32_t>(i), std::move(ready[i]));
   }
-  const std::uint64_t all_bytes = comm::all_reduce_value(communicator, own_bytes_, std::plus<>());
+  make_resident(false);
+  const std::uint64_t all_bytes = comm::all_reduce_value(communicator, bytes(), std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
   degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
   note_bytes();
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::shared_ptr<const Cluster> SharedScene::find(std::uint32_t cluster) {
-  if (const auto own = owned_.find(cluster); own != owned_.end()) return own->second;
-  const auto cached = cached_.find(cluster);
-  if (cached == cached_.end()) return nullptr;
-  uses_.splice(uses_.begin(), uses_, cached->second.use);
-  return cached->second.cluster;
+std::uint64_t SharedScene::bytes() const {
+  std::uint64_t sum = resident_->bytes() + elsewhere_.bytes() + given_bytes_;
+  for (const auto& [number, cluster] : owned_) sum += cluster->bytes();
+  for (const auto& [number, scene] : taken_over_) sum += scene->bytes();
+  for (const auto& [number, cached] : cached_) {
+    sum += cached.cluster->bytes() + (cached.scene != nullptr ? cached.scene->bytes() : 0);
+  }
+  return sum;
 }
 
-std::shared_ptr<const Cluster> SharedScene::put(std::uint32_t cluster, ClusterData&& data) {
-  auto ready = std::make_shared<const Cluster>(std::move(data), build_, device_);
-  cached_bytes_ += ready->bytes();
+std::shared_ptr<const ClusterScene> SharedScene::alone(
+    const std::shared_ptr<const Cluster>& cluster) const {
+  return std::make_shared<const ClusterScene>(std::vector{cluster}, build_, device_);
+}
+
+void SharedScene::make_resident(bool with_cached) {
+  // In the order of their numbers, so that a scene is the same in every run.
+  std::map<std::uint32_t, std::shared_ptr<const Cluster>> clusters(owned_.begin(), owned_.end());
+  if (with_cached) {
+    for (auto& [number, cached] : cached_) {
+      clusters.emplace(number, cached.cluster);
+      cached.scene = nullptr;
+    }
+  }
+  taken_over_.clear();
+  std::fill(is_resident_.begin(), is_resident_.end(), std::uint8_t{0});
+  std::vector<std::shared_ptr<const Cluster>> resident;
+  for (auto& [number, cluster] : clusters) {
+    is_resident_[number] = 1;
+    resident.push_back(std::move(cluster));
+  }
+  resident_ = nullptr;  // before there is another one: memory
+  resident_ = std::make_unique<const ClusterScene>(std::move(resident), build_, device_);
+  std::vector<ClusterBox> elsewhere;
+  std::copy_if(boxes_.begin(), boxes_.end(), std::back_inserter(elsewhere),
+               [&](const ClusterBox& box) { return is_resident_[box.cluster] == 0; });
+  elsewhere_ = ClusterTree(std::move(elsewhere));
+  has_resident_cached_ = with_cached;
+  given_bytes_ = 0;
+  tests_ = 0;
+  note_bytes();
+}
+
+void SharedScene::begin_frame() {
+  const bool settled = evicted_ == std::exchange(evicted_before_, evicted_);
+  std::uint64_t triangles = 0, more = 0;
+  for (const auto& [number, cluster] : owned_) {
+    triangles += cluster->triangles();
+    more += is_resident_[number] == 0 ? 1 : 0;
+  }
+  for (const auto& [number, cached] : cached_) {
+    if (!settled) break;
+    triangles += cached.cluster->triangles();
+    more += cached.scene != nullptr ? 1 : 0;
+  }
+  const bool is_worth_it = more > 0 && tests_ * triangles_per_test_ >= triangles;
+  const bool holds_too_much = given_bytes_ * 8 > bytes();
+  if (is_worth_it || holds_too_much) make_resident(settled);
+}
+
+std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
+  if (const auto taken = taken_over_.find(cluster); taken != taken_over_.end())
+    return taken->second;
+  const auto at = cached_.find(cluster);
+  if (at == cached_.end()) return nullptr;
+  Cached& cached = at->second;
+  uses_.splice(uses_.begin(), uses_, cached.use);
+  if (cached.scene == nullptr) cached.scene = alone(cached.cluster);
+  return cached.scene;
+}
+
+std::shared_ptr<const ClusterScene> SharedScene::put(std::uint32_t cluster, ClusterData&& data) {
+  auto ready = std::make_shared<const Cluster>(std::move(data));
+  auto scene = alone(ready);
+  const std::uint64_t bytes = ready->bytes() + scene->bytes();
+  cached_bytes_ += bytes;
   uses_.push_front(cluster);
-  cached_.emplace(cluster, Cached{ready, uses_.begin()});
+  cached_.emplace(cluster, Cached{std::move(ready), scene, bytes, uses_.begin()});
   drop_old();
   note_bytes();
-  return ready;
+  return scene;
 }
 
-std::shared_ptr<const Cluster> SharedScene::give_away(std::uint32_t cluster) {
+void SharedScene::give_away(std::uint32_t cluster) {
   const auto own = owned_.find(cluster);
-  std::shared_ptr<const Cluster> given = std::move(own->second);
+  if (is_resident(cluster)) given_bytes_ += own->second->bytes();
+  taken_over_.erase(cluster);
   owned_.erase(own);
-  own_bytes_ -= given->bytes();
-  return given;
 }
 
 void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
-  auto ready = std::make_shared<const Cluster>(std::move(data), build_, device_);
-  own_bytes_ += ready->bytes();
+  auto ready = std::make_shared<const Cluster>(std::move(data));
+  if (!is_resident(cluster)) taken_over_.emplace(cluster, alone(ready));
   owned_.emplace(cluster, std::move(ready));
   note_bytes();
 }
 
 void SharedScene::drop_old() {
+  if (cached_bytes_ <= cache_limit_) return;
+  if (has_resident_cached_) {
+    // Memory comes back only when the scene is made without them, which should not happen often.
+    triangles_per_test_ = std::max<std::uint64_t>(1, triangles_per_test_ / 2);
+    make_resident(false);
+  }
   while (cached_bytes_ > cache_limit_ && uses_.size() > 1) {
     const auto oldest = cached_.find(uses_.back());
-    cached_bytes_ -= oldest->second.cluster->bytes();
+    cached_bytes_ -= oldest->second.bytes;
     cached_.erase(oldest);
     uses_.pop_back();
     ++evicted_;

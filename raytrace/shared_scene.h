@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "comm/communicator.h"
-#include "raytrace/distributed/cluster.h"
+#include "raytrace/distributed/cluster_scene.h"
 #include "raytrace/distributed/cluster_tree.h"
 #include "raytrace/sampling/light_table.h"
 #include "scenes/generate.h"
@@ -49,29 +49,44 @@ class SharedScene {
 
   const shading::Shader& shader() const { return shader_; }
   const LightTable& lights() const { return lights_; }
-  const ClusterTree& tree() const { return tree_; }
+  geometry::Box3 bounds() const { return bounds_; }
   std::uint32_t clusters() const { return static_cast<std::uint32_t>(owners_.size()); }
   int owner(std::uint32_t cluster) const { return owners_[cluster]; }
   std::uint64_t packed_bytes(std::uint32_t cluster) const { return packed_bytes_[cluster]; }
   // Whether any instance of the whole scene is an Embree instance, or can be seen through.
   bool has_instances() const { return has_instances_; }
 
-  // The cluster where it is at hand, on this rank; null where not. A use of what came from another
-  // rank keeps it longest.
-  std::shared_ptr<const Cluster> find(std::uint32_t cluster);
+  // Parallel. To be called before a frame: gathers clusters that came from other ranks into the
+  // resident scene, once rays have spent as much on them one by one as building it will take, and
+  // only while the cache has room for all that is used.
+  void begin_frame();
+  // Most of what is at hand, as one scene.
+  const ClusterScene& resident() const { return *resident_; }
+  bool is_resident(std::uint32_t cluster) const { return is_resident_[cluster] != 0; }
+  // The boxes of all that is not resident.
+  const ClusterTree& elsewhere() const { return elsewhere_; }
+
+  // Parallel. A cluster that is at hand, but not resident; null where it is not. A use of what came
+  // from another rank keeps it longest.
+  std::shared_ptr<const ClusterScene> find(std::uint32_t cluster);
+  // What `find` found has been intersected with so many rays.
+  void note_tests(std::uint64_t rays) { tests_ += rays; }
   // Parallel. Makes what came from another rank ready for rays, and drops what was not used for
   // longest while there is too much.
-  std::shared_ptr<const Cluster> put(std::uint32_t cluster, ClusterData&& data);
-  // Owned clusters that change rank for good.
-  std::shared_ptr<const Cluster> give_away(std::uint32_t cluster);
+  std::shared_ptr<const ClusterScene> put(std::uint32_t cluster, ClusterData&& data);
+  // Parallel. Owned clusters that change rank for good. One that was resident stays so until the
+  // next frame, too.
+  void give_away(std::uint32_t cluster);
   void take_over(std::uint32_t cluster, ClusterData&& data);
+  // Whether any that were taken over are not resident yet.
+  bool has_taken_over() const { return !taken_over_.empty(); }
   bool owns(std::uint32_t cluster) const { return owned_.contains(cluster); }
   const std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>>& owned() const {
     return owned_;
   }
 
   // Bytes of geometry, acceleration structures and the tree: now, and the most there ever were.
-  std::uint64_t bytes() const { return own_bytes_ + cached_bytes_ + tree_.bytes(); }
+  std::uint64_t bytes() const;
   std::uint64_t most_bytes() const { return most_bytes_; }
   std::uint64_t cache_bytes() const { return cache_limit_; }
   std::uint64_t evicted() const { return evicted_; }
@@ -83,22 +98,36 @@ class SharedScene {
  private:
   void note_bytes();
   void drop_old();
+  void make_resident(bool with_cached);
+  std::shared_ptr<const ClusterScene> alone(const std::shared_ptr<const Cluster>& cluster) const;
 
   struct Cached {
     std::shared_ptr<const Cluster> cluster;
+    std::shared_ptr<const ClusterScene> scene;  // null while it is resident
+    std::uint64_t bytes = 0;                    // with its own structure, whether it has one or not
     std::list<std::uint32_t>::iterator use;
   };
   shading::Shader shader_;
   LightTable lights_;
   BuildOptions build_;
-  EmbreeDevice device_;  // of what comes later
-  ClusterTree tree_;
+  EmbreeDevice device_;            // of what comes later
+  std::vector<ClusterBox> boxes_;  // of all clusters
+  geometry::Box3 bounds_;
+  std::unique_ptr<const ClusterScene> resident_;
+  std::vector<std::uint8_t> is_resident_;  // by cluster
+  ClusterTree elsewhere_;
   std::vector<int> owners_;                  // by cluster
   std::vector<std::uint64_t> packed_bytes_;  // by cluster
   std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>> owned_;
   std::unordered_map<std::uint32_t, Cached> cached_;
+  std::unordered_map<std::uint32_t, std::shared_ptr<const ClusterScene>> taken_over_;
   std::list<std::uint32_t> uses_;  // cached clusters, what was used last at the front
-  std::uint64_t own_bytes_ = 0, cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
+  std::uint64_t cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
+  std::uint64_t given_bytes_ = 0;     // of clusters that are resident, but not owned any more
+  bool has_resident_cached_ = false;  // whether clusters of the cache are resident
+  // Rays against single clusters since the resident scene was made, how many triangles are worth
+  // one, and what had been evicted when the last frame began.
+  std::uint64_t tests_ = 0, triangles_per_test_ = 4, evicted_before_ = 0;
   bool has_instances_ = false;
   double build_seconds_ = 0.0;
   std::uint64_t degenerate_ = 0;

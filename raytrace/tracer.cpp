@@ -10,7 +10,7 @@ namespace delray::raytrace {
 namespace {
 
 // Of what meshes know of hits: the larger part of a cache that tracing fills as well.
-constexpr std::size_t kManyBytes = 2 << 20;
+constexpr std::uint64_t kManyBytes = 2 << 20;
 
 template <class T>
 std::size_t bytes_of(const std::vector<T>& v) {
@@ -24,6 +24,8 @@ std::size_t bytes_of(const scenes::Mesh& mesh) {
 }
 
 }  // namespace
+
+bool is_large(std::uint64_t bytes) { return bytes > kManyBytes; }
 
 Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
   return make_tracer(scene, shading::make_shader(scene), options);
@@ -39,7 +41,7 @@ Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader,
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::size_t bytes = 0;
   for (const scenes::Mesh& mesh : scene.meshes) bytes += bytes_of(mesh);
-  const bool large = bytes > kManyBytes;
+  const bool large = is_large(bytes);
   for (const GeometryInstance& instance : instances) bytes += bytes_of(instance.moved);
   bytes += embree.memory();
   return {std::move(shader),

@@ -25,6 +25,9 @@ struct Tracer {
   std::uint64_t bytes = 0;  // of geometry and acceleration structures
 };
 
+// Whether geometry of so many bytes is more than a cache holds that is near.
+bool is_large(std::uint64_t bytes);
+
 // Parallel in the caller's arena. Throws what EmbreeScene throws.
 Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options = {});
 // With the scene's shader, which may have taken its texels (shading::take_shader).

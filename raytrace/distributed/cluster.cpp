@@ -1,5 +1,5 @@
-// Packs clusters into messages, bounds them with slack for rounding, and builds Embree's structure
-// of what has come. Lengths in a message are checked against its size before memory is taken.
+// Packs clusters into messages and bounds them with slack for rounding. Lengths in a message are
+// checked against its size before memory is taken.
 #include "raytrace/distributed/cluster.h"
 
 #include <algorithm>
@@ -212,17 +212,17 @@ ClusterData unpack_cluster(std::span<const std::byte> message) {
   return cluster;
 }
 
-Cluster::Cluster(ClusterData&& data, const BuildOptions& options, const EmbreeDevice& device)
-    : data_(std::move(data)) {
+Cluster::Cluster(ClusterData&& data) : data_(std::move(data)) {
   for (GeometryInstance& instance : data_.instances) {
     const Piece& piece = data_.pieces[instance.mesh_number];
     instance.mesh = &piece.mesh;
     instance.positions = piece.mesh.positions.data();
   }
-  for (const Piece& piece : data_.pieces)
-    numbers_.insert(numbers_.end(), piece.instances.begin(), piece.instances.end());
-  geometry_bytes_ = data_.bytes();
-  embree_ = std::make_unique<EmbreeScene>(data_.instances, options, device);
+  for (const Piece& piece : data_.pieces) {
+    for (const std::uint32_t instance : piece.instances)
+      numbers_.push_back({instance, piece.triangles.data()});
+  }
+  bytes_ = data_.bytes();
 }
 
 }  // namespace delray::raytrace

@@ -38,30 +38,24 @@ std::vector<geometry::Box3> boxes_of(const ClusterData& cluster);
 comm::Buffer pack(const ClusterData& cluster);
 ClusterData unpack_cluster(std::span<const std::byte> message);
 
-// Ready for rays. Immutable; any number of threads.
+// Geometry with what rays need to know of it, but no acceleration structure. Immutable.
 class Cluster {
  public:
-  Cluster(ClusterData&& data, const BuildOptions& options, const EmbreeDevice& device);
+  explicit Cluster(ClusterData&& data);
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;
 
   const ClusterData& data() const { return data_; }
   std::span<const GeometryInstance> instances() const { return data_.instances; }
-  const EmbreeScene& embree() const { return *embree_; }
-  // Geometry and acceleration structure.
-  std::uint64_t bytes() const { return geometry_bytes_ + embree_->memory(); }
-
-  // What a local instance and triangle are in the whole scene.
-  std::uint32_t instance(std::uint32_t local) const { return numbers_[local]; }
-  std::uint32_t triangle(std::uint32_t local_instance, std::uint32_t local) const {
-    return data_.pieces[data_.instances[local_instance].mesh_number].triangles[local];
-  }
+  // Element i: what instance i and its triangles are in the whole scene.
+  std::span<const GeometryNumbers> numbers() const { return numbers_; }
+  std::uint64_t triangles() const { return data_.triangles(); }
+  std::uint64_t bytes() const { return bytes_; }
 
  private:
   ClusterData data_;
-  std::vector<std::uint32_t> numbers_;  // of instances in the whole scene
-  std::uint64_t geometry_bytes_ = 0;
-  std::unique_ptr<EmbreeScene> embree_;
+  std::vector<GeometryNumbers> numbers_;
+  std::uint64_t bytes_ = 0;
 };
 
 // Cuts the triangles [begin, end) of a scene, meshes placed several times counted once, into

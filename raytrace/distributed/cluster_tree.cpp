@@ -1,117 +1,156 @@
-// A bounding volume hierarchy over the boxes of clusters, built by median splits along the longest
-// side of the centres.
+// A bounding volume hierarchy over the boxes of clusters, in rows of eight boxes, built by median
+// splits along the longest side of the centres (wide trees: Wald, Benthin and Boulos 2008).
 //
-// A query collects every box that the line meets, then sorts by where it enters; of a cluster
-// placed several times the first entry counts. Slabs are widened by what division rounds off. O(n
-// log n) to build, O(log n + crossings) to search.
+// A query tests a row by vectors, descends in the order of entry, and gives up what lies behind the
+// best hit so far or before the hit that it goes on from. Slabs are widened by what division rounds
+// off. O(n log n) to build, O(log n) to search where a line meets little.
 //
 // Degenerate: equal centres are ordered by number; a line in the plane of a side is decided by the
-// other axes; an empty tree crosses nothing.
+// other axes; an empty tree is met by nothing.
 #include "raytrace/distributed/cluster_tree.h"
 
 #include <algorithm>
-#include <limits>
+#include <bit>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raytrace/distributed/cluster_tree.cpp"
+#include <hwy/foreach_target.h>
+// What is compiled per target comes after it.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace delray::raytrace {
-namespace {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::uint32_t kLeaf = 4;  // boxes
-
-// What dividing and multiplying may round off.
-constexpr float kLess = 1.0F - 0x1p-20F, kMore = 1.0F + 0x1p-20F;
-
-struct Line {
-  glm::vec3 origin, inverse;
-  float near, far;
-};
-
-// Where the line enters the box, at least `near`; infinity where it misses.
-float entry_of(const geometry::Box3& box, const Line& line) {
-  float low = line.near, high = line.far;
-  for (int k = 0; k < 3; ++k) {
-    const float a = (box.low[k] - line.origin[k]) * line.inverse[k];
-    const float b = (box.high[k] - line.origin[k]) * line.inverse[k];
-    // A line in the plane of a side gives a number that is none, which decides nothing.
-    const float first = std::min(a, b), last = std::max(a, b);
-    const float in = first * (first > 0.0F ? kLess : kMore);
-    const float out = last * (last > 0.0F ? kMore : kLess);
-    if (a != a || b != b) continue;
-    low = std::max(low, in);
-    high = std::min(high, out);
+// Of each lane of a row where the line enters the box, at least line.near, and where it leaves it;
+// entries after exits: it misses. Lanes that are not used hold anything.
+void enter_row(const ClusterTree::Row& row, const Line& line, float* entries, float* exits) {
+  // What dividing and multiplying may round off.
+  constexpr float kLess = 1.0F - 0x1p-20F, kMore = 1.0F + 0x1p-20F;
+  const hn::CappedTag<float, ClusterTree::kWidth> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto zero = hn::Zero(d), less = hn::Set(d, kLess), more = hn::Set(d, kMore);
+  for (int i = 0; i < ClusterTree::kWidth; i += lanes) {
+    auto low = hn::Set(d, line.near), high = hn::Set(d, line.far);
+    for (int k = 0; k < 3; ++k) {
+      const auto origin = hn::Set(d, line.origin[k]), inverse = hn::Set(d, line.inverse[k]);
+      const auto a = hn::Mul(hn::Sub(hn::LoadU(d, row.low[k] + i), origin), inverse);
+      const auto b = hn::Mul(hn::Sub(hn::LoadU(d, row.high[k] + i), origin), inverse);
+      const auto first = hn::Min(a, b), last = hn::Max(a, b);
+      const auto in = hn::Mul(first, hn::IfThenElse(hn::Gt(first, zero), less, more));
+      const auto out = hn::Mul(last, hn::IfThenElse(hn::Gt(last, zero), more, less));
+      // A line in the plane of a side gives a number that is none, which decides nothing.
+      const auto decides = hn::And(hn::Eq(a, a), hn::Eq(b, b));
+      low = hn::IfThenElse(decides, hn::Max(low, in), low);
+      high = hn::IfThenElse(decides, hn::Min(high, out), high);
+    }
+    hn::StoreU(low, d, entries + i);
+    hn::StoreU(high, d, exits + i);
   }
-  return low <= high ? low : std::numeric_limits<float>::infinity();
 }
 
-glm::vec3 centre_of(const geometry::Box3& box) { return box.centre(); }
+ClusterHit next_hit(std::span<const ClusterTree::Row> rows, const Line& line,
+                    const ClusterHit& after) {
+  ClusterHit best{std::numeric_limits<float>::infinity(), kNoCluster};
+  if (rows.empty()) return best;
+  constexpr int kWidth = ClusterTree::kWidth;
+  // Eight a level, and no tree is that deep.
+  struct Open {
+    float entry;
+    std::uint32_t row;
+  };
+  Open stack[kWidth * 32];
+  int height = 0;
+  stack[height++] = {line.near, 0};
+  while (height > 0) {
+    const Open open = stack[--height];
+    if (open.entry > best.entry) continue;
+    const ClusterTree::Row& row = rows[open.row];
+    alignas(32) float entries[kWidth], exits[kWidth];
+    enter_row(row, line, entries, exits);
+    const int first = height;
+    for (std::uint32_t rest = row.used; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      if (!(entries[i] <= exits[i]) || entries[i] > best.entry) continue;
+      if ((row.leaves >> i & 1) != 0) {
+        const ClusterHit hit{entries[i], row.child[i]};
+        if (after < hit && hit < best) best = hit;
+      } else if (exits[i] >= after.entry) {
+        // The nearest one is searched first: sorted by insertion, it comes last.
+        int at = height++;
+        for (; at > first && stack[at - 1].entry < entries[i]; --at) stack[at] = stack[at - 1];
+        stack[at] = {entries[i], row.child[i]};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace delray::raytrace
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace delray::raytrace {
+
+HWY_EXPORT(next_hit);
+
+ClusterTree::ClusterTree(std::vector<ClusterBox> boxes) {
+  if (!boxes.empty()) build(boxes);
+  rows_.shrink_to_fit();
+}
+
+namespace {
+
+// The halves of boxes by their centres along the longest side of those. REQUIRES: two boxes.
+std::size_t halve(std::span<ClusterBox> boxes) {
+  geometry::Box3 centres;
+  for (const ClusterBox& box : boxes) centres.include(box.box.centre());
+  const glm::vec3 size = centres.high - centres.low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t half = boxes.size() / 2;
+  std::nth_element(boxes.begin(), boxes.begin() + static_cast<std::ptrdiff_t>(half), boxes.end(),
+                   [axis](const ClusterBox& a, const ClusterBox& b) {
+                     const float x = a.box.centre()[axis], y = b.box.centre()[axis];
+                     return x != y ? x < y : a.cluster < b.cluster;
+                   });
+  return half;
+}
 
 }  // namespace
 
-ClusterTree::ClusterTree(std::vector<ClusterBox> boxes) : boxes_(std::move(boxes)) {
-  nodes_.reserve(boxes_.size());
-  if (!boxes_.empty()) build(0, static_cast<std::uint32_t>(boxes_.size()));
-}
-
-std::uint32_t ClusterTree::build(std::uint32_t first, std::uint32_t count) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  geometry::Box3 box, centres;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    box.include(boxes_[i].box.low);
-    box.include(boxes_[i].box.high);
-    centres.include(centre_of(boxes_[i].box));
+std::uint32_t ClusterTree::build(std::span<ClusterBox> boxes) {
+  std::vector<std::span<ClusterBox>> parts = {boxes};
+  while (parts.size() < kWidth) {
+    const auto largest =
+        std::max_element(parts.begin(), parts.end(),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (largest->size() < 2) break;
+    const std::span<ClusterBox> part = *largest;
+    const std::size_t half = halve(part);
+    *largest = part.first(half);
+    parts.push_back(part.subspan(half));
   }
-  nodes_[index].box = box;
-  nodes_[index].first = first;
-  nodes_[index].count = count;
-  if (count <= kLeaf) return index;
-  const glm::vec3 size = centres.high - centres.low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const auto begin = boxes_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count,
-                   [axis](const ClusterBox& a, const ClusterBox& b) {
-                     const float x = centre_of(a.box)[axis], y = centre_of(b.box)[axis];
-                     return x != y ? x < y : a.cluster < b.cluster;
-                   });
-  nodes_[index].count = 0;
-  const std::uint32_t left = build(first, count / 2);
-  const std::uint32_t right = build(first + count / 2, count - count / 2);
-  nodes_[index].left = left;
-  nodes_[index].right = right;
+  const auto index = static_cast<std::uint32_t>(rows_.size());
+  rows_.emplace_back();
+  Row row{};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    geometry::Box3 box;
+    for (const ClusterBox& each : parts[i]) box.include(each.box);
+    for (int k = 0; k < 3; ++k) row.low[k][i] = box.low[k], row.high[k][i] = box.high[k];
+    const bool leaf = parts[i].size() == 1;
+    row.child[i] = leaf ? parts[i].front().cluster : build(parts[i]);
+    row.used |= 1U << i;
+    row.leaves |= leaf ? 1U << i : 0U;
+  }
+  rows_[index] = row;
   return index;
 }
 
-void ClusterTree::find(const glm::vec3& origin, const glm::vec3& direction, float near, float far,
-                       std::vector<ClusterHit>& cluster_hits) const {
-  cluster_hits.clear();
-  if (nodes_.empty()) return;
-  const Line line{origin, glm::vec3(1.0F) / direction, near, far};
-  constexpr float kMissed = std::numeric_limits<float>::infinity();
-  std::uint32_t stack[64];
-  int height = 0;
-  stack[height++] = 0;
-  while (height > 0) {
-    const Node& node = nodes_[stack[--height]];
-    if (entry_of(node.box, line) == kMissed) continue;
-    if (node.count == 0) {
-      stack[height++] = node.left;
-      stack[height++] = node.right;
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const float entry = entry_of(boxes_[i].box, line);
-      if (entry != kMissed) cluster_hits.push_back({entry, boxes_[i].cluster});
-    }
-  }
-  std::sort(cluster_hits.begin(), cluster_hits.end());
-  // Of a cluster that is placed several times the first cluster_hit counts.
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < cluster_hits.size(); ++i) {
-    bool known = false;
-    for (std::size_t j = 0; j < kept && !known; ++j)
-      known = cluster_hits[j].cluster == cluster_hits[i].cluster;
-    if (!known) cluster_hits[kept++] = cluster_hits[i];
-  }
-  cluster_hits.resize(kept);
+ClusterHit ClusterTree::next(const Line& line, const ClusterHit& after) const {
+  return HWY_DYNAMIC_DISPATCH(next_hit)(rows_, line, after);
 }
 
 }  // namespace delray::raytrace
+#endif

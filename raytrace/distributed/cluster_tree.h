@@ -1,9 +1,9 @@
-// The upper part of the hierarchy, which every rank has: which clusters a ray may meet, and in what
-// order.
+// The upper part of the hierarchy: which clusters of other ranks a ray may meet, and in what order.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,7 +17,9 @@ struct ClusterBox {
   std::uint32_t cluster = 0;
 };
 
-// Where a ray enters a cluster first.
+inline constexpr std::uint32_t kNoCluster = 0xFFFFFFFFU;
+
+// Where a ray enters a box of a cluster.
 struct ClusterHit {
   float entry = 0.0F;
   std::uint32_t cluster = 0;
@@ -27,33 +29,41 @@ struct ClusterHit {
   bool operator==(const ClusterHit&) const = default;
 };
 
+// Points origin + t * direction, near <= t <= far.
+struct Line {
+  glm::vec3 origin, inverse;  // inverse: 1 / direction
+  float near, far;
+};
+
+// A bounding volume hierarchy over boxes.
 class ClusterTree {
  public:
   ClusterTree() = default;
-  // The same boxes in the same order give the same tree on every rank. O(n log n).
+  // O(n log n).
   explicit ClusterTree(std::vector<ClusterBox> boxes);
 
-  // Replaces `cluster_hits` by the clusters that points origin + t * direction, near <= t <= far,
-  // may touch, by (entry, number), each once. The same on every rank. O(log n + cluster_hits).
-  void find(const glm::vec3& origin, const glm::vec3& direction, float near, float far,
-            std::vector<ClusterHit>& cluster_hits) const;
+  bool empty() const { return rows_.empty(); }
 
-  geometry::Box3 bounds() const { return nodes_.empty() ? geometry::Box3() : nodes_[0].box; }
+  // The first hit after `after` of those that the line has with boxes, in ascending order; cluster
+  // kNoCluster where there is none. What a box's hit is depends on the box and the line alone, so
+  // that all ranks agree on the order, whatever is in their trees. O(log n) for lines that meet
+  // little.
+  ClusterHit next(const Line& line, const ClusterHit& after) const;
 
-  std::uint64_t bytes() const {
-    return boxes_.capacity() * sizeof(ClusterBox) + nodes_.capacity() * sizeof(Node);
-  }
+  std::uint64_t bytes() const { return rows_.capacity() * sizeof(Row); }
+
+  static constexpr int kWidth = 8;
+  // Boxes side by side, lane by lane, with what is in them.
+  struct alignas(32) Row {
+    float low[3][kWidth], high[3][kWidth];
+    std::uint32_t child[kWidth];         // a row; of the lanes in `leaves`, a cluster
+    std::uint32_t leaves = 0, used = 0;  // masks of lanes
+  };
 
  private:
-  struct Node {
-    geometry::Box3 box;
-    std::uint32_t first = 0, count = 0;  // of boxes, where it is a leaf
-    std::uint32_t left = 0, right = 0;   // nodes, where it is none
-  };
-  std::uint32_t build(std::uint32_t first, std::uint32_t count);
+  std::uint32_t build(std::span<ClusterBox> boxes);
 
-  std::vector<ClusterBox> boxes_;
-  std::vector<Node> nodes_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace delray::raytrace

@@ -1,38 +1,45 @@
-// Traces a frame over a distributed scene: advances integrators, intersects rays with the clusters
-// at hand, and routes all others as the distribution decides. A ray visits the clusters on its way
-// in the order of entry and returns to its own rank with the nearest hit. In the ring it visits
-// rank after rank instead; a cluster that moved while the ray was under way sends the ray round
-// once more. The end is detected by counting messages (comm/termination.h).
+// Traces a frame over a distributed scene. Integrators advance as far as their rays are decided by
+// what is resident; other rays are intersected with one cluster after the other, here or on other
+// ranks, as the router says, and return to their own rank with what they found. The end is detected
+// by counting messages (comm/termination.h).
 #include "raytrace/distributed/distributed_tracer.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
-#include <cstring>
 #include <utility>
 
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
 #include "raytrace/distributed/distributions.h"
-#include "raytrace/distributed/pack_messages.h"
 #include "raytrace/scene/flush_to_zero.h"
 
 namespace delray::raytrace {
 namespace {
 
-// Beside those of schedules, which are used meanwhile.
-constexpr comm::Tag kTagRays = 200, kTagControl = 201;
+constexpr comm::Tag kTagControl = 201;  // RayMessenger::kTag is of rays
 
-constexpr std::uint32_t kOnward = kMiss - 1;  // Progression::next: to the next rank of the ring
-
-// IntegratorPool in the making on a rank: enough that some are ready while the others' questions
-// travel.
+// Tasks in the making on a rank: enough that some are ready while the others' rays travel.
 constexpr std::size_t kMostPixelTasks = 96;
+
+// Tasks that are advanced at a time where rays travel: enough that those that wait for one cluster
+// fill packets.
+constexpr std::size_t kReadyAtOnce = 32;
 
 // A rank looks whether messages have come at least so often while it waits.
 constexpr auto kMoment = std::chrono::microseconds(100);
 
+// Rays that threads intersect with resident clusters at a time.
+constexpr std::size_t kRaysAtOnce = 1024;
+
 bool is_decided(const RayMessage&) { return false; }
-bool is_decided(const ShadowMessage& shadow) { return shadow.occluded; }
+bool is_decided(const ShadowMessage& shadow) { return shadow.return_address.occluded != 0; }
+
+std::unique_ptr<RayRouter> make_router(const Distribution& distribution,
+                                       const RoutingContext& context) {
+  return distribution.decide != nullptr ? make_cluster_router(distribution, context)
+                                        : make_ring_router(context);
+}
 
 }  // namespace
 
@@ -40,14 +47,17 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
                                      const Distribution& distribution, const TiledFrame& frame)
     : communicator_(communicator),
       scene_(scene),
-      distribution_(distribution),
       frame_(frame),
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
-      ring_(distribution.decide == nullptr),
-      to_intersect_(static_cast<std::size_t>(communicator.size())),
-      to_answer_(static_cast<std::size_t>(communicator.size())) {}
+      messenger_(communicator, termination_) {
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  waiting_.to_intersect.resize(ranks);
+  waiting_.to_answer.resize(ranks);
+  router_ = make_router(distribution, {scene_, messenger_, waiting_, counts_});
+  scene_.begin_frame();
+}
 
 void DistributedTracer::add(std::uint32_t number) {
   TilePixels pixels = start_tile(frame_, number);
@@ -74,6 +84,7 @@ void DistributedTracer::add(std::uint32_t number) {
     ++in_flight_;
     ready_.push_back(index);
   }
+  if (ready_.size() >= (scene_.elsewhere().empty() ? 1 : kReadyAtOnce)) serve();
   while (in_flight_ > kMostPixelTasks) {
     if (!serve()) wait_a_moment();
   }
@@ -82,16 +93,15 @@ void DistributedTracer::add(std::uint32_t number) {
 bool DistributedTracer::serve() {
   receive_all();
   bool any = advance_pixel_tasks();
-  any = intersect_clusters() || any;
-  const std::uint64_t before = termination_sent_;
-  decide_waiting(!any);
-  if (ring_) balance_load();
+  any = intersect_waiting() || any;
+  const std::uint64_t before = messenger_.sent();
+  router_->take_turn(!any);
   send_all(!any);
-  return any || termination_sent_ != before;
+  return any || messenger_.sent() != before;
 }
 
 void DistributedTracer::wait_a_moment() {
-  communicator_.probe(comm::kAnyRank, kTagRays, comm::Deadline::in(kMoment));
+  communicator_.probe(comm::kAnyRank, RayMessenger::kTag, comm::Deadline::in(kMoment));
 }
 
 void DistributedTracer::finish() {
@@ -109,29 +119,25 @@ void DistributedTracer::finish() {
   comm::barrier(communicator_);
 }
 
-void DistributedTracer::send(int to, comm::Buffer&& message) {
-  communicator_.send(to, kTagRays, std::move(message));
-  termination_.count_sent();
-  ++termination_sent_;
-}
-
 void DistributedTracer::receive_all() {
-  while (const auto envelope = communicator_.probe(comm::kAnyRank, kTagRays, comm::Deadline::now()))
+  while (const auto envelope =
+             communicator_.probe(comm::kAnyRank, RayMessenger::kTag, comm::Deadline::now()))
     receive(*envelope);
 }
 
 void DistributedTracer::receive(const comm::Envelope& envelope) {
-  const comm::Buffer message = communicator_.receive(envelope.source, kTagRays);
+  const comm::Buffer message = communicator_.receive(envelope.source, RayMessenger::kTag);
   termination_.count_received();
   const MessageHeader header = header_of(message);
-  const std::span<const std::byte> content(message.data() + sizeof(MessageHeader),
-                                           message.size() - sizeof(MessageHeader));
   switch (header.kind) {
     case MessageKind::intersect: {
-      std::vector<ClusterHit> cluster_hits;
       const auto take_in = [&](auto&& ray) {
-        if (ring_) choose_next(ray, cluster_hits);
-        route(std::move(ray));
+        if (router_->is_new_here(ray.ray.way)) {
+          waiting_.at_resident.push(std::move(ray));
+        } else {
+          choose_next(ray);
+          route(std::move(ray));
+        }
       };
       RayQueue queue = unpack_rays(message, header);
       for (RayMessage& ray : queue.rays) take_in(std::move(ray));
@@ -140,69 +146,64 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
     }
     case MessageKind::answer: {
       const RayQueue queue = unpack_rays(message, header);
-      for (const RayMessage& ray : queue.rays) deliver(ray);
-      for (const ShadowMessage& shadow : queue.shadows) deliver(shadow);
+      for (const RayMessage& ray : queue.rays) end_ray(ray);
+      for (const ShadowMessage& shadow : queue.shadows) end_ray(shadow);
       break;
     }
-    case MessageKind::fetch: {
-      MessageHeader answer;
-      answer.kind = MessageKind::cluster;
-      answer.cluster = header.cluster;
-      send(envelope.source,
-           with_header(answer, raytrace::pack(scene_.find(header.cluster)->data())));
-      break;
-    }
-    case MessageKind::cluster: {
-      ++counts_.clusters_fetched;
-      counts_.cluster_bytes += content.size();
-      arrived_.emplace_back(header.cluster, scene_.put(header.cluster, unpack_cluster(content)));
-      fetching_.erase(header.cluster);
-      break;
-    }
-    case MessageKind::move:
-      scene_.take_over(header.cluster, unpack_cluster(content));
-      taken_over_.push_back(header.cluster);
-      break;
-    case MessageKind::load:
-      loads_.hear(header.load);
-      break;
+    default:
+      router_->receive(
+          envelope.source, header,
+          {message.data() + sizeof(MessageHeader), message.size() - sizeof(MessageHeader)});
   }
 }
 
 bool DistributedTracer::advance_pixel_tasks() {
   if (ready_.empty()) return false;
   const std::vector<std::uint32_t> ready = std::exchange(ready_, {});
-  struct Asked {
-    std::vector<RayMessage> rays;
-    std::vector<ShadowMessage> shadows;
-    double busy = 0;
-  };
-  std::vector<Asked> asked(ready.size());
-  parallel::parallel_for(0, ready.size(), 1, [&](std::size_t i) {
-    const FlushToZero flush;
-    const double start = thread_seconds();
-    PixelTask& pixel_task = pixel_tasks_[ready[i]];
-    if (pixel_task.started)
-      pixel_task.integrator->advance();
-    else
-      pixel_task.integrator->start(pixel_task.task);
-    pixel_task.started = true;
-    if (!pixel_task.integrator->done()) make_messages(ready[i], asked[i].rays, asked[i].shadows);
-    asked[i].busy = thread_seconds() - start;
-  });
+  std::vector<Advanced> advanced(ready.size());
+  parallel::parallel_for(0, ready.size(), 1,
+                         [&](std::size_t i) { advanced[i] = advance(ready[i]); });
+  std::uint64_t tests = 0;
   for (std::size_t i = 0; i < ready.size(); ++i) {
     PixelTask& pixel_task = pixel_tasks_[ready[i]];
-    busy_ += asked[i].busy;
-    pixel_task.tile->pixels.busy += asked[i].busy;
+    tests += advanced[i].tests;
+    busy_ += advanced[i].busy;
+    pixel_task.tile->pixels.busy += advanced[i].busy;
+    pixel_task.open = advanced[i].travelling.size();
     if (pixel_task.integrator->done()) {
       end_sample(ready[i]);
-      continue;
+    } else {
+      route_all(std::move(advanced[i].travelling));
     }
-    pixel_task.open = asked[i].rays.size() + asked[i].shadows.size();
-    for (RayMessage& ray : asked[i].rays) route(std::move(ray));
-    for (ShadowMessage& shadow : asked[i].shadows) route(std::move(shadow));
   }
+  counts_.tests += tests;
+  communicator_.work(comm::Work::rays, tests);
   return true;
+}
+
+// Until its sample is done or some rays have to travel.
+DistributedTracer::Advanced DistributedTracer::advance(std::uint32_t index) {
+  const FlushToZero flush;
+  const double start = thread_seconds();
+  PixelTask& pixel_task = pixel_tasks_[index];
+  WavefrontIntegrator& integrator = *pixel_task.integrator;
+  const HomeScene home{scene_.resident().local(scene_.shader()), frame_.context.shader, kernels_,
+                       scene_.elsewhere(), *router_};
+  ReturnAddress address;
+  address.rank = communicator_.rank();
+  address.pixel_task = index;
+  Advanced advanced;
+  do {
+    if (pixel_task.started)
+      integrator.advance();
+    else
+      integrator.start(pixel_task.task);
+    pixel_task.started = true;
+    if (integrator.done()) break;
+    advanced.tests += intersect_at_home(home, address, integrator.batch(), advanced.travelling);
+  } while (advanced.travelling.empty());
+  advanced.busy = thread_seconds() - start;
+  return advanced;
 }
 
 void DistributedTracer::end_sample(std::uint32_t index) {
@@ -222,294 +223,120 @@ void DistributedTracer::end_sample(std::uint32_t index) {
   std::erase_if(open_tiles_, [tile](const auto& open) { return open.get() == tile; });
 }
 
-void DistributedTracer::make_messages(std::uint32_t index, std::vector<RayMessage>& rays,
-                                      std::vector<ShadowMessage>& shadows) {
-  RayBatch& batch = pixel_tasks_[index].integrator->batch();
-  std::vector<ClusterHit> cluster_hits;
-  ReturnAddress return_address;
-  return_address.rank = communicator_.rank();
-  return_address.pixel_task = index;
-  for (std::uint32_t g = 0; g < batch.rays.size(); ++g) {
-    RayGroup& group = batch.rays[g];
-    group.hits = 0;
-    group.points.coloured = false;
-    const RayPacket& p = group.packet;
-    for (int i = 0; i < kPacketRays; ++i) {
-      if (group.active.ray[i] == 0) continue;
-      RayMessage& ray = rays.emplace_back();
-      ray.return_address = return_address;
-      ray.return_address.group = g;
-      ray.return_address.lane = static_cast<std::uint8_t>(i);
-      ray.return_address.coherent = group.coherent ? 1 : 0;
-      ray.origin = {p.origin_x[i], p.origin_y[i], p.origin_z[i]};
-      ray.near = p.near[i];
-      ray.direction = {p.direction_x[i], p.direction_y[i], p.direction_z[i]};
-      ray.far = p.far[i];
-      ray.view = group.view.get(i);
-      ray.width = group.width[i];
-      ray.spread = group.spread[i];
-      ray.way.stamp = taken_over_.size();
-      choose_next(ray, cluster_hits);
-    }
-  }
-  for (std::uint32_t g = 0; g < batch.shadows.size(); ++g) {
-    ShadowGroup& group = batch.shadows[g];
-    group.lit = group.attenuated = 0;
-    const ShadowPacket& p = group.packet;
-    for (int i = 0; i < kPacketRays; ++i) {
-      if (group.active.ray[i] == 0) continue;
-      ShadowMessage& shadow = shadows.emplace_back();
-      shadow.return_address = return_address;
-      shadow.return_address.group = g;
-      shadow.return_address.lane = static_cast<std::uint8_t>(i);
-      shadow.return_address.coherent = group.coherent ? 1 : 0;
-      shadow.return_address.through_glass = (group.through_glass >> i & 1) != 0 ? 1 : 0;
-      shadow.origin = {p.origin_x[i], p.origin_y[i], p.origin_z[i]};
-      shadow.near = p.near[i];
-      shadow.direction = {p.direction_x[i], p.direction_y[i], p.direction_z[i]};
-      shadow.far = p.far[i];
-      shadow.way.stamp = taken_over_.size();
-      choose_next(shadow, cluster_hits);
-    }
-  }
-}
-
-template <class T>
-void DistributedTracer::choose_next(T& ray, std::vector<ClusterHit>& cluster_hits) const {
+template <class Message>
+void DistributedTracer::choose_next(Message& message) const {
+  TravellingRay& ray = message.ray;
   ray.way.next = kMiss;
-  if (is_decided(ray)) return;
-  scene_.tree().find(ray.origin, ray.direction, ray.near, ray.far, cluster_hits);
-  const bool is_back = ring_ && ray.way.hops == static_cast<std::uint32_t>(communicator_.size());
-  // What came to this rank while the ray was under way may have been nowhere when it was there.
-  const auto times_it_came = [&](const ClusterHit& cluster_hit) {
-    return std::count(taken_over_.begin() + static_cast<std::ptrdiff_t>(ray.way.stamp),
-                      taken_over_.end(), cluster_hit.cluster);
-  };
-  for (const ClusterHit& cluster_hit : cluster_hits) {
-    if (!(ray.way.last < cluster_hit)) continue;
-    if (ring_ && !scene_.owns(cluster_hit.cluster)) continue;
-    if (is_back && times_it_came(cluster_hit) == 0) continue;
-    ray.way.last = cluster_hit;
-    ray.way.next = cluster_hit.cluster;
-    return;
-  }
-  if (!ring_) return;
-  if (!is_back) {
-    ray.way.next = kOnward;
-    return;
-  }
-  // What has gone on since is behind the ray, which goes round once more then.
-  const bool missed =
-      std::any_of(cluster_hits.begin(), cluster_hits.end(), [&](const ClusterHit& cluster_hit) {
-        return times_it_came(cluster_hit) > (scene_.owns(cluster_hit.cluster) ? 1 : 0);
-      });
-  if (!missed) return;
-  ray.way.hops = 0;
-  ray.way.stamp = taken_over_.size();
-  ray.way.last = {-1.0F, 0};
-  choose_next(ray, cluster_hits);
+  if (is_decided(message)) return;
+  router_->choose_next({ray.origin, glm::vec3(1.0F) / ray.direction, ray.near, far_of(message)},
+                       ray.way);
 }
 
-template <class T>
-void DistributedTracer::route(T&& ray) {
-  constexpr bool kIsShadow = std::is_same_v<std::decay_t<T>, ShadowMessage>;
-  const auto append = [&](auto& to) {
-    if constexpr (kIsShadow)
-      to.shadows.push_back(std::forward<T>(ray));
-    else
-      to.rays.push_back(std::forward<T>(ray));
-  };
-  if (ray.way.next == kOnward) {
-    ++ray.way.hops;
-    ray.way.last = {-1.0F, 0};
-    const int next = (communicator_.rank() + 1) % communicator_.size();
-    if (next != communicator_.rank()) {
-      append(to_intersect_[static_cast<std::size_t>(next)]);
-      return;
-    }
-    ray.way.next = kMiss;  // alone there is nobody to go round
-  }
-  if (ray.way.next != kMiss) {
-    append(waiting_[ray.way.next]);
-  } else if (ray.return_address.rank == communicator_.rank()) {
-    deliver(ray);
+template <class Message>
+void DistributedTracer::route(Message&& message) {
+  const std::uint32_t next = message.ray.way.next;
+  const int rank = communicator_.rank(), home = message.return_address.rank;
+  if (next == RayRouter::kOnward) {
+    const int to = (rank + 1) % communicator_.size();
+    waiting_.to_intersect[static_cast<std::size_t>(to)].push(std::move(message));
+  } else if (next != kMiss) {
+    waiting_.by_cluster[next].push(std::move(message));
+  } else if (home == rank) {
+    end_ray(message);
   } else {
-    append(to_answer_[static_cast<std::size_t>(ray.return_address.rank)]);
+    waiting_.to_answer[static_cast<std::size_t>(home)].push(std::move(message));
   }
 }
 
-void DistributedTracer::deliver(const RayMessage& ray) {
-  PixelTask& pixel_task = pixel_tasks_[ray.return_address.pixel_task];
-  RayGroup& group = pixel_task.integrator->batch().rays[ray.return_address.group];
-  const int i = ray.return_address.lane;
-  if (ray.instance != kMiss) {
-    group.packet.far[i] = ray.far;
-    group.packet.u[i] = ray.u;
-    group.packet.v[i] = ray.v;
-    group.packet.triangle[i] = ray.triangle;
-    group.packet.geometry[i] = ray.instance;
-    group.packet.instance[i] = kMiss;
-    group.hits |= 1U << i;
-    group.material[i] = ray.material;
-    group.offset[i] = ray.offset;
-    if (ray.return_address.coloured != 0 && !group.points.coloured) {
-      group.points.coloured = true;
-      for (int k = 0; k < kPacketRays; ++k) {
-        group.points.colour.set(k, glm::vec3(1.0F));
-        group.points.colour_alpha[k] = 1.0F;
-      }
-    }
-    shading::set_point(group.points, i, ray.point);
-  }
-  if (--pixel_task.open == 0) ready_.push_back(ray.return_address.pixel_task);
+void DistributedTracer::route_all(RayQueue&& queue) {
+  for (RayMessage& ray : queue.rays) route(std::move(ray));
+  for (ShadowMessage& shadow : queue.shadows) route(std::move(shadow));
 }
 
-void DistributedTracer::deliver(const ShadowMessage& shadow) {
-  PixelTask& pixel_task = pixel_tasks_[shadow.return_address.pixel_task];
-  ShadowGroup& group = pixel_task.integrator->batch().shadows[shadow.return_address.group];
-  const int i = shadow.return_address.lane;
-  if (!shadow.occluded) {
-    group.lit |= 1U << i;
-    if (shadow.layers > 0) {
-      Layer layers[SeeThrough::kMost];
-      std::copy_n(shadow.layer, shadow.layers, layers);
-      group.attenuated |= 1U << i;
-      group.transmittance.set(i, transmittance_of({layers, shadow.layers}));
-    }
-  }
-  if (--pixel_task.open == 0) ready_.push_back(shadow.return_address.pixel_task);
+template <class Message>
+void DistributedTracer::end_ray(const Message& message) {
+  const std::uint32_t index = message.return_address.pixel_task;
+  PixelTask& pixel_task = pixel_tasks_[index];
+  deliver(message, pixel_task.integrator->batch());
+  if (--pixel_task.open == 0) ready_.push_back(index);
 }
 
-bool DistributedTracer::intersect_clusters() {
-  struct ClusterBatch {
-    std::shared_ptr<const Cluster> cluster;
-    RayQueue waiting;
-    double busy = 0;
+bool DistributedTracer::intersect_waiting() {
+  std::vector<RayQueue> queues;
+  std::vector<std::shared_ptr<const ClusterScene>> held;  // null: the resident scene
+  const auto take = [&](std::shared_ptr<const ClusterScene> clusters, RayQueue&& queue) {
+    held.push_back(std::move(clusters));
+    queues.push_back(std::move(queue));
   };
-  std::vector<ClusterBatch> batches;
-  // A cluster that has just come stays until its rays have been intersected, however little room
-  // there is.
-  for (auto& [number, cluster] : arrived_) {
-    const auto at = waiting_.find(number);
-    if (at == waiting_.end()) continue;
-    batches.push_back({std::move(cluster), std::move(at->second)});
-    waiting_.erase(at);
+  auto& by_cluster = waiting_.by_cluster;
+  for (auto& [number, clusters] : std::exchange(waiting_.arrived, {})) {
+    const auto at = by_cluster.find(number);
+    if (at == by_cluster.end()) continue;
+    take(clusters, std::move(at->second));
+    by_cluster.erase(at);
   }
-  arrived_.clear();
-  for (auto at = waiting_.begin(); at != waiting_.end();) {
-    std::shared_ptr<const Cluster> cluster = scene_.find(at->first);
-    if (cluster == nullptr) {
+  for (auto at = by_cluster.begin(); at != by_cluster.end();) {
+    std::shared_ptr<const ClusterScene> clusters = scene_.find(at->first);
+    if (clusters == nullptr) {
       ++at;
       continue;
     }
-    batches.push_back({std::move(cluster), std::move(at->second)});
-    at = waiting_.erase(at);
+    take(std::move(clusters), std::move(at->second));
+    at = by_cluster.erase(at);
   }
-  if (batches.empty()) return false;
-  parallel::parallel_for(0, batches.size(), 1, [&](std::size_t i) {
-    const FlushToZero flush;
-    const double start = thread_seconds();
-    intersect_cluster(*batches[i].cluster, scene_.shader(), kernels_, batches[i].waiting);
-    std::vector<ClusterHit> cluster_hits;
-    for (RayMessage& ray : batches[i].waiting.rays) choose_next(ray, cluster_hits);
-    for (ShadowMessage& shadow : batches[i].waiting.shadows) choose_next(shadow, cluster_hits);
-    batches[i].busy = thread_seconds() - start;
-  });
   std::uint64_t tests = 0;
-  for (ClusterBatch& each : batches) {
-    busy_ += each.busy;
-    tests += each.waiting.size();
-    for (RayMessage& ray : each.waiting.rays) route(std::move(ray));
-    for (ShadowMessage& shadow : each.waiting.shadows) route(std::move(shadow));
+  for (const RayQueue& queue : queues) tests += queue.size();
+  scene_.note_tests(tests);
+  if (!waiting_.at_resident.empty()) {
+    tests += waiting_.at_resident.size();
+    take(nullptr, std::exchange(waiting_.at_resident, {}));
   }
+  if (queues.empty()) return false;
+
+  std::vector<ClusterBatch> batches;
+  for (std::size_t i = 0; i < queues.size(); ++i) {
+    const ClusterScene* clusters = held[i] != nullptr ? held[i].get() : &scene_.resident();
+    const std::span<RayMessage> rays = queues[i].rays;
+    const std::span<ShadowMessage> shadows = queues[i].shadows;
+    for (std::size_t k = 0; k < rays.size(); k += kRaysAtOnce)
+      batches.push_back({clusters, rays.subspan(k, std::min(kRaysAtOnce, rays.size() - k)), {}});
+    for (std::size_t k = 0; k < shadows.size(); k += kRaysAtOnce)
+      batches.push_back(
+          {clusters, {}, shadows.subspan(k, std::min(kRaysAtOnce, shadows.size() - k))});
+  }
+  parallel::parallel_for(0, batches.size(), 1, [&](std::size_t i) { intersect(batches[i]); });
+  for (const ClusterBatch& batch : batches) busy_ += batch.busy;
+  for (RayQueue& queue : queues) route_all(std::move(queue));
   counts_.tests += tests;
   communicator_.work(comm::Work::rays, tests);
   return true;
 }
 
-void DistributedTracer::decide_waiting(bool idle) {
-  if (ring_) return;
-  for (auto at = waiting_.begin(); at != waiting_.end();) {
-    const std::uint32_t number = at->first;
-    RayQueue& waiting = at->second;
-    // What is at hand by now waits for the next turn.
-    if (fetching_.contains(number) || scene_.find(number) != nullptr) {
-      ++at;
-      continue;
-    }
-    WaitingList list;
-    list.cluster = number;
-    list.rays = waiting.size();
-    list.ray_bytes = waiting.rays.size() * sizeof(RayMessage) +
-                     waiting.shadows.size() * offsetof(ShadowMessage, layer);
-    list.cluster_bytes = scene_.packed_bytes(number);
-    list.idle = idle;
-    const auto owner = static_cast<std::size_t>(scene_.owner(number));
-    switch (distribution_.decide(list)) {
-      case RoutingDecision::wait:
-        ++at;
-        break;
-      case RoutingDecision::fetch_cluster: {
-        MessageHeader header;
-        header.kind = MessageKind::fetch;
-        header.cluster = number;
-        send(static_cast<int>(owner), with_header(header, {}));
-        fetching_.insert(number);
-        ++at;
-        break;
-      }
-      case RoutingDecision::send_rays: {
-        RayQueue& to = to_intersect_[owner];
-        to.rays.insert(to.rays.end(), waiting.rays.begin(), waiting.rays.end());
-        to.shadows.insert(to.shadows.end(), waiting.shadows.begin(), waiting.shadows.end());
-        at = waiting_.erase(at);
-        break;
-      }
-    }
-  }
+void DistributedTracer::intersect(ClusterBatch& batch) {
+  const FlushToZero flush;
+  const double start = thread_seconds();
+  intersect_clusters(*batch.clusters, scene_.shader(), kernels_, batch.rays, batch.shadows);
+  const bool all = batch.clusters == &scene_.resident();
+  const auto go_on = [&](auto& message) {
+    if (all) message.ray.way.note(communicator_.rank());
+    choose_next(message);
+  };
+  for (RayMessage& ray : batch.rays) go_on(ray);
+  for (ShadowMessage& shadow : batch.shadows) go_on(shadow);
+  batch.busy = thread_seconds() - start;
 }
 
 void DistributedTracer::send_all(bool idle) {
   for (int rank = 0; rank < communicator_.size(); ++rank) {
     const auto send_batch = [&](MessageKind kind, RayQueue& out) {
-      const std::size_t count = out.rays.size() + out.shadows.size();
-      if (count == 0 || (!idle && count < kBatchRays)) return false;
+      const std::size_t count = out.size();
+      if (count == 0 || (!idle && count < kBatchRays)) return;
       (kind == MessageKind::intersect ? counts_.rays_sent : counts_.answers_sent) += count;
-      send(rank, pack(kind, out.rays, out.shadows));
-      out.rays.clear();
-      out.shadows.clear();
-      return true;
+      messenger_.send(rank, pack(kind, out.rays, out.shadows));
+      out.clear();
     };
-    send_batch(MessageKind::intersect, to_intersect_[static_cast<std::size_t>(rank)]);
-    send_batch(MessageKind::answer, to_answer_[static_cast<std::size_t>(rank)]);
-  }
-}
-
-void DistributedTracer::balance_load() {
-  const int ranks = communicator_.size();
-  if (ranks == 1) return;
-  const std::uint64_t load = counts_.tests;
-  if (loads_.tell(load)) {
-    MessageHeader header;
-    header.kind = MessageKind::load;
-    header.load = load;
-    send((communicator_.rank() + ranks - 1) % ranks, with_header(header, {}));
-  }
-  if (!loads_.should_give(load) || scene_.owned().size() < 2) return;
-  // One that no ray waits for. Rays that come later find it on the next rank: on the same way, in
-  // the order of sending, it is there before them.
-  for (const auto& [number, cluster] : scene_.owned()) {
-    if (waiting_.contains(number)) continue;
-    MessageHeader header;
-    header.kind = MessageKind::move;
-    header.cluster = number;
-    const int next = (communicator_.rank() + 1) % ranks;
-    comm::Buffer message = with_header(header, raytrace::pack(cluster->data()));
-    scene_.give_away(number);
-    send(next, std::move(message));
-    ++counts_.clusters_moved;
-    loads_.gave(load);
-    return;
+    send_batch(MessageKind::intersect, waiting_.to_intersect[static_cast<std::size_t>(rank)]);
+    send_batch(MessageKind::answer, waiting_.to_answer[static_cast<std::size_t>(rank)]);
   }
 }
 

@@ -1,9 +1,10 @@
-// Intersects rays with one cluster in packets of sixteen, and keeps the nearest hits and the layers
+// Intersects rays with clusters in packets of sixteen, and keeps the nearest hits and the layers
 // that shadow rays pass.
 #include "raytrace/distributed/intersect_cluster.h"
 
 #include <algorithm>
-#include <tuple>
+#include <type_traits>
+#include <vector>
 
 #include "raytrace/scene/edges.h"
 #include "raytrace/scene/hit_points.h"
@@ -11,15 +12,21 @@
 namespace delray::raytrace {
 namespace {
 
+template <class Packet>
+void set_line(Packet& packet, int i, const TravellingRay& ray) {
+  packet.origin_x[i] = ray.origin.x, packet.origin_y[i] = ray.origin.y;
+  packet.origin_z[i] = ray.origin.z;
+  packet.near[i] = ray.near;
+  packet.direction_x[i] = ray.direction.x, packet.direction_y[i] = ray.direction.y;
+  packet.direction_z[i] = ray.direction.z;
+}
+
 void set_lane(RayGroup& group, int i, const RayMessage& ray) {
   RayPacket& p = group.packet;
   group.active.ray[i] = -1;
-  p.origin_x[i] = ray.origin.x, p.origin_y[i] = ray.origin.y, p.origin_z[i] = ray.origin.z;
-  p.near[i] = ray.near;
-  p.direction_x[i] = ray.direction.x, p.direction_y[i] = ray.direction.y;
-  p.direction_z[i] = ray.direction.z;
+  set_line(p, i, ray.ray);
   p.time[i] = 0.0F;
-  p.far[i] = a_little_further(ray.far);  // hits at the same distance count
+  p.far[i] = a_little_further(ray.nearest.far);  // hits at the same distance count
   p.mask[i] = 0xFFFFFFFFU;
   p.id[i] = p.flags[i] = 0;
   p.triangle[i] = p.geometry[i] = p.instance[i] = kMiss;
@@ -42,100 +49,92 @@ shading::Point point_of(const shading::Points& p, int i) {
   return point;
 }
 
-// Sixteen rays at most that are traced by the same kernel.
-void intersect(const Cluster& cluster, std::span<RayMessage* const> rays, bool coherent) {
-  RayGroup group;
-  group.coherent = coherent;
-  for (int i = 0; i < kPacketRays; ++i) group.active.ray[i] = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) set_lane(group, static_cast<int>(i), *rays[i]);
-  cluster.embree().intersect(group.active, group.packet, coherent);
+// The hits of a packet that are nearer than what the rays have; those of other lanes are left
+// alone.
+bool keep_nearer(const LocalScene& scene, RayGroup& group, std::span<RayMessage* const> rays) {
   bool any = false;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const int i = static_cast<int>(k);
-    RayMessage& ray = *rays[k];
+    NearestHit& nearest = rays[k]->nearest;
     bool nearer = group.packet.triangle[i] != kMiss;
     if (nearer) {
-      const Hit hit = hit_of(group.packet, i);
-      const std::uint32_t instance = cluster.instance(hit.instance);
-      const std::uint32_t triangle = cluster.triangle(hit.instance, hit.triangle);
-      nearer = std::tie(hit.distance, instance, triangle) <
-               std::tie(ray.far, ray.instance, ray.triangle);
-      if (nearer) {
-        ray.far = hit.distance;
-        ray.instance = instance;
-        ray.triangle = triangle;
-        ray.u = hit.u;
-        ray.v = hit.v;
-      }
+      const Hit hit = in_whole_scene(hit_of(group.packet, i), scene.numbers);
+      nearer = is_nearer(hit, {nearest.far, nearest.instance, nearest.triangle});
+      if (nearer) nearest = {hit.distance, hit.instance, hit.triangle};
     }
     if (!nearer) group.active.ray[i] = 0;
     any = any || nearer;
   }
-  if (!any) return;
-  find_points(cluster.instances(), group);
+  return any;
+}
+
+// Sixteen rays at most that are traced by the same kernel.
+void intersect(const LocalScene& scene, std::span<RayMessage* const> rays, bool coherent) {
+  RayGroup group;
+  group.coherent = coherent;
+  for (int i = 0; i < kPacketRays; ++i) group.active.ray[i] = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) set_lane(group, static_cast<int>(i), *rays[i]);
+  scene.embree.intersect(group.active, group.packet, coherent);
+  if (!keep_nearer(scene, group, rays)) return;
+  find_points(scene.instances, group);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const int i = static_cast<int>(k);
     if (group.active.ray[i] == 0) continue;
-    rays[k]->point = point_of(group.points, i);
-    rays[k]->return_address.coloured = group.points.coloured ? 1 : 0;
-    const GeometryInstance& instance = cluster.instances()[hit_of(group.packet, i).instance];
-    rays[k]->return_address.second_uvs = instance.texture_sets > 1 ? 1 : 0;
-    rays[k]->offset = group.offset[i];
-    rays[k]->material = group.material[i];
+    const GeometryInstance& instance = scene.instances[hit_of(group.packet, i).instance];
+    ReturnAddress& address = rays[k]->return_address;
+    address.found = 1;
+    address.coloured = group.points.coloured ? 1 : 0;
+    address.second_uvs = instance.texture_sets > 1 ? 1 : 0;
+    rays[k]->hit = {group.packet.u[i], group.packet.v[i], group.material[i], group.offset[i],
+                    point_of(group.points, i)};
   }
 }
 
 void add_layer(const Layer& layer, ShadowMessage& shadow) {
-  for (int i = 0; i < shadow.layers; ++i) {
-    const Layer& known = shadow.layer[i];
+  for (const Layer& known : shadow.layers) {
     if (known.instance == layer.instance && known.triangle == layer.triangle) return;
   }
-  if (shadow.layers == SeeThrough::kMost) {
-    shadow.occluded = true;
+  if (shadow.layers.size() == SeeThrough::kMost) {
+    shadow.return_address.occluded = 1;
     return;
   }
-  shadow.layer[shadow.layers++] = layer;
+  shadow.layers.push_back(layer);
+  shadow.return_address.layers = static_cast<std::uint8_t>(shadow.layers.size());
 }
 
-void intersect(const Cluster& cluster, const shading::Shader& shader, const Kernels& kernels,
+void intersect(const LocalScene& scene, const Kernels& kernels,
                std::span<ShadowMessage* const> shadows, bool coherent) {
   ShadowPacket packet{};
   ActiveRays active;
   SeeThrough passed[kPacketRays];
   for (int i = 0; i < kPacketRays; ++i) active.ray[i] = 0;
   for (std::size_t k = 0; k < shadows.size(); ++k) {
-    const ShadowMessage& shadow = *shadows[k];
     const int i = static_cast<int>(k);
     active.ray[i] = -1;
-    packet.origin_x[i] = shadow.origin.x, packet.origin_y[i] = shadow.origin.y;
-    packet.origin_z[i] = shadow.origin.z;
-    packet.near[i] = shadow.near;
-    packet.direction_x[i] = shadow.direction.x, packet.direction_y[i] = shadow.direction.y;
-    packet.direction_z[i] = shadow.direction.z;
-    packet.far[i] = shadow.far;
+    set_line(packet, i, shadows[k]->ray);
+    packet.far[i] = shadows[k]->far;
     packet.mask[i] = 0xFFFFFFFFU;
   }
-  cluster.embree().occluded(active, packet, passed, coherent && !kernels.has_instances);
+  scene.embree.occluded(active, packet, passed, coherent && !kernels.has_instances);
   for (std::size_t k = 0; k < shadows.size(); ++k) {
     ShadowMessage& shadow = *shadows[k];
-    shadow.occluded = packet.far[k] < 0.0F;
-    for (int j = 0; j < passed[k].count && !shadow.occluded; ++j) {
-      const Hit& hit = passed[k].hits[j];
-      Layer layer = layer_of(cluster.instances(), shader, hit, shadow.direction,
-                             shadow.return_address.through_glass != 0);
-      layer.instance = cluster.instance(hit.instance);
-      layer.triangle = cluster.triangle(hit.instance, hit.triangle);
-      add_layer(layer, shadow);
+    shadow.return_address.occluded = packet.far[k] < 0.0F ? 1 : 0;
+    for (int j = 0; j < passed[k].count && shadow.return_address.occluded == 0; ++j) {
+      add_layer(layer_in_whole_scene(scene, passed[k].hits[j], shadow.ray.direction,
+                                     shadow.return_address.through_glass != 0),
+                shadow);
     }
   }
 }
 
 }  // namespace
 
-void intersect_cluster(const Cluster& cluster, const shading::Shader& shader,
-                       const Kernels& kernels, RayQueue& waiting) {
+void intersect_clusters(const ClusterScene& clusters, const shading::Shader& shader,
+                        const Kernels& kernels, std::span<RayMessage> rays,
+                        std::span<ShadowMessage> shadows) {
+  const LocalScene scene = clusters.local(shader);
   // Packets of sixteen, which whoever traces them fills as it likes.
-  const auto in_packets = [](auto& all, auto&& intersect_packet) {
+  const auto in_packets = [](auto all, auto&& intersect_packet) {
     std::vector<std::remove_reference_t<decltype(all.front())>*> some;
     for (const bool coherent : {false, true}) {
       some.clear();
@@ -148,10 +147,9 @@ void intersect_cluster(const Cluster& cluster, const shading::Shader& shader,
       }
     }
   };
-  in_packets(waiting.rays, [&](auto rays, bool coherent) { intersect(cluster, rays, coherent); });
-  in_packets(waiting.shadows, [&](auto shadows, bool coherent) {
-    intersect(cluster, shader, kernels, shadows, coherent);
-  });
+  in_packets(rays, [&](auto packet, bool coherent) { intersect(scene, packet, coherent); });
+  in_packets(shadows,
+             [&](auto packet, bool coherent) { intersect(scene, kernels, packet, coherent); });
 }
 
 }  // namespace delray::raytrace

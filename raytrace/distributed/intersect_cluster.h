@@ -1,7 +1,9 @@
-// Rays against one cluster.
+// Travelling rays against clusters at hand.
 #pragma once
 
-#include "raytrace/distributed/cluster.h"
+#include <span>
+
+#include "raytrace/distributed/cluster_scene.h"
 #include "raytrace/distributed/ray_message.h"
 #include "shading/shader.h"
 
@@ -12,9 +14,10 @@ struct Kernels {
   bool has_instances = false;
 };
 
-// Brings all rays that wait up to date with the cluster. Of equally near hits the one with the
+// Brings all rays up to date with the clusters of a scene. Of equally near hits the one with the
 // lowest instance and triangle counts, whichever cluster came first.
-void intersect_cluster(const Cluster& cluster, const shading::Shader& shader,
-                       const Kernels& kernels, RayQueue& waiting);
+void intersect_clusters(const ClusterScene& clusters, const shading::Shader& shader,
+                        const Kernels& kernels, std::span<RayMessage> rays,
+                        std::span<ShadowMessage> shadows);
 
 }  // namespace delray::raytrace

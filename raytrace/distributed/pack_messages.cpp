@@ -1,14 +1,51 @@
-// Packs rays as far as they have something to say: without a point while they have met nothing, and
-// with as many layers as there are. A message that is too short, too long or of no kind is refused.
+// Packs rays as far as they have something to say, part by part. A message that is too short, too
+// long or of no kind is refused.
 #include "raytrace/distributed/pack_messages.h"
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "comm/bad_message.h"
 
 namespace delray::raytrace {
 namespace {
+
+// What few points need is last in a point.
+constexpr std::size_t kPlainHit = offsetof(HitPoint, point) + offsetof(shading::Point, second);
+
+// Visits the parts of a ray that travel in a message of a kind, in order: visit(address of the
+// part, its bytes). What a part says of the following ones is known when they are visited.
+template <class Ray, class Visit>
+void for_parts(MessageKind kind, Ray& ray,
+               Visit&& visit) requires(std::is_same_v<std::remove_const_t<Ray>, RayMessage>) {
+  visit(&ray.return_address, sizeof ray.return_address);
+  visit(&ray.nearest, sizeof ray.nearest);
+  if (kind != MessageKind::answer) {
+    visit(&ray.ray, sizeof ray.ray);
+    visit(&ray.view, sizeof ray.view);
+    visit(&ray.width, sizeof ray.width);
+    visit(&ray.spread, sizeof ray.spread);
+  }
+  if (ray.return_address.found != 0) {
+    visit(&ray.hit, ray.return_address.second_uvs != 0 ? sizeof ray.hit : kPlainHit);
+  }
+}
+
+template <class Shadow, class Visit>
+void for_parts(MessageKind kind, Shadow& shadow,
+               Visit&& visit) requires(std::is_same_v<std::remove_const_t<Shadow>, ShadowMessage>) {
+  visit(&shadow.return_address, sizeof shadow.return_address);
+  if (kind != MessageKind::answer) {
+    visit(&shadow.ray, sizeof shadow.ray);
+    visit(&shadow.far, sizeof shadow.far);
+  }
+  if constexpr (!std::is_const_v<Shadow>) {
+    comm::check_message(shadow.return_address.layers <= SeeThrough::kMost);
+    shadow.layers.resize(shadow.return_address.layers);
+  }
+  if (!shadow.layers.empty()) visit(shadow.layers.data(), shadow.layers.size() * sizeof(Layer));
+}
 
 class Writer {
  public:
@@ -24,32 +61,23 @@ class Writer {
   std::size_t at_ = 0;
 };
 
-// The point is last in a ray, and what few points need is last in a point.
-constexpr std::size_t kPlainRay = offsetof(RayMessage, point) + offsetof(shading::Point, second);
-
-std::size_t size_of(const RayMessage& ray) {
-  if (ray.instance == kMiss) return offsetof(RayMessage, point);
-  return ray.return_address.second_uvs != 0 ? sizeof(RayMessage) : kPlainRay;
-}
-std::size_t size_of(const ShadowMessage& shadow) {
-  return offsetof(ShadowMessage, layer) + shadow.layers * sizeof(Layer);
-}
-
 }  // namespace
 
 comm::Buffer pack(MessageKind kind, std::span<const RayMessage> rays,
                   std::span<const ShadowMessage> shadows) {
   std::size_t size = sizeof(MessageHeader);
-  for (const RayMessage& ray : rays) size += size_of(ray);
-  for (const ShadowMessage& shadow : shadows) size += size_of(shadow);
+  const auto count = [&](const void*, std::size_t bytes) { size += bytes; };
+  for (const RayMessage& ray : rays) for_parts(kind, ray, count);
+  for (const ShadowMessage& shadow : shadows) for_parts(kind, shadow, count);
   MessageHeader header;
   header.kind = kind;
   header.rays = static_cast<std::uint32_t>(rays.size());
   header.shadows = static_cast<std::uint32_t>(shadows.size());
   Writer out(size);
   out.put(&header, sizeof(header));
-  for (const RayMessage& ray : rays) out.put(&ray, size_of(ray));
-  for (const ShadowMessage& shadow : shadows) out.put(&shadow, size_of(shadow));
+  const auto put = [&](const void* part, std::size_t bytes) { out.put(part, bytes); };
+  for (const RayMessage& ray : rays) for_parts(kind, ray, put);
+  for (const ShadowMessage& shadow : shadows) for_parts(kind, shadow, put);
   return out.take();
 }
 
@@ -62,35 +90,25 @@ MessageHeader header_of(const comm::Buffer& message) {
 }
 
 RayQueue unpack_rays(const comm::Buffer& message, const MessageHeader& header) {
-  constexpr std::size_t kRay = offsetof(RayMessage, point);
-  constexpr std::size_t kShadow = offsetof(ShadowMessage, layer);
   const std::byte* at = message.data() + sizeof(MessageHeader);
   std::size_t rest = message.size() - sizeof(MessageHeader);
   const auto read = [&](void* to, std::size_t size) {
     comm::check_message(rest >= size);
     std::memcpy(to, at, size);
-  };
-  const auto advance = [&](std::size_t size) {
     at += size;
     rest -= size;
   };
-  comm::check_message(rest / kRay >= header.rays && rest / kShadow >= header.shadows);
+  // No ray is shorter.
+  comm::check_message(rest / (sizeof(ReturnAddress) + sizeof(NearestHit)) >= header.rays &&
+                      rest / sizeof(ReturnAddress) >= header.shadows);
   RayQueue result;
   result.rays.reserve(header.rays);
   for (std::uint32_t i = 0; i < header.rays; ++i) {
-    RayMessage& ray = result.rays.emplace_back();
-    read(static_cast<void*>(&ray), kRay);
-    if (ray.instance != kMiss) read(static_cast<void*>(&ray), size_of(ray));
-    advance(size_of(ray));
+    for_parts(header.kind, result.rays.emplace_back(), read);
   }
   result.shadows.reserve(header.shadows);
   for (std::uint32_t i = 0; i < header.shadows; ++i) {
-    ShadowMessage& shadow = result.shadows.emplace_back();
-    read(static_cast<void*>(&shadow), kShadow);
-    comm::check_message(shadow.layers <= SeeThrough::kMost &&
-                        at[offsetof(ShadowMessage, occluded)] <= std::byte{1});
-    read(static_cast<void*>(&shadow), size_of(shadow));
-    advance(size_of(shadow));
+    for_parts(header.kind, result.shadows.emplace_back(), read);
   }
   comm::check_message(rest == 0);
   return result;

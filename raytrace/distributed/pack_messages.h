@@ -21,7 +21,8 @@ struct MessageHeader {
   std::uint64_t load = 0;
 };
 
-// Of a ray the point travels only if there is one, and no more layers than there are.
+// Only what is needed travels: an answer leaves the ray itself out, the point comes only with a hit
+// that another rank found, and there are as many layers as were passed.
 comm::Buffer pack(MessageKind kind, std::span<const RayMessage> rays,
                   std::span<const ShadowMessage> shadows);
 

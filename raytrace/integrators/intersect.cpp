@@ -1,4 +1,4 @@
-// Intersects a batch with a scene that this rank holds whole. In large scenes the vertices of hits
+// Intersects a batch with the geometry at hand. In large scenes the vertices of hits
 // are fetched ahead, one group before they are used. Shadow rays multiply the transmittances of the
 // layers that they passed in one order, since Embree reports them in any.
 #include "raytrace/integrators/intersect.h"
@@ -14,6 +14,9 @@
 #include "shading/arithmetic.h"
 
 namespace delray::raytrace {
+
+using shading::LaneMask;
+
 namespace {
 
 // Memory that is not written to before it is used.
@@ -23,25 +26,32 @@ union PerHit {
   T element[kPacketRays * SeeThrough::kMost];
 };
 
-bool transmits(const Tracer& tracer, const Hit& hit) {
-  return tracer.shader.materials[tracer.instances[hit.instance].material].transmission > 0.0F;
+bool transmits(const LocalScene& scene, const Hit& hit) {
+  return scene.shader.materials[scene.instances[hit.instance].material].transmission > 0.0F;
 }
 
-void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGroup& group) {
-  const shading::LaneMask active = active_lanes(group.active);
-  SeeThrough passed[kPacketRays];
-  tracer.embree.occluded(group.active, group.packet, passed, group.coherent);
+}  // namespace
+
+void trace_shadows(const LocalScene& scene, bool coherent, ShadowGroup& group,
+                   std::span<SeeThrough, kPacketRays> passed) {
+  scene.embree.occluded(group.active, group.packet, passed, coherent);
   group.lit = group.attenuated = 0;
   for (int i = 0; i < kPacketRays; ++i) {
     group.lit |= group.packet.far[i] >= 0.0F ? 1U << i : 0U;
   }
-  group.lit &= active;
-  if (!tracer.embree.has_see_through()) return;
+  group.lit &= active_lanes(group.active);
+}
+
+void attenuate(const LocalScene& scene, const shading::BatchShader& shader,
+               std::span<const SeeThrough, kPacketRays> passed, shading::LaneMask lanes,
+               ShadowGroup& group) {
+  if (!scene.embree.has_see_through()) return;
   PerHit<PaneHit> panes;
   PerHit<Layer> layers;
   std::size_t pane_count = 0, first = 0;
-  for (int i = 0; i < kPacketRays; ++i) {
-    if ((group.lit >> i & 1) == 0 || passed[i].count == 0) continue;
+  for (LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    if (passed[i].count == 0) continue;
     group.attenuated |= 1U << i;
     const glm::vec3 direction(group.packet.direction_x[i], group.packet.direction_y[i],
                               group.packet.direction_z[i]);
@@ -49,17 +59,20 @@ void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGro
       const Hit& hit = passed[i].hits[k];
       Layer& layer = layers.element[first++];
       const bool through_glass = (group.through_glass >> i & 1) != 0;
-      if (through_glass && transmits(tracer, hit)) {
-        layer = {hit.distance, hit.instance, hit.triangle, {}};
+      if (through_glass && transmits(scene, hit)) {
+        layer.distance = hit.distance;
         panes.element[pane_count++] = {hit, direction, &layer.transmittance};
       } else {
-        layer = layer_of(tracer.instances, tracer.shader, hit, direction, through_glass);
+        layer = layer_of(scene.instances, scene.shader, hit, direction, through_glass);
       }
+      const Hit whole = in_whole_scene(hit, scene.numbers);
+      layer.instance = whole.instance;
+      layer.triangle = whole.triangle;
     }
   }
-  if (pane_count != 0) find_transmittances(tracer.instances, shader, {panes.element, pane_count});
+  if (pane_count != 0) find_transmittances(scene.instances, shader, {panes.element, pane_count});
   first = 0;
-  for (shading::LaneMask rest = group.attenuated; rest != 0; rest &= rest - 1) {
+  for (LaneMask rest = group.attenuated; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const auto count = static_cast<std::size_t>(passed[i].count);
     group.transmittance.set(i, transmittance_of({layers.element + first, count}));
@@ -67,24 +80,31 @@ void occlude(const Tracer& tracer, const shading::BatchShader& shader, ShadowGro
   }
 }
 
-}  // namespace
-
-void intersect(const Tracer& tracer, const shading::BatchShader& shader, RayBatch& batch) {
+void intersect_rays(const LocalScene& scene, RayBatch& batch) {
   const RayGroup* before = nullptr;
   for (RayGroup& group : batch.rays) {
     if (group.misses) continue;
-    tracer.embree.intersect(group.active, group.packet, group.coherent);
-    if (!tracer.large) continue;
-    fetch_corners(tracer.instances, group);
-    if (before != nullptr) fetch_vertices(tracer.instances, *before);
+    scene.embree.intersect(group.active, group.packet, group.coherent);
+    if (!scene.large) continue;
+    fetch_corners(scene.instances, group);
+    if (before != nullptr) fetch_vertices(scene.instances, *before);
     before = &group;
   }
-  if (before != nullptr) fetch_vertices(tracer.instances, *before);
+  if (before != nullptr) fetch_vertices(scene.instances, *before);
   for (RayGroup& group : batch.rays) {
     group.hits = 0;
-    if (!group.misses) find_points(tracer.instances, group);
+    if (!group.misses) find_points(scene.instances, group);
   }
-  for (ShadowGroup& group : batch.shadows) occlude(tracer, shader, group);
+}
+
+void intersect(const Tracer& tracer, const shading::BatchShader& shader, RayBatch& batch) {
+  const LocalScene scene{tracer.embree, tracer.instances, tracer.shader, {}, tracer.large};
+  intersect_rays(scene, batch);
+  for (ShadowGroup& group : batch.shadows) {
+    SeeThrough passed[kPacketRays];
+    trace_shadows(scene, group.coherent, group, passed);
+    attenuate(scene, shader, passed, group.lit, group);
+  }
 }
 
 Layer layer_of(std::span<const GeometryInstance> instances, const shading::Shader& shader,
@@ -106,6 +126,15 @@ Layer layer_of(std::span<const GeometryInstance> instances, const shading::Shade
   return {hit.distance, hit.instance, hit.triangle,
           glm::vec3(1.0F - s.alpha) +
               s.base_colour * s.attenuation * (s.alpha * share * (1.0F - reflected))};
+}
+
+Layer layer_in_whole_scene(const LocalScene& scene, const Hit& hit, const glm::vec3& direction,
+                           bool through_glass) {
+  Layer layer = layer_of(scene.instances, scene.shader, hit, direction, through_glass);
+  const Hit whole = in_whole_scene(hit, scene.numbers);
+  layer.instance = whole.instance;
+  layer.triangle = whole.triangle;
+  return layer;
 }
 
 glm::vec3 transmittance_of(std::span<Layer> layers) {

@@ -44,8 +44,11 @@ class EmbreeScene {
   // counts some of another. Buffers of `instances` are used in place and have to outlive the
   // object. Degenerate triangles are never hit. O(n log n).
   // Throws std::bad_alloc when memory runs out, std::runtime_error on any other failure.
+  // Where it is part of a scene, `numbers` has an element for each instance and outlives the
+  // object: ties are broken by what they are in the whole scene, hits still tell what they are in
+  // the part.
   EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options,
-              const EmbreeDevice& device);
+              const EmbreeDevice& device, std::span<const GeometryNumbers> numbers = {});
   // On a device of its own.
   EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options)
       : EmbreeScene(instances, options, EmbreeDevice(options)) {}

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <tuple>
 
 namespace delray::raytrace {
 
@@ -61,6 +63,28 @@ struct Hit {
   std::uint32_t instance = kMiss, triangle = kMiss;
   float u = 0.0F, v = 0.0F;
 };
+
+// What an instance of a part of a scene is in the whole scene: its number, and of triangle i of its
+// mesh triangles[i].
+struct GeometryNumbers {
+  std::uint32_t instance = kMiss;
+  const std::uint32_t* triangles = nullptr;
+};
+
+// The hit as it is in the whole scene. `numbers` empty: it is the whole one.
+inline Hit in_whole_scene(Hit hit, std::span<const GeometryNumbers> numbers) {
+  if (numbers.empty()) return hit;
+  const GeometryNumbers& of = numbers[hit.instance];
+  hit.instance = of.instance;
+  hit.triangle = of.triangles[hit.triangle];
+  return hit;
+}
+
+// The order of hits: of equally near ones the lowest instance, then triangle, comes first.
+inline bool is_nearer(const Hit& a, const Hit& b) {
+  return std::tie(a.distance, a.instance, a.triangle) <
+         std::tie(b.distance, b.instance, b.triangle);
+}
 
 // The hit of a ray that hit something. REQUIRES: ray.triangle != kMiss.
 inline Hit hit_of(const Ray& ray) {

@@ -48,8 +48,8 @@ std::size_t different(const Result& a, const Result& b) {
   return count;
 }
 
-// Clusters that pass the rank that asked, before what it asked is back, are behind rays.
-TEST(Ring, RaysFollowClustersThatHavePassedThem) {
+// Clusters that move while rays are on their way are met nevertheless, in this frame and the next.
+TEST(Ring, RaysMeetClustersThatMoveMeanwhile) {
   const parallel::AllowThreads allowed(4);
   scenes::Scene scene;
   // What is seen is the first third of it, and only the first rank has that.
@@ -67,18 +67,19 @@ TEST(Ring, RaysFollowClustersThatHavePassedThem) {
   const Result whole = render_alone(scene, scene.cameras[0], options);
   std::uint64_t moved = 0;
   for (const std::uint64_t seed : {1, 2}) {
-    Result result;
     comm::run_simulated(3, comm::any_order(), seed, [&](comm::Communicator& communicator) {
       ShareOptions share;
       share.most_triangles = 16;
       SharedScene mine = SharedScene::make(communicator, scene, share);
       Renderer renderer(mine, *find_distribution("ring"));
-      Result one = renderer.render(communicator, scene.cameras[0], options);
-      if (communicator.rank() == 0) result = std::move(one);
+      for (int frame = 0; frame < 3; ++frame) {
+        const Result result = renderer.render(communicator, scene.cameras[0], options);
+        if (communicator.rank() != 0) continue;
+        EXPECT_EQ(different(result, whole), 0U) << seed << ' ' << frame;
+        EXPECT_EQ(result.statistics.rays, whole.statistics.rays) << seed << ' ' << frame;
+        for (const RankStatistics& rank : result.statistics.ranks) moved += rank.clusters_moved;
+      }
     });
-    EXPECT_EQ(different(result, whole), 0U) << seed;
-    EXPECT_EQ(result.statistics.rays, whole.statistics.rays) << seed;
-    for (const RankStatistics& rank : result.statistics.ranks) moved += rank.clusters_moved;
   }
   EXPECT_GT(moved, 0U);
 }
@@ -166,6 +167,61 @@ TEST(SharedScene, ThousandsOfClustersFitIntoAProcess) {
   const Result whole = render_alone(scene, scene.cameras[0], options);
   const Result result = shared_out(scene, options, *find_distribution("ray"), share, 3, 2);
   EXPECT_EQ(different(result, whole), 0U);
+}
+
+// What came once is gathered into the resident scene: later frames send nothing, and a ray is
+// intersected once, as with a scene that is whole.
+TEST(SharedScene, WithRoomForAllOfItLaterFramesAreThoseOfAWholeScene) {
+  const scenes::Scene scene = completed("gen:terrain:4000");
+  RenderOptions options = small(96, 64);
+  options.tile = 16;
+  options.integrator = "direct";
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
+    ShareOptions share;
+    share.cache_bytes = std::uint64_t{1} << 30;
+    SharedScene mine = SharedScene::make(communicator, scene, share);
+    Renderer renderer(mine, *find_distribution("object"));
+    for (int frame = 0; frame < 5; ++frame) {
+      const Result one = renderer.render(communicator, scene.cameras[0], options);
+      if (communicator.rank() != 0) continue;
+      EXPECT_EQ(different(one, whole), 0U) << frame;
+      std::uint64_t rays = 0, tests = 0, fetched = 0;
+      for (const RankStatistics& rank : one.statistics.ranks) {
+        rays += rank.rays.primary + rank.rays.shadow + rank.rays.secondary;
+        tests += rank.tests;
+        fetched += rank.clusters_fetched;
+      }
+      EXPECT_EQ(fetched > 0, frame == 0);
+      if (frame == 0) {
+        EXPECT_GT(tests, rays);
+      } else if (frame == 4) {
+        EXPECT_EQ(tests, rays);
+      }
+    }
+  });
+}
+
+// A cache that is too small for what a frame needs stays within its limit, frame after frame.
+TEST(SharedScene, ASmallCacheGivesTheSamePictureFrameAfterFrame) {
+  const scenes::Scene scene = completed("gen:terrain:40000");
+  RenderOptions options = small(96, 64);
+  options.tile = 16;
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  for (const char* data : {"object", "hybrid", "ring", "ray"}) {
+    SCOPED_TRACE(data);
+    comm::run_threads(3, 1, [&](comm::Communicator& communicator) {
+      ShareOptions share;
+      share.cache_bytes = std::uint64_t{1} << 19;
+      SharedScene mine = SharedScene::make(communicator, scene, share);
+      Renderer renderer(mine, *find_distribution(data));
+      for (int frame = 0; frame < 4; ++frame) {
+        const Result one = renderer.render(communicator, scene.cameras[0], options);
+        if (communicator.rank() != 0) continue;
+        EXPECT_EQ(different(one, whole), 0U) << frame;
+      }
+    });
+  }
 }
 
 TEST(SharedScene, NoRankHoldsMoreThanItsPartAndTheCache) {

@@ -1,0 +1,116 @@
+// Routes rays cluster by cluster, in the order in which they enter them: a ray waits for a cluster
+// of another rank until the distribution sends it there or fetches the cluster.
+//
+// A rank that a ray comes to intersects it with all that it has, so that no ray need go to a rank
+// twice. Degenerate: a ray remembers a few ranks only, and may go to one again that it has
+// forgotten; it learns nothing there.
+#include <cstddef>
+#include <unordered_set>
+
+#include "raytrace/distributed/ray_router.h"
+
+namespace delray::raytrace {
+namespace {
+
+class ClusterRouter final : public RayRouter {
+ public:
+  ClusterRouter(const Distribution& distribution, const RoutingContext& context)
+      : distribution_(distribution), context_(context) {}
+
+  Progression start() const override {
+    Progression way;
+    way.note(context_.messenger.rank());
+    return way;
+  }
+
+  void choose_next(const Line& line, Progression& way) const override {
+    way.next = kMiss;
+    const SharedScene& scene = context_.scene;
+    for (;;) {
+      const ClusterHit hit = scene.elsewhere().next(line, way.last);
+      if (hit.cluster == kNoCluster) return;
+      way.last = hit;
+      if (way.has_been_at(scene.owner(hit.cluster))) continue;
+      way.next = hit.cluster;
+      return;
+    }
+  }
+
+  bool is_new_here(const Progression&) const override { return true; }
+
+  void receive(int from, const MessageHeader& header, std::span<const std::byte> content) override {
+    if (header.kind == MessageKind::fetch) {
+      MessageHeader answer;
+      answer.kind = MessageKind::cluster;
+      answer.cluster = header.cluster;
+      context_.messenger.send(
+          from, with_header(answer, pack(context_.scene.owned().at(header.cluster)->data())));
+      return;
+    }
+    ++context_.counts.clusters_fetched;
+    context_.counts.cluster_bytes += content.size();
+    context_.waiting.arrived.emplace_back(
+        header.cluster, context_.scene.put(header.cluster, unpack_cluster(content)));
+    fetching_.erase(header.cluster);
+  }
+
+  void take_turn(bool idle) override {
+    auto& by_cluster = context_.waiting.by_cluster;
+    for (auto at = by_cluster.begin(); at != by_cluster.end();) {
+      const std::uint32_t cluster = at->first;
+      // What is at hand by now waits for the next turn.
+      if (fetching_.contains(cluster) || context_.scene.find(cluster) != nullptr) {
+        ++at;
+        continue;
+      }
+      switch (distribution_.decide(waiting_list(cluster, at->second, idle))) {
+        case RoutingDecision::wait:
+          ++at;
+          break;
+        case RoutingDecision::fetch_cluster:
+          fetch(cluster);
+          ++at;
+          break;
+        case RoutingDecision::send_rays: {
+          const auto owner = static_cast<std::size_t>(context_.scene.owner(cluster));
+          context_.waiting.to_intersect[owner].append(std::move(at->second));
+          at = by_cluster.erase(at);
+          break;
+        }
+      }
+    }
+  }
+
+ private:
+  WaitingList waiting_list(std::uint32_t cluster, const RayQueue& waiting, bool idle) const {
+    WaitingList list;
+    list.cluster = cluster;
+    list.rays = waiting.size();
+    list.ray_bytes = waiting.rays.size() * sizeof(RayMessage) +
+                     waiting.shadows.size() * offsetof(ShadowMessage, layers);
+    list.cluster_bytes = context_.scene.packed_bytes(cluster);
+    list.idle = idle;
+    return list;
+  }
+
+  void fetch(std::uint32_t cluster) {
+    MessageHeader header;
+    header.kind = MessageKind::fetch;
+    header.cluster = cluster;
+    context_.messenger.send(context_.scene.owner(cluster), with_header(header, {}));
+    fetching_.insert(cluster);
+  }
+
+  const Distribution& distribution_;
+  RoutingContext context_;
+  std::unordered_set<std::uint32_t> fetching_;  // clusters that were asked for
+};
+
+}  // namespace
+
+std::unique_ptr<RayRouter> make_cluster_router(const Distribution& distribution,
+                                               const RoutingContext& context) {
+  return std::make_unique<ClusterRouter>(distribution, context);
+}
+
+}  // namespace delray::raytrace

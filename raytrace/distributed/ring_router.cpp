@@ -1,0 +1,115 @@
+// Ring distribution (Kim et al. 1996): a ray visits rank after rank, unless no cluster elsewhere is
+// in its way, and returns to its own with the nearest hit. Clusters move to the next rank where
+// that is less loaded.
+//
+// A cluster moves once a frame, at most, and only if it was resident when the frame began: rays of
+// that frame meet it there still, wherever it goes meanwhile, so that none is missed. Degenerate:
+// alone there is nobody to go round.
+#include <cstddef>
+#include <unordered_set>
+
+#include "raytrace/distributed/ray_router.h"
+#include "raytrace/distributed/ring_loads.h"
+
+namespace delray::raytrace {
+namespace {
+
+constexpr ClusterHit kBegin{-1.0F, 0};  // before any other
+
+class RingRouter final : public RayRouter {
+ public:
+  explicit RingRouter(const RoutingContext& context) : context_(context) {}
+
+  Progression start() const override { return {}; }
+
+  void choose_next(const Line& line, Progression& way) const override {
+    way.next = kMiss;
+    if (is_back(way)) return;
+    const auto is_here = [&](const ClusterHit& hit) { return was_here(hit.cluster); };
+    const auto is_elsewhere = [&](const ClusterHit& hit) { return !was_here(hit.cluster); };
+    if (context_.scene.has_taken_over()) {
+      if (const ClusterHit hit = first(line, way.last, is_here); hit.cluster != kNoCluster) {
+        way.last = hit;
+        way.next = hit.cluster;
+        return;
+      }
+    }
+    // On its own rank a ray that meets nothing else is done.
+    if (way.hops == 0 && first(line, kBegin, is_elsewhere).cluster == kNoCluster) return;
+    if (context_.messenger.ranks() == 1) return;
+    ++way.hops;
+    way.last = kBegin;
+    way.next = kOnward;
+  }
+
+  bool is_new_here(const Progression& way) const override { return !is_back(way); }
+
+  void receive(int, const MessageHeader& header, std::span<const std::byte> content) override {
+    if (header.kind == MessageKind::load) return loads_.hear(header.load);
+    context_.scene.take_over(header.cluster, unpack_cluster(content));
+    came_.insert(header.cluster);
+  }
+
+  void take_turn(bool) override {
+    const int ranks = context_.messenger.ranks();
+    if (ranks == 1) return;
+    const std::uint64_t load = context_.counts.tests;
+    if (loads_.tell(load)) {
+      MessageHeader header;
+      header.kind = MessageKind::load;
+      header.load = load;
+      context_.messenger.send((context_.messenger.rank() + ranks - 1) % ranks,
+                              with_header(header, {}));
+    }
+    if (loads_.should_give(load) && context_.scene.owned().size() > 1) give(load);
+  }
+
+ private:
+  bool is_back(const Progression& way) const {
+    return way.hops == static_cast<std::uint32_t>(context_.messenger.ranks());
+  }
+
+  // Whether a cluster was at hand here when the frame began. Those that came meanwhile are where
+  // they were, too; who counted them as here could miss them, where they came behind a ray.
+  bool was_here(std::uint32_t cluster) const {
+    return context_.scene.owns(cluster) && !came_.contains(cluster);
+  }
+
+  // The first hit after `after` with a cluster that is `wanted`.
+  template <class Wanted>
+  ClusterHit first(const Line& line, ClusterHit after, const Wanted& wanted) const {
+    do {
+      after = context_.scene.elsewhere().next(line, after);
+    } while (after.cluster != kNoCluster && !wanted(after));
+    return after;
+  }
+
+  // Gives a cluster to the next rank, whose next frame begins with it.
+  void give(std::uint64_t load) {
+    for (const auto& [number, cluster] : context_.scene.owned()) {
+      if (!context_.scene.is_resident(number)) continue;
+      MessageHeader header;
+      header.kind = MessageKind::move;
+      header.cluster = number;
+      comm::Buffer message = with_header(header, pack(cluster->data()));
+      context_.scene.give_away(number);
+      context_.messenger.send((context_.messenger.rank() + 1) % context_.messenger.ranks(),
+                              std::move(message));
+      ++context_.counts.clusters_moved;
+      loads_.gave(load);
+      return;
+    }
+  }
+
+  RoutingContext context_;
+  std::unordered_set<std::uint32_t> came_;  // in this frame
+  RingLoads loads_;                         // of this rank and the next
+};
+
+}  // namespace
+
+std::unique_ptr<RayRouter> make_ring_router(const RoutingContext& context) {
+  return std::make_unique<RingRouter>(context);
+}
+
+}  // namespace delray::raytrace

@@ -1,0 +1,129 @@
+// The tree of clusters against a plain search of all boxes, on random and degenerate boxes.
+#include "raytrace/distributed/cluster_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+namespace delray::raytrace {
+namespace {
+
+constexpr ClusterHit kBegin{-1.0F, 0};
+
+// Where the line enters the box, as the tree counts it; what it misses it does not enter.
+bool enters(const geometry::Box3& box, const Line& line, float& entry) {
+  float low = line.near, high = line.far;
+  for (int k = 0; k < 3; ++k) {
+    const float a = (box.low[k] - line.origin[k]) * line.inverse[k];
+    const float b = (box.high[k] - line.origin[k]) * line.inverse[k];
+    if (a != a || b != b) continue;
+    const float first = std::min(a, b), last = std::max(a, b);
+    low = std::max(low, first > 0 ? first * (1 - 0x1p-20F) : first * (1 + 0x1p-20F));
+    high = std::min(high, last > 0 ? last * (1 + 0x1p-20F) : last * (1 - 0x1p-20F));
+  }
+  entry = low;
+  return low <= high;
+}
+
+std::vector<ClusterHit> all_hits(const std::vector<ClusterBox>& boxes, const Line& line) {
+  std::vector<ClusterHit> hits;
+  for (const ClusterBox& box : boxes) {
+    float entry = 0;
+    if (enters(box.box, line, entry)) hits.push_back({entry, box.cluster});
+  }
+  std::sort(hits.begin(), hits.end());
+  hits.erase(std::unique(hits.begin(), hits.end()), hits.end());
+  return hits;
+}
+
+std::vector<ClusterHit> hits_one_by_one(const ClusterTree& tree, const Line& line) {
+  std::vector<ClusterHit> hits;
+  for (ClusterHit hit = tree.next(line, kBegin); hit.cluster != kNoCluster;
+       hit = tree.next(line, hit))
+    hits.push_back(hit);
+  return hits;
+}
+
+Line line_from(const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
+  return {origin, glm::vec3(1.0F) / direction, near, far};
+}
+
+class RandomBoxes : public testing::TestWithParam<std::size_t> {};
+
+// Coordinates are small integers half of the time: boxes then touch, coincide and are flat, and
+// lines run in their sides.
+TEST_P(RandomBoxes, AreMetInOrderEachOnce) {
+  std::random_device device;
+  const unsigned seed = device();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> anywhere(-4.0F, 4.0F);
+  std::uniform_int_distribution<int> on_grid(-2, 2);
+  std::size_t met = 0;
+  for (int round = 0; round < 60; ++round) {
+    const bool grid = round % 2 == 0;
+    const auto number = [&] {
+      return grid ? static_cast<float>(on_grid(random)) : anywhere(random);
+    };
+    const auto vector = [&] {
+      const float x = number(), y = number(), z = number();
+      return glm::vec3(x, y, z);
+    };
+    std::vector<ClusterBox> boxes(GetParam());
+    for (ClusterBox& box : boxes) {
+      const glm::vec3 corner = vector();
+      box.box.include(corner);
+      box.box.include(corner + vector() * 0.4F);
+      // Some clusters are placed several times.
+      box.cluster = std::uniform_int_distribution<std::uint32_t>(
+          0, static_cast<std::uint32_t>(boxes.size()))(random);
+    }
+    const ClusterTree tree(boxes);
+    for (int i = 0; i < 40; ++i) {
+      const Line line = line_from(vector(), vector(), 0.0F, i % 3 == 0 ? 0.7F : 1e30F);
+      const std::vector<ClusterHit> expected = all_hits(boxes, line);
+      ASSERT_EQ(hits_one_by_one(tree, line), expected);
+      met += expected.size();
+    }
+  }
+  EXPECT_GT(met, 0U);
+}
+INSTANTIATE_TEST_SUITE_P(Counts, RandomBoxes, testing::Values(1, 2, 7, 8, 9, 64, 65, 300));
+
+TEST(ClusterTree, WithoutBoxesIsMetByNothing) {
+  const ClusterTree tree;
+  EXPECT_TRUE(tree.empty());
+  EXPECT_EQ(tree.next(line_from({}, {1, 1, 1}, 0, 1), kBegin).cluster, kNoCluster);
+  EXPECT_TRUE(ClusterTree(std::vector<ClusterBox>{}).empty());
+}
+
+// What a box's hit is does not depend on the other boxes: ranks have different trees.
+TEST(ClusterTree, FindsTheSameHitsWhateverElseItHolds) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> anywhere(-3.0F, 3.0F);
+  const auto vector = [&] {
+    const float x = anywhere(random), y = anywhere(random), z = anywhere(random);
+    return glm::vec3(x, y, z);
+  };
+  std::vector<ClusterBox> boxes(100), odd;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const glm::vec3 corner = vector();
+    boxes[i].box.include(corner);
+    boxes[i].box.include(corner + vector());
+    boxes[i].cluster = i;
+    if (i % 2 != 0) odd.push_back(boxes[i]);
+  }
+  const ClusterTree all(boxes), some(odd);
+  for (int i = 0; i < 200; ++i) {
+    const Line line = line_from(vector(), vector(), 0.0F, 1e30F);
+    std::vector<ClusterHit> expected = hits_one_by_one(all, line);
+    std::erase_if(expected, [](const ClusterHit& hit) { return hit.cluster % 2 == 0; });
+    EXPECT_EQ(hits_one_by_one(some, line), expected);
+  }
+}
+
+}  // namespace
+}  // namespace delray::raytrace
