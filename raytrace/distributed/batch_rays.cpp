@@ -128,14 +128,14 @@ void deliver(const RayMessage& ray, RayBatch& batch) {
   RayGroup& group = batch.rays[ray.return_address.group];
   const int i = ray.return_address.lane;
   group.packet.far[i] = ray.nearest.far;
-  group.packet.u[i] = ray.hit.u;
-  group.packet.v[i] = ray.hit.v;
+  group.packet.u[i] = ray.hit->u;
+  group.packet.v[i] = ray.hit->v;
   group.packet.triangle[i] = ray.nearest.triangle;
   group.packet.geometry[i] = ray.nearest.instance;
   group.packet.instance[i] = kMiss;
   group.hits |= 1U << i;
-  group.material[i] = ray.hit.material;
-  group.offset[i] = ray.hit.offset;
+  group.material[i] = ray.hit->material;
+  group.offset[i] = ray.hit->offset;
   if (ray.return_address.coloured != 0 && !group.points.coloured) {
     group.points.coloured = true;
     for (int k = 0; k < kPacketRays; ++k) {
@@ -143,7 +143,7 @@ void deliver(const RayMessage& ray, RayBatch& batch) {
       group.points.colour_alpha[k] = 1.0F;
     }
   }
-  shading::set_point(group.points, i, ray.hit.point);
+  shading::set_point(group.points, i, ray.hit->point);
 }
 
 void deliver(const ShadowMessage& shadow, RayBatch& batch) {

@@ -25,6 +25,7 @@ class ClusterRouter final : public RayRouter {
 
   void choose_next(const Line& line, Progression& way) const override {
     way.next = kMiss;
+    if (way.has_been_everywhere(context_.messenger.ranks())) return;
     const SharedScene& scene = context_.scene;
     for (;;) {
       const ClusterHit hit = scene.elsewhere().next(line, way.last);

@@ -25,7 +25,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Of each lane of a row where the line enters the box, at least line.near, and where it leaves it;
 // entries after exits: it misses. Lanes that are not used hold anything.
-void enter_row(const ClusterTree::Row& row, const Line& line, float* entries, float* exits) {
+HWY_INLINE void enter_row(const ClusterTree::Row& row, const Line& line, float* entries,
+                          float* exits) {
   // What dividing and multiplying may round off.
   constexpr float kLess = 1.0F - 0x1p-20F, kMore = 1.0F + 0x1p-20F;
   const hn::CappedTag<float, ClusterTree::kWidth> d;

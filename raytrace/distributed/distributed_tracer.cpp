@@ -131,17 +131,10 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
   const MessageHeader header = header_of(message);
   switch (header.kind) {
     case MessageKind::intersect: {
-      const auto take_in = [&](auto&& ray) {
-        if (router_->is_new_here(ray.ray.way)) {
-          waiting_.at_resident.push(std::move(ray));
-        } else {
-          choose_next(ray);
-          route(std::move(ray));
-        }
-      };
       RayQueue queue = unpack_rays(message, header);
-      for (RayMessage& ray : queue.rays) take_in(std::move(ray));
-      for (ShadowMessage& shadow : queue.shadows) take_in(std::move(shadow));
+      take_known(queue.rays);
+      take_known(queue.shadows);
+      if (!queue.empty()) waiting_.at_resident.push_back(std::move(queue));
       break;
     }
     case MessageKind::answer: {
@@ -155,6 +148,21 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
           envelope.source, header,
           {message.data() + sizeof(MessageHeader), message.size() - sizeof(MessageHeader)});
   }
+}
+
+// Rays that have been intersected with the resident clusters go on; the others stay.
+template <class Message>
+void DistributedTracer::take_known(std::vector<Message>& messages) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (!router_->is_new_here(messages[i].ray.way)) {
+      choose_next(messages[i]);
+      route(std::move(messages[i]));
+    } else if (kept++ != i) {
+      messages[kept - 1] = std::move(messages[i]);
+    }
+  }
+  messages.resize(kept);
 }
 
 bool DistributedTracer::advance_pixel_tasks() {
@@ -287,9 +295,9 @@ bool DistributedTracer::intersect_waiting() {
   std::uint64_t tests = 0;
   for (const RayQueue& queue : queues) tests += queue.size();
   scene_.note_tests(tests);
-  if (!waiting_.at_resident.empty()) {
-    tests += waiting_.at_resident.size();
-    take(nullptr, std::exchange(waiting_.at_resident, {}));
+  for (RayQueue& queue : std::exchange(waiting_.at_resident, {})) {
+    tests += queue.size();
+    take(nullptr, std::move(queue));
   }
   if (queues.empty()) return false;
 

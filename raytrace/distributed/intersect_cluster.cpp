@@ -85,8 +85,9 @@ void intersect(const LocalScene& scene, std::span<RayMessage* const> rays, bool 
     address.found = 1;
     address.coloured = group.points.coloured ? 1 : 0;
     address.second_uvs = instance.texture_sets > 1 ? 1 : 0;
-    rays[k]->hit = {group.packet.u[i], group.packet.v[i], group.material[i], group.offset[i],
-                    point_of(group.points, i)};
+    if (rays[k]->hit == nullptr) rays[k]->hit = std::make_unique<HitPoint>();
+    *rays[k]->hit = {group.packet.u[i], group.packet.v[i], group.material[i], group.offset[i],
+                     point_of(group.points, i)};
   }
 }
 

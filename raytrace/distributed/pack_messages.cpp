@@ -28,7 +28,8 @@ void for_parts(MessageKind kind, Ray& ray,
     visit(&ray.spread, sizeof ray.spread);
   }
   if (ray.return_address.found != 0) {
-    visit(&ray.hit, ray.return_address.second_uvs != 0 ? sizeof ray.hit : kPlainHit);
+    if constexpr (!std::is_const_v<Ray>) ray.hit = std::make_unique<HitPoint>();
+    visit(ray.hit.get(), ray.return_address.second_uvs != 0 ? sizeof(HitPoint) : kPlainHit);
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <memory>
 #include <vector>
 
 #include "raytrace/distributed/cluster_tree.h"
@@ -43,7 +45,14 @@ struct Progression {
   bool has_been_at(int rank) const {
     return been_at[0] == rank || been_at[1] == rank || been_at[2] == rank || been_at[3] == rank;
   }
+  // Of so many ranks. May say no where there are more than it remembers.
+  bool has_been_everywhere(int ranks) const {
+    int rank = 0;
+    while (rank < ranks && has_been_at(rank)) ++rank;
+    return rank == ranks;
+  }
   void note(int rank) {
+    if (has_been_at(rank)) return;
     been_at[next_known] = rank;
     next_known = (next_known + 1) % kKnown;
   }
@@ -78,7 +87,7 @@ struct RayMessage {
   TravellingRay ray;
   glm::vec3 view{0.0F};
   float width = 0.0F, spread = 0.0F;
-  HitPoint hit;  // where return_address.found
+  std::unique_ptr<HitPoint> hit;  // where return_address.found
 };
 
 // Past what can be seen through, as far as that is known.

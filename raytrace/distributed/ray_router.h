@@ -51,7 +51,7 @@ class RayMessenger {
 
 // Rays on a rank, by what they wait for.
 struct WaitingRays {
-  RayQueue at_resident;                                    // to be intersected with those clusters
+  std::vector<RayQueue> at_resident;                       // to be intersected with those clusters
   std::unordered_map<std::uint32_t, RayQueue> by_cluster;  // that are not resident
   std::vector<RayQueue> to_intersect, to_answer;           // by rank: to be sent
   // Clusters that have just come: they stay until their rays have been intersected, however little

@@ -21,9 +21,11 @@ RayMessage some_ray(bool found, bool second_uvs) {
   ray.view = {0, 1, 0};
   ray.width = 0.25F;
   ray.spread = 0.125F;
-  ray.hit.u = 0.75F;
-  ray.hit.point.position = {10, 11, 12};
-  ray.hit.point.second.uv = {13, 14};
+  if (!found) return ray;
+  ray.hit = std::make_unique<HitPoint>();
+  ray.hit->u = 0.75F;
+  ray.hit->point.position = {10, 11, 12};
+  ray.hit->point.second.uv = {13, 14};
   return ray;
 }
 
@@ -50,7 +52,8 @@ RayQueue through_message(MessageKind kind, const RayQueue& queue, std::size_t* b
 
 TEST(PackMessages, RaysToIntersectKeepEverything) {
   RayQueue queue;
-  queue.rays = {some_ray(true, true), some_ray(false, false)};
+  queue.rays.push_back(some_ray(true, true));
+  queue.rays.push_back(some_ray(false, false));
   queue.shadows = {some_shadow(0), some_shadow(3)};
   const RayQueue arrived = through_message(MessageKind::intersect, queue);
   ASSERT_EQ(arrived.rays.size(), 2U);
@@ -65,8 +68,8 @@ TEST(PackMessages, RaysToIntersectKeepEverything) {
     EXPECT_EQ(ray.view, glm::vec3(0, 1, 0));
     EXPECT_EQ(ray.spread, 0.125F);
   }
-  EXPECT_EQ(arrived.rays[0].hit.point.position, glm::vec3(10, 11, 12));
-  EXPECT_EQ(arrived.rays[0].hit.point.second.uv, glm::vec2(13, 14));
+  EXPECT_EQ(arrived.rays[0].hit->point.position, glm::vec3(10, 11, 12));
+  EXPECT_EQ(arrived.rays[0].hit->point.second.uv, glm::vec2(13, 14));
   EXPECT_EQ(arrived.shadows[1].far, 4.0F);
   ASSERT_EQ(arrived.shadows[1].layers.size(), 3U);
   EXPECT_EQ(arrived.shadows[1].layers[2].distance, 2.0F);
@@ -74,7 +77,7 @@ TEST(PackMessages, RaysToIntersectKeepEverything) {
 
 TEST(PackMessages, AnswersLeaveTheRayOut) {
   RayQueue queue;
-  queue.rays = {some_ray(true, false)};
+  queue.rays.push_back(some_ray(true, false));
   queue.shadows = {some_shadow(2)};
   std::size_t there = 0, back = 0;
   through_message(MessageKind::intersect, queue, &there);
@@ -82,10 +85,10 @@ TEST(PackMessages, AnswersLeaveTheRayOut) {
   EXPECT_LT(back + 2 * sizeof(TravellingRay), there);
   ASSERT_EQ(arrived.rays.size(), 1U);
   EXPECT_EQ(arrived.rays[0].nearest.far, 7.5F);
-  EXPECT_EQ(arrived.rays[0].hit.u, 0.75F);
-  EXPECT_EQ(arrived.rays[0].hit.point.position, glm::vec3(10, 11, 12));
+  EXPECT_EQ(arrived.rays[0].hit->u, 0.75F);
+  EXPECT_EQ(arrived.rays[0].hit->point.position, glm::vec3(10, 11, 12));
   EXPECT_EQ(arrived.shadows[0].layers.size(), 2U);
-  queue.rays = {};
+  queue.rays.clear();
   queue.shadows = {some_shadow(0)};
   through_message(MessageKind::answer, queue, &back);
   EXPECT_EQ(back, sizeof(MessageHeader) + sizeof(ReturnAddress));
@@ -93,7 +96,7 @@ TEST(PackMessages, AnswersLeaveTheRayOut) {
 
 TEST(PackMessages, RefusesWhatIsCutOrTooLong) {
   RayQueue queue;
-  queue.rays = {some_ray(true, true)};
+  queue.rays.push_back(some_ray(true, true));
   queue.shadows = {some_shadow(1)};
   for (const MessageKind kind : {MessageKind::intersect, MessageKind::answer}) {
     const comm::Buffer message = pack(kind, queue.rays, queue.shadows);
@@ -115,6 +118,17 @@ TEST(Progression, ForgetsTheRankThatItWasAtLongestAgo) {
   for (int rank = 1; rank <= static_cast<int>(Progression::kKnown); ++rank) {
     EXPECT_TRUE(way.has_been_at(rank)) << rank;
   }
+  EXPECT_FALSE(way.has_been_everywhere(Progression::kKnown + 1));
+}
+
+TEST(Progression, KnowsWhenThereIsNowhereElseToGo) {
+  Progression way;
+  way.note(1);
+  way.note(1);
+  EXPECT_FALSE(way.has_been_everywhere(2));
+  way.note(0);
+  EXPECT_TRUE(way.has_been_everywhere(2));
+  EXPECT_FALSE(way.has_been_everywhere(3));
 }
 
 }  // namespace

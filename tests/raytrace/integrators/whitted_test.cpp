@@ -9,8 +9,6 @@
 namespace delray::raytrace {
 namespace {
 
-using Kind = scenes::Light::Kind;
-
 // Looks along -z at the origin from a distance of 5.
 scenes::Camera ahead() {
   scenes::Camera camera;
@@ -259,7 +257,7 @@ TEST(Whitted, SeeThroughLayersCastLightShadows) {
       veil.base_colour = {1, 1, 1, 0.5F};
     }
     scenes::Light light;
-    light.kind = Kind::point;
+    light.kind = scenes::Light::Kind::point;
     light.position = {0, 0, 100};
     light.colour = glm::vec3(1e4F);
     scene.lights.push_back(light);
