@@ -64,9 +64,10 @@ void keep_rows(const std::vector<std::uint32_t>& kept, delaunay::PointCloud& poi
 }
 
 Json statistics_of(const TriangulateOptions& options, std::size_t points,
-                   const delaunay::Triangulation& result, const delaunay::Statistics& phases,
-                   const Seconds& seconds) {
+                   const delaunay::Result& made, const Seconds& seconds) {
   const delaunay::Options& how = options.how;
+  const delaunay::Triangulation& result = made.triangulation;
+  const delaunay::Statistics& phases = made.statistics;
   const delaunay::Synchronization& sync = phases.synchronization;
   return {
       {"schema", "delray.triangulate/1"},
@@ -131,12 +132,8 @@ void add_choices(CLI::App& command) {
   choose(command, "--deadlocks", delaunay::deadlock_strategies());
 }
 
-int run(Session& session, TriangulateOptions options) {
-  if (options.list) {
-    list_methods();
-    list_method_options();
-    return kDone;
-  }
+// Refuses what does not go together, and resolves every "auto".
+void check(TriangulateOptions& options) {
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
   if (options.output.empty() && options.statistics.empty()) {
     throw UsageError("triangulate: -o MESH is missing");
@@ -159,6 +156,16 @@ int run(Session& session, TriangulateOptions options) {
     throw UsageError(error.what());
   }
   check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {options.input.path});
+}
+
+int run(Session& session, TriangulateOptions options) {
+  if (options.list) {
+    list_methods();
+    list_method_options();
+    return kDone;
+  }
+  check(options);
+  delaunay::Options& how = options.how;
 
   Stopwatch watch;
   Seconds seconds;
@@ -169,12 +176,11 @@ int run(Session& session, TriangulateOptions options) {
   const std::size_t rows = points.size();
   require_memory_to_triangulate(options.input, rows, how.dim);
   seconds.read = watch.lap();
-  delaunay::Statistics phases;
-  how.statistics = options.statistics.empty() ? nullptr : &phases;
-  std::vector<std::uint16_t> makers;
-  how.created_by = options.makers ? &makers : nullptr;
+  how.statistics = !options.statistics.empty();
+  how.created_by = options.makers;
   how.progress = &session.progress;
-  delaunay::Triangulation result;
+  delaunay::Result made;
+  delaunay::Triangulation& result = made.triangulation;
   std::optional<delaunay::SimplifiedTerrain> simplified;
   {
     const ProgressBar bar(session, "triangulate");
@@ -186,7 +192,7 @@ int run(Session& session, TriangulateOptions options) {
           simplify_terrain(delaunay::view(points.positions), *options.max_error, &session.progress);
       result = std::move(simplified->triangulation);
     } else {
-      result = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });
+      made = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });
     }
     seconds.triangulate = watch.lap();
   }
@@ -194,7 +200,7 @@ int run(Session& session, TriangulateOptions options) {
     spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
                  how.dim == 2 ? "line" : "plane");
   }
-  Json statistics = statistics_of(options, rows, result, phases, seconds);
+  Json statistics = statistics_of(options, rows, made, seconds);
   if (simplified) {
     statistics["options"].update({{"method", "simplify"}, {"max_error", *options.max_error}});
     statistics["result"].update(
@@ -202,7 +208,7 @@ int run(Session& session, TriangulateOptions options) {
     keep_rows(simplified->kept, points, result);
   }
   watch.lap();
-  if (!options.output.empty()) write_mesh(options.output, points, result, makers);
+  if (!options.output.empty()) write_mesh(options.output, points, result, made.created_by);
   statistics["seconds"]["write"] = watch.lap();
   write_statistics(options.statistics, statistics);
   spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", rows, result.distinct, result.size(),

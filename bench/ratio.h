@@ -9,6 +9,7 @@
 
 namespace delray::bench {
 
+// The direction in which a ratio is better.
 enum class Better { lower, higher };
 
 // `name` says what was measured and differs from those of all other ratios of a run of the program;

@@ -9,7 +9,7 @@
 namespace delray::delaunay {
 
 // Connected sets of simplices that one thread made (Kohout 2004, 7.9): at best as many as there are
-// threads. created_by[i] is the thread that made simplex i (Options::created_by). 0 for no
+// threads. created_by[i] is the thread that made simplex i (Result::created_by). 0 for no
 // simplices. O(n) expected.
 //
 // REQUIRES: a creator for each simplex; vertices are below `rows`.

@@ -27,8 +27,9 @@ struct Method {
   std::vector<std::string_view> locations, splits, orders;
   std::vector<std::string_view> deadlocks = {};
   bool alone = false;  // works with one thread, whatever the options say
+  // Leaves `created_by` empty where one thread made everything.
   // REQUIRES: options that resolve() returned.
-  Triangulation (*triangulate)(PointView<double> points, const Options& options);
+  Result (*triangulate)(PointView<double> points, const Options& options);
 };
 
 std::span<const Method> methods();

@@ -10,19 +10,17 @@
 
 namespace delray::delaunay {
 
-Triangulation triangulate(PointView<double> points, const Options& options) {
+Result triangulate(PointView<double> points, const Options& options) {
   const Options resolved = resolve(options);
   internal::check_view(points, resolved.dim);
   if (points.size() > kMaximumSimplices / 2) {
     throw std::invalid_argument("more than 2^29 points");
   }
-  if (resolved.statistics != nullptr) *resolved.statistics = {};
   if (resolved.progress != nullptr) resolved.progress->start(points.size());
-  if (resolved.created_by == nullptr) return method_of(resolved).triangulate(points, resolved);
-  resolved.created_by->clear();
-  Triangulation result = method_of(resolved).triangulate(points, resolved);
-  // A thread that was alone leaves that to be said here.
-  resolved.created_by->resize(result.size(), 0);
+  Result result = method_of(resolved).triangulate(points, resolved);
+  if (!resolved.statistics) result.statistics = {};
+  // Methods leave it empty where one thread made everything.
+  if (resolved.created_by) result.created_by.resize(result.triangulation.size(), 0);
   return result;
 }
 

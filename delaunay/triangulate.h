@@ -48,16 +48,23 @@ struct Options {
   std::string location = "auto";
   std::string split = "auto";
   std::string order = "auto";
-  std::string deadlocks = "auto";    // what a thread does that must not wait
-  std::size_t queue = 0;             // places in the queue of the batch method; 0: as in the report
-  std::uint64_t seed = 1;            // of everything that is random
-  int threads = 1;                   // at most; from 1 to kMostThreads
-  Statistics* statistics = nullptr;  // filled in if not null
+  std::string deadlocks = "auto";  // what a thread does that must not wait
+  std::size_t queue = 0;           // places in the queue of the batch method; 0: as in the report
+  std::uint64_t seed = 1;          // of everything that is random
+  int threads = 1;                 // at most; from 1 to kMostThreads
+  bool statistics = false;         // whether to count, and to time each phase of each point
+  bool created_by = false;         // whether to note the threads that make simplices
   parallel::Progress* progress =
       nullptr;  // started with the number of points and advanced, if not null
-  // If not null, gets for simplex i of the result the number of the thread that made it, below
-  // `threads`.
-  std::vector<std::uint16_t>* created_by = nullptr;
+};
+
+// What triangulate() returns.
+struct Result {
+  Triangulation triangulation;
+  Statistics statistics;  // zeros without Options::statistics
+  // With Options::created_by, for simplex i the number of the thread that made it, below `threads`;
+  // empty without.
+  std::vector<std::uint16_t> created_by;
 };
 
 // The triangulation that the perturbed lifting of conflict.h defines: whatever the options are, the
@@ -68,9 +75,9 @@ struct Options {
 // that do not go together (names those that do) or cannot be, for a view without memory or whose
 // points have too few coordinates, for more than 2^29 points; parallel::Interrupted;
 // std::bad_alloc.
-Triangulation triangulate(PointView<double> points, const Options& options = {});
+Result triangulate(PointView<double> points, const Options& options = {});
 
 // Triangulates floats, each as the double that equals it: 8 * dim bytes a point more.
-Triangulation triangulate(PointView<float> points, const Options& options = {});
+Result triangulate(PointView<float> points, const Options& options = {});
 
 }  // namespace delray::delaunay

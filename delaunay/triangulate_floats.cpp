@@ -10,7 +10,7 @@ namespace delray::delaunay {
 namespace {
 
 template <std::size_t D>
-Triangulation triangulate_in(PointView<float> points, const Options& options) {
+Result triangulate_in(PointView<float> points, const Options& options) {
   std::vector<std::array<double, D>> doubles(points.size());
   constexpr std::size_t kGrain = 65536;  // points: about 0.1 ms
   parallel::parallel_for(0, points.size(), kGrain, [&](std::size_t i) {
@@ -21,7 +21,7 @@ Triangulation triangulate_in(PointView<float> points, const Options& options) {
 
 }  // namespace
 
-Triangulation triangulate(PointView<float> points, const Options& options) {
+Result triangulate(PointView<float> points, const Options& options) {
   internal::check_view(points, options.dim);
   return options.dim == 3 ? triangulate_in<3>(points, options) : triangulate_in<2>(points, options);
 }

@@ -43,7 +43,7 @@ const MeshWriter& mesh_writer_for(const std::filesystem::path& path);
 // output, as PLY. Every row of `points` is a vertex of the file, used or not, so that vertex
 // numbers are rows. Coordinates read back equal, but for STL, which has 32-bit floats. Colours go
 // to PLY and VTU, intensity and class to VTU. The file appears whole or not at all. `created_by`,
-// the threads that made the simplices (Options::created_by), go to VTU as the cells' "thread";
+// the threads that made the simplices (Result::created_by), go to VTU as the cells' "thread";
 // other formats leave them out.
 //
 // Throws std::invalid_argument for an unknown suffix, for vertices that are no rows of points, for

@@ -34,7 +34,7 @@ int main(int argc, char** argv) try {
   std::vector<double> values;
   for (const glm::dvec3& p : points) values.push_back(height(p));
 
-  const delaunay::Triangulation mesh = delaunay::triangulate(delaunay::view(points));
+  const delaunay::Triangulation mesh = delaunay::triangulate(delaunay::view(points)).triangulation;
   const delaunay::Query query(delaunay::view(points), mesh);  // any number of threads may ask
   const scenes::ColourMap& colours = scenes::colour_map("viridis");
 

@@ -23,7 +23,7 @@ int main(int argc, char** argv) try {
   options.dim = 2;  // reads x and y; 3 makes tetrahedra
   options.threads = 2;
   const auto view = delaunay::view(points.positions);
-  const delaunay::Triangulation mesh = delaunay::triangulate(view, options);
+  const delaunay::Triangulation mesh = delaunay::triangulate(view, options).triangulation;
   std::printf("%zu triangles, %llu edges on the hull\n", mesh.size(),
               static_cast<unsigned long long>(mesh.hull_facets));
 

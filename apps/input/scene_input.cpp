@@ -143,7 +143,8 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   how.threads = parallel::arena_threads();
   how.progress = progress;
   require_memory_to_triangulate(input.file, points.size(), how.dim);
-  const delaunay::Triangulation triangulation = triangulate(delaunay::view(points.positions), how);
+  const delaunay::Triangulation triangulation =
+      triangulate(delaunay::view(points.positions), how).triangulation;
   if (triangulation.size() == 0) fail(input, no_surface(points));
   return coloured(input, points, triangulation);
 }

@@ -33,6 +33,13 @@ class OptionRow {
   // Why it changes nothing with the others; empty where it does.
   std::string idle(const Request& request) const { return idle_ ? idle_(request) : std::string(); }
   bool is_told(const Request& request) const { return !key_.empty() && (!told_ || told_(request)); }
+  // Whether samples depend on it; see in_checkpoint.
+  bool is_in_checkpoint() const { return in_checkpoint_; }
+  std::string checkpoint_text(const Request& request) const {
+    if (text_) return text_(request);
+    const Json set = value(request);
+    return set.is_string() ? set.template get<std::string>() : set.dump();
+  }
 
   OptionRow check(CLI::Validator validator) && {
     return step([v = std::move(validator)](CLI::App&, CLI::Option& option) { option.check(v); });
@@ -59,6 +66,13 @@ class OptionRow {
   OptionRow told(std::string key, std::function<bool(const Request&)> where = {}) && {
     key_ = std::move(key);
     told_ = std::move(where);
+    return std::move(*this);
+  }
+  // Samples depend on it: a checkpoint keeps it as this text, by default that of its value, and is
+  // refused where the text is another.
+  OptionRow in_checkpoint(std::function<std::string(const Request&)> text = {}) && {
+    in_checkpoint_ = true;
+    text_ = std::move(text);
     return std::move(*this);
   }
   OptionRow unless(std::function<std::string(const Request&)> why_idle) && {
@@ -133,6 +147,8 @@ class OptionRow {
   std::vector<std::function<void(CLI::App&, CLI::Option&)>> steps_;
   std::function<std::string(const Request&)> idle_;
   std::function<bool(const Request&)> told_;
+  bool in_checkpoint_ = false;
+  std::function<std::string(const Request&)> text_;
 };
 
 }  // namespace delray::apps

@@ -110,6 +110,8 @@ std::vector<RenderOption> picture_options() {
           "--size", [](auto& r) -> auto& { return r.size; }, group::kPicture,
           "Width and height in pixels, such as 1920x1080 (default: 1280x720)")
           .type_name("WxH")
+          .in_checkpoint(
+              [](const RenderRequest& r) { return fmt::format("{}x{}", r.width, r.height); })
           .told("size"),
       RenderOption::choice<Engine>(
           "--engine", [](auto& r) -> auto& { return r.engine; },
@@ -290,6 +292,7 @@ std::vector<RenderOption> raytracer_options() {
           "What is computed along rays (default: whitted; --list describes them)")
           .one_of(names_in(raytrace::integrators()))
           .unless(unless_raytrace())
+          .in_checkpoint()
           .told("integrator", is_raytrace),
       RenderOption::of(
           "--spp", [](auto& r) -> auto& { return r.raytrace.samples; }, group::kRaytracer,
@@ -302,6 +305,7 @@ std::vector<RenderOption> raytracer_options() {
           "Maximum reflections and refractions (default: 8)")
           .transform(count_between(0, 64))
           .unless(unless_raytrace())
+          .in_checkpoint()
           .told("depth", is_raytrace),
       RenderOption::of(
           "--diffuse-depth", [](auto& r) -> auto& { return r.raytrace.trace.diffuse_depth; },
@@ -309,6 +313,7 @@ std::vector<RenderOption> raytracer_options() {
           "Maximum diffuse bounces, for --integrator path (default: 64, more than most paths last)")
           .transform(count_between(0, 1024))
           .unless(unless_integrator(&Integrator::scatters))
+          .in_checkpoint()
           .told("diffuse_depth", is_raytrace),
       RenderOption::of(
           "--reach", [](auto& r) -> auto& { return r.reach; }, group::kRaytracer,
@@ -316,12 +321,18 @@ std::vector<RenderOption> raytracer_options() {
           "unlimited)")
           .check(positive_float())
           .unless(unless_integrator(&Integrator::reaches))
+          .in_checkpoint([](const RenderRequest& r) {
+            return r.reach > 0.0 ? fmt::format("{}", r.reach) : "unlimited";
+          })
           .told("reach", is_raytrace),
       RenderOption::off(
           "--no-shadows", [](auto& r) -> auto& { return r.raytrace.trace.shadows; },
           group::kRaytracer,
           "Trace no shadow rays, for --integrator direct: light passes through everything")
           .unless(unless_integrator(&Integrator::may_omit_shadows))
+          .in_checkpoint([](const RenderRequest& r) {
+            return r.raytrace.trace.shadows ? "not given" : "given";
+          })
           .told("shadows", is_raytrace),
       RenderOption::choice<Quality>(
           "--build", [](auto& r) -> auto& { return r.raytrace.build.quality; },
@@ -330,6 +341,7 @@ std::vector<RenderOption> raytracer_options() {
           "Quality of Embree's bounding volume hierarchies: low (fast to build), medium (default) "
           "or high (fast to trace, splits triangles)")
           .unless(unless_raytrace())
+          .in_checkpoint()
           .told("build", is_raytrace),
       RenderOption::choice<std::string>(
           "--isa", [](auto& r) -> auto& { return r.raytrace.build.isa; },
@@ -343,6 +355,7 @@ std::vector<RenderOption> raytracer_options() {
           "Instruction set for Embree: sse2, sse4.2, avx, avx2, avx512 or best, of this processor "
           "(default); avx2 may be faster than avx512 for incoherent rays")
           .unless(unless_raytrace())
+          .in_checkpoint()
           .told("isa", is_raytrace),
       RenderOption::of(
           "--schedule", [](auto& r) -> auto& { return r.sharing.schedule; }, group::kSharing,

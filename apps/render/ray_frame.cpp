@@ -42,17 +42,10 @@ class Every {
 
 std::string text_of(const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-const char* name_of(raytrace::BuildOptions::Quality quality) {
-  using Quality = raytrace::BuildOptions::Quality;
-  return quality == Quality::low ? "low" : quality == Quality::high ? "high" : "medium";
-}
-
 // All that samples depend on, exactly; the same whether ranks have the whole scene or parts of it.
 raytrace::Rendering rendering_of(const RenderRequest& request, const scenes::Camera& camera,
                                  const Prepared& prepared) {
   const SamplingOptions& p = request.sampling;
-  const raytrace::TraceOptions& trace = request.raytrace.trace;
-  const raytrace::BuildOptions& build = request.raytrace.build;
   const geometry::Rect all{0, 0, request.width, request.height};
   const geometry::Rect window = p.window.empty() ? all : p.window;
   const bool scattered = p.noise > 0.0 || p.seconds > 0.0;
@@ -60,25 +53,13 @@ raytrace::Rendering rendering_of(const RenderRequest& request, const scenes::Cam
   const auto text = [](const auto& value) { return fmt::format("{}", value); };
   raytrace::Rendering rendering;
   rendering.scene = prepared.fingerprint;
-  rendering.values = {
-      {"triangles", text(prepared.triangles)},
-      {"--integrator", request.raytrace.integrator},
-      {"--size", fmt::format("{}x{}", request.width, request.height)},
-      {"--crop", fmt::format("{},{},{},{}", window.x0, window.y0, window.width(), window.height())},
-      {"--depth", text(trace.depth)},
-      {"--diffuse-depth", text(trace.diffuse_depth)},
-      {"--reach", request.reach > 0.0 ? text(request.reach) : "unlimited"},
-      {"--no-shadows", trace.shadows ? "not given" : "given"},
-      {"--build", name_of(build.quality)},
-      {"--isa", build.isa.empty() ? "best" : build.isa},
-      {"--seed", text(trace.seed)},
-      {"--noise", p.noise > 0.0 ? text(p.noise) : "not given"},
+  rendering.values = checkpoint_options(request);
+  rendering.values.push_back({"triangles", text(prepared.triangles)});
+  rendering.values.push_back(
       {"--camera", fmt::format("{},{},{},{}", text_of(camera.eye), text_of(camera.at),
-                               text_of(camera.up), camera.vertical_fov)},
-      {"near plane of the camera", text(camera.near)},
-      {"height of the view", text(camera.height)},
-      {"--aperture", text(camera.aperture)},
-      {"--focus", text(camera.focus)}};
+                               text_of(camera.up), camera.vertical_fov)});
+  rendering.values.push_back({"near plane of the camera", text(camera.near)});
+  rendering.values.push_back({"height of the view", text(camera.height)});
   if (!any_samples)
     rendering.values.push_back({"--noise or --time", scattered ? "given" : "not given"});
   rendering.window = raytrace::grown(window, all);

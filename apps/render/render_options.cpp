@@ -144,6 +144,16 @@ Json chosen_options(const RenderRequest& request) {
   return chosen;
 }
 
+std::vector<raytrace::NamedValue> checkpoint_options(const RenderRequest& request) {
+  std::vector<raytrace::NamedValue> values;
+  for (const RenderOption& option : all_options()) {
+    if (option.is_in_checkpoint()) {
+      values.push_back({option.flag(), option.checkpoint_text(request)});
+    }
+  }
+  return values;
+}
+
 void check(const CLI::App& command, RenderRequest& request) {
   if (request.scene.file.path.empty()) throw UsageError("render: SCENE is missing");
   if (request.output.empty()) throw UsageError("render: -o IMAGE is missing");

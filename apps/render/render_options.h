@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/input/scene_input.h"
 #include "apps/launch.h"
@@ -13,6 +14,7 @@
 #include "apps/render/sampling_options.h"
 #include "apps/statistics.h"
 #include "raster/render.h"
+#include "raytrace/checkpoint.h"
 #include "raytrace/render.h"
 
 namespace delray::apps {
@@ -69,6 +71,10 @@ void add_options(std::initializer_list<std::string_view> names, CLI::App& comman
 // The options that were chosen, by their names in statistics: those that the engine and the
 // strategy look at.
 Json chosen_options(const RenderRequest& request);
+
+// The options that the ray tracer's samples depend on, as checkpoints keep them. REQUIRES: a
+// request that check() completed.
+std::vector<raytrace::NamedValue> checkpoint_options(const RenderRequest& request);
 
 // Completes and checks a request. Throws UsageError for values that are not legal and for options
 // that have no effect with the others.

@@ -88,7 +88,10 @@ std::vector<RenderOption> sampling_options() {
           "Stop below this noise: the standard deviation of values on the screen, which are 0 to "
           "1, such as 0.01; --spp is the maximum then (default: 256, or none with --time)",
           "noise")
-          .check(positive_float()),
+          .check(positive_float())
+          .in_checkpoint([](const RenderRequest& r) {
+            return r.sampling.noise > 0.0 ? fmt::format("{}", r.sampling.noise) : "not given";
+          }),
       sampling_option(
           "--preview-every", [](auto& r) -> auto& { return r.sampling.preview_every; },
           "Seconds between previews: the picture so far, written to the output file (default: "
@@ -113,7 +116,11 @@ std::vector<RenderOption> sampling_options() {
           "Render only a part of the picture: x,y,width,height in pixels, from its upper left "
           "corner",
           "crop")
-          .type_name("RECT"),
+          .type_name("RECT")
+          .in_checkpoint([](const RenderRequest& r) {
+            const geometry::Rect& w = r.sampling.window;
+            return fmt::format("{},{},{},{}", w.x0, w.y0, w.width(), w.height());
+          }),
       sampling_option(
           "--aovs", [](auto& r) -> auto& { return r.sampling.channels; },
           "Also write channels of normals, albedo, ids, variance, samples and costs (.exr only)",
@@ -140,17 +147,24 @@ std::vector<RenderOption> sampling_options() {
           "--aperture", [](auto& r) -> auto& { return r.sampling.aperture; },
           "Diameter of the lens in units of the scene, for depth of field (default: 0, all sharp)",
           "aperture")
-          .check(non_negative_number()),
+          .check(non_negative_number())
+          .in_checkpoint([](const RenderRequest& r) {
+            return fmt::format("{}", static_cast<float>(r.sampling.aperture));
+          }),
       sampling_option(
           "--focus", [](auto& r) -> auto& { return r.sampling.focus; },
           "Distance of what is sharp, along the view, in units of the scene (default: that of the "
           "point looked at)",
           "focus", why_no_focus)
-          .check(positive_float()),
+          .check(positive_float())
+          .in_checkpoint([](const RenderRequest& r) {
+            return fmt::format("{}", static_cast<float>(r.sampling.focus));
+          }),
       sampling_option(
           "--seed", [](auto& r) -> auto& { return r.raytrace.trace.seed; },
           "Seed of all random numbers (default: 0)", "seed")
-          .transform(any_count()),
+          .transform(any_count())
+          .in_checkpoint(),
   };
 }
 

@@ -123,7 +123,7 @@ bool compare(const std::string& name, const std::vector<glm::dvec3>& points,
   const auto run = [&](std::size_t kind) {
     delaunay::Options options = arguments.options;
     options.threads = arguments.threads[kind];
-    return delaunay::triangulate(delaunay::view(points), options);
+    return delaunay::triangulate(delaunay::view(points), options).triangulation;
   };
   const delaunay::Triangulation reference = peer.triangulate(points);
   const delaunay::Hash128 expected = delaunay::hash(reference);

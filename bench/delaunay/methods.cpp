@@ -44,9 +44,9 @@ void measure(benchmark::State& state, const delaunay::Options& options,
   const parallel::AllowThreads allowed(options.threads);
   parallel::Arena arena(options.threads);
   for (auto _ : state) {
-    const delaunay::Triangulation result =
+    const delaunay::Result result =
         arena.execute([&] { return delaunay::triangulate(delaunay::view(points), options); });
-    benchmark::DoNotOptimize(result.vertices.data());
+    benchmark::DoNotOptimize(result.triangulation.vertices.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
 }

@@ -69,7 +69,7 @@ delaunay::Triangulation run(const std::vector<glm::dvec3>& points, const Runner&
   const parallel::AllowThreads allowed(runner.options.threads);
   parallel::Arena arena(runner.options.threads);
   return arena.execute(
-      [&] { return delaunay::triangulate(delaunay::view(points), runner.options); });
+      [&] { return delaunay::triangulate(delaunay::view(points), runner.options).triangulation; });
 }
 
 bool compare(const std::vector<glm::dvec3>& points, const std::string& kind, int dim, int turns,

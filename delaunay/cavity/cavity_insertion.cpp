@@ -47,9 +47,8 @@ Array<std::uint32_t> take_rows(Array<SpaceVertex>&& vertices, int threads) {
   return rows;
 }
 
-Triangulation run(PointView<double> points, const Options& options) {
-  Statistics unused;
-  Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
+Result run(PointView<double> points, const Options& options) {
+  Statistics seconds;
   Stopwatch watch;
 
   const PointRange range = finite_range(points, options.threads);
@@ -62,11 +61,12 @@ Triangulation run(PointView<double> points, const Options& options) {
   };
   const auto start = first_tetrahedron(n, at);
   if (!start) {
-    Triangulation result;
-    result.dim = 3;
+    Result result;
+    result.statistics = seconds;
+    result.triangulation.dim = 3;
     std::vector<glm::dvec3> all(n);
     for (VertexNumber v = 0; v < n; ++v) all[v] = at(v);
-    result.distinct = count_distinct(std::move(all));
+    result.triangulation.distinct = count_distinct(std::move(all));
     return result;
   }
   const SphereTests tests(range);
@@ -75,20 +75,22 @@ Triangulation run(PointView<double> points, const Options& options) {
   if (options.progress != nullptr) options.progress->advance(start->size());
   const CavityInput input{mesh, 5, *start, order, range, tests};
   const auto insert = options.threads > 1 ? insert_in_parallel : insert_alone;
-  const std::uint64_t distinct = insert(input, options, options.statistics);
+  Inserted inserted = insert(input, options);
+  seconds.locate = inserted.locate_seconds;
+  seconds.subdivide = inserted.subdivide_seconds;
   watch.lap();
   const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
-  Triangulation result =
-      extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads,
-              options.threads > 1 ? options.created_by : nullptr);
-  result.distinct = distinct;
+  Result result = extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads,
+                          std::move(inserted.created_by));
+  result.triangulation.distinct = inserted.distinct;
   seconds.extract = watch.lap();
+  result.statistics = seconds;
   return result;
 }
 
 }  // namespace
 
-Triangulation insert_by_cavities(PointView<double> points, const Options& options) {
+Result insert_by_cavities(PointView<double> points, const Options& options) {
   // An arena takes longer to set up than a thousand points to triangulate.
   if (options.threads <= 1) return run(points, options);
   return parallel::Arena(options.threads).execute([&] { return run(points, options); });

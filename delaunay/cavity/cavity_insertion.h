@@ -12,6 +12,6 @@ namespace delray::delaunay::internal {
 // evenly; as many simplices as there are otherwise.
 //
 // REQUIRES: resolved options, dim 3. Errors: see triangulate().
-Triangulation insert_by_cavities(PointView<double> points, const Options& options);
+Result insert_by_cavities(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

@@ -15,6 +15,7 @@
 #include <deque>
 #include <new>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "delaunay/cavity/cavity_inserter.h"
@@ -37,24 +38,24 @@ constexpr std::size_t kMaximumParts = std::size_t{1} << Box3Region::kMaximumCuts
 using Kernel = CavityInserter<Box3Region>;
 
 template <class Region>
-void collect(const CavityInserter<Region>& inserter, Statistics* seconds) {
-  if (seconds == nullptr) return;
-  seconds->locate += inserter.locate_seconds();
-  seconds->subdivide += inserter.subdivide_seconds();
+void collect(const CavityInserter<Region>& inserter, Inserted& sum) {
+  sum.distinct += inserter.inserted();
+  sum.locate_seconds += inserter.locate_seconds();
+  sum.subdivide_seconds += inserter.subdivide_seconds();
 }
 
 class ParallelInsertion {
  public:
-  ParallelInsertion(const CavityInput& input, const Options& options, bool timed)
+  ParallelInsertion(const CavityInput& input, const Options& options)
       : input_(input),
         vertices_(input.order.vertices.data()),
         pool_(input.used, input.mesh.size()),
-        threads_(static_cast<std::size_t>(options.threads)),
-        created_by_(options.created_by) {
+        threads_(static_cast<std::size_t>(options.threads)) {
     for (std::size_t t = 0; t < threads_; ++t) {
-      kernels_.emplace_back(input.mesh, vertices_, input.tests, pool_, options.progress, timed);
+      kernels_.emplace_back(input.mesh, vertices_, input.tests, pool_, options.progress,
+                            options.statistics);
     }
-    if (created_by_ != nullptr) created_by_->assign(input.mesh.size(), 0);
+    if (options.created_by) created_by_.assign(input.mesh.size(), 0);
     const glm::dvec3 size = input.range.high * 0.5 - input.range.low * 0.5;
     std::iota(axes_.begin(), axes_.end(), 0);
     std::sort(axes_.begin(), axes_.end(), [&](int i, int j) { return size[i] > size[j]; });
@@ -77,15 +78,16 @@ class ParallelInsertion {
     insert_rest(waiting);
   }
 
-  std::uint64_t finish(Statistics* seconds) {
-    std::uint64_t inserted = 0;
+  Inserted finish() {
+    Inserted result;
+    result.distinct = input_.start.size();
     for (Kernel& inserter : kernels_) {
       inserter.kernel().retire_unused_slots();
-      inserted += inserter.inserted();
-      collect(inserter, seconds);
+      collect(inserter, result);
     }
     input_.mesh.shrink(pool_.used());
-    return inserted;
+    result.created_by = std::move(created_by_);
+    return result;
   }
 
  private:
@@ -94,13 +96,13 @@ class ParallelInsertion {
   void grow_mesh() {
     grow(input_.mesh);
     pool_.extend(input_.mesh.size());
-    if (created_by_ != nullptr) created_by_->resize(input_.mesh.size(), 0);
+    if (!created_by_.empty()) created_by_.resize(input_.mesh.size(), 0);
   }
   // Before the calling thread inserts with a kernel.
-  void note_creator(Kernel& inserter) const {
-    if (created_by_ == nullptr) return;
+  void note_creator(Kernel& inserter) {
+    if (created_by_.empty()) return;
     const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
-    inserter.kernel().note_creator(created_by_->data(), thread);
+    inserter.kernel().note_creator(created_by_.data(), thread);
   }
 
   // Cuts the region of `sample` into `parts`.
@@ -236,7 +238,7 @@ class ParallelInsertion {
   SpaceVertex* vertices_;
   SlotPool pool_;
   std::size_t threads_;
-  std::vector<std::uint16_t>* created_by_;  // by slot; null if nobody wants to know
+  std::vector<std::uint16_t> created_by_;  // by slot; empty if nobody wants to know
   std::deque<Kernel> kernels_;
   std::array<int, 3> axes_;         // longest extent first
   SimplexNumber some_simplex_ = 0;  // finite and alive
@@ -250,10 +252,10 @@ void grow(Mesh<3>& mesh) {
   mesh.grow(size);
 }
 
-std::uint64_t insert_alone(const CavityInput& input, const Options& options, Statistics* seconds) {
+Inserted insert_alone(const CavityInput& input, const Options& options) {
   SlotPool pool(input.used, input.mesh.size());
   CavityInserter<Everywhere> inserter(input.mesh, input.order.vertices.data(), input.tests, pool,
-                                      options.progress, seconds != nullptr);
+                                      options.progress, options.statistics);
   inserter.kernel().start_at(0);
   for (VertexNumber vertex = 0; vertex + 1 < input.order.vertices.size(); ++vertex) {
     if (std::ranges::find(input.start, vertex) != input.start.end()) continue;
@@ -264,18 +266,19 @@ std::uint64_t insert_alone(const CavityInput& input, const Options& options, Sta
   }
   inserter.kernel().retire_unused_slots();
   input.mesh.shrink(pool.used());
-  collect(inserter, seconds);
-  return inserter.inserted() + input.start.size();
+  Inserted result;
+  result.distinct = input.start.size();
+  collect(inserter, result);
+  return result;
 }
 
-std::uint64_t insert_in_parallel(const CavityInput& input, const Options& options,
-                                 Statistics* seconds) {
-  ParallelInsertion insertion(input, options, seconds != nullptr);
+Inserted insert_in_parallel(const CavityInput& input, const Options& options) {
+  ParallelInsertion insertion(input, options);
   const std::vector<std::uint32_t>& rounds = input.order.rounds;
   for (std::size_t round = 0; round + 1 < rounds.size(); ++round) {
     insertion.insert_round(rounds[round], rounds[round + 1]);
   }
-  return insertion.finish(seconds) + input.start.size();
+  return insertion.finish();
 }
 
 }  // namespace delray::delaunay::internal

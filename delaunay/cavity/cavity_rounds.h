@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/order/curve_order_3d.h"
@@ -22,17 +23,24 @@ struct CavityInput {
   const SphereTests& tests;
 };
 
-// Both insert the other vertices and return how many points are distinct. Slots that are not used
-// are dead or dropped. Times are added to `seconds` if it is not null. Errors: std::bad_alloc,
-// parallel::Interrupted.
-std::uint64_t insert_alone(const CavityInput& input, const Options& options, Statistics* seconds);
+struct Inserted {
+  std::uint64_t distinct = 0;  // points
+  // Summed over threads; 0 without options.statistics.
+  double locate_seconds = 0, subdivide_seconds = 0;
+  // For each slot of the mesh the thread that made its simplex; empty without options.created_by,
+  // or if one thread made all.
+  std::vector<std::uint16_t> created_by;
+};
+
+// Both insert the other vertices. Slots that are not used are dead or dropped. Errors:
+// std::bad_alloc, parallel::Interrupted.
+Inserted insert_alone(const CavityInput& input, const Options& options);
 
 // With as many threads as options.threads says, in the arena of the caller, without locks: a box
 // around the points of a round is cut where it has as many points on one side as on the other, and
 // so on, until there is a region for every thread (cavity.h). Points that need simplices
 // of several regions wait for a pass with other cuts, and the last of them for one thread.
-std::uint64_t insert_in_parallel(const CavityInput& input, const Options& options,
-                                 Statistics* seconds);
+Inserted insert_in_parallel(const CavityInput& input, const Options& options);
 
 // Makes room for more simplices. Errors: std::bad_alloc.
 void grow(Mesh<3>& mesh);

@@ -16,15 +16,14 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "delaunay/divide_and_conquer/base_cases.h"
 #include "delaunay/divide_and_conquer/hull_mesh.h"
 #include "delaunay/divide_and_conquer/merge.h"
 #include "delaunay/divide_and_conquer/merge_filter.h"
-#include "delaunay/divide_and_conquer/merge_pair.h"
-#include "delaunay/flip/four_points.h"
 #include "delaunay/mesh/extract.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/mesh/stopwatch.h"
@@ -37,27 +36,19 @@
 namespace delray::delaunay::internal {
 namespace {
 
-// A triangulated range of points: the extreme vertices of its hull, ties broken by the other
-// coordinate.
-struct Part {
-  HullVertex left, right, bottom, top;
-};
-
-bool less_by_y(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.y < b.y || (a.y == b.y && a.x < b.x);
-}
-
 class Divider {
  public:
   Divider(const CellOrder& order, Mesh<2>& mesh, const Options& options)
       : points_(order.points.data()),
         hulls_{order.points.data(), mesh},
         filter_({order.points.data(), order.points.size()}, order.box, options.threads),
+        base_cases_(hulls_, filter_),
         progress_(options.progress),
-        parallel_(options.threads > 1),
-        created_by_(parallel_ ? options.created_by : nullptr) {
-    if (created_by_ != nullptr) created_by_->assign(mesh.size(), 0);
+        parallel_(options.threads > 1) {
+    if (parallel_ && options.created_by) created_by_.assign(mesh.size(), 0);
   }
+  Divider(const Divider&) = delete;
+  Divider& operator=(const Divider&) = delete;
 
   // Triangulates points [first, last), whose triangles are [2 first, 2 last - 2): merging two
   // ranges needs two triangles more than they have, and those lie between them.
@@ -82,6 +73,10 @@ class Divider {
   // Summed over threads.
   double seconds() const { return seconds_.load(); }
 
+  // For each slot of the mesh the thread that made its triangle; empty if nobody wants to know, or
+  // one thread made all.
+  std::vector<std::uint16_t> take_created_by() { return std::move(created_by_); }
+
  private:
   // Cell numbers of so many points are computed at once and looked up while dividing them.
   static constexpr std::size_t kBlock = 256;
@@ -97,21 +92,21 @@ class Divider {
   }
 
   // All triangles of a range are the calling thread's.
-  void note_creator(std::size_t first, std::size_t last) const {
-    if (created_by_ == nullptr) return;
-    const auto begin = created_by_->begin() + static_cast<std::ptrdiff_t>(2 * first);
-    const auto end = created_by_->begin() + static_cast<std::ptrdiff_t>(2 * last - 2);
+  void note_creator(std::size_t first, std::size_t last) {
+    if (created_by_.empty()) return;
+    const auto begin = created_by_.begin() + static_cast<std::ptrdiff_t>(2 * first);
+    const auto end = created_by_.begin() + static_cast<std::ptrdiff_t>(2 * last - 2);
     std::fill(begin, end, static_cast<std::uint16_t>(parallel::arena_thread()));
   }
   // The triangles that a merge has made are the calling thread's too: they have vertices on both
   // sides of `split`, and lie in a row from one of the two slots before it to the other.
-  void note_creator_of_merge(std::size_t split) const {
-    if (created_by_ == nullptr) return;
+  void note_creator_of_merge(std::size_t split) {
+    if (created_by_.empty()) return;
     const auto thread = static_cast<std::uint16_t>(parallel::arena_thread());
     const Mesh<2>& mesh = hulls_.mesh;
     CornerNumber entry = mesh.neighbour(static_cast<SimplexNumber>(2 * split - 2), 2);
     while (!mesh.is_ghost(simplex_of(entry))) {
-      (*created_by_)[simplex_of(entry)] = thread;
+      created_by_[simplex_of(entry)] = thread;
       // The other edge with an end on either side is opposite the vertex on the apex's side.
       const CornerNumber one = next_corner(entry), other = previous_corner(entry);
       const bool is_apex_first = mesh.vertex(entry) < split;
@@ -155,7 +150,7 @@ class Divider {
 
   // Points in lexicographic order.
   Part divide_sorted(std::size_t first, std::size_t last) {
-    if (last - first <= 3) return base(first, last);
+    if (last - first <= 3) return base_cases_.few(first, last);
     const std::size_t split = first + (last - first) / 2;
     const Part lower = divide_sorted(first, split);
     return merge(lower, divide_sorted(split, last), split, false);
@@ -164,9 +159,9 @@ class Divider {
   // Points from `first` on in the given cells.
   Part divide_cells(std::size_t first, std::span<const std::uint32_t> cells) {
     const std::size_t last = first + cells.size();
-    if (cells.size() <= 3) return base(first, last);
+    if (cells.size() <= 3) return base_cases_.few(first, last);
     if (cells.size() == 4) {
-      if (const auto part = four(static_cast<VertexNumber>(first))) return *part;
+      if (const auto part = base_cases_.four(static_cast<VertexNumber>(first))) return *part;
     }
     const std::uint32_t low = cells.front(), high = cells.back();
     if (low == high) {
@@ -178,120 +173,6 @@ class Divider {
     const Part lower = divide_cells(first, cells.first(split));
     return merge(lower, divide_cells(first + split, cells.subspan(split)), first + split,
                  split_by_y(low, high));
-  }
-
-  // One, two or three points.
-  Part base(std::size_t first, std::size_t last) {
-    const auto vertex = static_cast<VertexNumber>(first);
-    if (last - first == 3) return triangle(vertex);
-    if (last - first == 2) return segment(vertex);
-    const HullVertex only{vertex, kNoGhost};
-    return {only, only, only, only};
-  }
-
-  // Two points are joined by two ghosts, back to back.
-  Part segment(VertexNumber first) {
-    const SimplexNumber there = 2 * first, back = there + 1;
-    const VertexNumber a = first, b = first + 1;
-    hulls_.set_ghost(there, a, b);
-    hulls_.set_ghost(back, b, a);
-    hulls_.link(there, 2, corner_of(back, 2));
-    hulls_.follow(there, back);
-    hulls_.follow(back, there);
-    const HullVertex at_a{a, there}, at_b{b, back};
-    const bool rightward = lexicographically_less(points_[a], points_[b]);
-    const bool upward = less_by_y(points_[a], points_[b]);
-    return {rightward ? at_a : at_b, rightward ? at_b : at_a, upward ? at_a : at_b,
-            upward ? at_b : at_a};
-  }
-
-  Part triangle(VertexNumber first) {
-    const SimplexNumber inside = 2 * first;
-    VertexNumber a = first, b = first + 1, c = first + 2;
-    const int turn = orient2d(points_[a], points_[b], points_[c]);
-    if (turn == 0) return chain(first);
-    if (turn < 0) std::swap(b, c);
-    hulls_.set_triangle(inside, a, b, c);
-    hulls_.set_ghost(inside + 1, a, b);
-    hulls_.set_ghost(inside + 2, b, c);
-    hulls_.set_ghost(inside + 3, c, a);
-    hulls_.link(inside, 2, corner_of(inside + 1, 2));
-    hulls_.link(inside, 0, corner_of(inside + 2, 2));
-    hulls_.link(inside, 1, corner_of(inside + 3, 2));
-    hulls_.follow(inside + 1, inside + 2);
-    hulls_.follow(inside + 2, inside + 3);
-    hulls_.follow(inside + 3, inside + 1);
-    return extremes({{{a, inside + 1}, {b, inside + 2}, {c, inside + 3}}});
-  }
-
-  // Three points on a line.
-  Part chain(VertexNumber first) {
-    VertexNumber a = first, b = first + 1, c = first + 2;
-    if (lexicographically_less(points_[b], points_[a])) std::swap(a, b);
-    if (lexicographically_less(points_[c], points_[b])) std::swap(b, c);
-    if (lexicographically_less(points_[b], points_[a])) std::swap(a, b);
-    const SimplexNumber t = 2 * first;
-    hulls_.set_ghost(t, a, b);
-    hulls_.set_ghost(t + 1, b, c);
-    hulls_.set_ghost(t + 2, c, b);
-    hulls_.set_ghost(t + 3, b, a);
-    hulls_.link(t, 2, corner_of(t + 3, 2));
-    hulls_.link(t + 1, 2, corner_of(t + 2, 2));
-    for (SimplexNumber k = 0; k < 4; ++k) hulls_.follow(t + k, t + (k + 1) % 4);
-    return extremes({{{a, t}, {a, t}, {c, t + 2}}});
-  }
-
-  // Four points; none if three of them are on a line or all on a circle, or nearly so.
-  std::optional<Part> four(VertexNumber first) {
-    const glm::dvec2* p = points_ + first;
-    const EdgeViewPair seen_01(p[0], p[1], PointPair(p[2], p[3]));
-    const EdgeViewPair seen_23(p[2], p[3], PointPair(p[0], p[1]));
-    unsigned left = 0, right = 0, bottom = 0, top = 0;
-    for (unsigned i = 1; i < 4; ++i) {
-      left = before(p[i].x, p[i].y, p[left].x, p[left].y) ? i : left;
-      right = before(p[right].x, p[right].y, p[i].x, p[i].y) ? i : right;
-      bottom = before(p[i].y, p[i].x, p[bottom].y, p[bottom].x) ? i : bottom;
-      top = before(p[top].y, p[top].x, p[i].y, p[i].x) ? i : top;
-    }
-    const MergeFilter::Bounds bounds =
-        filter_.bounds((p[right].x - p[left].x) + (p[top].y - p[bottom].y));
-    const double error = std::max(bounds.cross, 0.0);
-    const double determinant =
-        seen_01.dot[0] * seen_01.cross[1] - seen_01.cross[0] * seen_01.dot[1];
-    const unsigned sure =
-        bits_of(absolute(seen_01.cross) > error) & bits_of(absolute(seen_23.cross) > error);
-    if (sure != 3 || !(std::abs(determinant) > bounds.circle)) return std::nullopt;
-    const unsigned turns = bits_of(seen_01.cross > 0) | bits_of(seen_23.cross > 0) << 2;
-    // Of points that turn right the determinant is negative inside.
-    const bool inside = (determinant > 0) == ((turns & 1) != 0);
-    const FourPoints& of = kFourPoints[turns | (inside ? 16 : 0)];
-    const std::array<VertexNumber, 5> vertices = {first, first + 1, first + 2, first + 3,
-                                                  kInfiniteVertex};
-    const SimplexNumber slot = 2 * first;
-    for (unsigned i = 0; i < 18; ++i) {
-      hulls_.mesh.set_vertex(slot + i / 3, i % 3, vertices[of.vertices[i]]);
-      hulls_.mesh.set_neighbour(slot + i / 3, i % 3, corner_of(slot, of.neighbours[i]));
-    }
-    const auto at = [&](unsigned i) { return HullVertex{first + i, slot + of.ghosts[i]}; };
-    return Part{at(left), at(right), at(bottom), at(top)};
-  }
-
-  // Lexicographic order. Branchless: the outcome is unpredictable.
-  static bool before(double a, double b, double c, double d) {
-    return static_cast<bool>(static_cast<int>(a < c) |
-                             (static_cast<int>(a == c) & static_cast<int>(b < d)));
-  }
-
-  Part extremes(const std::array<HullVertex, 3>& hull) const {
-    Part part{hull[0], hull[0], hull[0], hull[0]};
-    for (const HullVertex& v : {hull[1], hull[2]}) {
-      const glm::dvec2& p = points_[v.vertex];
-      if (lexicographically_less(p, points_[part.left.vertex])) part.left = v;
-      if (lexicographically_less(points_[part.right.vertex], p)) part.right = v;
-      if (less_by_y(p, points_[part.bottom.vertex])) part.bottom = v;
-      if (less_by_y(points_[part.top.vertex], p)) part.top = v;
-    }
-    return part;
   }
 
   // Merges the ranges before and after `split`: the second lies to the right of the first, or above
@@ -342,13 +223,14 @@ class Divider {
   const glm::dvec2* points_;
   HullMesh hulls_;
   MergeFilter filter_;
+  BaseCases base_cases_;
   parallel::Progress* progress_;
   bool parallel_;
-  std::vector<std::uint16_t>* created_by_;  // by slot; null if nobody wants to know
+  std::vector<std::uint16_t> created_by_;  // by slot; empty if nobody wants to know
   std::atomic<double> seconds_ = 0;
 };
 
-Triangulation run(PointView<double> points, const Options& options) {
+Result run(PointView<double> points, const Options& options) {
   Statistics seconds;
   Stopwatch watch;
   CellOrder order = cell_order(points, options.threads);
@@ -356,23 +238,25 @@ Triangulation run(PointView<double> points, const Options& options) {
   const std::size_t n = order.points.size();
   if (options.progress != nullptr) options.progress->advance(points.size() - n);
   Mesh<2> mesh(n < 2 ? 0 : 2 * n - 2);
+  std::vector<std::uint16_t> created_by;
   if (n >= 2) {
     Divider divider(order, mesh, options);
     divider.divide(0, n, CellGrid(order.box));
     seconds.subdivide = divider.seconds();
+    created_by = divider.take_created_by();
   }
   watch.lap();
   order.points = {};
-  Triangulation result = extract(std::move(mesh), {order.rows.data(), n}, options.threads,
-                                 n >= 2 && options.threads > 1 ? options.created_by : nullptr);
+  Result result =
+      extract(std::move(mesh), {order.rows.data(), n}, options.threads, std::move(created_by));
   seconds.extract = watch.lap();
-  if (options.statistics != nullptr) *options.statistics = seconds;
+  result.statistics = seconds;
   return result;
 }
 
 }  // namespace
 
-Triangulation divide_and_conquer(PointView<double> points, const Options& options) {
+Result divide_and_conquer(PointView<double> points, const Options& options) {
   // An arena takes longer to set up than a thousand points to triangulate.
   if (options.threads <= 1) return run(points, options);
   return parallel::Arena(options.threads).execute([&] { return run(points, options); });

@@ -13,6 +13,6 @@ namespace delray::delaunay::internal {
 // times the depth of the cells otherwise; no input makes it quadratic.
 //
 // Errors: see triangulate().
-Triangulation divide_and_conquer(PointView<double> points, const Options& options);
+Result divide_and_conquer(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

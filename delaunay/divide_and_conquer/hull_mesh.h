@@ -23,21 +23,21 @@ struct HullMesh {
   const glm::dvec2* points;  // of all vertices
   Mesh<2>& mesh;
 
-  void set_triangle(SimplexNumber t, VertexNumber a, VertexNumber b, VertexNumber c) {
+  void set_triangle(SimplexNumber t, VertexNumber a, VertexNumber b, VertexNumber c) const {
     mesh.set_vertex(t, 0, a);
     mesh.set_vertex(t, 1, b);
     mesh.set_vertex(t, 2, c);
   }
   // The ghost of the edge of the hull from a to b.
-  void set_ghost(SimplexNumber t, VertexNumber a, VertexNumber b) {
+  void set_ghost(SimplexNumber t, VertexNumber a, VertexNumber b) const {
     set_triangle(t, b, a, kInfiniteVertex);
   }
   // Makes the facets opposite to corner k of t and to `other` one.
-  void link(SimplexNumber t, unsigned k, CornerNumber other) {
+  void link(SimplexNumber t, unsigned k, CornerNumber other) const {
     mesh.set_neighbour(t, k, other);
     mesh.set_neighbour(other, corner_of(t, k));
   }
-  void follow(SimplexNumber ghost, SimplexNumber next) {
+  void follow(SimplexNumber ghost, SimplexNumber next) const {
     mesh.set_neighbour(ghost, 1, corner_of(next, 0));
     mesh.set_neighbour(next, 0, corner_of(ghost, 1));
   }

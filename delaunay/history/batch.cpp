@@ -14,9 +14,7 @@
 #include <atomic>
 #include <deque>
 #include <mutex>
-#include <optional>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "delaunay/history/dag_location.h"
@@ -25,7 +23,7 @@
 #include "delaunay/history/request_queue.h"
 #include "delaunay/history/sole_dag_access.h"
 #include "delaunay/insertion/insertion_phases.h"
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -46,6 +44,128 @@ struct alignas(64) Supply {
   }
 };
 
+// The points of one run, and whoever locates and inserts them. One thread inserts at a time.
+class BatchInsertion {
+ public:
+  BatchInsertion(DagRun<2>& run, std::size_t queue_length)
+      : run_(run), triangulation_(run.triangulation()), supplies_(run.parts()) {
+    // A queue per searching thread, so that every queue has one writer; together they have the
+    // length that was asked for.
+    const std::size_t parts = run.parts();
+    for (std::size_t part = 0; part < parts; ++part) {
+      queues_.emplace_back((queue_length + part) / parts);
+      supplies_[part].next.store(run.begin(part), std::memory_order_relaxed);
+      supplies_[part].end = run.end(part);
+    }
+  }
+
+  // Locates and inserts in turns. REQUIRES: one part.
+  void insert_alone() {
+    InsertionPhases phases(run_.options, run_.statistics);
+    for (VertexNumber vertex = 0; vertex < run_.end(0); ++vertex) {
+      phases.next_point();
+      if (!run_.is_first(vertex)) insert({vertex, locate(vertex)}, phases);
+    }
+    phases.finish();
+  }
+
+  // With a searching thread for each part, and one that inserts.
+  void insert_with_team() {
+    std::mutex finishing;
+    team_.run(run_.parts() + 1, [&](std::size_t thread) {
+      InsertionPhases phases(run_.options, run_.statistics);
+      if (thread < run_.parts()) {
+        search(thread, phases);
+      } else {
+        insert_requests(phases);
+      }
+      const std::lock_guard alone(finishing);
+      phases.finish();
+    });
+  }
+
+ private:
+  NodeNumber locate(VertexNumber vertex) const {
+    const Dag<2>& dag = triangulation_.dag;
+    const glm::dvec2& q = run_.point(vertex);
+    return descend(dag, triangulation_.orientation, root_of(dag, triangulation_.orientation, q), q);
+  }
+
+  void insert(const Request& request, InsertionPhases& phases) {
+    const NodeNumber leaf = descend(triangulation_.dag, triangulation_.orientation, request.node,
+                                    run_.point(request.vertex));
+    phases.located();
+    insert_in_leaf(run_, triangulation_, leaf, request.vertex, access_, suspects_, phases);
+  }
+
+  // Locates the points of a part, as long as there are any, and puts them into its queue.
+  void search(std::size_t part, InsertionPhases& phases) {
+    constexpr std::size_t kClaim = 32;
+    for (Claim claim = supplies_[part].claim(kClaim); claim.first < claim.last;
+         claim = supplies_[part].claim(kClaim)) {
+      for (VertexNumber vertex = claim.first; vertex < claim.last; ++vertex) {
+        phases.next_point();
+        if (run_.is_first(vertex)) continue;
+        const Request request = {vertex, locate(vertex)};
+        phases.located();
+        while (!queues_[part].put(request)) {
+          team_.check();
+          std::this_thread::yield();
+        }
+      }
+    }
+  }
+
+  // Inserts what is in the queues, until all points are in, and searches too rather than wait.
+  void insert_requests(InsertionPhases& phases) {
+    std::size_t left = run_.end(run_.parts() - 1) - 3, turn = 0;
+    while (left > 0) {
+      const std::size_t taken = empty_queues(phases);
+      left -= taken;
+      team_.check();
+      if (taken > 0) continue;
+      const std::size_t inserted = insert_own(supplies_[turn++ % supplies_.size()], phases);
+      left -= inserted;
+      if (inserted == 0) std::this_thread::yield();
+    }
+  }
+  // Inserts a few points from each queue in turn, so that no searching thread waits long. Returns
+  // how many.
+  std::size_t empty_queues(InsertionPhases& phases) {
+    constexpr int kTurn = 16;
+    std::size_t inserted = 0;
+    for (RequestQueue& queue : queues_) {
+      Request request;
+      for (int i = 0; i < kTurn && queue.take(request); ++i, ++inserted) {
+        phases.resume();
+        insert(request, phases);
+      }
+    }
+    return inserted;
+  }
+  // Locates and inserts a few points that no searching thread has begun with. Returns how many.
+  std::size_t insert_own(Supply& supply, InsertionPhases& phases) {
+    constexpr std::size_t kClaim = 4;
+    std::size_t inserted = 0;
+    const Claim claim = supply.claim(kClaim);
+    for (VertexNumber vertex = claim.first; vertex < claim.last; ++vertex) {
+      phases.next_point();
+      if (run_.is_first(vertex)) continue;
+      insert({vertex, locate(vertex)}, phases);
+      ++inserted;
+    }
+    return inserted;
+  }
+
+  DagRun<2>& run_;
+  DagTriangulation<2> triangulation_;
+  SoleDagAccess<2> access_{triangulation_.dag, 0};  // marks at the end the slots it did not use
+  std::vector<NodeNumber> suspects_;
+  std::deque<RequestQueue> queues_;
+  std::vector<Supply> supplies_;
+  parallel::Team team_;
+};
+
 }  // namespace
 
 std::size_t default_queue(std::size_t points) {
@@ -54,109 +174,18 @@ std::size_t default_queue(std::size_t points) {
   return points <= 10000 ? 512 : 1024;
 }
 
-Triangulation insert_in_batches(PointView<double> points, const Options& options) {
+Result insert_in_batches(PointView<double> points, const Options& options) {
   const auto searching = static_cast<std::size_t>(options.threads > 1 ? options.threads - 1 : 1);
   DagRun<2> run(points, options, searching);
   if (run.is_flat()) return run.finish();
-  const DagTriangulation<2> triangulation = run.triangulation();
-  const Dag<2>& dag = triangulation.dag;
-  const Orientation<2>& orientation = triangulation.orientation;
-  std::optional<SoleDagAccess<2>> access(std::in_place, triangulation.dag, 0);
-  std::vector<NodeNumber> suspects;
-  const auto locate = [&](VertexNumber vertex) {
-    const glm::dvec2& q = run.point(vertex);
-    return descend(dag, orientation, root_of(dag, orientation, q), q);
-  };
-  const auto insert = [&](const Request& request, InsertionPhases& phases) {
-    const NodeNumber leaf = descend(dag, orientation, request.node, run.point(request.vertex));
-    phases.located();
-    insert_in_leaf(run, triangulation, leaf, request.vertex, *access, suspects, phases);
-  };
-
-  if (options.threads == 1) {
-    InsertionPhases phases(options);
-    for (VertexNumber vertex = 0; vertex < run.end(0); ++vertex) {
-      phases.next_point();
-      if (!run.is_first(vertex)) insert({vertex, locate(vertex)}, phases);
-    }
-    phases.finish();
-    access.reset();  // it marks the slots that it did not use
-    return run.finish();
-  }
-
-  // A queue per searching thread, so that every queue has one writer; together they have the
-  // length that was asked for.
-  const std::size_t length = options.queue > 0 ? options.queue : default_queue(points.size());
-  std::deque<RequestQueue> queues;
-  for (std::size_t i = 0; i < searching; ++i) queues.emplace_back((length + i) / searching);
-  std::vector<Supply> supplies(searching);
-  for (std::size_t part = 0; part < searching; ++part) {
-    supplies[part].next.store(run.begin(part), std::memory_order_relaxed);
-    supplies[part].end = run.end(part);
-  }
-  Team team;
-  std::mutex finishing;
-  const auto search = [&](std::size_t part, InsertionPhases& phases) {
-    constexpr std::size_t kClaim = 32;
-    for (Claim claim = supplies[part].claim(kClaim); claim.first < claim.last;
-         claim = supplies[part].claim(kClaim)) {
-      for (VertexNumber vertex = claim.first; vertex < claim.last; ++vertex) {
-        phases.next_point();
-        if (run.is_first(vertex)) continue;
-        const Request request = {vertex, locate(vertex)};
-        phases.located();
-        while (!queues[part].put(request)) {
-          team.check();
-          std::this_thread::yield();
-        }
-      }
-    }
-  };
-  // Searches too rather than wait. Returns the number of points inserted.
-  const auto insert_own = [&](Supply& supply, InsertionPhases& phases) {
-    constexpr std::size_t kClaim = 4;
-    std::size_t inserted = 0;
-    const Claim claim = supply.claim(kClaim);
-    for (VertexNumber vertex = claim.first; vertex < claim.last; ++vertex) {
-      phases.next_point();
-      if (run.is_first(vertex)) continue;
-      insert({vertex, locate(vertex)}, phases);
-      ++inserted;
-    }
-    return inserted;
-  };
-  const auto insert_requests = [&](InsertionPhases& phases) {
-    std::size_t left = run.end(run.parts() - 1) - 3, turn = 0;
-    while (left > 0) {
-      bool idle = true;
-      for (RequestQueue& queue : queues) {
-        // A few from each in turn, so that no searching thread waits long.
-        constexpr int kTurn = 16;
-        Request request;
-        for (int i = 0; i < kTurn && queue.take(request); ++i, --left) {
-          phases.resume();
-          insert(request, phases);
-          idle = false;
-        }
-      }
-      team.check();
-      if (!idle) continue;
-      const std::size_t inserted = insert_own(supplies[turn++ % searching], phases);
-      left -= inserted;
-      if (inserted == 0) std::this_thread::yield();
-    }
-  };
-  team.run(searching + 1, [&](std::size_t thread) {
-    InsertionPhases phases(options);
-    if (thread < searching) {
-      search(thread, phases);
+  {
+    BatchInsertion insertion(run, options.queue > 0 ? options.queue : default_queue(points.size()));
+    if (options.threads == 1) {
+      insertion.insert_alone();
     } else {
-      insert_requests(phases);
+      insertion.insert_with_team();
     }
-    const std::lock_guard alone(finishing);
-    phases.finish();
-  });
-  access.reset();
+  }
   return run.finish();
 }
 

@@ -13,7 +13,7 @@ namespace delray::delaunay::internal {
 // 2004, 7.5). A single thread does the one after the other.
 //
 // REQUIRES: resolved options. Errors: see triangulate().
-Triangulation insert_in_batches(PointView<double> points, const Options& options);
+Result insert_in_batches(PointView<double> points, const Options& options);
 
 // The report's best length of the queue for so many points (Figure 7.6).
 std::size_t default_queue(std::size_t points);

@@ -10,8 +10,8 @@
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
 #include "delaunay/history/thread_waits.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/triangulate.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -28,7 +28,7 @@ class BurglarLocks {
  public:
   static constexpr bool kMayRetry = true;
 
-  BurglarLocks(Dag<D>& dag, Team& team, ThreadWaits& waits, std::uint32_t thread,
+  BurglarLocks(Dag<D>& dag, parallel::Team& team, ThreadWaits& waits, std::uint32_t thread,
                std::size_t threads)
       : dag_(dag), team_(team), waits_(waits), held_(dag, thread), robbed_(threads) {}
 
@@ -88,7 +88,7 @@ class BurglarLocks {
   }
 
   Dag<D>& dag_;
-  Team& team_;
+  parallel::Team& team_;
   ThreadWaits& waits_;
   HeldLeaves<D> held_;
   std::vector<bool> robbed_;  // thread i, by this one, since its last commit

@@ -23,6 +23,7 @@
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/history/leaf_search.h"
 #include "delaunay/mesh/add_counts.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -33,13 +34,14 @@ Triangulation rebuild(PointView<double> points, const Options& options) {
   alone.location = "walk";
   alone.order = "brio";
   alone.threads = 1;
-  alone.statistics = nullptr;
+  alone.statistics = false;
+  alone.created_by = false;
   alone.progress = nullptr;
-  return insert_all(points, alone);
+  return insert_all(points, alone).triangulation;
 }
 
 template <int D, bool kCounted>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -52,7 +54,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   bool robbed = false;
   insert_with_team(
       run, supply,
-      [&](Team& team, std::size_t thread) {
+      [&](parallel::Team& team, std::size_t thread) {
         return Burglar{
             {triangulation.dag, team, waits, static_cast<std::uint32_t>(thread), run.parts()},
             {triangulation, options.location}};
@@ -65,23 +67,24 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       },
       [&](const Burglar& burglar) {
         robbed |= burglar.access.has_robbed();
-        if (kCounted) add(options.statistics->synchronization, burglar.access.counts());
+        if (kCounted) add(run.statistics.synchronization, burglar.access.counts());
       });
   // An insertion is exact beside those that keep its locks in order, and nothing can be wrong
   // without a burglary; with one, all that came after it may have built on what it left.
   std::optional<std::uint64_t> repaired = 0;
   if (robbed) repaired = repair(triangulation, run.parts());
-  if (kCounted) options.statistics->synchronization.repaired += repaired.value_or(0);
-  Triangulation result = run.finish();
+  if (kCounted) run.statistics.synchronization.repaired += repaired.value_or(0);
+  Result result = run.finish();
   if (repaired) return result;
-  if (kCounted) ++options.statistics->synchronization.rebuilds;
-  if (options.created_by != nullptr) options.created_by->clear();
-  return rebuild(points, options);
+  if (kCounted) ++result.statistics.synchronization.rebuilds;
+  result.triangulation = rebuild(points, options);
+  result.created_by.clear();
+  return result;
 }
 
 }  // namespace
 
-Triangulation insert_by_burglary(PointView<double> points, const Options& options) {
+Result insert_by_burglary(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
     return insert_all_points<D, kCounted>(points, options);
   });

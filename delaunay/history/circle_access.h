@@ -11,8 +11,8 @@
 #include "delaunay/flip/dag_flip_2d.h"
 #include "delaunay/history/current_points.h"
 #include "delaunay/history/node_cache.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/triangulate.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -31,8 +31,8 @@ class CircleAccess {
  public:
   static constexpr bool kMayRetry = true;
 
-  CircleAccess(const DagTriangulation<2>& triangulation, Team& team, CurrentPoints& current,
-               std::uint32_t thread)
+  CircleAccess(const DagTriangulation<2>& triangulation, parallel::Team& team,
+               CurrentPoints& current, std::uint32_t thread)
       : triangulation_(triangulation),
         team_(team),
         current_(current),
@@ -110,7 +110,7 @@ class CircleAccess {
   }
 
   const DagTriangulation<2>& triangulation_;
-  Team& team_;
+  parallel::Team& team_;
   CurrentPoints& current_;
   std::uint32_t thread_;
   NodeCache<2> cache_;

@@ -20,12 +20,13 @@
 #include "delaunay/history/insert_with_retry.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/mesh/add_counts.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
 
 template <bool kCounted>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<2> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<2> triangulation = run.triangulation();
@@ -34,7 +35,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   bool robbed = false;
   insert_with_team(
       run, supply,
-      [&](Team& team, std::size_t thread) {
+      [&](parallel::Team& team, std::size_t thread) {
         return CircleAccess<kCounted>(triangulation, team, current,
                                       static_cast<std::uint32_t>(thread));
       },
@@ -51,19 +52,19 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
       },
       [&](const CircleAccess<kCounted>& access) {
         robbed |= access.has_robbed();
-        if (kCounted) add(options.statistics->synchronization, access.counts());
+        if (kCounted) add(run.statistics.synchronization, access.counts());
       });
   // As in the burglary method.
   const std::uint64_t repaired = robbed ? repair(triangulation, run.parts()) : 0;
-  if (kCounted) options.statistics->synchronization.repaired += repaired;
+  if (kCounted) run.statistics.synchronization.repaired += repaired;
   return run.finish();
 }
 
 }  // namespace
 
-Triangulation insert_by_circles(PointView<double> points, const Options& options) {
-  return options.statistics != nullptr ? insert_all_points<true>(points, options)
-                                       : insert_all_points<false>(points, options);
+Result insert_by_circles(PointView<double> points, const Options& options) {
+  return options.statistics ? insert_all_points<true>(points, options)
+                            : insert_all_points<false>(points, options);
 }
 
 }  // namespace delray::delaunay::internal

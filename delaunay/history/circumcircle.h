@@ -10,6 +10,6 @@ namespace delray::delaunay::internal {
 // while the point that another inserts lies inside its circumcircle. Circles of waiting threads are
 // broken, and the result repaired, as in the burglary method. Each simplex costs a test for each
 // other thread. As triangulate(); REQUIRES: resolved options.
-Triangulation insert_by_circles(PointView<double> points, const Options& options);
+Result insert_by_circles(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

@@ -12,8 +12,8 @@
 #include "delaunay/history/dag_location.h"
 #include "delaunay/insertion/insertion_start.h"
 #include "delaunay/mesh/stopwatch.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/predicates/conflict.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -50,7 +50,7 @@ void in_parts(std::size_t n, std::size_t threads, F&& f) {
   // A thread takes about as long to start as to look at so many nodes.
   constexpr std::size_t kPerThread = 16384;
   if (n < threads * kPerThread) return f(std::size_t{0}, std::size_t{0}, n);
-  Team team;
+  parallel::Team team;
   team.run(threads, [&](std::size_t i) { f(i, n * i / threads, n * (i + 1) / threads); });
 }
 
@@ -72,7 +72,7 @@ DagRun<D>::DagRun(PointView<double> input, const Options& wanted, std::size_t pa
   begins_ = std::move(plan.begins);
   first_ = first_simplex<D>(points_);
   if (first_) start_dag();
-  if (options.statistics != nullptr) options.statistics->order = watch.lap();
+  if (options.statistics) statistics.order = watch.lap();
 }
 
 template <int D>
@@ -117,9 +117,9 @@ void DagRun<D>::merge(VertexNumber vertex, VertexNumber point) {
 }
 
 template <int D>
-Triangulation DagRun<D>::leaves() const {
-  Triangulation result;
-  result.dim = D;
+Result DagRun<D>::leaves() const {
+  Result result;
+  result.triangulation.dim = D;
   if (is_flat()) return result;
   struct Share {
     std::vector<std::uint32_t> vertices;
@@ -140,7 +140,7 @@ Triangulation DagRun<D>::leaves() const {
       for (unsigned k = 0; k <= D; ++k) {
         own.vertices.push_back(rows_[dag_.vertex(corner_of(node, k))]);
       }
-      if (options.created_by != nullptr) {
+      if (options.created_by) {
         own.created_by.push_back(static_cast<std::uint16_t>(dag_.created_by(node)));
       }
     }
@@ -153,37 +153,39 @@ Triangulation DagRun<D>::leaves() const {
     ghosts += share.ghosts;
   }
   // The first share's memory becomes the result's, and most of it already is where it belongs.
-  result.vertices = std::move(shares[0].vertices);
-  result.vertices.reserve(begins.back());
+  std::vector<std::uint32_t>& vertices = result.triangulation.vertices;
+  vertices = std::move(shares[0].vertices);
+  vertices.reserve(begins.back());
   for (std::size_t i = 1; i < shares.size(); ++i) {
-    result.vertices.insert(result.vertices.end(), shares[i].vertices.begin(),
-                           shares[i].vertices.end());
+    vertices.insert(vertices.end(), shares[i].vertices.begin(), shares[i].vertices.end());
   }
-  if (options.created_by != nullptr) {
+  if (options.created_by) {
     for (const Share& share : shares) {
-      options.created_by->insert(options.created_by->end(), share.created_by.begin(),
-                                 share.created_by.end());
+      result.created_by.insert(result.created_by.end(), share.created_by.begin(),
+                               share.created_by.end());
     }
   }
-  result.hull_facets = ghosts;
+  result.triangulation.hull_facets = ghosts;
   return result;
 }
 
 template <int D>
-Triangulation DagRun<D>::finish() {
+Result DagRun<D>::finish() {
   Stopwatch watch;
-  Triangulation result = leaves();
-  result.distinct = is_flat() ? count_distinct(points_) : points_.size() - duplicates_.load();
-  if (options.statistics != nullptr) {
-    options.statistics->extract += watch.lap();
+  Result result = leaves();
+  result.triangulation.distinct =
+      is_flat() ? count_distinct(points_) : points_.size() - duplicates_.load();
+  if (options.statistics) {
+    statistics.extract += watch.lap();
     if (!is_flat()) {
       for (NodeNumber node = 0; node < dag_.size(); ++node) {
-        options.statistics->dag_nodes += dag_.is_abandoned(node) ? 0 : 1;
+        statistics.dag_nodes += dag_.is_abandoned(node) ? 0 : 1;
       }
-      options.statistics->dag_node_bytes = dag_.bytes() / options.statistics->dag_nodes;
-      options.statistics->synchronization.fragments = count_fragments(dag_);
+      statistics.dag_node_bytes = dag_.bytes() / statistics.dag_nodes;
+      statistics.synchronization.fragments = count_fragments(dag_);
     }
   }
+  result.statistics = statistics;
   return result;
 }
 

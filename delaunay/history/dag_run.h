@@ -62,14 +62,15 @@ class DagRun {
   // Notes that a point is equal to a vertex. Any thread.
   void merge(VertexNumber vertex, VertexNumber point);
 
-  // The result: the finite leaves. Completes the statistics. O(nodes).
-  Triangulation finish();
+  // The finite leaves, who made them, and the statistics, completed. O(nodes).
+  Result finish();
 
   const Options& options;
+  Statistics statistics;  // so far; one thread at a time
 
  private:
   void start_dag();
-  Triangulation leaves() const;
+  Result leaves() const;
 
   // Three by the subdivision and two by each of three flips on average (Kohout 2004, 6.2: 6 to 10);
   // in space 54 were counted.

@@ -9,7 +9,7 @@
 #include "delaunay/flip/dag.h"
 #include "delaunay/history/node_cache.h"
 #include "delaunay/history/thread_waits.h"
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -37,7 +37,8 @@ class HeldLeaves {
   }
   // Waits unless that closes a circle. Returns as try_lock(), the owner if it must not wait.
   // Waiting is short and rare: the thread yields rather than sleeps (Kohout 2004, 7.7.1).
-  std::uint32_t wait(NodeNumber node, RecordNumber record, ThreadWaits& waits, const Team& team) {
+  std::uint32_t wait(NodeNumber node, RecordNumber record, ThreadWaits& waits,
+                     const parallel::Team& team) {
     std::uint32_t before = 0;
     if (!waits.enter(dag_, owner_ - 1, {node, record}, before)) return before;
     for (;;) {

@@ -58,7 +58,7 @@ template <int D>
 PointSupply insert_alone(DagRun<D>& run, const DagTriangulation<D>& triangulation) {
   PointSupply others(run.parts());
   SoleDagAccess<D> access(triangulation.dag, 0);
-  InsertionPhases phases(run.options);
+  InsertionPhases phases(run.options, run.statistics);
   std::vector<NodeNumber> suspects;
   for (std::size_t part = 0; part < run.parts(); ++part) {
     const std::size_t end = run.begin(part) + points_alone(run, part);

@@ -109,10 +109,9 @@ class WalkedMesh<3> {
 };
 
 template <int D, class Located>
-Triangulation insert_walking(PointView<double> input, const Options& options) {
-  Statistics unused;
-  Statistics& seconds = options.statistics != nullptr ? *options.statistics : unused;
-  const bool timed = options.statistics != nullptr;
+Result insert_walking(PointView<double> input, const Options& options) {
+  Statistics seconds;
+  const bool timed = options.statistics;
   Stopwatch watch;
 
   using Points = std::vector<Position<D>>;
@@ -128,9 +127,10 @@ Triangulation insert_walking(PointView<double> input, const Options& options) {
 
   const auto start = first_simplex<D>(points);
   if (!start) {
-    Triangulation result;
-    result.dim = D;
-    result.distinct = count_distinct(std::move(points));
+    Result result;
+    result.statistics = seconds;
+    result.triangulation.dim = D;
+    result.triangulation.distinct = count_distinct(std::move(points));
     return result;
   }
   Located mesh(points, *start, options.seed);
@@ -153,20 +153,21 @@ Triangulation insert_walking(PointView<double> input, const Options& options) {
   }
   watch.lap();
   points = {};
-  Triangulation result = extract(mesh.take(), rows);
-  result.distinct = distinct;
+  Result result = extract(mesh.take(), rows);
+  result.triangulation.distinct = distinct;
   seconds.extract = watch.lap();
+  result.statistics = seconds;
   return result;
 }
 
 // Down the history of the triangulation to the simplex of the next point.
 template <int D>
-Triangulation insert_descending(PointView<double> input, const Options& options) {
+Result insert_descending(PointView<double> input, const Options& options) {
   DagRun<D> run(input, options, 1);
   if (!run.is_flat()) {
     const DagTriangulation<D> triangulation = run.triangulation();
     SoleDagAccess<D> access(triangulation.dag, 0);
-    InsertionPhases phases(options);
+    InsertionPhases phases(options, run.statistics);
     std::vector<NodeNumber> suspects;
     for (VertexNumber vertex = 0; vertex < run.end(0); ++vertex) {
       insert_from_root(run, triangulation, vertex, access, suspects, phases);
@@ -178,7 +179,7 @@ Triangulation insert_descending(PointView<double> input, const Options& options)
 
 }  // namespace
 
-Triangulation insert_all(PointView<double> points, const Options& options) {
+Result insert_all(PointView<double> points, const Options& options) {
   const auto insert = [&]<int D>() {
     if (options.location == "dag") return insert_descending<D>(points, options);
     if constexpr (D == 2) {

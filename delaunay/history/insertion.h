@@ -11,6 +11,6 @@ namespace delray::delaunay::internal {
 // a random or brio order; along the curve alone some inputs make it quadratic.
 //
 // REQUIRES: resolved options. Errors: see triangulate().
-Triangulation insert_all(PointView<double> points, const Options& options);
+Result insert_all(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

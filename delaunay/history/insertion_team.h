@@ -8,7 +8,7 @@
 #include "delaunay/history/dag_run.h"
 #include "delaunay/insertion/insertion_phases.h"
 #include "delaunay/insertion/point_supply.h"
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -19,13 +19,13 @@ namespace delray::delaunay::internal {
 //
 // Errors: what a call throws; parallel::Interrupted.
 template <int D, class Make, class Insert, class Finish>
-void insert_with_team(const DagRun<D>& run, PointSupply& supply, Make&& make, Insert&& insert,
+void insert_with_team(DagRun<D>& run, PointSupply& supply, Make&& make, Insert&& insert,
                       Finish&& finish) {
-  Team team;
+  parallel::Team team;
   std::mutex finishing;
   team.run(run.parts(), [&](std::size_t thread) {
     auto worker = make(team, thread);
-    InsertionPhases phases(run.options);
+    InsertionPhases phases(run.options, run.statistics);
     std::vector<NodeNumber> suspects;
     supply.for_each(thread, [&](VertexNumber vertex) {
       team.check();
@@ -41,7 +41,7 @@ void insert_with_team(const DagRun<D>& run, PointSupply& supply, Make&& make, In
 // f.operator()<D, counted>() for the options' dimension, counted if anybody wants statistics.
 template <class F>
 auto with_dimension_and_counts(const Options& options, F&& f) {
-  const bool counted = options.statistics != nullptr;
+  const bool counted = options.statistics;
   if (options.dim == 2) {
     return counted ? f.template operator()<2, true>() : f.template operator()<2, false>();
   }

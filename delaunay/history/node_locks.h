@@ -14,8 +14,8 @@
 #include "delaunay/flip/dag_access.h"
 #include "delaunay/history/held_leaves.h"
 #include "delaunay/history/thread_waits.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/triangulate.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -37,7 +37,8 @@ class NodeLocks {
  public:
   static constexpr bool kMayRetry = false;
 
-  NodeLocks(Dag<D>& dag, Team& team, Blocking& blocking, std::uint32_t thread, bool priorities)
+  NodeLocks(Dag<D>& dag, parallel::Team& team, Blocking& blocking, std::uint32_t thread,
+            bool priorities)
       : dag_(dag),
         team_(team),
         blocking_(blocking),
@@ -138,7 +139,7 @@ class NodeLocks {
   }
 
   Dag<D>& dag_;
-  Team& team_;
+  parallel::Team& team_;
   Blocking& blocking_;
   std::uint32_t thread_;
   bool priorities_;

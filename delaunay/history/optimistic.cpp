@@ -17,6 +17,7 @@
 #include "delaunay/history/leaf_search.h"
 #include "delaunay/history/node_locks.h"
 #include "delaunay/mesh/add_counts.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -42,7 +43,7 @@ bool insert(DagRun<D>& run, const DagTriangulation<D>& triangulation, NodeNumber
 }
 
 template <int D, bool kCounted>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -54,7 +55,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   };
   insert_with_team(
       run, supply,
-      [&](Team& team, std::size_t thread) {
+      [&](parallel::Team& team, std::size_t thread) {
         return Locker{{triangulation.dag, team, blocking, static_cast<std::uint32_t>(thread),
                        options.deadlocks == "priorities"},
                       {triangulation, options.location}};
@@ -71,14 +72,14 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
         locker.access.commit();
       },
       [&](const Locker& locker) {
-        if (kCounted) add(options.statistics->synchronization, locker.access.counts());
+        if (kCounted) add(run.statistics.synchronization, locker.access.counts());
       });
   return run.finish();
 }
 
 }  // namespace
 
-Triangulation insert_optimistically(PointView<double> points, const Options& options) {
+Result insert_optimistically(PointView<double> points, const Options& options) {
   return with_dimension_and_counts(options, [&]<int D, bool kCounted>() {
     return insert_all_points<D, kCounted>(points, options);
   });

@@ -12,6 +12,6 @@ namespace delray::delaunay::internal {
 // 2004, 7.7.1); options.deadlocks says when that is.
 //
 // REQUIRES: resolved options. Errors: see triangulate().
-Triangulation insert_optimistically(PointView<double> points, const Options& options);
+Result insert_optimistically(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

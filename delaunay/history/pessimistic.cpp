@@ -16,13 +16,14 @@
 #include "delaunay/history/insert_in_leaf.h"
 #include "delaunay/history/insertion_team.h"
 #include "delaunay/history/sole_dag_access.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
 namespace {
 
 template <int D>
-Triangulation insert_all_points(PointView<double> points, const Options& options) {
+Result insert_all_points(PointView<double> points, const Options& options) {
   DagRun<D> run(points, options, static_cast<std::size_t>(options.threads));
   if (run.is_flat()) return run.finish();
   const DagTriangulation<D> triangulation = run.triangulation();
@@ -31,7 +32,7 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
   std::uint64_t entered = 0;
   insert_with_team(
       run, supply,
-      [&](Team&, std::size_t thread) {
+      [&](parallel::Team&, std::size_t thread) {
         return SoleDagAccess<D>(triangulation.dag, static_cast<std::uint32_t>(thread));
       },
       [&](SoleDagAccess<D>& access, VertexNumber vertex, std::vector<NodeNumber>& suspects,
@@ -46,13 +47,13 @@ Triangulation insert_all_points(PointView<double> points, const Options& options
         insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
       },
       [](const SoleDagAccess<D>&) {});
-  if (options.statistics != nullptr) options.statistics->synchronization.lock_calls = entered;
+  if (options.statistics) run.statistics.synchronization.lock_calls = entered;
   return run.finish();
 }
 
 }  // namespace
 
-Triangulation insert_pessimistically(PointView<double> points, const Options& options) {
+Result insert_pessimistically(PointView<double> points, const Options& options) {
   return options.dim == 2 ? insert_all_points<2>(points, options)
                           : insert_all_points<3>(points, options);
 }

@@ -10,6 +10,6 @@ namespace delray::delaunay::internal {
 // the location, subdivide and legalize (Kohout 2004, 7.6).
 //
 // REQUIRES: resolved options. Errors: see triangulate().
-Triangulation insert_pessimistically(PointView<double> points, const Options& options);
+Result insert_pessimistically(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delaunay/flip/dag.h"
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 
@@ -16,7 +16,7 @@ template <int D, class IsWrong>
 std::vector<CornerNumber> wrong_corners(const Dag<D>& dag, std::size_t threads,
                                         IsWrong&& is_wrong) {
   std::vector<std::vector<CornerNumber>> found(threads);
-  Team team;
+  parallel::Team team;
   team.run(threads, [&](std::size_t thread) {
     const auto end = static_cast<NodeNumber>(std::size_t{dag.size()} * (thread + 1) / threads);
     for (auto node = static_cast<NodeNumber>(std::size_t{dag.size()} * thread / threads);

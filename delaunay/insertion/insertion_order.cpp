@@ -22,10 +22,10 @@
 
 #include "delaunay/mesh/array.h"
 #include "delaunay/mesh/blocks.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/order/cells.h"
 #include "delaunay/order/hilbert_3d.h"
 #include "delaunay/order/radix_sort.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay {
 namespace {
@@ -143,7 +143,7 @@ constexpr std::size_t kPerThread = 4096;
 template <class F>
 void in_parts(std::size_t n, std::size_t threads, F&& f) {
   const std::size_t parts = n < threads * kPerThread ? 1 : threads;
-  internal::Team().run(parts,
+  parallel::Team().run(parts,
                        [&](std::size_t part) { f(n * part / parts, n * (part + 1) / parts); });
 }
 
@@ -184,7 +184,7 @@ std::vector<std::uint32_t> order_of(std::span<const Point> points, std::string_v
   };
   const std::size_t sorting =
       points.size() < threads * kPerThread ? 1 : std::min(threads, rounds.size());
-  internal::Team().run(sorting, sort_rounds);
+  parallel::Team().run(sorting, sort_rounds);
   return numbers;
 }
 

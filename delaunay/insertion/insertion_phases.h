@@ -8,11 +8,11 @@
 
 namespace delray::delaunay::internal {
 
-// Sums the seconds of each phase, if anybody wants to know.
+// Sums the seconds of each phase, and adds them to `statistics` at the end, if the options want it.
 class InsertionPhases {
  public:
-  explicit InsertionPhases(const Options& options)
-      : progress_(options.progress), statistics_(options.statistics) {}
+  InsertionPhases(const Options& options, Statistics& statistics)
+      : progress_(options.progress), statistics_(options.statistics ? &statistics : nullptr) {}
 
   bool timed() const { return statistics_ != nullptr; }
   // Throws parallel::Interrupted.
@@ -52,7 +52,7 @@ class InsertionPhases {
   }
 
   parallel::Progress* progress_;
-  Statistics* statistics_;
+  Statistics* statistics_;  // null: not timed
   Stopwatch watch_;
   Statistics seconds_;
   std::uint64_t points_ = 0;  // not yet reported

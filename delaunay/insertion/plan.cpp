@@ -14,8 +14,8 @@
 #include <string>
 
 #include "delaunay/insertion/insertion_order.h"
-#include "delaunay/mesh/team.h"
 #include "delaunay/methods.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay {
 namespace {
@@ -106,7 +106,7 @@ Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view 
   if (n < parts * kPointsPerThread) {
     for (std::size_t part = 0; part < parts; ++part) order_part(part);
   } else {
-    internal::Team team;
+    parallel::Team team;
     team.run(parts, order_part);
   }
   return plan;

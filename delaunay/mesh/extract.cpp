@@ -23,11 +23,12 @@ constexpr std::size_t kPiece = std::size_t{1} << (D == 2 ? 18 : 16);
 // Piece by piece, so that the mesh goes as the result comes, and in order, so that the result does
 // not depend on the number of threads.
 template <int D>
-Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads,
-                      std::vector<std::uint16_t>* created_by) {
+Result extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads,
+               std::vector<std::uint16_t> created_by) {
   constexpr std::size_t kCorners = Mesh<D>::kCorners;
   Mesh<D> own = std::move(mesh);
-  Triangulation result;
+  Result whole;
+  Triangulation& result = whole.triangulation;
   result.dim = D;
   result.distinct = rows.size();
   result.vertices.reserve(kCorners * own.size());
@@ -49,15 +50,15 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
           continue;
         }
         for (unsigned k = 0; k < kCorners; ++k) packed[count++] = rows[own.vertex(simplex, k)];
-        if (created_by != nullptr) own_created_by.push_back((*created_by)[simplex]);
+        if (!created_by.empty()) own_created_by.push_back(created_by[simplex]);
       }
       own.discard(first, last);
       // Pieces are taken in order, so whoever has the one before is at work on it.
       for (std::size_t i; (i = next_appended) != piece;) next_appended.wait(i);
       result.vertices.insert(result.vertices.end(), packed.data(), packed.data() + count);
-      if (created_by != nullptr) {
+      if (!created_by.empty()) {
         // Their slots are those of this piece and of pieces before it, which nobody reads any more.
-        std::ranges::copy(own_created_by, created_by->begin() + static_cast<std::ptrdiff_t>(made));
+        std::ranges::copy(own_created_by, created_by.begin() + static_cast<std::ptrdiff_t>(made));
         made += own_created_by.size();
         own_created_by.clear();
       }
@@ -72,15 +73,16 @@ Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int t
   } else {
     parallel::parallel_for(0, workers, 1, [&](std::size_t) { work(); });
   }
-  if (created_by != nullptr) created_by->resize(made);
   // Of collinear points only ghosts are left, and those bound nothing.
   if (!result.vertices.empty()) result.hull_facets = ghosts;
-  return result;
+  created_by.resize(made);
+  whole.created_by = std::move(created_by);
+  return whole;
 }
 
-template Triangulation extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads,
-                               std::vector<std::uint16_t>* created_by);
-template Triangulation extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads,
-                               std::vector<std::uint16_t>* created_by);
+template Result extract(Mesh<2>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                        std::vector<std::uint16_t> created_by);
+template Result extract(Mesh<3>&& mesh, std::span<const std::uint32_t> rows, int threads,
+                        std::vector<std::uint16_t> created_by);
 
 }  // namespace delray::delaunay::internal

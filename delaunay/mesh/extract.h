@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delaunay/mesh/mesh.h"
-#include "delaunay/triangulation.h"
+#include "delaunay/triangulate.h"
 
 namespace delray::delaunay::internal {
 
@@ -14,10 +14,10 @@ namespace delray::delaunay::internal {
 // and result are never in memory together as a whole. O(simplices). Several threads are those of
 // the arena that the caller is in; the result does not depend on them.
 //
-// `created_by`, if not null, has a value for every slot of the mesh and keeps those of the result's
-// simplices, in their order.
+// `created_by` has a value for every slot of the mesh, and those of the simplices are returned in
+// their order; empty stays empty.
 template <int D>
-Triangulation extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads = 1,
-                      std::vector<std::uint16_t>* created_by = nullptr);
+Result extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads = 1,
+               std::vector<std::uint16_t> created_by = {});
 
 }  // namespace delray::delaunay::internal

@@ -84,6 +84,16 @@ TEST(Practice, WhatCannotGoOnSaysWhatDiffers) {
            {path + "--spp 4", path + "--spp 4 --seed 3", "--seed 0 there, 3 here"},
            {"--spp 4", "--spp 4 --noise 0.1", "--noise not given there, 0.1 here"},
            {"--spp 4", "--spp 4 --crop 0,0,32,32", "--crop 0,0,80,60 there, 0,0,32,32 here"},
+           {"--spp 4", "--spp 4 --build low", "--build medium there, low here"},
+           {"--spp 4", "--spp 4 --isa sse2", "--isa best there, sse2 here"},
+           {"--spp 4", "--spp 4 --aperture 0.1 --focus 2",
+            "--aperture 0 there, 0.1 here; --focus 0 there, 2 here"},
+           {"--integrator ao --spp 4 --reach 2", "--integrator ao --spp 4",
+            "--reach 2 there, unlimited here"},
+           {"--integrator direct --spp 4", "--integrator direct --spp 4 --no-shadows",
+            "--no-shadows not given there, given here"},
+           {path + "--spp 4", path + "--spp 4 --diffuse-depth 2",
+            "--diffuse-depth 64 there, 2 here"},
            {"--spp 4", "--spp 4 --light default --light-strength 2", "another scene or light"}}) {
     const std::string text = why(first, then);
     EXPECT_NE(text.find(difference), std::string::npos) << text;

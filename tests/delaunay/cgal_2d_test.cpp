@@ -21,7 +21,7 @@ void expect_same(const std::vector<glm::dvec3>& points, const std::string& name)
     if (std::ranges::find(method.dims, 2) == method.dims.end()) continue;
     Options options;
     options.method = method.name;
-    const Triangulation actual = triangulate(view(points), options);
+    const Triangulation actual = triangulate(view(points), options).triangulation;
     EXPECT_EQ(hash(actual), hash(expected)) << name << ", " << method.name;
     EXPECT_EQ(actual.size(), expected.size()) << name << ", " << method.name;
     if (expected.size() > 0) {

@@ -25,7 +25,7 @@ void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,
       options.dim = 3;
       options.method = method.name;
       options.threads = count;
-      const Triangulation actual = triangulate(view(points), options);
+      const Triangulation actual = triangulate(view(points), options).triangulation;
       EXPECT_EQ(hash(actual), hash(expected)) << name << ", " << method.name << ", " << count;
       EXPECT_EQ(actual.size(), expected.size()) << name << ", " << method.name;
       if (expected.size() > 0) {

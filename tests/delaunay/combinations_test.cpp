@@ -85,9 +85,8 @@ void expect_nodes(std::size_t n, std::size_t fewest, std::size_t most) {
   for (Options options : combinations(D)) {
     if (options.location != "dag") continue;
     options.threads = 2;
-    Statistics statistics;
-    options.statistics = &statistics;
-    const Triangulation result = triangulate(view(points), options);
+    options.statistics = true;
+    const auto [result, statistics, created_by] = triangulate(view(points), options);
     EXPECT_GT(statistics.dag_nodes, fewest * points.size()) << name_of(options);
     EXPECT_LT(statistics.dag_nodes, most * points.size()) << name_of(options);
     EXPECT_GE(statistics.synchronization.fragments, 1U) << name_of(options);

@@ -18,7 +18,7 @@
 namespace delray::delaunay {
 namespace {
 
-Triangulation of(const PointCloud& points, const Options& options) {
+Result of(const PointCloud& points, const Options& options) {
   return triangulate(view(points.positions), options);
 }
 
@@ -53,7 +53,7 @@ TEST(Fragments, AreSetsOfOneMakerJoinedByFacets) {
     const PointCloud points = generate_points("gauss", 200, dim, 5);
     Options options;
     options.dim = dim;
-    const Triangulation mesh = of(points, options);
+    const Triangulation mesh = of(points, options).triangulation;
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
       std::mt19937 random(seed);
       std::vector<std::uint16_t> created_by(mesh.size());
@@ -75,19 +75,17 @@ TEST(CreatedBy, AreNotedForEverySimplexByEveryMethod) {
     const PointCloud points = generate_points("cluster", dim == 2 ? 30000 : 4000, dim, 11);
     Options options;
     options.dim = dim;
-    const Hash128 expected = hash(of(points, options));
+    const Hash128 expected = hash(of(points, options).triangulation);
     for (const Method& method : methods()) {
       if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
       for (const int threads : {1, 3}) {
         SCOPED_TRACE(std::to_string(dim) + "D " + std::string(method.name) + ", " +
                      std::to_string(threads) + " threads");
-        std::vector<std::uint16_t> created_by = {9};  // what was there goes
-        Statistics statistics;
         options.method = method.name;
         options.threads = threads;
-        options.created_by = &created_by;
-        options.statistics = &statistics;
-        const Triangulation mesh = of(points, options);
+        options.created_by = true;
+        options.statistics = true;
+        const auto [mesh, statistics, created_by] = of(points, options);
         ASSERT_EQ(hash(mesh), expected);
         ASSERT_EQ(created_by.size(), mesh.size());
         EXPECT_LT(*std::ranges::max_element(created_by), threads);
@@ -110,14 +108,14 @@ TEST(CreatedBy, AreNoneWithoutSimplices) {
   for (glm::dvec3& p : line.positions) p.y = p.x;
   for (const Method& method : methods()) {
     for (const int dim : method.dims) {
-      std::vector<std::uint16_t> created_by = {1, 2, 3};
       Options options;
       options.dim = dim;
       options.method = method.name;
       options.threads = 2;
-      options.created_by = &created_by;
-      EXPECT_EQ(of(line, options).size(), 0U);
-      EXPECT_TRUE(created_by.empty()) << method.name;
+      options.created_by = true;
+      const Result result = of(line, options);
+      EXPECT_EQ(result.triangulation.size(), 0U);
+      EXPECT_TRUE(result.created_by.empty()) << method.name;
     }
   }
 }

@@ -19,7 +19,7 @@ TEST(Interpolate, ReproducesPlanes) {
   for (const char* kind : {"uniform", "grid", "jitter", "cluster"}) {
     SCOPED_TRACE(kind);
     const auto points = generate_points(kind, 900, 2, 3).positions;
-    const Triangulation triangulation = triangulate(view(points));
+    const Triangulation triangulation = triangulate(view(points)).triangulation;
     const Query query(view(points), triangulation);
     std::vector<double> values;
     for (const glm::dvec3& p : points) values.push_back(plane(p));
@@ -46,7 +46,7 @@ TEST(Interpolate, ReproducesPlanes) {
 // In the middle of a square all four corners lose the same.
 TEST(Interpolate, GivesSibsonsWeights) {
   const std::vector<glm::dvec3> points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  const Triangulation triangulation = triangulate(view(points));
+  const Triangulation triangulation = triangulate(view(points)).triangulation;
   const Query query(view(points), triangulation);
   const std::vector<double> values = {8, 4, 2, 1};
   EXPECT_NEAR(*interpolate_natural_neighbour(query, values, {0.5, 0.5, 0}), 15 / 4.0, 1e-12);
@@ -64,7 +64,7 @@ TEST(Interpolate, ReproducesPlanesInSpace) {
     const auto points = generate_points(kind, 700, 3, 3).positions;
     Options options;
     options.dim = 3;
-    const Triangulation triangulation = triangulate(view(points), options);
+    const Triangulation triangulation = triangulate(view(points), options).triangulation;
     const Query query(view(points), triangulation);
     std::vector<double> values;
     for (const glm::dvec3& p : points) values.push_back(plane(p));

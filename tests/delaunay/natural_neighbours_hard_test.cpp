@@ -14,16 +14,16 @@
 namespace delray::delaunay {
 namespace {
 
-using Points = std::vector<glm::dvec3>;
+using SpacePoints = std::vector<glm::dvec3>;
 
 struct Set {
   std::string name;
   int dim;
-  Points points;
+  SpacePoints points;
 };
 
-Points lattice(int dim, int side, double spacing, double offset) {
-  Points points;
+SpacePoints lattice(int dim, int side, double spacing, double offset) {
+  SpacePoints points;
   for (int i = 0; i < side * side * (dim == 3 ? side : 1); ++i) {
     points.emplace_back(offset + spacing * (i % side), offset + spacing * (i / side % side),
                         dim == 3 ? offset + spacing * (i / side / side) : 0);
@@ -32,7 +32,7 @@ Points lattice(int dim, int side, double spacing, double offset) {
 }
 
 // Moved by up to `far` in every coordinate.
-Points shaken(Points points, int dim, double far, std::uint64_t seed) {
+SpacePoints shaken(SpacePoints points, int dim, double far, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<> unit(-far, far);
   for (glm::dvec3& p : points) {
@@ -42,10 +42,10 @@ Points shaken(Points points, int dim, double far, std::uint64_t seed) {
 }
 
 // On a circle or sphere but for rounding, with its middle.
-Points on_ball(int dim, int n, std::uint64_t seed) {
+SpacePoints on_ball(int dim, int n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<> normal;
-  Points points = {glm::dvec3(0)};
+  SpacePoints points = {glm::dvec3(0)};
   for (int i = 0; i < n; ++i) {
     const glm::dvec3 p(normal(random), normal(random), dim == 3 ? normal(random) : 0);
     points.push_back(p / glm::length(p));
@@ -54,10 +54,10 @@ Points on_ball(int dim, int n, std::uint64_t seed) {
 }
 
 // Two layers that are close to each other: tetrahedra are long or flat.
-Points layers(int dim, std::uint64_t seed) {
+SpacePoints layers(int dim, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<> unit(0, 1);
-  Points points;
+  SpacePoints points;
   for (int i = 0; i < 60; ++i) {
     const double x = unit(random), y = unit(random);
     if (dim == 2) points.emplace_back(x, i % 2 * 1e-7 + y * 1e-12, 0);
@@ -141,7 +141,7 @@ TEST(NaturalNeighbours, AreExactForLinearFunctionsOfHardSets) {
         SCOPED_TRACE(set.name + ", dim " + std::to_string(dim) + ", seed " + std::to_string(seed));
         Options options;
         options.dim = dim;
-        const Triangulation triangulation = triangulate(view(set.points), options);
+        const Triangulation triangulation = triangulate(view(set.points), options).triangulation;
         const Query query(view(set.points), triangulation);
         std::mt19937_64 random(seed);
         for (int round = 0; round < 24; ++round) {
@@ -159,9 +159,9 @@ TEST(NaturalNeighbours, AreExactForLinearFunctionsOfHardSets) {
 TEST(NaturalNeighbours, OfABentGridAreThoseOfTheGrid) {
   Options options;
   options.dim = 3;
-  const Points bent = lattice(3, 5, 0.1, 0), even = lattice(3, 5, 1, 0);
-  const Triangulation bent_cells = triangulate(view(bent), options);
-  const Triangulation even_cells = triangulate(view(even), options);
+  const SpacePoints bent = lattice(3, 5, 0.1, 0), even = lattice(3, 5, 1, 0);
+  const Triangulation bent_cells = triangulate(view(bent), options).triangulation;
+  const Triangulation even_cells = triangulate(view(even), options).triangulation;
   const Query bent_query(view(bent), bent_cells), even_query(view(even), even_cells);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<> unit(0.5, 3.5);

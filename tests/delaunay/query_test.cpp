@@ -68,7 +68,7 @@ TEST(Query, LocatesAndFindsTheNearestInThePlane) {
     for (const std::size_t n : {1, 3, 40, 500}) {
       SCOPED_TRACE(kind);
       const auto points = generate_points(kind, n, 2, n).positions;
-      expect_right(points, triangulate(view(points)), n);
+      expect_right(points, triangulate(view(points)).triangulation, n);
     }
   }
 }
@@ -80,7 +80,7 @@ TEST(Query, LocatesAndFindsTheNearestInSpace) {
       const auto points = generate_points(kind, n, 3, 5).positions;
       Options options;
       options.dim = 3;
-      expect_right(points, triangulate(view(points), options), 6);
+      expect_right(points, triangulate(view(points), options).triangulation, 6);
     }
   }
 }

@@ -29,13 +29,13 @@ template <class Points>
 Triangulation expected_of(const Points& points, int dim) {
   Options options;
   options.dim = dim;
-  return triangulate(view(points), options);
+  return triangulate(view(points), options).triangulation;
 }
 
 template <class Points>
 void expect_same(const Points& points, const Triangulation& expected, const Options& options,
                  const std::string& points_name) {
-  const Triangulation actual = triangulate(view(points), options);
+  const Triangulation actual = triangulate(view(points), options).triangulation;
   const std::string name = std::to_string(options.dim) + "D " + name_of(options) + ", " +
                            std::to_string(options.threads) + " threads, " + points_name + ", n " +
                            std::to_string(points.size()) + ", seed " + std::to_string(options.seed);

@@ -57,7 +57,7 @@ TEST(Triangulate3d, IsTheBruteForceTriangulationOfHardPoints) {
         const auto points = kind.make(n, seed);
         const Tetrahedra expected = brute_force<3>(points);
         for (const Options& options : combinations()) {
-          ASSERT_EQ(sorted(triangulate(view(points), options)), expected)
+          ASSERT_EQ(sorted(triangulate(view(points), options).triangulation), expected)
               << name_of(options) << ", " << kind.name << ", n " << n << ", seed " << seed;
         }
       }
@@ -69,7 +69,7 @@ TEST(Triangulate3d, SimplicesArePositivelyOriented) {
   for (const HardPoints3d& kind : hard_points_3d()) {
     const auto points = kind.make(80, 7);
     for (const Options& options : combinations()) {
-      const Triangulation result = triangulate(view(points), options);
+      const Triangulation result = triangulate(view(points), options).triangulation;
       EXPECT_EQ(result.dim, 3);
       for (std::size_t i = 0; i < result.size(); ++i) {
         const std::uint32_t* v = &result.vertices[4 * i];
@@ -82,7 +82,8 @@ TEST(Triangulate3d, SimplicesArePositivelyOriented) {
 
 TEST(Triangulate3d, NothingGivesNothing) {
   for (const Options& options : combinations()) {
-    const Triangulation result = triangulate(view(std::vector<glm::dvec3>{}), options);
+    const Triangulation result =
+        triangulate(view(std::vector<glm::dvec3>{}), options).triangulation;
     EXPECT_EQ(result.size(), 0U);
     EXPECT_EQ(result.distinct, 0U);
     EXPECT_EQ(result.dim, 3);
@@ -109,9 +110,9 @@ TEST(Triangulate3d, NamesTheRowThatIsNotFinite) {
 TEST(Triangulate3d, CountsPhasesOnlyWhenAsked) {
   const auto points = hard_points_3d().front().make(3000, 2);
   for (Options options : combinations()) {
-    Statistics statistics;
-    options.statistics = &statistics;
-    triangulate(view(points), options);
+    EXPECT_EQ(triangulate(view(points), options).statistics.order, 0) << name_of(options);
+    options.statistics = true;
+    const Statistics statistics = triangulate(view(points), options).statistics;
     EXPECT_GT(statistics.order, 0) << name_of(options);
     EXPECT_GT(statistics.subdivide, 0) << name_of(options);
     EXPECT_GT(statistics.extract, 0) << name_of(options);

@@ -47,7 +47,7 @@ TEST(Triangulate, IsTheBruteForceTriangulationOfHardPoints) {
         const Points points = kind.make(n, seed);
         const Triangles expected = brute_force<2>(points);
         for (const Options& options : locations_and_orders(2)) {
-          const Triangulation actual = triangulate(view(points), options);
+          const Triangulation actual = triangulate(view(points), options).triangulation;
           ASSERT_EQ(sorted(actual), expected)
               << name_of(options) << ", " << kind.name << ", n " << n << ", seed " << seed;
           ASSERT_EQ(actual.distinct, count_distinct(points)) << name_of(options) << kind.name;
@@ -61,7 +61,7 @@ TEST(Triangulate, TrianglesTurnLeftAndTheHullHasTheEdgesOfEulersFormula) {
   for (const HardPoints& kind : hard_points()) {
     const Points points = kind.make(200, 7);
     for (const Options& options : locations_and_orders(2)) {
-      const Triangulation result = triangulate(view(points), options);
+      const Triangulation result = triangulate(view(points), options).triangulation;
       for (std::size_t i = 0; i < result.size(); ++i) {
         const std::uint32_t* v = &result.vertices[3 * i];
         EXPECT_EQ(orient2d(points[v[0]], points[v[1]], points[v[2]]), 1) << kind.name;
@@ -78,11 +78,11 @@ TEST(Triangulate, TrianglesTurnLeftAndTheHullHasTheEdgesOfEulersFormula) {
 TEST(Triangulate, TheVerifierFindsLargerSetsCanonical) {
   for (const HardPoints& kind : hard_points()) {
     const Points points = kind.make(1000, 11);
-    const Triangulation expected = triangulate(view(points));
+    const Triangulation expected = triangulate(view(points)).triangulation;
     const Verdict verdict = verify_triangles(view(points), expected.vertices);
     EXPECT_TRUE(verdict.canonical) << kind.name << ": " << verdict.reason;
     for (const Options& options : locations_and_orders(2)) {
-      EXPECT_EQ(hash(triangulate(view(points), options)), hash(expected))
+      EXPECT_EQ(hash(triangulate(view(points), options).triangulation), hash(expected))
           << name_of(options) << ", " << kind.name;
     }
   }
@@ -106,8 +106,8 @@ TEST(Triangulate, DoesNotDependOnTheOrderOfRows) {
       }
       return result;
     };
-    EXPECT_EQ(coordinates(points, triangulate(view(points))),
-              coordinates(reversed, triangulate(view(reversed))))
+    EXPECT_EQ(coordinates(points, triangulate(view(points)).triangulation),
+              coordinates(reversed, triangulate(view(reversed)).triangulation))
         << kind.name;
   }
 }
@@ -117,7 +117,7 @@ TEST(Triangulate, ManyPointsInOneCellOfTheGrid) {
   Points points = hard_points().front().make(2000, 5);
   points.push_back({1e12, 1e12});
   for (int i = 0; i < 1000; ++i) points.push_back(points[static_cast<std::size_t>(i)] * 1e-12);
-  const Triangulation result = triangulate(view(points));
+  const Triangulation result = triangulate(view(points)).triangulation;
   EXPECT_EQ(result.distinct, 3001U);
   EXPECT_TRUE(verify_triangles(view(points), result.vertices).canonical);
 }
@@ -125,11 +125,12 @@ TEST(Triangulate, ManyPointsInOneCellOfTheGrid) {
 TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
   for (const HardPoints& kind : {hard_points().front(), hard_points().back()}) {
     const Points points = kind.make(8000, 6);
-    const Hash128 expected = hash(triangulate(view(points)));
+    const Hash128 expected = hash(triangulate(view(points)).triangulation);
     for (Options options : locations_and_orders(2)) {
       for (const int threads : {2, 3, 8}) {
         options.threads = threads;
-        EXPECT_EQ(hash(triangulate(view(points), options)), expected) << name_of(options);
+        EXPECT_EQ(hash(triangulate(view(points), options).triangulation), expected)
+            << name_of(options);
       }
     }
   }
@@ -138,7 +139,7 @@ TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
 TEST(Triangulate, NothingGivesNothing) {
   const Points none;
   for (const Options& options : locations_and_orders(2)) {
-    const Triangulation result = triangulate(view(none), options);
+    const Triangulation result = triangulate(view(none), options).triangulation;
     EXPECT_EQ(result.size(), 0U);
     EXPECT_EQ(result.distinct, 0U);
   }
@@ -166,16 +167,16 @@ TEST(Triangulate, ReadsTheFirstTwoCoordinatesOfStridedPoints) {
   const Points points = hard_points().front().make(100, 9);
   std::vector<glm::dvec3> with_heights;
   for (const auto& p : points) with_heights.emplace_back(p.x, p.y, -p.x);
-  EXPECT_EQ(hash(triangulate(view(with_heights))), hash(triangulate(view(points))));
+  EXPECT_EQ(hash(triangulate(view(with_heights)).triangulation),
+            hash(triangulate(view(points)).triangulation));
 }
 
 TEST(Triangulate, CountsPhasesOnlyWhenAsked) {
   const Points points = hard_points().front().make(5000, 2);
   for (Options options : locations_and_orders(2)) {
-    Statistics statistics;
-    statistics.locate = -1;
-    options.statistics = &statistics;
-    triangulate(view(points), options);
+    EXPECT_EQ(triangulate(view(points), options).statistics.order, 0) << name_of(options);
+    options.statistics = true;
+    const Statistics statistics = triangulate(view(points), options).statistics;
     EXPECT_GT(statistics.order, 0) << name_of(options);
     EXPECT_GT(statistics.subdivide, 0) << name_of(options);
     EXPECT_GT(statistics.extract, 0) << name_of(options);

@@ -16,7 +16,7 @@ TEST(Voronoi, IsDualInThePlane) {
   for (const char* kind : {"uniform", "grid", "cluster", "duplicates"}) {
     SCOPED_TRACE(kind);
     const auto points = generate_points(kind, 500, 2, 2).positions;
-    const Triangulation triangulation = triangulate(view(points));
+    const Triangulation triangulation = triangulate(view(points)).triangulation;
     const Adjacency beside = adjacency(triangulation, points.size());
     const Voronoi diagram = voronoi(view(points), triangulation, beside);
     EXPECT_EQ(diagram.vertices.size(), triangulation.size());

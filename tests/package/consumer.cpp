@@ -14,7 +14,8 @@ using namespace delray;
 
 int main() {
   const delaunay::PointCloud points = delaunay::generate_points("uniform", 1000, 2, 1);
-  const delaunay::Triangulation mesh = delaunay::triangulate(delaunay::view(points.positions));
+  const delaunay::Triangulation mesh =
+      delaunay::triangulate(delaunay::view(points.positions)).triangulation;
   if (mesh.size() != 2 * mesh.distinct - 2 - mesh.hull_facets) return 1;
 
   const scenes::Scene scene = scenes::generate("gen:cornell:1000");

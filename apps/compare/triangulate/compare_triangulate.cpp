@@ -151,7 +151,7 @@ class Comparison {
     }
   }
 
-  delaunay::Triangulation triangulate(const delaunay::PointCloud& points, delaunay::Options how) {
+  delaunay::Result triangulate(const delaunay::PointCloud& points, delaunay::Options how) {
     steps_.stop_if_asked();
     how.progress = steps_.inside();
     return parallel::Arena(how.threads).execute([&] {
@@ -161,7 +161,7 @@ class Comparison {
 
   double time(const delaunay::PointCloud& points, const delaunay::Options& how) {
     Stopwatch watch;
-    const delaunay::Triangulation result = triangulate(points, how);
+    const delaunay::Result result = triangulate(points, how);
     const double seconds = watch.lap();
     steps_.done(points.size());
     return seconds;
@@ -171,11 +171,11 @@ class Comparison {
     ComparedTriangulation row;
     row.how = how;
     row.points = points.size();
-    std::vector<std::uint16_t> makers;
     delaunay::Options counting = how;
-    counting.statistics = &row.statistics;
-    counting.created_by = &makers;
-    const delaunay::Triangulation made = triangulate(points, counting);
+    counting.statistics = true;
+    counting.created_by = true;
+    const auto [made, statistics, makers] = triangulate(points, counting);
+    row.statistics = statistics;
     row.distinct = made.distinct;
     row.simplices = made.size();
     row.hull_facets = made.hull_facets;

@@ -18,7 +18,7 @@ Triangulation triangulate_with(const std::vector<glm::dvec3>& points, int thread
   options.dim = 3;
   options.method = "cavity";
   options.threads = threads;
-  return triangulate(view(points), options);
+  return triangulate(view(points), options).triangulation;
 }
 
 void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,

@@ -29,7 +29,7 @@ Triangulation expected_of(const Rows<D>& points, const DynamicTriangulation<D>& 
   }
   Options options;
   options.dim = D;
-  Triangulation result = triangulate(view(live), options);
+  Triangulation result = triangulate(view(live), options).triangulation;
   for (std::uint32_t& vertex : result.vertices) vertex = rows[vertex];
   return result;
 }

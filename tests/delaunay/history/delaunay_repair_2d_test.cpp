@@ -22,10 +22,9 @@ class CarefulAccess : public internal::SoleDagAccess<2> {
 };
 
 void insert_without_flips(internal::DagRun<2>& run,
-                          const internal::DagTriangulation<2>& triangulation,
-                          const Options& options) {
+                          const internal::DagTriangulation<2>& triangulation) {
   CarefulAccess access(triangulation.dag, 0);
-  internal::InsertionPhases phases(options);
+  internal::InsertionPhases phases(run.options, run.statistics);
   std::vector<NodeNumber> suspects;
   for (VertexNumber vertex = 0; vertex < run.end(0); ++vertex) {
     if (run.is_first(vertex)) continue;
@@ -51,11 +50,11 @@ TEST(DelaunayRepair, FlipsSubdividedTrianglesIntoTheDelaunayTriangulation) {
       internal::DagRun<2> run(view(points), options, 1);
       if (!run.is_flat()) {
         const internal::DagTriangulation<2> triangulation = run.triangulation();
-        insert_without_flips(run, triangulation, options);
+        insert_without_flips(run, triangulation);
         replaced += internal::repair(triangulation, 1 + seed % 3);
         EXPECT_EQ(internal::repair(triangulation, 2), 0U) << kind.name << ", seed " << seed;
       }
-      EXPECT_EQ(hash(run.finish()), hash(triangulate(view(points))))
+      EXPECT_EQ(hash(run.finish().triangulation), hash(triangulate(view(points)).triangulation))
           << kind.name << ", n " << n << ", seed " << seed;
     }
   }

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "delaunay/mesh/team.h"
+#include "parallel/team.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -49,7 +49,7 @@ TEST(PointSupply, GivesEveryPointToOneThread) {
       supply.set(part, kPoints * part * part / 64, kPoints * (part + 1) * (part + 1) / 64);
     }
     std::vector<std::atomic<int>> times(kPoints);
-    Team team;
+    parallel::Team team;
     team.run(kThreads, [&](std::size_t thread) {
       supply.for_each(thread, [&](VertexNumber vertex) { ++times[vertex]; });
     });

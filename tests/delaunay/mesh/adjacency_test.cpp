@@ -18,7 +18,7 @@ namespace {
 TEST(Adjacency, IsMutualAndKnowsStars) {
   for (const char* kind : {"uniform", "grid", "cocircular", "duplicates"}) {
     const auto points = generate_points(kind, 400, 2, 1).positions;
-    const Triangulation triangulation = triangulate(view(points));
+    const Triangulation triangulation = triangulate(view(points)).triangulation;
     const Adjacency beside = adjacency(triangulation, points.size());
     std::size_t open = 0;
     for (std::uint32_t i = 0; i < beside.neighbours.size(); ++i) {
@@ -68,7 +68,8 @@ TEST(Adjacency, TetrahedraOfACube) {
 TEST(Hull, IsAPolygon) {
   const std::vector<glm::dvec3> points = {{1, 1, 0}, {0, 0, 0}, {2, 0, 0}, {1, 0, 0},
                                           {2, 2, 0}, {0, 2, 0}, {0, 0, 0}};
-  EXPECT_EQ(hull_vertices(triangulate(view(points))), (std::vector<std::uint32_t>{1, 3, 2, 4, 5}));
+  EXPECT_EQ(hull_vertices(triangulate(view(points)).triangulation),
+            (std::vector<std::uint32_t>{1, 3, 2, 4, 5}));
   EXPECT_TRUE(hull_vertices(Triangulation{}).empty());
 }
 
@@ -105,7 +106,7 @@ TEST(Quality, OfKnownShapes) {
 
 TEST(Quality, CountsEverything) {
   const auto points = generate_points("uniform", 20000, 2, 1).positions;
-  const Triangulation triangulation = triangulate(view(points));
+  const Triangulation triangulation = triangulate(view(points)).triangulation;
   const Quality result = quality(view(points), triangulation);
   EXPECT_EQ(result.simplices, triangulation.size());
   std::size_t angles = 0, ratios = 0;

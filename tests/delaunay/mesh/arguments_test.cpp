@@ -63,7 +63,7 @@ TEST(Arguments, PointsHaveAsManyCoordinatesAsTheDimension) {
   EXPECT_REFUSED(first_different_row(view(plane), view(plane), 3));
   DynamicTriangulation<3> dynamic;
   EXPECT_REFUSED(dynamic.insert(view(plane)));
-  EXPECT_TRUE(triangulate(PointView<double>{}, {.dim = 3}).vertices.empty());
+  EXPECT_TRUE(triangulate(PointView<double>{}, {.dim = 3}).triangulation.vertices.empty());
 }
 
 TEST(Arguments, NamesAreInTheirTables) {
@@ -84,7 +84,7 @@ TEST(Arguments, NamesAreInTheirTables) {
 TEST(Arguments, QuestionsAreAboutPlacesSimplicesAndRowsThatThereAre) {
   const auto points = some_points();
   for (const int dim : {2, 3}) {
-    const Triangulation triangulation = triangulate(view(points), {.dim = dim});
+    const Triangulation triangulation = triangulate(view(points), {.dim = dim}).triangulation;
     const Query query(view(points), triangulation);
     const auto size = static_cast<std::uint32_t>(triangulation.size());
     const glm::dvec3 place(0.5);
@@ -115,7 +115,7 @@ TEST(Arguments, QuestionsAreAboutPlacesSimplicesAndRowsThatThereAre) {
 
 TEST(Arguments, SimplicesAreWhole) {
   const auto points = some_points();
-  Triangulation triangulation = triangulate(view(points), {.dim = 2});
+  Triangulation triangulation = triangulate(view(points), {.dim = 2}).triangulation;
   triangulation.vertices.pop_back();
   EXPECT_REFUSED(adjacency(triangulation, points.size()));
   EXPECT_REFUSED(quality(view(points), triangulation));
@@ -125,7 +125,7 @@ TEST(Arguments, SimplicesAreWhole) {
   PointCloud cloud;
   cloud.positions = points;
   EXPECT_REFUSED(write_mesh("/tmp/never_written.ply", cloud, triangulation));
-  triangulation = triangulate(view(points), {.dim = 2});
+  triangulation = triangulate(view(points), {.dim = 2}).triangulation;
   cloud.positions.resize(50);
   EXPECT_REFUSED(write_mesh("/tmp/never_written.ply", cloud, triangulation));
   cloud.positions = points;

@@ -34,8 +34,8 @@ void expect_finite(SimplexNumber simplices, int threads) {
     const auto first = rows.begin() + (D + 1) * std::ptrdiff_t{t};
     expected.emplace_back(first, first + D + 1);
   }
-  const Triangulation result = parallel::Arena(threads).execute(
-      [&] { return extract(std::move(mesh), rows, threads, &created_by); });
+  const auto [result, statistics, creators] = parallel::Arena(threads).execute(
+      [&] { return extract(std::move(mesh), rows, threads, created_by); });
   EXPECT_EQ(result.dim, D);
   EXPECT_EQ(result.distinct, rows.size());
   EXPECT_EQ(result.hull_facets, simplices / 5);
@@ -43,7 +43,7 @@ void expect_finite(SimplexNumber simplices, int threads) {
   for (auto at = result.vertices.begin(); at != result.vertices.end(); at += D + 1) {
     actual.emplace_back(at, at + D + 1);
   }
-  EXPECT_EQ(created_by, expected_created_by);
+  EXPECT_EQ(creators, expected_created_by);
   EXPECT_EQ(actual, expected) << D << "D, " << threads << " threads";
 }
 
@@ -62,7 +62,8 @@ TEST(Extract, NothingIsBoundedByGhostsAlone) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     if (corner % 4 < 3) mesh.set_vertex(corner, corner % 4 == 2 ? kInfiniteVertex : corner % 4);
   }
-  const Triangulation result = extract(std::move(mesh), std::vector<std::uint32_t>{0, 1});
+  const Triangulation result =
+      extract(std::move(mesh), std::vector<std::uint32_t>{0, 1}).triangulation;
   EXPECT_EQ(result.size(), 0U);
   EXPECT_EQ(result.hull_facets, 0U);
   EXPECT_EQ(result.distinct, 2U);

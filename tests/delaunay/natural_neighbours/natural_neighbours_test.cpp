@@ -20,7 +20,7 @@ using Points3 = std::vector<glm::dvec3>;
 Triangulation triangulate_in(int dim, const Points3& points) {
   Options options;
   options.dim = dim;
-  return triangulate(view(points), options);
+  return triangulate(view(points), options).triangulation;
 }
 
 std::map<std::uint32_t, double> weights(int dim, const Points3& points, const glm::dvec3& q) {

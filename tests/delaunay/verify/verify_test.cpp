@@ -53,7 +53,8 @@ TEST(Verify, AcceptsEveryKindOfPoints) {
   for (const PointGenerator& generator : point_generators()) {
     for (const std::size_t n : {1, 2, 3, 4, 9, 100, 3000}) {
       const auto points = generator.generate(n, 2, n).positions;
-      const Verdict verdict = verify_triangles(view(points), triangulate(view(points)).vertices);
+      const Verdict verdict =
+          verify_triangles(view(points), triangulate(view(points)).triangulation.vertices);
       EXPECT_TRUE(verdict.valid && verdict.delaunay && verdict.canonical)
           << generator.name << " " << n << ": " << verdict.reason;
       EXPECT_FALSE(verdict.simplex.has_value());
@@ -79,7 +80,7 @@ TEST(Verify, TellsCocircularFlipsFromWrongOnes) {
   std::size_t cocircular = 0, wrong = 0;
   for (const char* kind : {"grid", "uniform", "ulp", "cocircular", "jitter"}) {
     const auto points = points_of(kind, 400, 9);
-    const Triangles good = triangulate(view(points)).vertices;
+    const Triangles good = triangulate(view(points)).triangulation.vertices;
     const auto inner = diamonds(good);
     for (int round = 0; round < 100; ++round) {
       const Diamond& d = inner[random() % inner.size()];
@@ -113,7 +114,7 @@ TEST(Verify, FindsEveryMutation) {
   for (const char* kind : {"uniform", "grid", "duplicates", "arc", "cluster", "two-lines"}) {
     const auto points = points_of(kind, 300, 4);
     const auto n = static_cast<std::uint32_t>(points.size());
-    const Triangles good = triangulate(view(points)).vertices;
+    const Triangles good = triangulate(view(points)).triangulation.vertices;
     const auto rejected = [&](const Triangles& mutant) {
       return !verify_triangles(view(points), mutant).valid;
     };

@@ -2,15 +2,17 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
 
-namespace delray::delaunay::internal {
+namespace delray::parallel {
 
-// One of them failed: the others stop where they would wait or begin something new.
+// Thrown to the threads of a team where they would wait or begin something new after another
+// failed.
 struct TeamStopped {};
 
 // Runs as many threads as asked for at the same time, whatever the number of cores: a pool
@@ -23,7 +25,7 @@ class Team {
   }
 
   // Calls work(0) .. work(threads - 1), work(0) on the calling thread. Errors: the first exception
-  // that left a call, after all have ended.
+  // that left a call, after all have ended. REQUIRES: threads >= 1.
   template <class F>
   void run(std::size_t threads, F&& work) {
     const auto guarded = [&](std::size_t thread) {
@@ -38,8 +40,9 @@ class Team {
       std::vector<std::jthread> others;
       try {
         others.reserve(threads - 1);
-        for (std::size_t thread = 1; thread < threads; ++thread)
+        for (std::size_t thread = 1; thread < threads; ++thread) {
           others.emplace_back(guarded, thread);
+        }
       } catch (...) {
         fail(std::current_exception());
       }
@@ -60,4 +63,4 @@ class Team {
   std::exception_ptr failure_;
 };
 
-}  // namespace delray::delaunay::internal
+}  // namespace delray::parallel
