@@ -228,13 +228,23 @@ struct Renderer::Frame {
         comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
     if (communicator.rank() != 0) return result;
     result.statistics = summarize(reports);
-    if (options.strategy != "sort-last")
-      result.statistics.partition = rank.memory.screen.statistics();
+    if (options.strategy != "sort-last") result.statistics.partition = partition_of_ranks();
     if (!rank.depths_are_distances()) {
       std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); },
                  result.picture);
     }
     return result;
+  }
+
+  std::optional<PartitionStatistics> partition_of_ranks() const {
+    std::optional<PartitionStatistics> statistics = rank.memory.screen.statistics();
+    if (!statistics || rank.rank_of_owner.empty()) return statistics;
+    for (loadbalance::Region& region : statistics->partition.regions)
+      region.owner = rank.rank_of_owner[region.owner];
+    const std::vector<double> loads = statistics->loads;
+    for (std::size_t owner = 0; owner < loads.size(); ++owner)
+      statistics->loads[rank.rank_of_owner[owner]] = loads[owner];
+    return statistics;
   }
 
   const RenderOptions options;

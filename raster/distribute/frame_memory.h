@@ -28,6 +28,7 @@ struct SortedMiddle {
   DrawList list;                     // numbered over all ranks
   std::deque<ArrivedMesh> arrived;   // from other ranks; of the list, too
   std::vector<std::uint32_t> drawn;  // clusters of the list
+  std::vector<int> rank_of_owner;    // which rank draws a region; empty: as the roles say
 };
 
 struct FrameMemory {

@@ -112,7 +112,7 @@ Shares share_out(const RankContext& rank, const CostedGroups& costed,
   return shares;
 }
 
-const SharedOut& share_out_frame(RankContext& rank) {
+SharedOut& share_out_frame(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
   communicator.mark(comm::Phase::transform, 0);
   const CostedGroups& costed = cost_groups(rank);

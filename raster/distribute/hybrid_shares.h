@@ -45,10 +45,12 @@ struct SharedOut {
   Shares shares;
   GroupTraffic traffic;
   DrawList list;
+  // Memory of a frame: by tile and position in it, which triangle of the list is seen there.
+  std::vector<std::uint32_t> numbers;
 };
 
 // Shares out screen and groups, unless all is as in the last frame, and sends every group to its
 // owner, everybody's to the ranks whose regions they touch, where these do not have it. Collective.
-const SharedOut& share_out_frame(RankContext& rank);
+SharedOut& share_out_frame(RankContext& rank);
 
 }  // namespace delray::raster

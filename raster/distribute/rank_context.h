@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "comm/communicator.h"
 #include "loadbalance/schedule.h"
@@ -30,6 +31,8 @@ struct RankContext {
   RegionCounts counts = {};
   std::uint64_t triangles_travelled = 0, fragments_travelled = 0;
   loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
+  // Which rank the owner k of the screen's partition is; empty: rank k.
+  std::vector<int> rank_of_owner = {};
   // In steps, of which only the last may use the communicator: work is told then.
   bool in_steps = false;
 

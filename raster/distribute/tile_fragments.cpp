@@ -62,6 +62,25 @@ bool shows_any(const TileView& tile, const geometry::Rect& rect,
   return false;
 }
 
+// By position of a tile; null where nothing is seen.
+template <class Colour>
+using NearestOfTile = std::array<const composite::DeepFragment<Colour>*, kTilePixels>;
+
+// Valid until the thread's next call.
+template <class Colour>
+const NearestOfTile<Colour>& find_nearest(std::span<const TileSpan<Colour>> seen) {
+  static thread_local NearestOfTile<Colour> nearest;
+  nearest.fill(nullptr);
+  for (const TileSpan<Colour>& span : seen) {
+    for (std::size_t i = 0; i < span.fragments.size(); ++i) {
+      const auto*& best = nearest[span.positions[i]];
+      if (best == nullptr || composite::in_front(span.fragments[i], *best))
+        best = &span.fragments[i];
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 void append_surfaces(TileView& tile, const geometry::Rect& rect,
@@ -96,6 +115,9 @@ void append_opaque(TileView& tile, const geometry::Rect& rect,
   }
   const Window<Colour> window = tile_window<Colour>(rect);
   tile.shade(rect, window);
+  const std::size_t most = seen.fragments.size() + static_cast<std::size_t>(rect.area());
+  seen.positions.reserve(most);
+  seen.fragments.reserve(most);
   for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const std::uint32_t number = tile.opaque_number(x, y);
@@ -153,21 +175,37 @@ std::vector<TileSpan<Payload>> unpack_tiles(const comm::Buffer& message) {
 template <class Colour>
 void keep_nearest(std::span<const TileSpan<Colour>> seen, const geometry::Rect& rect,
                   const Window<Colour>& window) {
-  static thread_local std::array<const composite::DeepFragment<Colour>*, kTilePixels> nearest;
-  nearest.fill(nullptr);
-  for (const TileSpan<Colour>& span : seen) {
-    for (std::size_t i = 0; i < span.fragments.size(); ++i) {
-      const auto*& best = nearest[span.positions[i]];
-      if (best == nullptr || composite::in_front(span.fragments[i], *best))
-        best = &span.fragments[i];
-    }
-  }
+  const NearestOfTile<Colour>& nearest = find_nearest(seen);
   for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x) {
       const auto* const best = nearest[position_of(x, y)];
       const std::size_t i = window.at(x, y);
       window.colour[i] = best == nullptr ? Colour{} : best->payload;
       window.depth[i] = best == nullptr ? image::kEmptyDepth : best->depth;
+    }
+  }
+}
+
+template <class Colour>
+void merge_nearest(std::span<const TileSpan<Colour>> arrived, const geometry::Rect& rect,
+                   const DrawList& list, std::span<const std::uint32_t> numbers,
+                   const Window<Colour>& window) {
+  const NearestOfTile<Colour>& nearest = find_nearest(arrived);
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) {
+      const auto* const best = nearest[position_of(x, y)];
+      if (best == nullptr) continue;
+      const std::size_t i = window.at(x, y);
+      const std::uint32_t own = numbers[position_of(x, y)];
+      if (own != kNothing) {
+        if (window.depth[i] < best->depth) continue;
+        if (window.depth[i] == best->depth &&
+            !composite::in_front(*best,
+                                 fragment_of(best->payload, best->depth, list.primitive_of(own))))
+          continue;
+      }
+      window.colour[i] = best->payload;
+      window.depth[i] = best->depth;
     }
   }
 }
@@ -216,6 +254,12 @@ template void keep_nearest(std::span<const TileSpan<image::Rgba8>>, const geomet
                            const Window<image::Rgba8>&);
 template void keep_nearest(std::span<const TileSpan<image::RgbaF>>, const geometry::Rect&,
                            const Window<image::RgbaF>&);
+template void merge_nearest(std::span<const TileSpan<image::Rgba8>>, const geometry::Rect&,
+                            const DrawList&, std::span<const std::uint32_t>,
+                            const Window<image::Rgba8>&);
+template void merge_nearest(std::span<const TileSpan<image::RgbaF>>, const geometry::Rect&,
+                            const DrawList&, std::span<const std::uint32_t>,
+                            const Window<image::RgbaF>&);
 template void blend_surfaces(std::span<const TileSpan<image::RgbaF>>, const geometry::Rect&,
                              const Window<image::Rgba8>&);
 template void blend_surfaces(std::span<const TileSpan<image::RgbaF>>, const geometry::Rect&,

@@ -69,4 +69,12 @@ template <class Colour>
 void keep_nearest(std::span<const TileSpan<Colour>> seen, const geometry::Rect& rect,
                   const Window<Colour>& window);
 
+// The same where this rank's own colours and depths are in the window already: what others saw
+// takes their place where it is nearer, or as near and of a lower primitive. numbers[y * kTileSize
+// + x] is the list's triangle that this rank shows at a position of the tile, or kNothing.
+template <class Colour>
+void merge_nearest(std::span<const TileSpan<Colour>> arrived, const geometry::Rect& rect,
+                   const DrawList& list, std::span<const std::uint32_t> numbers,
+                   const Window<Colour>& window);
+
 }  // namespace delray::raster

@@ -36,19 +36,20 @@ std::vector<Rect> outside(const Rect& outer, const Rect& inner) {
 template <class Colour, bool kTransparent>
 class Drawing {
  public:
-  Drawing(RankContext& rank, const Shares& shares, image::BasicImage<Colour>& image)
+  Drawing(RankContext& rank, SharedOut& out, image::BasicImage<Colour>& image)
       : rank_(rank),
-        shares_(shares),
+        out_(out),
+        shares_(out.shares),
         window_(window_of(image)),
         contested_(static_cast<std::size_t>(rank.screen.tiles())),
         kept_(contested_.size()),
         leaving_(contested_.size()) {
-    for (const loadbalance::Region& region : shares.partition.regions.regions)
+    for (const loadbalance::Region& region : shares_.partition.regions.regions)
       if (region.owner == rank.number()) own_ = region.rect;
     drawn_ = {rank.options.width, rank.options.height, 0, 0};
-    for (std::size_t i = 0; i < shares.boxes.size(); ++i) {
-      const Rect& box = shares.boxes[i].box;
-      const int owner = shares.partition.owners[i];
+    for (std::size_t i = 0; i < shares_.boxes.size(); ++i) {
+      const Rect& box = shares_.boxes[i].box;
+      const int owner = shares_.partition.owners[i];
       if (owner == rank.number()) {
         drawn_ = {std::min(drawn_.x0, box.x0), std::min(drawn_.y0, box.y0),
                   std::max(drawn_.x1, box.x1), std::max(drawn_.y1, box.y1)};
@@ -58,17 +59,21 @@ class Drawing {
     }
   }
 
-  void draw(const DrawList& list) {
+  void draw() {
+    if (merges_into_image()) out_.numbers.resize(contested_.size() * kTilePixels);
     std::vector<Rect> rects = outside(drawn_, own_);
     if (!own_.empty()) rects.push_back(own_);
     const Rect own = samples_of(own_, samples());
     const loadbalance::RegionIndex index(shares_.partition.regions);
-    rank_.render(list, rects, [&](std::span<const Rect> parts, TileView& tile) {
+    rank_.render(out_.list, rects, [&](std::span<const Rect> parts, TileView& tile) {
       const int k =
           parts.front().y0 / kTileSize * rank_.screen.tiles_x + parts.front().x0 / kTileSize;
       for (const Rect& part : parts) {
         if (!own.contains(part.x0, part.y0)) {
           if (!tile.empty()) hand_on(index, part, k, tile);
+        } else if (contested_[k] && merges_into_image()) {
+          tile.shade_pixels(part, 1, window_);
+          keep_numbers(tile, part, k);
         } else if (contested_[k]) {
           append(tile, part, {}, kept_[k]);
         } else {
@@ -105,10 +110,9 @@ class Drawing {
       }
     }
     parallel::parallel_for(0, contested_.size(), 1, [&](std::size_t k) {
-      if (!contested_[k]) return;
-      seen[k].push_back(span_of(static_cast<int>(k), kept_[k]));
-      compose_tile(seen[k], geometry::intersection(rank_.screen.tile(static_cast<int>(k)),
-                                                   samples_of(own_, samples())));
+      if (!contested_[k] || (merges_into_image() && seen[k].empty())) return;
+      if (!merges_into_image()) seen[k].push_back(span_of(static_cast<int>(k), kept_[k]));
+      compose_tile(seen[k], k);
     });
     rank_.communicator.work(comm::Work::pixels_composited, composited);
   }
@@ -149,7 +153,29 @@ class Drawing {
                           });
   }
 
-  void compose_tile(std::span<const Span> seen, const Rect& rect) {
+  // Whether a sample that others may see, too, is shaded into the image at once: what arrives is
+  // held against it. Else all that is seen of a contested tile is composited in the end.
+  bool merges_into_image() const { return !kTransparent && samples() == 1; }
+  std::span<std::uint32_t> numbers_of(std::size_t tile) {
+    return std::span(out_.numbers).subspan(tile * kTilePixels, kTilePixels);
+  }
+  void keep_numbers(const TileView& tile, const Rect& rect, int k) {
+    const std::span<std::uint32_t> numbers = numbers_of(static_cast<std::size_t>(k));
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      for (int x = rect.x0; x < rect.x1; ++x)
+        numbers[y % kTileSize * kTileSize + x % kTileSize] = tile.opaque_number(x, y);
+    }
+  }
+
+  void compose_tile(std::span<const Span> seen, std::size_t k) {
+    const Rect rect =
+        geometry::intersection(rank_.screen.tile(static_cast<int>(k)), samples_of(own_, samples()));
+    if constexpr (!kTransparent) {
+      if (merges_into_image()) {
+        merge_nearest(seen, rect, out_.list, numbers_of(k), window_);
+        return;
+      }
+    }
     const Window<Colour> to = samples() == 1 ? window_ : tile_window<Colour>(rect);
     if constexpr (kTransparent)
       blend_surfaces(seen, rect, to);
@@ -159,11 +185,12 @@ class Drawing {
   }
 
   RankContext& rank_;
+  SharedOut& out_;
   const Shares& shares_;
   Window<Colour> window_;
   Rect own_, drawn_;  // in pixels: this rank's region, and where its groups may be seen
-  // By tile: whether others' groups may be seen in the rank's own region; what it saw itself there;
-  // what it saw in others' regions.
+  // By tile: whether others' groups may be seen in the rank's own region; what it saw itself there,
+  // unless that is in the image; what it saw in others' regions.
   std::vector<std::uint8_t> contested_;
   std::vector<TileFragments<Payload>> kept_;
   std::vector<std::vector<Leaving>> leaving_;
@@ -172,18 +199,17 @@ class Drawing {
 template <class Colour, bool kTransparent>
 Picture render(RankContext& rank) {
   comm::Communicator& communicator = rank.communicator;
-  const SharedOut& out = share_out_frame(rank);
-  const Shares& shares = out.shares;
+  SharedOut& out = share_out_frame(rank);
 
   auto image = rank.take_image<Colour>(rank.options.width, rank.options.height);
-  Drawing<Colour, kTransparent> drawing(rank, shares, image);
-  drawing.draw(out.list);
+  Drawing<Colour, kTransparent> drawing(rank, out, image);
+  drawing.draw();
   communicator.mark(comm::Phase::compose, 0);
   const double drawn = communicator.seconds();
   drawing.compose();
   const double composed = communicator.seconds();
   rank.counts.phases.compose += composed - drawn;
-  return rank.gather(shares.partition.regions, std::move(image));
+  return rank.gather(out.shares.partition.regions, std::move(image));
 }
 
 template <class Colour>

@@ -4,11 +4,13 @@
 // Each cluster of the whole scene has a number that ascends with its primitives, known from a sum
 // over the ranks before. So what arrives may be drawn in any order, and equal depths still go to
 // the lowest primitive. What touches its own rank's regions is drawn as it is, without travelling.
-// Where nothing has changed since the last frame, what arrived for that is drawn again.
+// Of the regions each rank draws the one that it has most of. Where nothing has changed since the
+// last frame, what arrived for that is drawn again.
 #include <algorithm>
 #include <cstring>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "comm/collectives.h"
@@ -27,6 +29,8 @@ constexpr std::size_t kMessageBytes = std::size_t{1} << 16;
 // Clusters whose geometry is done before arrivals are looked for.
 constexpr std::size_t kBatchClusters = 256;
 constexpr std::size_t kGrain = 8;  // clusters of a task
+// Among more ranks each has little of what a region shows.
+constexpr int kMostMatched = 64;
 
 // Ranks 0 .. geometry - 1 have the primitives; those from first_rasterizer on draw.
 struct Roles {
@@ -59,6 +63,46 @@ std::vector<std::uint32_t> number_globally(RankContext& rank, DrawList& list) {
   }
   list.clusters = std::move(clusters);
   return numbers;
+}
+
+// Which rank draws which of the partition's regions: one after the other the rank that has most of
+// what touches a region, of those that are left, so that little travels. Collective.
+std::vector<int> match_regions(RankContext& rank, const loadbalance::Partition& partition,
+                               std::span<const loadbalance::WeightedBox> boxes) {
+  const int ranks = rank.ranks();
+  std::vector<int> rank_of_owner(static_cast<std::size_t>(ranks));
+  std::iota(rank_of_owner.begin(), rank_of_owner.end(), 0);
+  // Measured costs are those of a rank's own region.
+  if (ranks > kMostMatched || rank.options.costs == CostSource::measured) return rank_of_owner;
+  const loadbalance::RegionIndex index(partition);
+  std::vector<float> mine(rank_of_owner.size());
+  std::vector<int> owners;
+  for (const loadbalance::WeightedBox& box : boxes) {
+    if (box.box.empty()) continue;
+    index.owners_of(box.box, owners);
+    for (const int owner : owners)
+      mine[owner] += static_cast<float>(box.primitives) / static_cast<float>(owners.size());
+  }
+  struct Pair {
+    float amount;
+    int rank, owner;
+  };
+  std::vector<Pair> pairs;
+  const std::vector<comm::Buffer> all =
+      comm::all_gather(rank.communicator, comm::Buffer::of(std::span<const float>(mine)));
+  for (int k = 0; k < ranks; ++k) {
+    const auto amounts = all[k].as<float>();
+    for (int owner = 0; owner < ranks; ++owner) pairs.push_back({amounts[owner], k, owner});
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.amount > b.amount; });
+  std::vector<bool> has_region(rank_of_owner.size()), is_matched(rank_of_owner.size());
+  for (const Pair& pair : pairs) {
+    if (has_region[pair.rank] || is_matched[pair.owner]) continue;
+    has_region[pair.rank] = is_matched[pair.owner] = true;
+    rank_of_owner[pair.owner] = pair.rank;
+  }
+  return rank_of_owner;
 }
 
 // Triangles on their way between ranks.
@@ -249,19 +293,28 @@ Picture render(RankContext& rank) {
   communicator.mark(comm::Phase::redistribute, 0);
   const double before_cut = communicator.seconds();
   loadbalance::Partition partition = screen.cut(rank, drawing_ranks, roles.first_rasterizer);
-  for (loadbalance::Region& region : partition.regions) region.owner += roles.first_rasterizer;
+  SortedMiddle& sorted = rank.memory.sorted_middle;
+  const bool is_unchanged = sorted.version == screen.version();
+  if (!is_unchanged) {
+    sorted = {};
+    if (drawing_ranks == rank.ranks())
+      sorted.rank_of_owner = match_regions(rank, partition, costed.boxes);
+  }
+  rank.rank_of_owner = sorted.rank_of_owner;
+  for (loadbalance::Region& region : partition.regions) {
+    region.owner = sorted.rank_of_owner.empty() ? region.owner + roles.first_rasterizer
+                                                : sorted.rank_of_owner[region.owner];
+  }
   std::vector<geometry::Rect> regions;
   for (const loadbalance::Region& region : partition.regions)
     if (region.owner == rank.number()) regions.push_back(region.rect);
-  SortedMiddle& sorted = rank.memory.sorted_middle;
-  if (sorted.version == screen.version()) {
+  if (is_unchanged) {
     // What arrived for the last frame is what would arrive for this one.
     rank.counts.phases.redistribute += communicator.seconds() - before_cut;
     RegionDrawing drawing = rank.begin(sorted.list, regions);
     drawing.draw(sorted.drawn);
     return finish<Colour>(rank, partition, regions, drawing);
   }
-  sorted = {};
   sorted.list =
       make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
   const std::vector<std::uint32_t> own = number_globally(rank, sorted.list);

@@ -111,5 +111,54 @@ TEST(TileFragments, AreBlendedByDepthAndPrimitiveWhoeverSawThem) {
   }
 }
 
+// One rank's own samples are in the image; ties go to the lowest primitive whoever has it.
+TEST(TileFragments, MergeWithAnImageAsTheyDoWithEachOther) {
+  const geometry::Rect rect{70, 3, 97, 21};
+  scenes::Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles.assign(kClusterTriangles, {0, 1, 2});
+  const glm::mat4x3 identity(1.0F);
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::mt19937 random(seed);
+    const std::uint64_t first = random() % 100 * 2;  // primitive of the list
+    const DrawList list = make_draw_list({{&mesh, &identity, 0, kClusterTriangles, first}});
+    std::vector<Surfaces> ranks = random_surfaces(random, rect, true);
+    for (Surfaces& seen : ranks) {
+      for (auto& fragment : seen.fragments) {
+        fragment.depth = -0.25F * static_cast<float>(1 + random() % 3);
+        fragment.primitive_low = random() % 200 * 2 + 1;
+        fragment.primitive_high = 0;
+      }
+    }
+    Surfaces& own = ranks[random() % ranks.size()];
+    std::vector<std::uint32_t> numbers(kTilePixels, kNothing);
+    image::ImageF merged(128, 64), nearest(128, 64);
+    std::fill_n(merged.depth.data(), merged.pixels(), image::kEmptyDepth);
+    for (std::size_t i = 0; i < own.fragments.size(); ++i) {
+      const std::uint32_t number = random() % kClusterTriangles / 2 * 2;
+      auto& fragment = own.fragments[i];
+      fragment.primitive_low = static_cast<std::uint32_t>(list.primitive_of(number));
+      numbers[own.positions[i]] = number;
+      const int x = 64 + own.positions[i] % kTileSize, y = own.positions[i] / kTileSize;
+      const auto at = static_cast<std::size_t>(y) * 128 + static_cast<std::size_t>(x);
+      merged.colour[at] = fragment.payload;
+      merged.depth[at] = fragment.depth;
+    }
+    keep_nearest<image::RgbaF>(spans_of(ranks), rect, window_of(nearest));
+    std::vector<Surfaces> others;
+    for (const Surfaces& seen : ranks)
+      if (&seen != &own) others.push_back(seen);
+    merge_nearest<image::RgbaF>(spans_of(others), rect, list, numbers, window_of(merged));
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      for (int x = rect.x0; x < rect.x1; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * 128 + static_cast<std::size_t>(x);
+        if (nearest.depth[i] == image::kEmptyDepth) continue;
+        EXPECT_EQ(merged.colour[i], nearest.colour[i]) << "seed " << seed;
+        EXPECT_EQ(merged.depth[i], nearest.depth[i]);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace delray::raster

@@ -257,6 +257,50 @@ TEST(SortMiddle, CountsWhatTravels) {
   EXPECT_GE(messages_at_once, messages_at_end);
 }
 
+// A wall whose triangles are numbered from one side to the other: seen from either side of it, each
+// half of the screen shows what one rank has.
+TEST(SortMiddle, RanksDrawWhatTheyHaveMostOf) {
+  constexpr std::uint32_t kSide = 65;  // vertices
+  scenes::Scene scene = scenes::generate("gen:terrain:2000");
+  scenes::Mesh& mesh = scene.meshes[0];
+  mesh = {};
+  for (std::uint32_t x = 0; x < kSide; ++x) {
+    for (std::uint32_t y = 0; y < kSide; ++y)
+      mesh.positions.emplace_back(static_cast<float>(x) / 32 - 1, static_cast<float>(y) / 64, 0);
+  }
+  for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+    for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
+      const std::uint32_t i = x * kSide + y;
+      mesh.triangles.emplace_back(i, i + 1, i + kSide);
+      mesh.triangles.emplace_back(i + 1, i + kSide + 1, i + kSide);
+    }
+  }
+  scene.instances = {{0, glm::mat4x3(1.0F)}};
+  scenes::Camera camera = scene.cameras[0];
+  camera.at = {0, 0.5F, 0};
+  camera.up = {0, 1, 0};
+  camera.vertical_fov = 40;
+  camera.near = 0.01F;
+  RenderOptions options = small_picture();
+  options.width = 300;
+  options.height = 150;
+  options.report_partition = true;
+  for (const float side : {2.0F, -2.0F}) {
+    camera.eye = {0, 0.5F, side};
+    options.strategy = "sort-first";
+    const Result expected = rendered(scene, camera, options, 1);
+    options.strategy = "sort-middle";
+    const Result result = rendered(scene, camera, options, 2);
+    EXPECT_TRUE(same_bytes(result.picture, expected.picture));
+    EXPECT_GT(result.statistics.fragments, 10000U);
+    EXPECT_LT(result.statistics.triangles_travelled, 8192U / 10) << side;
+    // Rank 0 has what lies at negative x: to the left as seen from positive z.
+    ASSERT_TRUE(result.statistics.partition);
+    for (const loadbalance::Region& region : result.statistics.partition->partition.regions)
+      EXPECT_EQ(region.owner == 0, (region.rect.x0 == 0) == (side > 0)) << side;
+  }
+}
+
 TEST(SortMiddle, TheSecondGroupHasNoPrimitivesAndTheFirstNoPixels) {
   const scenes::Scene scene = scenes::generate("gen:terrain:20000");
   RenderOptions options = small_picture();
