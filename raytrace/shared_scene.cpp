@@ -204,7 +204,10 @@ std::uint64_t SharedScene::bytes() const {
 
 std::shared_ptr<const ClusterScene> SharedScene::alone(
     const std::shared_ptr<const Cluster>& cluster) const {
-  return std::make_shared<const ClusterScene>(std::vector{cluster}, build_, device_);
+  // Built in a fraction of the time: it may be dropped soon. Hits are the same.
+  BuildOptions quickly = build_;
+  quickly.quality = BuildOptions::Quality::low;
+  return std::make_shared<const ClusterScene>(std::vector{cluster}, quickly, device_);
 }
 
 void SharedScene::make_resident(bool with_cached) {
@@ -250,6 +253,11 @@ void SharedScene::begin_frame() {
   const bool is_worth_it = more > 0 && tests_ * triangles_per_test_ >= triangles;
   const bool holds_too_much = given_bytes_ * 8 > bytes();
   if (is_worth_it || holds_too_much) make_resident(settled);
+  for (const auto& [number, cluster] : owned_) {
+    if (!is_resident(number) && !taken_over_.contains(number))
+      taken_over_.emplace(number, alone(cluster));
+  }
+  note_bytes();
 }
 
 std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
@@ -283,9 +291,7 @@ void SharedScene::give_away(std::uint32_t cluster) {
 }
 
 void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
-  auto ready = std::make_shared<const Cluster>(std::move(data));
-  if (!is_resident(cluster)) taken_over_.emplace(cluster, alone(ready));
-  owned_.emplace(cluster, std::move(ready));
+  owned_.emplace(cluster, std::make_shared<const Cluster>(std::move(data)));
   note_bytes();
 }
 
@@ -297,10 +303,10 @@ void SharedScene::drop_old() {
     make_resident(false);
   }
   while (cached_bytes_ > cache_limit_ && uses_.size() > 1) {
-    const auto oldest = cached_.find(uses_.back());
-    cached_bytes_ -= oldest->second.bytes;
-    cached_.erase(oldest);
-    uses_.pop_back();
+    const auto at = cached_.find(uses_.back());
+    cached_bytes_ -= at->second.bytes;
+    uses_.erase(at->second.use);
+    cached_.erase(at);
     ++evicted_;
   }
 }

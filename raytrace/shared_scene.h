@@ -74,8 +74,8 @@ class SharedScene {
   // Parallel. Makes what came from another rank ready for rays, and drops what was not used for
   // longest while there is too much.
   std::shared_ptr<const ClusterScene> put(std::uint32_t cluster, ClusterData&& data);
-  // Parallel. Owned clusters that change rank for good. One that was resident stays so until the
-  // next frame, too.
+  // Owned clusters that change rank for good. One that was resident stays so until the next frame,
+  // when one that was taken over comes to hand.
   void give_away(std::uint32_t cluster);
   void take_over(std::uint32_t cluster, ClusterData&& data);
   // Whether any that were taken over are not resident yet.

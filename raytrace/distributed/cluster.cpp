@@ -16,6 +16,9 @@ namespace {
 // that takes part.
 constexpr float kSlack = 0x1p-18F;
 
+// Few enough that rays pass between boxes, enough that the tree of all ranks' boxes stays small.
+constexpr std::size_t kBoxTriangles = 1024;
+
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
   return values.capacity() * sizeof(T);
@@ -116,14 +119,39 @@ GeometryInstance instance_of(const InstanceValues& v) {
   return p;
 }
 
-geometry::Box3 with_slack(const glm::vec3& low, const glm::vec3& high, float more) {
+// Coordinates that are no numbers change nothing.
+void include(const glm::vec3& p, geometry::Box3& box) {
+  box.low = glm::min(box.low, p);
+  box.high = glm::max(box.high, p);
+}
+
+geometry::Box3 with_slack(const geometry::Box3& box, float more) {
   float reach = more;
   for (int k = 0; k < 3; ++k)
-    reach = std::max(reach, std::max(std::abs(low[k]), std::abs(high[k])));
+    reach = std::max(reach, std::max(std::abs(box.low[k]), std::abs(box.high[k])));
+  const glm::vec3 slack(reach * kSlack);
+  return {box.low - slack, box.high + slack};
+}
+
+// Adds a box for each kBoxTriangles of the triangles' boxes at most, cut in halves along the
+// longest side.
+void add_boxes(std::span<geometry::Box3> triangles, std::vector<geometry::Box3>& boxes) {
   geometry::Box3 box;
-  box.include(low - glm::vec3(reach * kSlack));
-  box.include(high + glm::vec3(reach * kSlack));
-  return box;
+  for (const geometry::Box3& triangle : triangles) box.include(triangle);
+  if (box.empty()) return;
+  if (triangles.size() <= kBoxTriangles) {
+    boxes.push_back(with_slack(box, 0.0F));
+    return;
+  }
+  const glm::vec3 size = box.high - box.low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t half = triangles.size() / 2;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half),
+                   triangles.end(), [axis](const geometry::Box3& a, const geometry::Box3& b) {
+                     return a.low[axis] < b.low[axis];
+                   });
+  add_boxes(triangles.first(half), boxes);
+  add_boxes(triangles.subspan(half), boxes);
 }
 
 }  // namespace
@@ -146,25 +174,21 @@ std::uint64_t ClusterData::bytes() const {
 }
 
 std::vector<geometry::Box3> boxes_of(const ClusterData& cluster) {
-  std::vector<geometry::Box3> boxes;
-  glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
-  bool any = false;
+  std::vector<geometry::Box3> boxes, triangles;
   for (const GeometryInstance& instance : cluster.instances) {
     const scenes::Mesh& mesh = cluster.pieces[instance.mesh_number].mesh;
     if (!instance.instanced) {
-      for (const glm::vec3& p : mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
-      any = any || !mesh.positions.empty();
+      for (const glm::uvec3& corners : mesh.triangles) {
+        geometry::Box3& box = triangles.emplace_back();
+        for (int k = 0; k < 3; ++k) include(mesh.positions[corners[k]], box);
+      }
       continue;
     }
-    glm::vec3 placed_low(std::numeric_limits<float>::infinity()), placed_high = -placed_low;
-    for (const glm::vec3& p : mesh.positions) {
-      const glm::vec3 q = instance.to_world * glm::vec4(p, 1.0F);
-      placed_low = glm::min(placed_low, q), placed_high = glm::max(placed_high, q);
-    }
-    if (!mesh.positions.empty())
-      boxes.push_back(with_slack(placed_low, placed_high, instance.transform_scale));
+    geometry::Box3 box;
+    for (const glm::vec3& p : mesh.positions) include(instance.to_world * glm::vec4(p, 1.0F), box);
+    if (!mesh.positions.empty()) boxes.push_back(with_slack(box, instance.transform_scale));
   }
-  if (any) boxes.push_back(with_slack(low, high, 0.0F));
+  add_boxes(triangles, boxes);
   return boxes;
 }
 

@@ -31,8 +31,9 @@ struct ClusterData {
   std::uint64_t bytes() const;  // of the arrays
 };
 
-// The boxes of what is placed, one for each instance of an instanced piece; a little larger, for
-// what rounding does to a ray.
+// Boxes around all that is placed: one for each instance of an instanced piece, and one for each
+// few hundred triangles of the others, so that they are tight; a little larger, for what rounding
+// does to a ray.
 std::vector<geometry::Box3> boxes_of(const ClusterData& cluster);
 
 comm::Buffer pack(const ClusterData& cluster);

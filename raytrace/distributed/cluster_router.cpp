@@ -31,7 +31,7 @@ class ClusterRouter final : public RayRouter {
       const ClusterHit hit = scene.elsewhere().next(line, way.last);
       if (hit.cluster == kNoCluster) return;
       way.last = hit;
-      if (way.has_been_at(scene.owner(hit.cluster))) continue;
+      if (way.has_been_at(scene.owner(hit.cluster)) || way.has_met(hit.cluster)) continue;
       way.next = hit.cluster;
       return;
     }

@@ -21,6 +21,8 @@ constexpr comm::Tag kTagControl = 201;  // RayMessenger::kTag is of rays
 
 // Tasks in the making on a rank: enough that some are ready while the others' rays travel.
 constexpr std::size_t kMostPixelTasks = 96;
+// Where clusters are fetched: the more rays wait for one, the less often it comes.
+constexpr std::size_t kMostFetchingTasks = 384;
 
 // Tasks that are advanced at a time where rays travel: enough that those that wait for one cluster
 // fill packets.
@@ -49,6 +51,7 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       scene_(scene),
       frame_(frame),
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
+      most_in_flight_(distribution.fetches ? kMostFetchingTasks : kMostPixelTasks),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
       messenger_(communicator, termination_) {
@@ -85,7 +88,7 @@ void DistributedTracer::add(std::uint32_t number) {
     ready_.push_back(index);
   }
   if (ready_.size() >= (scene_.elsewhere().empty() ? 1 : kReadyAtOnce)) serve();
-  while (in_flight_ > kMostPixelTasks) {
+  while (in_flight_ > most_in_flight_) {
     if (!serve()) wait_a_moment();
   }
 }
@@ -326,7 +329,11 @@ void DistributedTracer::intersect(ClusterBatch& batch) {
   intersect_clusters(*batch.clusters, scene_.shader(), kernels_, batch.rays, batch.shadows);
   const bool all = batch.clusters == &scene_.resident();
   const auto go_on = [&](auto& message) {
-    if (all) message.ray.way.note(communicator_.rank());
+    if (all) {
+      message.ray.way.note(communicator_.rank());
+    } else {
+      message.ray.way.note_met(message.ray.way.next);
+    }
     choose_next(message);
   };
   for (RayMessage& ray : batch.rays) go_on(ray);

@@ -88,6 +88,7 @@ class DistributedTracer {
   SharedScene& scene_;
   const TiledFrame& frame_;
   int last_sample_;  // one past it
+  std::size_t most_in_flight_;  // tasks
   Kernels kernels_;
   comm::Termination termination_;
   RayMessenger messenger_;

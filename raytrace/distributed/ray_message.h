@@ -37,10 +37,12 @@ struct Progression {
   std::uint32_t next = kMiss;  // the cluster that it waits for; kMiss: none, it is done
   std::uint32_t hops = 0;      // ring: ranks that it has gone on to
 
-  // The last few ranks that it has been at. A ray that goes to one of the others once more learns
+  // The last few ranks that it has been at. A ray that goes to an earlier one once more learns
   // nothing there, and loses nothing.
   std::int32_t been_at[kKnown] = {-1, -1, -1, -1};
-  std::uint32_t next_known = 0;
+  // The last few clusters that it has been intersected with alone.
+  std::uint32_t met[kKnown] = {kMiss, kMiss, kMiss, kMiss};
+  std::uint16_t next_rank = 0, next_met = 0;
 
   bool has_been_at(int rank) const {
     return been_at[0] == rank || been_at[1] == rank || been_at[2] == rank || been_at[3] == rank;
@@ -53,8 +55,15 @@ struct Progression {
   }
   void note(int rank) {
     if (has_been_at(rank)) return;
-    been_at[next_known] = rank;
-    next_known = (next_known + 1) % kKnown;
+    been_at[next_rank] = rank;
+    next_rank = (next_rank + 1) % kKnown;
+  }
+  bool has_met(std::uint32_t cluster) const {
+    return met[0] == cluster || met[1] == cluster || met[2] == cluster || met[3] == cluster;
+  }
+  void note_met(std::uint32_t cluster) {
+    met[next_met] = cluster;
+    next_met = (next_met + 1) % kKnown;
   }
 };
 

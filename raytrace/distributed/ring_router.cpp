@@ -16,19 +16,28 @@ namespace {
 
 constexpr ClusterHit kBegin{-1.0F, 0};  // before any other
 
+// Moves tell in the next frame only: a rank gives away its clusters in so many frames at least, or
+// loads would swing.
+constexpr std::size_t kFrames = 8;
+
 class RingRouter final : public RayRouter {
  public:
-  explicit RingRouter(const RoutingContext& context) : context_(context) {}
+  explicit RingRouter(const RoutingContext& context)
+      : context_(context), most_given_((context.scene.owned().size() + kFrames - 1) / kFrames) {
+    if (context.scene.owned().size() == 1) most_given_ = 0;
+  }
 
   Progression start() const override { return {}; }
 
   void choose_next(const Line& line, Progression& way) const override {
     way.next = kMiss;
     if (is_back(way)) return;
-    const auto is_here = [&](const ClusterHit& hit) { return was_here(hit.cluster); };
     const auto is_elsewhere = [&](const ClusterHit& hit) { return !was_here(hit.cluster); };
     if (context_.scene.has_taken_over()) {
-      if (const ClusterHit hit = first(line, way.last, is_here); hit.cluster != kNoCluster) {
+      const auto is_next = [&](const ClusterHit& hit) {
+        return was_here(hit.cluster) && !way.has_met(hit.cluster);
+      };
+      if (const ClusterHit hit = first(line, way.last, is_next); hit.cluster != kNoCluster) {
         way.last = hit;
         way.next = hit.cluster;
         return;
@@ -61,7 +70,7 @@ class RingRouter final : public RayRouter {
       context_.messenger.send((context_.messenger.rank() + ranks - 1) % ranks,
                               with_header(header, {}));
     }
-    if (loads_.should_give(load) && context_.scene.owned().size() > 1) give(load);
+    if (loads_.should_give(load) && given_ < most_given_) give(load);
   }
 
  private:
@@ -97,12 +106,14 @@ class RingRouter final : public RayRouter {
                               std::move(message));
       ++context_.counts.clusters_moved;
       loads_.gave(load);
+      ++given_;
       return;
     }
   }
 
   RoutingContext context_;
   std::unordered_set<std::uint32_t> came_;  // in this frame
+  std::size_t given_ = 0, most_given_;      // in this frame
   RingLoads loads_;                         // of this rank and the next
 };
 
