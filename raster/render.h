@@ -144,7 +144,8 @@ struct Statistics {
   std::uint64_t triangles_hidden = 0, clusters_hidden = 0;
   std::uint64_t triangles_travelled = 0;  // sent from one rank to another, once per receiver
   std::uint64_t fragments_travelled = 0;  // surfaces at samples that another rank owns; hybrid
-  // Before ranks are composited: surfaces seen at samples, and how often one was shaded.
+  // Before ranks are composited: surfaces seen at samples, but for those that a rank knows to be
+  // hidden by another, and how often one was shaded.
   std::uint64_t fragments = 0, shaded = 0;
   std::optional<PartitionStatistics> partition;  // if asked for, and the screen was cut
   std::vector<std::string> warnings;

@@ -5,6 +5,9 @@
 // again. Degenerate: with fewer primitives than ranks some have none.
 #include "raster/distribute/rank_context.h"
 
+#include <algorithm>
+
+#include "comm/collectives.h"
 #include "raster/distribute/gather_regions.h"
 #include "raster/pipeline/samples.h"
 
@@ -26,6 +29,18 @@ RegionDrawing RankContext::begin(const DrawList& list, std::span<const geometry:
     in_samples.push_back(samples_of(r, options.supersampling));
   return RegionDrawing(
       {screen, list, shader, options, in_samples, depths_are_distances(), progress}, scratch);
+}
+
+void RankContext::hide_behind_others(RegionDrawing& drawing) {
+  if (ranks() == 1 || transparent || in_steps || options.shade == Shade::immediate) return;
+  const double before = communicator.seconds();
+  communicator.mark(comm::Phase::redistribute, 0);
+  std::vector<std::int32_t> farthest = drawing.farthest_of_blocks();
+  comm::all_reduce(communicator, std::span<std::int32_t>(farthest),
+                   [](std::int32_t a, std::int32_t b) { return std::min(a, b); });
+  drawing.hide_behind(std::move(farthest));
+  communicator.mark(comm::Phase::rasterize, 0);
+  counts.phases.redistribute += communicator.seconds() - before;
 }
 
 void RankContext::tell_work(const RegionCounts& done) const {

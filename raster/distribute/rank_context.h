@@ -52,6 +52,9 @@ struct RankContext {
 
   // A drawing of `list`, or of what it is given later, into regions (in pixels).
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
+  // Tells ranks whose drawings are composited how far each block of the screen is at most, so that
+  // none shades what another hides; unless that is not to be known, or too late. Collective.
+  void hide_behind_others(RegionDrawing& drawing);
   // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
   void end(RegionDrawing& drawing, FinishTile finish_tile);
   // The same as RegionDrawing::finish_rows; work is told before rows_finished is called.

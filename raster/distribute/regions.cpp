@@ -159,6 +159,14 @@ void RegionDrawing::end_drawing_into(RegionCounts& counts) {
   counts.shaded = costs_.shaded;
 }
 
+void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) const {
+  constexpr std::size_t kBlocks = VisibilityTile::kBlocks;
+  if (hidden_behind_.empty()) return;
+  const auto codes = std::span(hidden_behind_).subspan(static_cast<std::size_t>(tile) * kBlocks);
+  for (int block = 0; block < VisibilityTile::kBlocks; ++block)
+    if (codes[block] != kEmptyCode) visibility.drop_behind(block, codes[block]);
+}
+
 void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
                                 RegionCounts& counts) {
   const Screen& screen = task_.screen;
@@ -186,6 +194,7 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
         shaded_here += draw_large(into_tiles_, index, scratch_.deferred.large,
                                   scratch_.tiles.rect(index), *tile);
       }
+      if (tile != nullptr) drop_hidden(index, *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
                    scratch_.deferred.blended.of_tile(index), tile, mine.blended);
       clock.finish(0);

@@ -84,6 +84,13 @@ class RegionDrawing {
   void draw(std::span<const std::uint32_t> clusters);
   void draw_in_order(std::span<const std::uint32_t> clusters);
   void draw_all();
+  // By tile of the screen and block in it, how far all that is drawn by now is at most, and that
+  // nothing behind such depths need be shaded, since it is hidden: see FrameTiles. Not for drawings
+  // in which anything is blended or was shaded already.
+  std::vector<std::int32_t> farthest_of_blocks() const {
+    return scratch_.tiles.farthest_of_blocks(task_.screen);
+  }
+  void hide_behind(std::vector<std::int32_t>&& codes) { hidden_behind_ = std::move(codes); }
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
   // parts of regions in it. Parallel. To be called once, in the end.
   RegionCounts finish(FinishTile finish_tile);
@@ -98,6 +105,7 @@ class RegionDrawing {
                 const PreparedFrame* frame, Scratch& scratch);
   TileMemory& memory() const;
   void end_drawing_into(RegionCounts& counts);
+  void drop_hidden(int tile, VisibilityTile& visibility) const;
   void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
 
   const RegionTask task_;
@@ -108,6 +116,7 @@ class RegionDrawing {
   const PreparedFrame* frame_;
   DrawIntoTiles into_tiles_;
   DrawCosts costs_;
+  std::vector<std::int32_t> hidden_behind_;  // empty: nothing is known
 };
 
 }  // namespace delray::raster

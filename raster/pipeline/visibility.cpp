@@ -11,6 +11,7 @@
 #include "raster/pipeline/visibility.h"
 
 #include <algorithm>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raster/pipeline/visibility.cpp"
@@ -364,6 +365,33 @@ void VisibilityTile::clear(const geometry::Rect& rect) {
   for (int block = 0; block < kBlocks; ++block) set_farthest(block, kEmptyCode);
   stale = 0;
   since_refresh = 0;
+}
+
+namespace {
+
+// Calls f(key) for each pixel of a block.
+template <class Keys, class F>
+void for_each_key(Keys& key, int block, F&& f) {
+  const int x = block % VisibilityTile::kBlocksX * VisibilityTile::kBlockWidth;
+  const int y = block / VisibilityTile::kBlocksX * VisibilityTile::kBlockHeight;
+  for (int j = 0; j < VisibilityTile::kBlockHeight; ++j) {
+    for (int i = 0; i < VisibilityTile::kBlockWidth; ++i) f(key[(y + j) * kTileSize + x + i]);
+  }
+}
+
+}  // namespace
+
+std::int32_t VisibilityTile::farthest_now(int block) const {
+  if ((stale >> block & 1) == 0) return farthest_of(block);
+  std::int64_t last = std::numeric_limits<std::int64_t>::min();
+  for_each_key(key, block, [&](std::int64_t here) { last = std::max(last, here); });
+  return static_cast<std::int32_t>(last >> 32);
+}
+
+void VisibilityTile::drop_behind(int block, std::int32_t code) {
+  for_each_key(key, block, [&](std::int64_t& here) {
+    here = static_cast<std::int32_t>(here >> 32) > code ? kEmptyKey : here;
+  });
 }
 
 void rasterize(const Screen& screen, const geometry::Rect& rect,

@@ -61,6 +61,11 @@ struct VisibilityTile {
   // be: the depths there are before all others, so that they do not spoil the farthest ones.
   void clear(const geometry::Rect& rect);
 
+  // The code of the farthest depth in a block as it is now.
+  std::int32_t farthest_now(int block) const;
+  // Empties pixels of a block that are farther than this.
+  void drop_behind(int block, std::int32_t code);
+
   std::int32_t farthest_of(int block) const {
     return std::atomic_ref(const_cast<std::int32_t&>(farthest[block]))
         .load(std::memory_order_relaxed);

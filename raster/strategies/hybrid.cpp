@@ -65,7 +65,11 @@ class Drawing {
     if (!own_.empty()) rects.push_back(own_);
     const Rect own = samples_of(own_, samples());
     const loadbalance::RegionIndex index(shares_.partition.regions);
-    rank_.render(out_.list, rects, [&](std::span<const Rect> parts, TileView& tile) {
+    rank_.communicator.mark(comm::Phase::rasterize, 0);
+    RegionDrawing drawing = rank_.begin(out_.list, rects);
+    drawing.draw_all();
+    rank_.hide_behind_others(drawing);
+    rank_.end(drawing, [&](std::span<const Rect> parts, TileView& tile) {
       const int k =
           parts.front().y0 / kTileSize * rank_.screen.tiles_x + parts.front().x0 / kTileSize;
       for (const Rect& part : parts) {

@@ -217,6 +217,11 @@ class Steps final : public FrameSteps {
     return picture_of(std::move(part));
   }
 
+  // Between the first two, where the communicator may be used. Collective.
+  void hide_behind_others() {
+    if (!shades_last() && !has_cells()) rank_.hide_behind_others(*drawing_);
+  }
+
   // Whether tiles can go to their owners before all are finished.
   bool has_tiles() const {
     return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.transparent &&
@@ -272,6 +277,7 @@ Picture render(RankContext& rank) {
   rank.communicator.mark(comm::Phase::rasterize, 0);
   Steps<Colour> steps(rank);
   steps.transform();
+  steps.hide_behind_others();
   if (steps.has_tiles()) return steps.rasterize_and_compose();
   steps.rasterize();
   return steps.compose();

@@ -10,6 +10,7 @@
 #include "comm/recording.h"
 #include "comm/threads.h"
 #include "raster/render.h"
+#include "scenes/generate.h"
 #include "tests/raster/kinds_of_picture.h"
 
 namespace delray::raster {
@@ -171,6 +172,53 @@ TEST(SortLast, BlendsByCellMoreRanksThanTriangles) {
   const RenderOptions options = small_picture();
   EXPECT_LE(difference<image::Rgba8>(by_cell(scene, options, 7), by_cell(scene, options, 1)).colour,
             1);
+}
+
+// Two walls, one for each rank: the farther one is hidden, and all but its rim is not shaded.
+TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
+  constexpr std::uint32_t kSide = 65;  // vertices
+  scenes::Scene scene = scenes::generate("gen:terrain:2000");
+  scenes::Mesh& mesh = scene.meshes[0];
+  mesh = {};
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x)
+      mesh.positions.emplace_back(static_cast<float>(x) / 32 - 1, static_cast<float>(y) / 32 - 1,
+                                  0);
+  }
+  for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
+    for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+      const std::uint32_t i = y * kSide + x;
+      mesh.triangles.emplace_back(i, i + 1, i + kSide);
+      mesh.triangles.emplace_back(i + 1, i + kSide + 1, i + kSide);
+    }
+  }
+  glm::mat4x3 behind(1.0F);
+  behind[3].z = -0.1F;
+  scenes::Camera camera = scene.cameras[0];
+  camera.eye = {0, 0, 3};
+  camera.at = {0, 0, 0};
+  camera.up = {0, 1, 0};
+  camera.vertical_fov = 40;
+  camera.near = 0.01F;
+  RenderOptions options;
+  options.width = options.height = 256;
+  for (const bool front_first : {true, false}) {
+    scene.instances = {{0, front_first ? glm::mat4x3(1.0F) : behind},
+                       {0, front_first ? behind : glm::mat4x3(1.0F)}};
+    Statistics statistics[2];
+    Picture pictures[2];
+    for (const int ranks : {1, 2}) {
+      comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+        Result result = render(communicator, scene, camera, options);
+        if (communicator.rank() != 0) return;
+        statistics[ranks - 1] = std::move(result.statistics);
+        pictures[ranks - 1] = std::move(result.picture);
+      });
+    }
+    EXPECT_TRUE(same_bytes(pictures[0], pictures[1]));
+    EXPECT_GT(statistics[0].shaded, 30000U);
+    EXPECT_LT(statistics[1].shaded, statistics[0].shaded * 6 / 5) << front_first;
+  }
 }
 
 }  // namespace
