@@ -165,9 +165,10 @@ void compare(const std::string& name, std::size_t kind, const Request& request) 
     const Configuration &two, &four;
   };
   std::vector<Row> rows;
-  for (const Bars& bars : kBars)
+  for (const Bars& bars : kBars) {
     if (request.strategy.empty() || request.strategy == bars.strategy)
       rows.push_back({bars, add(bars.strategy, 2, 1), add(bars.strategy, 4, 1)});
+  }
   for (int turn = 0; turn < request.turns; ++turn)
     for (const auto& configuration : configurations) configuration->run(request.frames);
 
@@ -221,18 +222,20 @@ int main(int argc, char** argv) {
   Request request;
   for (int i = 1; i < argc; ++i) {
     const auto is = [&](const char* option) { return std::strcmp(argv[i], option) == 0; };
-    if (is("--turns") && i + 1 < argc)
+    const bool has_value = i + 1 < argc;
+    if (is("--turns") && has_value) {
       request.turns = std::atoi(argv[++i]);
-    else if (is("--frames") && i + 1 < argc)
+    } else if (is("--frames") && has_value) {
       request.frames = std::atoi(argv[++i]);
-    else if (is("--strategy") && i + 1 < argc)
+    } else if (is("--strategy") && has_value) {
       request.strategy = argv[++i];
-    else if (is("--phases"))
+    } else if (is("--phases")) {
       request.phases = true;
-    else if (is("--gouraud"))
+    } else if (is("--gouraud")) {
       request.lighting = raster::Lighting::gouraud;
-    else
+    } else {
       request.scenes.emplace_back(argv[i]);
+    }
   }
   if (request.scenes.empty())
     request.scenes = {"gen:terrain:5000000", "gen:city:1000000", "gen:spheres:124000"};
