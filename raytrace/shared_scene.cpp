@@ -117,6 +117,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
                          LightTable lights, std::vector<ClusterData>&& mine,
                          const ShareOptions& options)
     : shader_(std::move(shader)),
+      alphas_(least_alphas(shader_)),
       lights_(std::move(lights)),
       build_(options.build),
       device_(build_) {
@@ -177,7 +178,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
   std::vector<std::uint64_t> degenerate(mine.size());
   parallel::parallel_for(0, mine.size(), 1, [&](std::size_t i) {
-    ready[i] = std::make_shared<const Cluster>(std::move(mine[i]));
+    ready[i] = std::make_shared<const Cluster>(std::move(mine[i]), shader_, alphas_);
     degenerate[i] = count_degenerate(ready[i]->instances());
   });
   for (std::size_t i = 0; i < ready.size(); ++i) {
@@ -272,7 +273,7 @@ std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
 }
 
 std::shared_ptr<const ClusterScene> SharedScene::put(std::uint32_t cluster, ClusterData&& data) {
-  auto ready = std::make_shared<const Cluster>(std::move(data));
+  auto ready = std::make_shared<const Cluster>(std::move(data), shader_, alphas_);
   auto scene = alone(ready);
   const std::uint64_t bytes = ready->bytes() + scene->bytes();
   cached_bytes_ += bytes;
@@ -291,7 +292,7 @@ void SharedScene::give_away(std::uint32_t cluster) {
 }
 
 void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
-  owned_.emplace(cluster, std::make_shared<const Cluster>(std::move(data)));
+  owned_.emplace(cluster, std::make_shared<const Cluster>(std::move(data), shader_, alphas_));
   note_bytes();
 }
 

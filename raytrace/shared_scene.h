@@ -108,6 +108,7 @@ class SharedScene {
     std::list<std::uint32_t>::iterator use;
   };
   shading::Shader shader_;
+  std::vector<LeastAlpha> alphas_;  // of its textures
   LightTable lights_;
   BuildOptions build_;
   EmbreeDevice device_;            // of what comes later

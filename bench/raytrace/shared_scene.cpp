@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "bench/ratio.h"
 #include "comm/collectives.h"
 #include "comm/threads.h"
 #include "raytrace/render.h"
@@ -39,12 +40,16 @@ struct Arguments {
 struct Variant {
   std::string name, distribution;
   double cache = 0.0;  // share of the scene; 0: the default
+  // Limits of the ratio to `replicated`: at rest, on a turntable, of `path` at rest; 0: none.
+  double at_rest = 0.0, turning = 0.0, path = 0.0;
 };
 
-const std::vector<Variant> kVariants = {
-    {"replicated", "replicated", 0.0}, {"object, all", "object", 2.0},
-    {"object, 1/4", "object", 0.25},   {"ray", "ray", 0.0},
-    {"hybrid", "hybrid", 0.0},         {"ring", "ring", 0.0}};
+const std::vector<Variant> kVariants = {{"replicated", "replicated"},
+                                        {"object, all", "object", 2.0, 1.15, 1.3, 1.2},
+                                        {"object, 1/4", "object", 0.25, 5, 6, 8},
+                                        {"ray", "ray", 0.0, 2.5, 3, 5},
+                                        {"hybrid", "hybrid", 0.0, 2.5, 3, 5},
+                                        {"ring", "ring", 0.0, 6, 7, 10}};
 
 // Of all threads of this process.
 double processor_seconds() {
@@ -161,6 +166,14 @@ void compare(const std::string& name, const std::string& integrator, const Argum
   });
   for (std::size_t i = 0; i < variants.size(); ++i) {
     print(variants[i], times[i], last[i]);
+    if (i == 0) continue;
+    const Variant& variant = variants[i];
+    const double bar = arguments.turntable    ? variant.turning
+                       : integrator == "path" ? variant.path
+                                              : variant.at_rest;
+    bench::report_ratio(name + ", " + integrator +
+                            (arguments.turntable ? ", turntable, " : ", at rest, ") + variant.name,
+                        bench::median(times[i].ratios), bench::Better::lower, bar);
   }
 }
 

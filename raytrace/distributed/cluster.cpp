@@ -236,17 +236,28 @@ ClusterData unpack_cluster(std::span<const std::byte> message) {
   return cluster;
 }
 
-Cluster::Cluster(ClusterData&& data) : data_(std::move(data)) {
+Cluster::Cluster(ClusterData&& data, const shading::Shader& shader,
+                 std::span<const LeastAlpha> alphas)
+    : data_(std::move(data)) {
+  using Bits = std::vector<std::uint64_t>;
+  std::vector<std::shared_ptr<const Bits>> opaque;  // of pieces
+  for (const Piece& piece : data_.pieces) {
+    auto bits = std::make_shared<const Bits>(
+        opaque_triangles(piece.mesh, shading::material(shader, piece.mesh.material), alphas));
+    bytes_ += bytes_of(*bits);
+    opaque.push_back(bits->empty() ? nullptr : std::move(bits));
+  }
   for (GeometryInstance& instance : data_.instances) {
     const Piece& piece = data_.pieces[instance.mesh_number];
     instance.mesh = &piece.mesh;
     instance.positions = piece.mesh.positions.data();
+    instance.opaque = opaque[instance.mesh_number];
   }
   for (const Piece& piece : data_.pieces) {
     for (const std::uint32_t instance : piece.instances)
       numbers_.push_back({instance, piece.triangles.data()});
   }
-  bytes_ = data_.bytes();
+  bytes_ += data_.bytes();
 }
 
 }  // namespace delray::raytrace

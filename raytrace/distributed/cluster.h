@@ -12,6 +12,7 @@
 #include "geometry/box.h"
 #include "raytrace/scene/embree_scene.h"
 #include "raytrace/scene/geometry_instance.h"
+#include "raytrace/scene/opaque_triangles.h"
 
 namespace delray::raytrace {
 
@@ -42,7 +43,8 @@ ClusterData unpack_cluster(std::span<const std::byte> message);
 // Geometry with what rays need to know of it, but no acceleration structure. Immutable.
 class Cluster {
  public:
-  explicit Cluster(ClusterData&& data);
+  // `alphas`: least_alphas() of the shader. O(triangles of materials that can be seen through).
+  Cluster(ClusterData&& data, const shading::Shader& shader, std::span<const LeastAlpha> alphas);
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;
 
