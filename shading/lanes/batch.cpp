@@ -55,12 +55,30 @@ struct Block {
   std::span<const Vectors16> visibility;
 };
 
-// One vector of points whose lobes are known: `diffuse` is Lobes::diffuse.
+// One vector of points from lane i on, as it is seen: the way to the viewer, and its cosine with
+// the normal.
+struct SeenLanes {
+  int i;
+  M active;
+  F3 view;
+  F cosine;
+};
+
+// The same whose lobes are known: `diffuse` is Lobes::diffuse.
 template <class Reflectance>
-HWY_INLINE void shade_lit(const Block& block, const SurfaceLanes& surface, const F3& diffuse,
-                          F roughness, const LobeLanes<Reflectance>& lobes,
-                          const ResponseLanes<Reflectance>& response, const F3& view, F cosine,
-                          M active, int i, Shaded& shaded) {
+struct LitLanes {
+  const SurfaceLanes& surface;
+  const F3& diffuse;
+  F roughness;
+  const LobeLanes<Reflectance>& lobes;
+  const ResponseLanes<Reflectance>& response;
+};
+
+template <class Reflectance>
+HWY_INLINE void shade_lit(const Block& block, const SeenLanes& seen,
+                          const LitLanes<Reflectance>& lit, Shaded& shaded) {
+  const auto& [surface, diffuse, roughness, lobes, response] = lit;
+  const auto& [i, active, view, cosine] = seen;
   const Shader& scene = *block.shader.shader;
   F3 sum = surface.emission;
   if (!scene.environment.black) {
@@ -93,9 +111,9 @@ HWY_NOINLINE void shade_grey(const Block& block, const Vectors16& views, LaneMas
     const F3 diffuse = diffuse_of(surface);
     const ResponseLanes<Grey> response =
         grey_response(material.lobes, constant_shares(material, clamp01(cosine)));
-    shade_lit(block, surface, diffuse, set(material.lobes.roughness),
-              seen_lobes(material.lobes, diffuse, response, cosine), response, view, cosine, active,
-              i, shaded);
+    const auto lobes = seen_lobes(material.lobes, diffuse, response, cosine);
+    shade_lit<Grey>(block, {i, active, view, cosine},
+                    {surface, diffuse, set(material.lobes.roughness), lobes, response}, shaded);
   }
 }
 
@@ -116,8 +134,9 @@ HWY_NOINLINE void shade_coloured(const Block& block, const Vectors16& views, Lan
     const SharesLanes shares = kVarying ? varying_shares(lobes.roughness, clamp01(cosine))
                                         : constant_shares(material, clamp01(cosine));
     const ResponseLanes<Coloured> seen = response(lobes, shares);
-    shade_lit(block, surface, lobes.diffuse, lobes.roughness, seen_lobes(lobes, seen, cosine), seen,
-              view, cosine, active, i, shaded);
+    const auto lobes_seen = seen_lobes(lobes, seen, cosine);
+    shade_lit<Coloured>(block, {i, active, view, cosine},
+                        {surface, lobes.diffuse, lobes.roughness, lobes_seen, seen}, shaded);
   }
 }
 
