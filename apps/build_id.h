@@ -5,7 +5,7 @@
 
 namespace delray::apps {
 
-// What the linker has put into the program and into the libraries of it that are loaded, a hash of
+// The build id that the linker has put into the program and into its loaded libraries, a hash of
 // all that was linked, in hexadecimal digits; "unknown" where it was told not to. Other builds have
 // another one, be it of the same source by another compiler.
 std::string build_id();

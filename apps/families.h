@@ -11,10 +11,10 @@ void list_integrators();
 void list_distributions();
 void list_schedules();
 void list_methods();
-// What methods leave a choice of: location, split, order, deadlock strategy.
+// The choices that methods leave: location, split, order, deadlock strategy.
 void list_method_options();
 void list_networks();
-// What colours show (--color-by), and tone curves.
+// The meanings of colours (--color-by), and tone curves.
 void list_colours();
 
 }  // namespace delray::apps

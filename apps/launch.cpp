@@ -45,7 +45,7 @@ std::chrono::nanoseconds timeout_of(const Launch& launch) {
   std::_Exit(kRankLost);
 }
 
-// What each rank may choose for itself.
+// Options that each rank may choose for itself.
 bool is_own_affair(const std::string& option) {
   return option == "--quiet" || option == "--verbose" || option == "--threads" ||
          option == "--memory";

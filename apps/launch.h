@@ -21,7 +21,7 @@ struct Launch {
 // Finds out whether this process is one of several that an MPI launcher started.
 void find_launcher(Session& session);
 
-// How many processes of the launcher share this machine.
+// The number of the launcher's processes that share this machine.
 int processes_here();
 
 // Tells the session what was asked for, of a command line as far as it was understood. `arguments`

@@ -26,7 +26,8 @@ namespace {
 
 using namespace delray::apps;
 
-// What is logged, with names and texts of files in it, but nothing that a terminal would obey.
+// The text of a log line, which may quote names and texts of files, without anything that a
+// terminal would obey.
 class PrintableText final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,
@@ -79,7 +80,7 @@ void occupy_closed_streams() {
   }
 }
 
-// What is left in the buffer is lost where nobody looks whether it could be written.
+// Text left in the buffer would be lost unnoticed if it could not be written.
 int flushed(int code) {
   errno = 0;
   const bool whole = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;

@@ -1,4 +1,4 @@
-// What it takes to run something again.
+// The facts that it takes to run something again.
 #pragma once
 
 #include <string>

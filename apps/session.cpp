@@ -43,7 +43,7 @@ int report_failure() {
   }
 }
 
-// What the exception in flight says.
+// The message of the exception in flight.
 std::string text_of_failure() {
   try {
     throw;

@@ -1,4 +1,4 @@
-// What all subcommands share: how loud to be, how to stop, how to fail.
+// State that all subcommands share: how loud to be, how to stop, how to fail.
 #pragma once
 
 #include <functional>

@@ -28,13 +28,13 @@ struct VerifyOptions {
   bool canonical = false, complete = false;
 };
 
-// How the vertices of the mesh were found among the points.
+// The way in which the vertices of the mesh were found among the points.
 struct Matched {
   const char* how = "rows";              // "coordinates", "32-bit coordinates"
   std::vector<std::uint32_t> rows;       // of each vertex; none where they are numbered alike
   std::size_t points = 0;                // of the file
   std::size_t distinct = 0, unused = 0;  // not known of rows
-  // Of 2D: what came of comparing z, and the first vertex of a simplex with another than its point.
+  // In 2D the result of comparing z, and the first vertex of a simplex with another than its point.
   const char* heights = "";
   std::optional<std::size_t> other_height;
   double height = 0.0;  // of the point that vertex is

@@ -12,7 +12,7 @@ namespace delray::delaunay {
 // of the tables; the rest of the options is as by default. "none" where a method leaves no choice.
 std::vector<Options> combinations(int dim);
 
-// Of these the ones with the method's default split and deadlock strategy: every method with every
+// The combinations with the method's default split and deadlock strategy: every method with every
 // location and order.
 std::vector<Options> locations_and_orders(int dim);
 

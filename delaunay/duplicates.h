@@ -22,7 +22,7 @@ struct DuplicatesName {
 std::span<const DuplicatesName> duplicates_policies();
 std::optional<Duplicates> duplicates_policy(std::string_view name);  // none for an unknown name
 
-// How many places and rows they concern.
+// Numbers of places and rows that duplicates concern.
 struct DuplicatesCount {
   std::size_t places = 0;  // (x, y) with more than one z
   std::size_t rows = 0;    // rows that stand at such places

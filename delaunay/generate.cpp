@@ -16,7 +16,7 @@
 namespace delray::delaunay {
 namespace {
 
-// What a point may depend on; `random` is the row's own.
+// All that a point may depend on; `random` is the row's own.
 struct Row {
   std::size_t i, n;
   int dim;

@@ -27,7 +27,7 @@ struct PointMatch {
   std::size_t unused = 0;    // distinct points that are no vertex
 };
 
-// How vertices and points are compared.
+// Ways to compare vertices and points.
 struct Matching {
   int dim = 2;             // 2 or 3; -0 equals 0
   bool as_floats = false;  // points are rounded to 32-bit floats before, vertices are such

@@ -71,7 +71,7 @@ std::string choose(const char* what, const std::string& wanted,
 // The first method of a dimension is what "auto" means there.
 std::span<const Method> methods() {
   static const std::vector<std::string_view> all_splits = {"random", "slabs", "distance", "curve"};
-  // Threads that keep to places of their own seldom meet.
+  // Threads that keep to places of their own seldom conflict.
   static const std::vector<std::string_view> curve_first = {"curve", "random", "slabs", "distance"};
   static const std::vector<Method> table = {
       {.name = "divide-and-conquer",

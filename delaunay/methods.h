@@ -23,7 +23,7 @@ struct Method {
   std::string_view description;
   std::string_view group;  // of methods that work alike; reports show these in one colour
   std::vector<int> dims;
-  // What goes with the method, the default first; empty if it leaves no such choice.
+  // The choices that go with the method, the default first; empty if it leaves none.
   std::vector<std::string_view> locations, splits, orders;
   std::vector<std::string_view> deadlocks = {};
   bool alone = false;  // works with one thread, whatever the options say

@@ -14,7 +14,7 @@
 
 namespace delray::delaunay {
 
-// What decided a predicate, in the order in which they are tried.
+// The stages that may decide a predicate, in the order in which they are tried.
 enum class Stage {
   kFilter,        // floating point with an error bound (Shewchuk 1997)
   kInteger,       // differences that share a power-of-two grid, in 128-bit integers
@@ -29,7 +29,7 @@ struct Decision {
   Stage stage;
 };
 
-// The same predicates with the stage that decided them.
+// The predicates above with the stage that decided them.
 Decision decide_orient2d(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);
 Decision decide_incircle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
                          const glm::dvec2& d);

@@ -107,7 +107,7 @@ Quality quality_of_range(PointView<double> points, const Triangulation& triangul
   return result;
 }
 
-// Of sums instead of means.
+// Combines qualities that hold sums instead of means.
 Quality combine(const Quality& a, const Quality& b) {
   if (a.simplices == 0) return b;
   if (b.simplices == 0) return a;

@@ -9,7 +9,7 @@
 
 namespace delray::delaunay {
 
-// How well shaped the simplices of a mesh are.
+// Measures of how well the simplices of a mesh are shaped.
 struct Quality {
   std::size_t simplices = 0;
   // Angles in degrees: the three of a triangle, or the six dihedral angles of a tetrahedron. The

@@ -1,4 +1,4 @@
-// Questions to a finished triangulation: where a point lies, what is nearest to it.
+// Queries of a finished triangulation: where a point lies, what is nearest to it.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace delray::delaunay {
 
 // Keeps the adjacency of the triangulation, and refers to it and to its points, which must outlive
-// it. Any number of threads may ask at a time. Points of a query have z 0, or any, in 2D.
-// Questions throw std::invalid_argument where a coordinate is not finite.
+// it. Any number of threads may query at a time. Points of a query have z 0, or any, in 2D.
+// Queries throw std::invalid_argument where a coordinate is not finite.
 class Query {
  public:
   static constexpr std::uint32_t kNone = Adjacency::kNone;
@@ -25,7 +25,7 @@ class Query {
   // the nearest of n^(1/3) vertices (Muecke, Saias, Zhu 1999): O(n^(1/3)) expected for evenly
   // spread points.
   std::uint32_t locate(const glm::dvec3& q) const;
-  // As above, walking from a simplex that is thought to be near, such as the previous answer.
+  // As above, walking from a simplex that is thought to be near, such as the previous result.
   // Throws std::invalid_argument for a simplex that does not exist; kNone: none is.
   std::uint32_t locate(const glm::dvec3& q, std::uint32_t near) const;
 

@@ -25,7 +25,7 @@ struct PointReader {
 
 std::span<const PointReader> point_readers();
 
-// How a file of points is read.
+// Options of reading a file of points.
 struct ReadOptions {
   // Overrules content and suffix; `unknown` goes by them.
   files::Format format = files::Format::unknown;

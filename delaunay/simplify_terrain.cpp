@@ -65,7 +65,7 @@ std::vector<std::uint32_t> hull_corners(const std::vector<glm::dvec2>& points) {
 double sum_from_below(double z, double bound) {
   const double sum = z + bound;
   if (sum == std::numeric_limits<double>::infinity()) return std::numeric_limits<double>::max();
-  // What rounding added (Knuth 1969).
+  // The error that rounding added (Knuth 1969).
   const double part = sum - z;
   const double lost = (z - (sum - part)) + (bound - part);
   return lost < 0 ? std::nextafter(sum, -std::numeric_limits<double>::infinity()) : sum;

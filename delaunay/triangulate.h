@@ -58,7 +58,7 @@ struct Options {
       nullptr;  // started with the number of points and advanced, if not null
 };
 
-// What triangulate() returns.
+// The result of triangulate().
 struct Result {
   Triangulation triangulation;
   Statistics statistics;  // zeros without Options::statistics

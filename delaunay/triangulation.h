@@ -1,4 +1,4 @@
-// What every triangulation method returns.
+// A Delaunay triangulation as rows of points, and its identity.
 #pragma once
 
 #include <cstddef>

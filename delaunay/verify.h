@@ -45,7 +45,7 @@ struct Verdict {
 Verdict verify_simplices(int dim, PointView<double> points,
                          std::span<const std::uint32_t> simplices);
 
-// The same of triangles.
+// As verify_simplices() with `dim` 2.
 Verdict verify_triangles(PointView<double> points, std::span<const std::uint32_t> triangles);
 
 // The lowest row in which coordinates 0 .. dim-1 of two point sets differ (-0 equals 0), and be it

@@ -13,7 +13,7 @@
 
 namespace delray::delaunay {
 
-// What a writer gets: `corners` vertices per simplex, which are rows of `points`.
+// Input of a writer: `corners` vertices per simplex, which are rows of `points`.
 struct MeshView {
   const PointCloud& points;
   int corners = 3;

@@ -1,4 +1,4 @@
-// How even a partition is: what its owners would have to do, primitives that fall to several of
+// The balance of a partition: the work of its owners, primitives that fall to several of
 // them counted for each.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace delray::loadbalance {
 
-// How evenly a partition shares out the costs.
+// Measures of how evenly a partition shares out the costs.
 struct Balance {
   std::vector<double> loads;  // by owner
   double alone = 0;           // what one owner of the whole frame would have to do

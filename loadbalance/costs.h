@@ -48,8 +48,8 @@ Costs make_costs(geometry::Rect frame, int columns, int rows, std::span<const We
 // thousand cells for each part. A power of two from 2 to 16. REQUIRES: parts >= 1.
 int cost_cell_side(geometry::Rect frame, int parts);
 
-// How many primitives to take together in a box for that, of so many in the frame: about a thousand
-// boxes for each part, so that a small scene gives each primitive its own. From 1 to 256.
+// The number of primitives to take together in a box, given how many are in the frame: about a
+// thousand boxes for each part, so that a small scene gives each primitive its own. From 1 to 256.
 // REQUIRES: parts >= 1.
 int primitives_per_box(std::uint64_t primitives, int parts);
 

@@ -95,7 +95,8 @@ class Sweep {
     double misplaced = 0;  // pixels on the wrong side of the border
   };
 
-  // How few pixels may be on the wrong side of a border across the shorter side, beside the other.
+  // A border across the shorter side is taken with at most this part of the other's pixels on the
+  // wrong side.
   static constexpr double kWorthASliver = 0.75;
   // In pixels: what rounding may make of none.
   static constexpr double kNoDifference = 1e-3;

@@ -16,7 +16,7 @@ inline constexpr int kNobody = -1, kEverybody = -2;
 
 // Prices and limits of the hybrid partition.
 struct HybridOptions {
-  // Of a pixel that is seen by another than its owner, to both.
+  // The cost of a pixel that another rank than its owner sees, to both.
   double pixel_cost = 0.25;
   // Boxes that cost more than so many equal shares of the cost of all are everybody's: a ground of
   // two triangles would keep one rank busy for longer than others, and send much of the frame.

@@ -17,9 +17,9 @@
 
 namespace delray::loadbalance {
 
-// How a schedule hands out tasks.
+// Options of a schedule.
 struct ScheduleOptions {
-  // Of this rank; 0: as many as its arena has. One on the simulated machine.
+  // Threads of this rank; 0: as many as its arena has. One on the simulated machine.
   int threads = 0;
   // Whether ranks that hand out tasks do some themselves, between messages. One that is alone does.
   bool master_works = true;
@@ -35,8 +35,8 @@ struct ScheduleOptions {
   double share = 0.25;
   int fan_out = 4;         // hierarchical: ranks below a master, at most; >= 2
   std::uint64_t seed = 1;  // random
-  // What this rank begins with, with static and both kinds of stealing; each task is in the list of
-  // exactly one rank. By default as many consecutive tasks for each.
+  // The tasks that this rank begins with, with static and both kinds of stealing; each task is in
+  // the list of exactly one rank. By default as many consecutive tasks for each.
   std::optional<std::vector<TaskRange>> initial;
 };
 
@@ -61,7 +61,7 @@ struct ScheduleCounts {
   double busy = 0, idle = 0;                   // seconds at tasks and waiting, summed over threads
 };
 
-// What a rank did under a schedule: counts, and the times of its threads.
+// The work of a rank under a schedule: counts, and the times of its threads.
 struct RankReport : ScheduleCounts {
   std::vector<Interval> timeline;  // by thread, then time
 };

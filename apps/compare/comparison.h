@@ -1,4 +1,4 @@
-// What every `delray compare` has in common: its options, its steps, how what it found is told.
+// The part that all of `delray compare` have in common: options, steps, output of results.
 #pragma once
 
 #include <functional>
@@ -30,7 +30,7 @@ std::vector<OutputFile> outputs_of(const ComparisonOptions& options);
 
 // Least, most and number of the runs, and the interval of their median, which stands elsewhere.
 Json spread_json(const Spread& times);
-// Of so many milliseconds, for tables.
+// Milliseconds as text for tables.
 std::string range_text(const Spread& times);
 
 // Runs of a comparison. A stop that was asked for is heard between two of them, where it loses

@@ -1,4 +1,4 @@
-// What comparisons on a scene have in common.
+// Options and output that comparisons on a scene have in common.
 #pragma once
 
 #include <functional>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDoubt = 0.05;
 
-// How many of so many values lie outside the median's interval at either end: as many as the median
+// The number of values outside the median's interval at either end: as many as the median
 // has not even that many values below it but with a probability of kDoubt / 2.
 std::size_t outside(std::size_t runs) {
   const auto n = static_cast<double>(runs);

@@ -20,7 +20,7 @@ struct Spread {
 // this factor, unless more is known.
 inline constexpr double kUnknownFactor = 1.5;
 
-// Of an even number of values the median lies between the two in the middle. REQUIRES: at least one
+// The median of an even number of values lies between the two in the middle. REQUIRES: at least one
 // value.
 Spread spread_of(std::vector<double> values);
 

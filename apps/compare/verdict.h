@@ -1,4 +1,5 @@
-// How reports say what takes least: with its spread, and beside what cannot be told from it.
+// Sentences of reports on what takes least: with its spread, and beside what cannot be told from
+// it.
 #pragma once
 
 #include <span>
@@ -18,11 +19,11 @@ std::string milliseconds_cell(const Spread& seconds);
 
 // "a", "a and b", "a, b and c", "a, b, c and 3 more": at most `most` by name, unless one is left.
 std::string listed(std::span<const std::string> names, std::size_t most = 4);
-// Of what cannot be told apart, for tables, which say what the mark means: "a", "a \u2248 b",
-// "a \u2248 3 more".
+// The names that cannot be told apart, for tables, which say what the mark means: "a", "a \u2248
+// b", "a \u2248 3 more".
 std::string winners_cell(std::span<const std::string> names);
 
-// What takes least of `rows` and all that cannot be told from it, as least_of() orders them.
+// The row that takes least and all that cannot be told from it, as least_of() orders them.
 template <class Row, class SpreadOf>
 std::vector<const Row*> winners(std::span<const Row* const> rows, SpreadOf&& spread_of_row) {
   std::vector<Spread> spreads;

@@ -18,7 +18,7 @@ struct ColourBy {
 
 std::span<const ColourBy> colour_bys();
 
-// What makes a good first picture of these points.
+// The colouring that makes a good first picture of these points.
 std::string_view default_colour_by(const delaunay::PointCloud& points);
 
 // Gives every mesh of the scene vertex colours. `points` are those that meshes[0] has as vertices,

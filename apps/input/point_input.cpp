@@ -49,7 +49,7 @@ double height_of(const double* values, bool terrain_rgb) {
   return -10000.0 + (values[0] * 65536.0 + values[1] * 256.0 + values[2]) / 10.0;
 }
 
-// What GDAL writes as text is the nearest decimal of a 32-bit float.
+// GDAL writes the nearest decimal of a 32-bit float as text.
 bool is_missing(double value, std::optional<double> no_data) {
   return no_data && (value == *no_data || value == double{static_cast<float>(*no_data)});
 }

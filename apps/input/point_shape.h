@@ -1,4 +1,4 @@
-// How points lie: as heights over a plane, or all around in space.
+// The shape of points: heights over a plane, or all around in space.
 #pragma once
 
 #include "delaunay/points.h"

@@ -116,7 +116,7 @@ scenes::Scene dots(const SceneInput& input, const delaunay::PointCloud& points) 
   return scene;
 }
 
-// What --draw says, or what suits the points.
+// The shape that --draw names, or the one that suits the points.
 bool drawn_as_dots(const SceneInput& input, const delaunay::PointCloud& points, bool picture) {
   if (input.draw == "surface") return false;
   const bool for_surfaces = !input.file.duplicates.empty() || input.colour_by == "simplex";

@@ -21,8 +21,9 @@ struct SceneInput {
   std::string up;           // "y" or "z"; empty: as the input says
 };
 
-// What a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit coordinates,
-// an OBJ, OFF or STL that delray wrote, a VTU, an .ele or a .node beside one is a mesh of points.
+// The kind that a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit
+// coordinates, an OBJ, OFF or STL that delray wrote, a VTU, an .ele or a .node beside one is a mesh
+// of points.
 enum class InputKind { scene, mesh, points, picture };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 

@@ -16,7 +16,7 @@
 namespace delray::apps {
 namespace {
 
-// Of "INT:1 to 64" or "TEXT:{raster,raytrace}": what stands before the colon, and behind it.
+// The parts before and behind the colon of "INT:1 to 64" or "TEXT:{raster,raytrace}".
 std::pair<std::string, std::string> type_parts(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t colon = std::min(type.find(':'), type.size());

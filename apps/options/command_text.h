@@ -34,7 +34,7 @@ struct CommandText {
   std::vector<CommandText> commands;
 };
 
-// Of the command and all below it.
+// Applies to the command and all below it.
 CommandText command_text(const CLI::App& command);
 
 }  // namespace delray::apps

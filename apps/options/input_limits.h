@@ -1,4 +1,4 @@
-// What inputs may take and touch: --memory and --allow-outside.
+// Limits of inputs, to the memory and the files that they may use: --memory and --allow-outside.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ struct NameAndDescription {
 
 // For --list: an entry a line, name, tab, description; on a terminal columns under `heading`.
 void print_list(const std::string& heading, const std::vector<NameAndDescription>& entries);
-// The same as text, for a terminal of so many columns.
+// The list as text, for a terminal of so many columns.
 std::string list_text(const std::string& heading, const std::vector<NameAndDescription>& entries,
                       std::size_t width);
 
@@ -53,7 +53,7 @@ const auto& find_entry(const Table& table, std::string_view name, std::string_vi
 // Checks that an option's value is one of `names`.
 CLI::Validator one_of(const std::vector<std::string>& names);
 
-// What an option takes besides names.
+// Values that an option takes besides names.
 struct OtherValues {
   static constexpr const char* kFile = "FILE";  // the shape of names of files
   std::string shape;                            // for messages: "#rrggbb"

@@ -14,8 +14,8 @@
 
 namespace delray::apps {
 
-// What a row is made of. A field is a function from a request, constant or not, to a reference to
-// what the option sets.
+// The description of one option. A field is a function from a request, constant or not, to a
+// reference to what the option sets.
 template <class Request>
 class OptionRow {
  public:
@@ -27,7 +27,7 @@ class OptionRow {
     for (const auto& step : steps_) step(command, *option);
     return option;
   }
-  // What it is set to, for statistics; see told.
+  // The value that it is set to, for statistics; see told.
   Json value(const Request& request) const { return value_(request); }
   const std::string& key() const { return key_; }
   // Why it changes nothing with the others; empty where it does.
@@ -51,7 +51,7 @@ class OptionRow {
   OptionRow type_name(std::string name) && {
     return step([n = std::move(name)](CLI::App&, CLI::Option& option) { option.type_name(n); });
   }
-  // Of an option in a row above.
+  // The other option is in a row above.
   OptionRow excludes(std::string other) && {
     return step([o = std::move(other)](CLI::App& command, CLI::Option& option) {
       option.excludes(command.get_option(o));

@@ -1,4 +1,4 @@
-// What is wrong with a command line: names are looked up before values are judged, since one that
+// Errors of a command line: names are looked up before values are judged, since one that
 // is mistyped makes nonsense of what follows it.
 #include "apps/options/usage.h"
 
@@ -85,7 +85,7 @@ bool has_value_next(const CLI::Option& option, const std::string& argument) {
                                     : argument.size() == 2;
 }
 
-// What CLI11 says, in the words of all other messages.
+// The message of CLI11 in the words of all other messages.
 std::string plain_text(const CLI::App& command, const CLI::ParseError& error) {
   const std::string text = error.what();
   const auto around = [&text](const std::string& middle) {

@@ -1,4 +1,4 @@
-// What is wrong with a command line that CLI11 refused, in one line.
+// Errors of a command line that CLI11 refused, in one line.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace delray::apps {
 // was probably meant; or that a command is missing. Empty if there is neither.
 std::string unknown_name(const CLI::App& program, const std::vector<std::string>& arguments);
 
-// What to say of `error`, with which --help tells more.
+// The message for `error`, with the --help that tells more.
 std::string usage_message(const CLI::App& program, const std::vector<std::string>& arguments,
                           const CLI::ParseError& error);
 

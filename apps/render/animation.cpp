@@ -26,7 +26,7 @@ std::size_t default_slots() {
   return static_cast<std::size_t>(std::clamp(parallel::arena_threads() + 2, 4, 8));
 }
 
-// What becomes of one frame on its way.
+// The state of one frame on its way.
 struct Slot {
   std::unique_ptr<raster::FrameInSteps> steps;
   Picture picture;

@@ -23,7 +23,7 @@ std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
                                               const scenes::Camera& camera,
                                               const glm::dvec3& pivot);
 
-// What the frames took on rank 0, in a pipeline over the stages below. The first two pass alone,
+// Times of the frames on rank 0, in a pipeline over the stages below. The first two pass alone,
 // since stages that share processors take longer than what formulas about them ask for.
 struct Animation {
   Frames frames;  // the statistics are the last one's; the picture has gone to its file
@@ -36,7 +36,7 @@ struct Animation {
   std::size_t overlapped = 0;     // frames that others were in the making beside
   double overlapped_seconds = 0;
 
-  // What the overlapped frames take if each is alone (Kohout 2004, 2.1), and with a processor for
+  // Seconds of the overlapped frames if each is alone (Kohout 2004, 2.1), and with a processor for
   // every stage (2.2).
   double sequential_seconds() const;
   double predicted_seconds() const;

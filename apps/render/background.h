@@ -1,4 +1,4 @@
-// What stands behind the scene in a finished picture.
+// The background behind the scene in a finished picture.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct Background {
   image::RgbaF colour;  // linear; for Kind::colour
 };
 
-// What parse_background takes but for colours.
+// The names that parse_background takes, besides colours.
 std::vector<std::string> background_names();
 
 // "auto", "environment", "studio", "transparent", or "#rrggbb" in sRGB. Throws UsageError.

@@ -22,9 +22,9 @@ void add_camera_options(CLI::App& command, CameraOptions& options);
 // Whether the camera is one that shows all of the scene, not one that somebody placed.
 bool shows_all(const CameraOptions& options, const scenes::Scene& scene);
 
-// What --camera or --view say, else the scene's own first camera, else one that shows all of it.
-// `farthest` knows all points of the scene, and is asked for the cameras that show it only. Throws
-// UsageError.
+// The camera of --camera or --view, else the scene's own first camera, else one that shows all of
+// it. `farthest` knows all points of the scene, and is asked for the cameras that show it only.
+// Throws UsageError.
 scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
                              const scenes::FarthestPoints& farthest, float aspect);
 

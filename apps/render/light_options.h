@@ -1,4 +1,4 @@
-// What lights a scene besides its own lights: --light, --light-rotation and --light-strength.
+// Light besides that of the scene itself: --light, --light-rotation and --light-strength.
 #pragma once
 
 #include <string>

@@ -9,7 +9,7 @@
 
 namespace delray::apps {
 
-// What is shown of a picture that is not yet done, on rank 0.
+// Shows a picture that is not yet done, on rank 0.
 using Preview = std::function<void(Picture&& picture)>;
 
 // On rank 0; elsewhere all but the statistics is empty.

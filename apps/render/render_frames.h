@@ -44,7 +44,7 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request, parallel::
 std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
                                         const RenderRequest& request, parallel::Progress* progress);
 
-// What a ray traced picture has besides, and how it came about; on rank 0.
+// Channels of a ray traced picture, and facts of its sampling; on rank 0.
 struct Extras {
   std::vector<image::Channel> channels;
   int passes = 0;
@@ -69,14 +69,14 @@ class FrameRenderer {
   // Collective: with some --data this rank makes its part of the scene.
   FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
                 const RenderRequest& request, parallel::Progress* progress);
-  // What that part took.
+  // The time of that part.
   double load_seconds() const { return load_seconds_; }
   double build_seconds() const { return build_seconds_; }
   // Is given pictures that are not yet done, as often as the options want it.
   void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
   // Collective.
   Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
-  // The same in steps (raster::Renderer::begin), where engine and strategy have them.
+  // Renders a frame in steps (raster::Renderer::begin), where engine and strategy have them.
   bool has_steps(int ranks) const;
   std::unique_ptr<raster::FrameInSteps> begin(comm::Communicator& communicator,
                                               const scenes::Camera& camera);
@@ -92,7 +92,7 @@ class FrameRenderer {
   double load_seconds_ = 0, build_seconds_ = 0;
 };
 
-// How ranks were at work; on rank 0.
+// Facts of how ranks were launched; on rank 0.
 struct Launched {
   int threads = 0;                      // of each rank
   double load_seconds = 0;              // beside what `Prepared` tells, of this rank

@@ -1,4 +1,4 @@
-// What the options of `delray render` amount to together.
+// Completes the options of `delray render`, and checks what goes together.
 #include "apps/render/render_options.h"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ const std::vector<RenderOption>& all_options() {
   return all;
 }
 
-// What options are where they were not given, which depends on the engine.
+// Defaults that depend on the engine, for options that were not given.
 void complete(const CLI::App& command, RenderRequest& request) {
   Sharing& sharing = request.sharing;
   if (request.engine == Engine::raster) return;

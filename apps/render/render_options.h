@@ -21,7 +21,7 @@ namespace delray::apps {
 
 enum class Engine { raster, raytrace };
 
-// How the picture is shared out among ranks, by either engine.
+// Options of sharing the picture out among ranks, for either engine.
 struct Sharing {
   std::string partition = "mahd", schedule;
   bool measured_costs = false, master_works = true;
@@ -49,7 +49,7 @@ struct RenderRequest {
   double reach = 0;                 // of ambient occlusion; 0: without end
   SamplingOptions sampling;
 
-  // Of the pictures that come out: the frame, or a crop of it.
+  // The size of the pictures that are written: the frame, or a crop of it.
   int picture_width() const { return sampling.window.empty() ? width : sampling.window.width(); }
   int picture_height() const { return sampling.window.empty() ? height : sampling.window.height(); }
   bool is_animation() const { return turntable > 0 || !camera_path.empty(); }

@@ -40,7 +40,7 @@ Json phases_of(const raytrace::Statistics& s) {
           {"shade", 0},     {"redistribute", 0}, {"compose", 0},   {"gather", s.gather_seconds}};
 }
 
-// What only the rasterizer counts.
+// Counts that only the rasterizer has.
 Json raster_of(const raster::Statistics& s) {
   Json counts = {{"triangles",
                   {{"in", s.triangles_in},
@@ -70,7 +70,7 @@ Json embree_of(const raytrace::Statistics& s) {
   return {{"version", s.embree_version}, {"isa", s.embree_isa}};
 }
 
-// What only the ray tracer counts.
+// Counts that only the ray tracer has.
 Json raytrace_of(const raytrace::Statistics& s) {
   Json counts = {{"imbalance_rays", s.imbalance_rays},
                  {"structure_bytes", s.structure_bytes},
@@ -88,7 +88,7 @@ Json of_rays(const raytrace::RayCounts& rays) {
   return {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}};
 }
 
-// What a rank of either engine has more than the other.
+// Adds the counts that ranks of only one engine have.
 void add_own(const raster::RankStatistics& rank, Json& row) {
   row["tasks_stolen"] = rank.blocks_stolen;
 }

@@ -1,4 +1,4 @@
-// What a rendering did, as JSON (schema delray.render/1).
+// The statistics of a rendering as JSON (schema delray.render/1).
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace delray::apps {
 Json render_statistics(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
                        const std::string& hash, double write_seconds);
 
-// How the stages of an animation overlapped: per stage the seconds of all frames, and of one that
+// The overlap of an animation's stages: per stage the seconds of all frames, and of one that
 // was alone; the speed-up measured over frames that are alone (Kohout 2004, 2.1), and the one
 // predicted for a processor for each stage (2.2).
 Json animation_statistics(const Animation& animation);

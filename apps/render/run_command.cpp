@@ -43,7 +43,7 @@ struct Pipe {
   }
 };
 
-// What the child does before it becomes the program.
+// Runs in the child before it becomes the program.
 struct FileActions {
   posix_spawn_file_actions_t actions{};
   FileActions() { posix_spawn_file_actions_init(&actions); }

@@ -1,4 +1,4 @@
-// How long the ray tracer samples and what becomes of it, as rows of `delray render`'s options.
+// Options of the ray tracer's sampling and of its result, as rows of `delray render`'s options.
 #include "apps/render/sampling_options.h"
 
 #include <fmt/format.h>

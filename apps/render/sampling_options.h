@@ -31,7 +31,7 @@ struct SamplingOptions {
   geometry::Rect window;  // of the frame
 };
 
-// What they are where they were not given: samples by noise or time, and the window by --crop. The
+// Completes options that were not given: samples by noise or time, and the window by --crop. The
 // request's size is known. Throws UsageError.
 void complete_sampling(const CLI::App& command, RenderRequest& request);
 

@@ -1,4 +1,4 @@
-// What ranks that have each loaded the same scene must agree in.
+// Facts that ranks which have each loaded the same scene must agree in.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ namespace {
 using geometry::Rect;
 using raytrace::ProgressiveResult;
 
-// What is shown, and how: of three numbers or of one.
+// A channel, and how it is shown: of three numbers or of one.
 struct Shown {
   const char* name;
   const char* description;

@@ -1,4 +1,4 @@
-// What rays find out besides colour: as channels of a file, and as pictures to look at.
+// Quantities that rays find besides colour: as channels of a file, and as pictures to look at.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace delray::apps {
 
-// What --show can be: "colour", which is the picture itself, "normal", "albedo", ...
+// The names that --show takes: "colour", which is the picture itself, "normal", "albedo", ...
 std::vector<std::string> shown_names();
 
 // Whether features are needed for it.

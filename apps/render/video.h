@@ -24,7 +24,7 @@ class VideoFrames {
   VideoFrames(const VideoFrames&) = delete;
   VideoFrames& operator=(const VideoFrames&) = delete;
 
-  // Of which frame_path makes names: a PNG in the folder.
+  // The pattern of which frame_path makes names: a PNG in the folder.
   std::string frames() const;
 
   // Makes the video, whole or not at all: 30 frames a second, as most players take it (H.264 where
@@ -35,7 +35,7 @@ class VideoFrames {
   void encode(const Session& session);
 
  private:
-  // What ffmpeg is called with, in the folder of the frames.
+  // The arguments of ffmpeg, in the folder of the frames.
   std::vector<std::string> arguments(const Session& session, const std::filesystem::path& to) const;
   [[noreturn]] void keep_frames(const Session& session, const std::string& why);
 

@@ -216,7 +216,7 @@ class LinePlot {
   Axis x_, y_;
 };
 
-// How often each series is the best of its group at one of the chart's x.
+// The number of times each series is the best of its group at one of the chart's x.
 std::vector<int> times_best(const LineChart& chart) {
   std::map<std::pair<std::string, double>, std::pair<double, std::size_t>> best;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {

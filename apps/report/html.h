@@ -12,7 +12,7 @@ using Html = std::string;
 // With <, >, & and " replaced, for text and for attributes in double quotes.
 Html escaped(std::string_view text);
 
-// How a number came about; wherever a number is shown, this is.
+// The source of a number, which is shown wherever the number is.
 enum class Source { counted, measured, predicted };
 std::string_view name_of(Source source);
 

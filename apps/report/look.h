@@ -1,4 +1,4 @@
-// How a variant looks in all charts of all reports.
+// The colour and dash of a variant in all charts of all reports.
 #pragma once
 
 #include <string>

@@ -37,7 +37,7 @@ Html overlay(const Overlay& overlay, const std::string& picture_id);
 // The picture, not shown itself. REQUIRES: an id that is unique on the page and needs no escapes.
 Html backdrop(const image::Image8& picture, const std::string& id);
 
-// What colours around one mean.
+// The meaning of colours around one.
 Html overlay_key(const std::string& low, const std::string& even, const std::string& high);
 
 }  // namespace delray::apps::report

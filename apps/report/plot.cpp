@@ -10,7 +10,7 @@
 namespace delray::apps::report::internal {
 namespace {
 
-// Of text at 12 pixels, in the widest of the usual fonts (DejaVu Sans).
+// The width of text at 12 pixels, in the widest of the usual fonts (DejaVu Sans).
 constexpr double kLetter = 7.3;
 // Plots on a telephone, and beside each other on a screen, in pixels.
 constexpr double kNarrow = 190, kWide = 330;

@@ -1,4 +1,4 @@
-// What every report does in the browser: tabs, numbers on hover, lines that light up, sorting, CSV.
+// The script of every report: tabs, numbers on hover, lines that light up, sorting, CSV.
 #include "apps/report/style.h"
 
 namespace delray::apps::report::internal {

@@ -11,7 +11,7 @@
 
 namespace delray::apps::report {
 
-// What `of` gives for the rows, each once, in order of appearance.
+// The values of `of` for the rows, each once, in order of appearance.
 template <class Rows, class F>
 auto unique_of(const Rows& rows, F&& of) {
   std::vector<std::decay_t<decltype(of(*rows.begin()))>> result;

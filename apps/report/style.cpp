@@ -1,4 +1,4 @@
-// How every report is drawn, on white and on black, on telephones and on paper.
+// The style sheet of every report, for white and black, telephones and paper.
 #include "apps/report/style.h"
 
 namespace delray::apps::report::internal {

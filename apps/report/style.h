@@ -1,4 +1,4 @@
-// What every report looks like and does in the browser.
+// The style sheet and the script of every report.
 #pragma once
 
 namespace delray::apps::report::internal {

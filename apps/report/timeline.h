@@ -1,4 +1,4 @@
-// What everybody did when: a Gantt chart.
+// A Gantt chart of what each rank or thread did when.
 #pragma once
 
 #include <string>

@@ -34,7 +34,7 @@ class ProgressBar {
   std::thread thread_;
 };
 
-// What to write to stderr before a line of text: clears the bar if one is drawn, else nothing.
+// The text to write to stderr before a line: clears the bar if one is drawn, else nothing.
 std::string_view before_line();
 
 }  // namespace delray::apps

@@ -1,4 +1,4 @@
-// What a progress bar says.
+// The text of a progress bar.
 #include "apps/terminal/progress_text.h"
 
 #include <fmt/format.h>

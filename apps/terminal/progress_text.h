@@ -1,4 +1,4 @@
-// What a progress bar says.
+// The text of a progress bar.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What fits on the terminal.
+// The size of the terminal.
 #include "apps/terminal/terminal.h"
 
 #include <sys/ioctl.h>

@@ -1,4 +1,4 @@
-// What fits on the terminal.
+// The size of the terminal.
 #pragma once
 
 #include <cstddef>

@@ -29,7 +29,7 @@ std::vector<TextColumn> measure(const TextTable& table) {
   return columns;
 }
 
-// How many of the first columns tell all lines apart; one if all together do not.
+// The number of first columns that tell all lines apart; one if all together do not.
 std::size_t key_columns(const TextTable& table) {
   for (std::size_t keys = 1; keys < table[0].size(); ++keys) {
     std::set<std::vector<std::string>> seen;

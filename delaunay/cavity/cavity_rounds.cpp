@@ -30,7 +30,7 @@ namespace {
 // A pass costs a region so many points to be worth while: starting a thread takes some tens
 // of microseconds, and most of the points of a small region are at its boundary.
 constexpr std::size_t kPointsPerRegion = 500;
-// Of the points of a pass that must have been inserted for another pass to be tried.
+// The part of a pass's points that must have been inserted for another pass to be tried.
 constexpr double kWorthwhile = 0.25;
 constexpr int kPasses = 3;
 constexpr std::size_t kMaximumParts = std::size_t{1} << Box3Region::kMaximumCuts;
@@ -209,7 +209,7 @@ class ParallelInsertion {
       has_inserted[t] = kernels_[t].inserted() > before ? 1 : 0;
     });
     for (std::size_t t = 0; t < parts; ++t) {
-      // What a kernel made last only it could have removed since.
+      // Only the kernel itself could have removed the simplex that it made last.
       if (has_inserted[t] != 0) some_simplex_ = kernels_[t].kernel().last_simplex();
     }
     std::size_t left = 0;

@@ -44,7 +44,7 @@ HWY_INLINE Points load_corners(const SpaceVertex* vertices, const Mesh<3>& mesh,
     return &vertices[mesh.vertex(corner_of(simplices[lane], corner)) + 1U].position.x;
   };
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE && HWY_MAX_BYTES >= 32
-  // What lies behind a position may be written by another thread.
+  // Memory behind a position may be written by another thread.
   const auto three = hn::FirstN(d, 3);
   const V p0 = hn::MaskedLoad(three, d, at(0)), p1 = hn::MaskedLoad(three, d, at(1));
   const V p2 = hn::MaskedLoad(three, d, at(2)), p3 = hn::MaskedLoad(three, d, at(3));

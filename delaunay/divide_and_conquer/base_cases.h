@@ -70,7 +70,7 @@ class BaseCases {
         bits_of(absolute(seen_01.cross) > error) & bits_of(absolute(seen_23.cross) > error);
     if (sure != 3 || !(std::abs(determinant) > bounds.circle)) return std::nullopt;
     const unsigned turns = bits_of(seen_01.cross > 0) | bits_of(seen_23.cross > 0) << 2;
-    // Of points that turn right the determinant is negative inside.
+    // The determinant is negative inside where the points turn right.
     const bool inside = (determinant > 0) == ((turns & 1) != 0);
     const FourPoints& of = kFourPoints[turns | (inside ? 16 : 0)];
     const std::array<VertexNumber, 5> vertices = {first, first + 1, first + 2, first + 3,

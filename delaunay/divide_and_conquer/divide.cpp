@@ -189,7 +189,7 @@ class Divider {
     const auto of_second = [&, vertex = upper.right, ghost = upper.ghost](HullVertex v) {
       return v.vertex == vertex ? HullVertex{vertex, ghost} : v;
     };
-    // Of the direction in which the ranges follow each other the extremes are known.
+    // The extremes in the direction in which the ranges follow each other are known.
     if (by_y) {
       return {precedes(second.left, first.left) ? of_second(second.left) : of_first(first.left),
               precedes(first.right, second.right) ? of_second(second.right) : of_first(first.right),

@@ -76,8 +76,8 @@ class MergeFilter {
     return circle_conflict(a, b, p, q);
   }
 
-  // What rounding can add to the cross and to the determinant of points close to each other; below
-  // 0 if nothing is rounded. A cross or a determinant of 0 is never sure by `circle`.
+  // The errors that rounding can add to the cross and to the determinant of points close to each
+  // other; below 0 if nothing is rounded. A cross or a determinant of 0 is never sure by `circle`.
   struct Bounds {
     double cross, circle;
   };

@@ -163,7 +163,7 @@ struct DynamicTriangulation<D>::State {
     if (frame.size() == D + 1) start_mesh();
   }
 
-  // Of which no row is left.
+  // Removes a site of which no row is left.
   void remove_site(std::uint32_t site) {
     if (!meshed) {
       if (std::ranges::find(frame, site) != frame.end()) frame.clear();

@@ -57,7 +57,7 @@ inline bool is_flat(const Ring& ring, std::span<const glm::dvec2> points) {
   return true;
 }
 
-// Of the vertices of the ring between i and j the one that the triangle at the edge from i to j,
+// The vertex of the ring between i and j that the triangle at the edge from i to j,
 // inside the hole, has in the triangulation of the other points.
 //
 // That is a vertex of the ring, and one whose circle holds none of the others. Circles through both

@@ -8,7 +8,7 @@ namespace {
 
 using files::Format;
 
-// How much of the content is text.
+// Length of the part of the content that is text, in bytes.
 std::size_t text_size(Format format, const std::string& content) {
   constexpr std::string_view kEnd = "end_header";
   switch (format) {

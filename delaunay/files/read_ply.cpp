@@ -55,7 +55,7 @@ Columns find_columns(const PlyElement& element) {
   return columns;
 }
 
-// What one unit of a property is of its full range: 1 for floating point.
+// The value of a property at its full range: 1 for floating point.
 double full_range(PlyType type) {
   switch (type) {
     case PlyType::int8:

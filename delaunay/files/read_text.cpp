@@ -50,7 +50,7 @@ struct ColumnName {
   Quantity quantity;
   bool degrees = false;
 };
-// Of several columns for one quantity that whose name comes first is taken.
+// The first of these names wins where a file has several columns for one quantity.
 constexpr std::array kColumnNames = {
     ColumnName{"x", kX},
     ColumnName{"easting", kX},

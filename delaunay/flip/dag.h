@@ -7,7 +7,7 @@
 // (The report's leaves are modified in place, and it keeps bits that say which children are leaves;
 // here the list of children says it.)
 //
-// What only leaves have, neighbours and an owner, is kept apart in records that are used again:
+// Neighbours and an owner, which only leaves have, are kept apart in records that are used again:
 // they are few, and stay in the caches. A record says which node it serves, so that whoever comes
 // to it by way of a node that has been replaced meanwhile sees that.
 #pragma once

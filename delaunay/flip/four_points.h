@@ -11,7 +11,7 @@ namespace delray::delaunay::internal {
 // the hull's edges, as HullMesh wants them.
 struct FourPoints {
   bool exists = false;
-  // Of corner k of simplex t at 3 t + k; neighbours are numbered 4 t + k.
+  // Corner k of simplex t is at 3 t + k; neighbours are numbered 4 t + k.
   std::array<std::uint8_t, 18> vertices{}, neighbours{};
   // The ghost of the edge that starts at a point; 0 if the point is within the hull.
   std::array<std::uint8_t, 4> ghosts{};

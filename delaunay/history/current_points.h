@@ -19,7 +19,7 @@ class CurrentPoints {
 
   std::size_t threads() const { return points_.size(); }
 
-  // Of two threads that set a point and then look at the other's, at least one sees it: all of
+  // If two threads set a point and then look at the other's, at least one sees it: all of
   // these are in one order.
   void set(std::size_t thread, VertexNumber vertex) { points_[thread].vertex.store(vertex); }
   VertexNumber of(std::size_t thread) const { return points_[thread].vertex.load(); }

@@ -29,7 +29,7 @@ NodeNumber descend(const Dag<2>& dag, const Orientation<2>& orientation, NodeNum
     const NodeNumber second = first + 1, third = first + 2;
     const VertexNumber a = dag.vertex(corner_of(first, 0)), b = dag.vertex(corner_of(first, 1)),
                        apex = dag.vertex(corner_of(first, 2));
-    // Of what is inside the node, only the edges at the apex decide.
+    // Only the node's inner edges decide, those at the apex.
     const int at_b = orientation(b, apex, q);
     if (count == 2) {
       node = at_b >= 0 ? first : second;

@@ -36,7 +36,7 @@ std::uint64_t repair(const DagTriangulation<2>& triangulation, std::size_t threa
   while (!suspects.empty()) {
     const CornerNumber corner = suspects.back();
     suspects.pop_back();
-    // What replaced a leaf has brought its own suspects.
+    // The leaves that replaced one have brought their own suspects.
     if (!triangulation.dag.is_leaf(simplex_of(corner)) || !is_wrong(triangulation, corner)) {
       continue;
     }

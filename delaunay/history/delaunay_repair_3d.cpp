@@ -53,7 +53,7 @@ std::uint64_t flip_all(const DagTriangulation<3>& triangulation, std::vector<Cor
   while (!open.empty()) {
     const CornerNumber corner = open.back();
     open.pop_back();
-    // What replaced a leaf has brought its own facets.
+    // The leaves that replaced one have brought their own facets.
     if (!triangulation.dag.is_leaf(simplex_of(corner)) || !is_wrong(triangulation, corner)) {
       continue;
     }

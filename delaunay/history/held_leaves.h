@@ -24,7 +24,7 @@ class HeldLeaves {
 
   std::uint32_t owner() const { return owner_; }
 
-  // The same as Dag::try_lock(), and `record` is the node's.
+  // As Dag::try_lock(), and `record` is the node's.
   std::uint32_t try_lock(NodeNumber node, RecordNumber& record) {
     if (cache_.is_new(node)) return owner_;
     record = dag_.record_if_leaf(node);

@@ -44,10 +44,11 @@ void insert_from_root(DagRun<D>& run, const DagTriangulation<D>& triangulation, 
   insert_in_leaf(run, triangulation, leaf, vertex, access, suspects, phases);
 }
 
-// How many points of a part insert_alone() inserts at most.
+// The maximum number of points of a part that insert_alone() inserts.
 template <int D>
 std::size_t points_alone(const DagRun<D>& run, std::size_t part) {
-  // With some thousand triangles threads seldom meet; of few points most are left to the threads.
+  // With some thousand triangles threads seldom conflict; most of few points are left to the
+  // threads.
   constexpr std::size_t kPoints = 1024, kShare = 16;
   return std::min((run.end(part) - run.begin(part)) / kShare, kPoints / run.parts());
 }

@@ -19,7 +19,7 @@
 
 namespace delray::delaunay::internal {
 
-// What the threads of a run share to decide who waits.
+// State that the threads of a run share to decide who waits.
 struct Blocking {
   explicit Blocking(std::size_t threads) : waits(threads), priorities(threads) {
     for (std::size_t i = 0; i < threads; ++i) priorities[i].store(i, std::memory_order_relaxed);
@@ -80,7 +80,7 @@ class NodeLocks {
     return held_.create(vertices);
   }
   void link(CornerNumber outside, CornerNumber inside) {
-    // What is undone altogether needs no journal.
+    // Simplices that are undone altogether need no journal.
     if (!held_.is_new(simplex_of(outside))) {
       journal_.push_back({outside, dag_.neighbour(outside)});
     }

@@ -30,7 +30,7 @@
 namespace delray::delaunay {
 namespace {
 
-// How the curve goes through the quadrants of a square: whether x and y are exchanged, and then
+// The way of the curve through the quadrants of a square: whether x and y are exchanged, and then
 // both mirrored (bits 0 and 1 of the state), on the way in.
 struct Quadrant {
   std::uint8_t place, state;

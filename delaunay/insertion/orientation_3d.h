@@ -41,8 +41,8 @@ class Orientation<3> {
     }
     return sign(p, infinite);
   }
-  // The same with q in the place of corner `replaced`: 0 or more if q is on the tetrahedron's side
-  // of the facet opposite to that corner.
+  // The orientation with q in the place of corner `replaced`: 0 or more if q is on the
+  // tetrahedron's side of the facet opposite to that corner.
   int with(const glm::dvec3& q, unsigned replaced,
            const std::array<VertexNumber, 4>& vertices) const {
     std::array<const glm::dvec3*, 4> p{};

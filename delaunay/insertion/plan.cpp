@@ -93,7 +93,7 @@ Plan plan_of(std::span<const Point> points, std::size_t parts, std::string_view 
     std::vector<Point> own(end - begin);
     std::vector<std::uint32_t> numbers(end - begin);
     for (std::size_t i = begin; i < end; ++i) own[i - begin] = points[plan.points[i]];
-    // Threads that keep pace would meet if they began at the same place.
+    // Threads that keep pace would conflict if they began at the same place.
     const double start = static_cast<double>(part) / static_cast<double>(parts);
     const std::vector<std::uint32_t> places =
         insertion_order(std::span<const Point>(own), order, seed + 1 + part, start);

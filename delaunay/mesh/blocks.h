@@ -9,7 +9,7 @@
 namespace delray::delaunay::internal {
 
 // The indices [0, n) in blocks of nearly equal size. One thread, or little work, gets a single
-// block and never meets the scheduler, which takes longer to wake up than a thousand points to
+// block and never calls the scheduler, which takes longer to wake up than a thousand points to
 // triangulate.
 class Blocks {
  public:

@@ -73,7 +73,7 @@ Result extract(Mesh<D>&& mesh, std::span<const std::uint32_t> rows, int threads,
   } else {
     parallel::parallel_for(0, workers, 1, [&](std::size_t) { work(); });
   }
-  // Of collinear points only ghosts are left, and those bound nothing.
+  // Collinear points leave only ghosts, and those bound nothing.
   if (!result.vertices.empty()) result.hull_facets = ghosts;
   created_by.resize(made);
   whole.created_by = std::move(created_by);

@@ -70,7 +70,7 @@ class Mesh {
     numbers_[place(corner) + 1] = neighbour;
   }
 
-  // The same of corner k of a simplex that is known, in fewer steps.
+  // Vertex and neighbour of corner k of a simplex, in fewer steps than by corner number.
   VertexNumber vertex(SimplexNumber simplex, unsigned k) const {
     return numbers_[place(simplex, k)];
   }

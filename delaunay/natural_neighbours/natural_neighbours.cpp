@@ -114,7 +114,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> side_of(
   return std::nullopt;
 }
 
-// Of q in the plane of a facet of the hull: those within that plane.
+// Neighbours of q in the plane of a facet of the hull: those within that plane.
 std::vector<NaturalNeighbour> neighbours_on_hull(const Query& query,
                                                  const std::vector<Tetrahedron>& cavity,
                                                  const std::array<glm::dvec3, 3>& plane,

@@ -67,7 +67,7 @@ struct Precision<Wide<bits>> {
 
 namespace {
 
-// Calls compute with numbers of more and more bits until it answers.
+// Calls compute with numbers of more and more bits until it returns a value.
 template <class Compute>
 std::vector<NaturalNeighbour> with_bits(const Compute& compute) {
   SharesFound found = compute(Wide<256>());

@@ -1,9 +1,10 @@
 // Shares of natural neighbours in numbers of any precision, with a bound of their error.
 //
-// What a neighbour loses is a sum of signed parts (areas or volumes) between the centres of
-// circumscribed circles or spheres. Where simplices are almost flat the centres lie far away and
-// the parts, large ones, cancel out. So each centre carries how far off it may be, each part adds
-// what that makes of it, and shares count only if all of it together is a small part of the whole.
+// The area or volume that a neighbour loses to the point is a sum of signed parts (areas or
+// volumes) between the centres of circumscribed circles or spheres. Where simplices are almost flat
+// the centres lie far away and the parts, large ones, cancel out. So each centre carries how far
+// off it may be, each part adds what that makes of it, and shares count only if all of it together
+// is a small part of the whole.
 #pragma once
 
 #include <algorithm>
@@ -88,16 +89,17 @@ class Shares {
   std::size_t parts_ = 0;
 };
 
-// Of triangles whose circles hold q, in the plane or in one of space. Sides are their edges that
-// are no other's.
+// A triangle whose circle holds q, in the plane or in one of space. Sides are edges of one triangle
+// that are no other's.
 template <class T>
 struct Triangle {
   std::array<std::uint32_t, 3> rows;
   std::array<Vector2<T>, 3> at;  // counterclockwise
 };
 
-// What a neighbour loses is a polygon about it: from the centre of q and an edge of the cavity that
-// leaves it, over those of the triangles there, to that of q and the edge that enters it.
+// The area that a neighbour loses is a polygon about it: from the centre of q and an edge of the
+// cavity that leaves it, over those of the triangles there, to that of q and the edge that enters
+// it.
 //
 // REQUIRES: q is on the line of no side.
 template <class T>
@@ -148,7 +150,7 @@ SharesFound shares_of_area(const std::vector<Triangle<T>>& cavity, const Vector2
   return shares.normalized(rows);
 }
 
-// Of tetrahedra whose spheres hold q.
+// A tetrahedron whose sphere holds q.
 struct Tetrahedron {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   std::array<std::uint32_t, 4> rows;
@@ -170,7 +172,7 @@ struct EdgeOfSides {
   std::size_t first, second;
 };
 
-// Of the sides of a cavity, by their corners. O(n log n).
+// The edges of the sides of a cavity, by their corners. O(n log n).
 inline std::vector<EdgeOfSides> edges_of(const std::vector<std::array<std::uint32_t, 3>>& sides) {
   struct Directed {
     std::uint64_t key;  // both ends, in ascending order
@@ -195,12 +197,12 @@ inline std::vector<EdgeOfSides> edges_of(const std::vector<std::array<std::uint3
   return edges;
 }
 
-// What a neighbour i loses is a polyhedron. Each of its faces lies half-way between i and a point
-// j, another neighbour or q, and its edges are between the centres of tetrahedra that follow each
-// other around the edge from i to j. So its volume is a sum of cones with the apex i over triangles
-// of two centres and the middle of i and j: those of the tetrahedra in the cavity, less those of
-// the tetrahedra that would replace them. A cone with the apex j over the same triangle has the
-// same volume, as part of what j loses.
+// The volume that a neighbour i loses is a polyhedron. Each of its faces lies half-way between i
+// and a point j, another neighbour or q, and its edges are between the centres of tetrahedra that
+// follow each other around the edge from i to j. So its volume is a sum of cones with the apex i
+// over triangles of two centres and the middle of i and j: those of the tetrahedra in the cavity,
+// less those of the tetrahedra that would replace them. A cone with the apex j over the same
+// triangle has the same volume, as part of what j loses.
 //
 // REQUIRES: none of the sides is in a plane with q.
 template <class T>
@@ -236,7 +238,7 @@ class SharesOfVolume {
     }
   }
 
-  // Of all tetrahedra of the cavity, and of all of q and a side.
+  // Centres of all tetrahedra of the cavity, and of all that q makes with a side.
   bool find_centres() {
     for (std::size_t t = 0; t < cavity_.size(); ++t) {
       const auto& n = numbers_[t];
@@ -320,12 +322,12 @@ struct SpaceTriangle {
   std::array<glm::dvec3, 3> at;
 };
 
-// The same in numbers as wide as it takes.
+// Shares computed in numbers as wide as it takes.
 std::vector<NaturalNeighbour> wide_shares_of_area(const std::vector<Triangle<double>>& cavity,
                                                   const glm::dvec2& q);
 std::vector<NaturalNeighbour> wide_shares_of_volume(const std::vector<Tetrahedron>& cavity,
                                                     const glm::dvec3& q);
-// Of triangles that lie in the plane of three points, counterclockwise as these are.
+// Triangles lie in the plane of three points, counterclockwise as these are.
 std::vector<NaturalNeighbour> wide_shares_in_plane(const std::vector<SpaceTriangle>& cavity,
                                                    const std::array<glm::dvec3, 3>& plane,
                                                    const glm::dvec3& q);

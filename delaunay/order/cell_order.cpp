@@ -39,7 +39,7 @@ struct Rows {
   }
 };
 
-// What ordering one bucket after the other needs, kept between them.
+// Memory for ordering one bucket after the other, kept between them.
 struct Scratch {
   std::vector<glm::dvec2> points;
   std::vector<std::uint32_t> rows;

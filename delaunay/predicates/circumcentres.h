@@ -144,7 +144,7 @@ struct Sphere {
   Vector3<T> solution(const T& of_a, const T& of_b, const T& of_c) const {
     return (T(1) / (T(2) * determinant)) * (of_a * bc + of_b * ca + of_c * ab);
   }
-  // How far off h is, a solution whose numerator may be off by `numerator_off`.
+  // The error of h, a solution whose numerator may be off by `numerator_off`.
   T error(const Vector3<T>& h, const T& numerator_off) const {
     using std::abs;
     return (numerator_off + T(2) * norm(h) * off) / (T(2) * (abs(determinant) - off));

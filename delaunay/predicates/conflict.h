@@ -115,7 +115,7 @@ bool sphere_conflict(const Predicates& predicates, const glm::dvec3& a, const gl
 }
 
 // As in 2D. A ghost conflicts with points strictly beyond its facet of the hull. For a point in the
-// facet's plane the rule within that plane gives the same answer as the tetrahedron below the
+// facet's plane the rule within that plane gives the same result as the tetrahedron below the
 // facet: its sphere meets the plane in the facet's circle, and raising its apex changes nothing.
 inline bool conflict(const Mesh<3>& mesh, std::span<const glm::dvec3> points, SimplexNumber simplex,
                      const glm::dvec3& q) {

@@ -34,7 +34,7 @@ class Orientation<2> {
     if (b == kInfiniteVertex) return -about(a, q);
     return orient2d(points_[a], points_[b], q);
   }
-  // The same for three vertices of which at most one is infinite.
+  // The orientation of three vertices, of which at most one is infinite.
   int of_vertices(VertexNumber a, VertexNumber b, VertexNumber c) const {
     return c == kInfiniteVertex ? about(a, points_[b]) : (*this)(a, b, points_[c]);
   }

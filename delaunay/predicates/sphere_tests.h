@@ -17,7 +17,7 @@
 
 namespace delray::delaunay::internal {
 
-// What is known of all points of a mesh.
+// Bounds that hold for all points of a mesh.
 struct PointRange {
   glm::dvec3 low{0}, high{0};  // bounding box
   // Every coordinate is a multiple of 2^grid_exponent; 0 if all are 0.
@@ -26,8 +26,8 @@ struct PointRange {
 
 // The part of SphereTests that code for vector registers shares.
 struct SphereBounds {
-  // Of a rounded determinant of the sphere test: for all points of the mesh, and over the product
-  // of the extents and the largest lift of the points at hand.
+  // Errors of a rounded determinant of the sphere test: for all points of the mesh, and over the
+  // product of the extents and the largest lift of the points at hand.
   double insphere_error = 0;
   static constexpr double kInsphereError = 18 * 24 * kRoundOff;
   // Whether the bound over the points at hand holds: nothing overflows on the way.

@@ -6,7 +6,7 @@
 
 namespace delray::loadbalance::internal {
 
-// How many of the parts go to the first side of a cut: half; of an odd number the larger half at
+// The number of parts on the first side of a cut: half; of an odd number the larger half at
 // even depths of the recursion, the smaller at odd ones (Mueller 1995).
 inline int first_half(int parts, int depth) { return depth % 2 == 0 ? (parts + 1) / 2 : parts / 2; }
 

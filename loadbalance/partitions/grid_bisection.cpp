@@ -18,8 +18,8 @@ namespace {
 
 // As many as can be cut without thinking twice, and enough that cuts are not coarse.
 constexpr std::size_t kFewCells = 1024;
-// How far a part may be from the cost that is wanted, in parts of it; what coarser levels leave too
-// much the finest mends, unless its border lies where there is no cost.
+// The tolerance of a part's cost, relative to the cost that is wanted; what coarser levels leave
+// too much the finest mends, unless its border lies where there is no cost.
 constexpr double kTolerance = 0.01, kCoarseTolerance = 0.02;
 
 unsigned levels_of(std::size_t cells) {

@@ -32,7 +32,7 @@ class GridBisection {
   // REQUIRES: `cells` are all cells, or what one call left in one of two parts; at least two.
   std::size_t cut(std::span<std::uint32_t> cells, double share);
 
-  // How many cells were looked at, for tests.
+  // The number of cells visited, for tests.
   std::uint64_t looked_at() const { return looked_at_ + refinement_.looked_at(); }
 
  private:

@@ -51,7 +51,7 @@ class GridGraph {
     visit(cell - stride(), cells_[cell - stride()].down);
     visit(cell + stride(), cells_[cell].down);
   }
-  // How much less would cross if the cell changed sides.
+  // The cost of crossing edges that a cell would save by changing sides.
   double gain(std::uint32_t cell) const;
   // Whether it is tied to a cell on the other side.
   bool at_border(std::uint32_t cell) const;

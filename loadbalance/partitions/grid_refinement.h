@@ -36,7 +36,7 @@ class GridRefinement {
   void refine(GridGraph& graph, std::vector<std::uint32_t>& near, std::size_t cells,
               GridHalf& half);
 
-  // How many cells it has looked at, for tests.
+  // The number of cells visited, for tests.
   std::uint64_t looked_at() const { return looked_at_; }
 
  private:

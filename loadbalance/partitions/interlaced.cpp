@@ -26,7 +26,7 @@ int block_side(const Rect& frame, int parts) {
   return side;
 }
 
-// How far owners move from one row of blocks to the next: prime to their number, so that columns
+// The shift of owners from one row of blocks to the next: prime to their number, so that columns
 // meet all of them, and near the golden section of it, so that those of an owner lie apart.
 int shift_of(int parts) {
   const int wanted = static_cast<int>((std::int64_t{parts} * 382 + 500) / 1000);

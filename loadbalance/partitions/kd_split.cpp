@@ -67,7 +67,7 @@ class Sweep {
   }
 
  private:
-  // How much better the cut across the shorter side must be.
+  // The factor by which a cut across the shorter side must be better.
   static constexpr double kWorthASliver = 0.97;
 
   // The border where the two curves are nearest to crossing, each over its number of parts.

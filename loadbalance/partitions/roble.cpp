@@ -109,7 +109,7 @@ class Roble {
     return result;
   }
 
-  // Of the regions other than `without`, the two with the lowest sum that form a rectangle
+  // The two regions, `without` excluded, with the lowest sum that form a rectangle
   // together: left and right, or upper and lower.
   std::optional<std::pair<std::size_t, std::size_t>> lightest_pair(std::size_t without) const {
     std::map<std::tuple<int, int, int>, std::size_t> by_left, by_top;

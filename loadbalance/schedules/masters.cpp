@@ -3,7 +3,7 @@
 //
 // A rank alternates between taking in messages, handing out tasks and doing one task, and waits
 // only when none of these is possible. Tasks from above fill a pool; ranks below that ask are
-// served from it first come, first served, and an empty answer ends them. Two messages for each
+// served from it first come, first served, and an empty reply ends them. Two messages for each
 // batch.
 //
 // Degenerate: a single rank is the root, with all tasks and nobody to serve; a rank with nobody
@@ -61,7 +61,7 @@ class Node {
   }
 
  private:
-  // What has arrived.
+  // Messages that have arrived.
   void take_in() {
     bool any = false;
     while (below_ > 0) {

@@ -23,8 +23,8 @@ struct MasterTree {
   std::uint64_t workers(int rank) const;
 };
 
-// How many of `rest` tasks that a master has go to a rank that asks, when `workers` ranks do tasks
-// there or below it; at least 1.
+// The number of tasks, of `rest` that a master has, that go to a rank that requests some, when
+// `workers` ranks do tasks there or below it; at least 1.
 using Amount = parallel::FunctionRef<std::uint64_t(std::uint64_t rest, std::uint64_t workers)>;
 
 // A master gives everybody below it tasks unasked once, and then whenever they ask, first come,

@@ -58,7 +58,8 @@ class Neighbour {
     std::uint64_t load = 0;
   };
 
-  // Answers what has come, up to tasks: of those some are begun before anybody can take them.
+  // Replies to messages that have come, up to tasks: of those some are begun before anybody can
+  // take them.
   void serve() {
     bool any = false, has_tasks = false;
     while (!has_tasks) {

@@ -38,7 +38,7 @@ RankReport hierarchical(comm::Communicator& communicator, const TaskGrid& tasks,
 // share. One that has none left asks all others for their load, the tasks that wait; then it takes,
 // from those above the mean, in proportion to what they have above it, as many as the mean and at
 // least one, and begins anew when those are done. It gives up where nobody has any. A rank that
-// is busy with a task answers after it. 2 (ranks - 1) messages whenever a rank runs dry, so the
+// is busy with a task replies after it. 2 (ranks - 1) messages whenever a rank runs dry, so the
 // number of messages is quadratic in the ranks by definition.
 RankReport stealing(comm::Communicator& communicator, const TaskGrid& tasks,
                     const ScheduleOptions& options, TaskFunction work);

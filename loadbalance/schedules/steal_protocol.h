@@ -12,10 +12,10 @@ namespace delray::loadbalance::internal {
 
 struct StealMessage {
   enum class Kind : std::uint64_t {
-    ask_load,   // the answer is load
+    ask_load,   // the reply is load
     load,       // value: tasks that wait
-    ask_tasks,  // value: how many, or the asker's load; the answer is tasks
-    tasks,      // value: 1 for an answer, 0 for tasks that come later
+    ask_tasks,  // value: how many, or the sender's load; the reply is tasks
+    tasks,      // value: 1 for a reply, 0 for tasks that come later
     begun,      // value: for the count of all
     over,
   };
@@ -26,7 +26,7 @@ struct StealMessage {
 };
 
 // One rank's messages and its part in counting. Every rank has one unit to begin with, and gets one
-// for each task that it begins; when it is quiet, with no tasks that wait and no answer to come, it
+// for each task that it begins; when it is quiet, with no tasks that wait and no reply to come, it
 // hands its units up a binomial tree of ranks. When all have come to rank 0 all tasks are begun,
 // and no message is under way as long as a rank only asks when it holds a unit.
 class StealProtocol {

@@ -51,7 +51,8 @@ class Thief {
   }
 
  private:
-  // Answers what has come, up to tasks: those are begun before anybody can take them away.
+  // Replies to messages that have come, up to tasks: those are begun before anybody can take them
+  // away.
   void serve() {
     bool any = false, has_tasks = false;
     while (!has_tasks) {

@@ -11,7 +11,8 @@
 namespace delray::loadbalance::internal {
 namespace {
 
-// How often a rank that waits for messages looks whether one of its threads has failed.
+// The interval at which a rank that waits for messages checks whether one of its threads has
+// failed.
 constexpr auto kFailureCheck = std::chrono::milliseconds(5);
 
 // Tasks that a thread takes from the queue at once: at most so many, and such a part of its share
@@ -151,7 +152,7 @@ void TaskRunner::run(std::uint32_t task, int thread) {
   mark(thread, Interval::Kind::work, 1);
 }
 
-// Several at once where threads would meet at the queue too often, few beside what waits.
+// Takes several at once where threads would contend for the queue, but few of those that wait.
 TaskRange TaskRunner::pop() {
   const auto threads = static_cast<std::uint64_t>(lanes_.size());
   const std::uint64_t most =

@@ -50,7 +50,7 @@ class TaskRunner {
   RankReport report;  // its counts of requests and steals are the schedule's
 
  private:
-  // What a thread did and how far its time is accounted for.
+  // The record of a thread: what it did, and how far its time is accounted for.
   struct alignas(64) Lane {
     std::vector<Interval> intervals;
     double until = 0;

@@ -41,13 +41,13 @@ namespace {
 using composite::MachineModel;
 using composite::MetadataOnlyImages;
 
-// Of this many ranks at most samples are taken for the model of this machine.
+// Samples for the model of this machine are taken with this many ranks at most.
 constexpr int kMostFittedRanks = 16;
 // Pictures of more ranks would not fit a page.
 constexpr int kMostShownRanks = 8;
 // A scheme is predicted from the times of the schemes of the other half.
 constexpr std::size_t kHalves = 2;
-// Of the progress bar; a run is one.
+// Steps of the progress bar for a prediction; a run is one step.
 constexpr std::size_t kStepsOfPrediction = 10;
 // Simulating this many takes long, and nobody has so many on one machine.
 constexpr int kMostRanksHere = 256;
@@ -61,10 +61,10 @@ std::vector<std::string> schemes_of(const CompareRequest& request) {
 
 int cores_here() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-// What messages cost between so many threads of this process, before it is fitted.
+// The costs of messages between so many threads of this process, before they are fitted.
 comm::Network network_here(int ranks) {
   comm::Network network;
-  // Of waking a thread that waits; those that have a core each stay awake.
+  // The latency is that of waking a thread that waits; threads that have a core each stay awake.
   network.latency = ranks <= cores_here() ? 1e-6 : 20e-6;
   network.overhead = 1e-6;
   network.seconds_per_byte = 0;
@@ -72,7 +72,7 @@ comm::Network network_here(int ranks) {
   return network;
 }
 
-// Of each run.
+// Seconds of each run.
 std::vector<double> totals(const MeasuredScheme& measured) {
   std::vector<double> result = measured.compose_seconds;
   for (std::size_t i = 0; i < std::min(result.size(), measured.gather_seconds.size()); ++i)
@@ -132,7 +132,7 @@ class Comparison {
     return are_transparent ? std::vector<std::string>{"deep"} : request_.codecs;
   }
 
-  // Those that were timed at least once.
+  // Appends the schemes that were timed at least once.
   void append(const std::vector<MeasuredScheme>& all, int ranks) {
     for (const MeasuredScheme& measured : all) {
       if (measured.compose_seconds.empty()) continue;
@@ -182,7 +182,7 @@ class Comparison {
     if (!request_.output.empty() && ranks == shown_ranks()) show_fastest(communicator, share);
   }
 
-  // Of the runs that are measured, few enough ranks that their pictures can be looked at.
+  // The largest measured number of ranks that is small enough for pictures of each.
   int shown_ranks() const {
     int shown = 0;
     for (const int ranks : request_.ranks)
@@ -370,7 +370,7 @@ class Comparison {
     return samples;
   }
 
-  // Of the two halves of the table that take turns, the one that a scheme is in.
+  // The half of the table that a scheme is in; the two take turns.
   std::size_t half_of(const std::string& scheme) const {
     const std::vector<std::string> names = schemes_of(request_);
     const auto at = std::find(names.begin(), names.end(), scheme);

@@ -26,7 +26,7 @@ struct CompareRequest : SceneComparison {
   std::uint64_t most_messages = 0;
 };
 
-// How long a scheme would take.
+// The time that a scheme would take.
 struct Predicted {
   std::string network;
   double seconds = 0, gather_seconds = 0;
@@ -67,7 +67,7 @@ ComposeComparison compare_compose(const Session& session, const CompareRequest& 
 // With so many ranks, the row that took least, compositing and gather, and those that cannot be
 // told from it (winners() in verdict.h); empty if none was measured.
 std::vector<const ComparedScheme*> fastest(const std::vector<ComparedScheme>& rows, int ranks);
-// The same by what is predicted over a network; `factor` as in known_within().
+// The fastest by what is predicted over a network; `factor` as in known_within().
 std::vector<const ComparedScheme*> fastest_over(const std::vector<ComparedScheme>& rows, int ranks,
                                                 std::string_view network, double factor);
 // Null if nothing is predicted of it over the network.

@@ -28,7 +28,7 @@ int list() {
   return kDone;
 }
 
-// What is simulated without being asked for.
+// The maximum number of messages of a simulation, where --ranks is not given.
 constexpr std::uint64_t kMostMessages = 4'000'000, kMostMessagesQuick = 450'000;
 
 void check_codecs(const CompareRequest& request, bool asked) {

@@ -89,7 +89,7 @@ Html predicted_sentence(const ComposeComparison& comparison, int ranks, const st
                     counts_text(*best.front()), cores_text(comparison.cores));
 }
 
-// How sure it is who is first.
+// A sentence on how sure the first place is.
 Html doubts(const Rows& rows, double factor) {
   const bool checked = std::any_of(rows.begin(), rows.end(), [](const ComparedScheme& row) {
     return row.total_seconds && prediction(row, kThisMachine) != nullptr;
@@ -112,7 +112,7 @@ int advised_ranks(const Rows& rows) {
   return ranks > 0 ? ranks : rows.back().ranks;
 }
 
-// Those with the most ranks that have a core each, or with the fewest.
+// The rows with the most ranks that have a core each, or with the fewest.
 Winners winners_here(const ComposeComparison& comparison) {
   Winners here;
   for (const int ranks : unique_of(comparison.rows, [](const auto& row) { return row.ranks; })) {

@@ -1,4 +1,4 @@
-// How a comparison of compositing schemes is told: as JSON and as text.
+// The results of a comparison of compositing schemes, as JSON and as text.
 #pragma once
 
 #include <string>

@@ -161,7 +161,7 @@ Timeline timeline_of(const ShownScheme& shown) {
   return result;
 }
 
-// Of each round of compositing, and of the gather, what ranks sent each other.
+// The bytes that ranks sent each other, in each round of compositing and in the gather.
 std::vector<Html> byte_matrices(const ShownScheme& shown) {
   const int ranks = static_cast<int>(shown.ledger.ranks.size());
   std::map<std::pair<bool, int>, std::vector<double>> rounds;

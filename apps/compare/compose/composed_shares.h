@@ -1,4 +1,4 @@
-// What the ranks of sort-last have drawn, and what it takes to composite it.
+// The images that the ranks of sort-last have drawn, and the time that it takes to composite them.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace delray::apps {
 
-// What is known without pixels of the shares of ranks: masks of flat ones, or where surfaces lie.
+// The shapes of the ranks' images without pixels: masks of flat ones, or where surfaces lie.
 class ShareShapes {
  public:
   // The next rank's.
@@ -36,7 +36,7 @@ class ShareDrawer {
   ShareDrawer(const CompareRequest& request, const Prepared& prepared,
               parallel::Progress* progress);
   raster::PartialImage draw(int rank, int ranks);
-  // Of all ranks, from the first to the last.
+  // The shapes of all ranks, from the first to the last.
   ShareShapes shapes(int ranks);
 
  private:

@@ -26,7 +26,7 @@ image::Image8 unpacked(const comm::Buffer& buffer, int width, int height) {
   return image;
 }
 
-// What the part does not own becomes transparent.
+// Pixels that the part does not own become transparent.
 void keep_owned(const std::vector<composite::PixelRange>& ranges, image::Image8& image) {
   std::vector<bool> owned(image.pixels());
   for (const composite::PixelRange& range : ranges) {

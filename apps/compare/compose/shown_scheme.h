@@ -18,7 +18,7 @@ struct ShownScheme {
   image::Image8 picture;
 };
 
-// Of so many the one that takes the median time is shown.
+// The number of runs, of which the one that takes the median time is shown.
 inline constexpr int kShownRuns = 5;
 
 // Collective: composites copies of the shares once more. The result is rank 0's.

@@ -19,7 +19,7 @@ struct PartitionRequest : SceneComparison {
   std::vector<int> regions = {1, 4};    // per rank; other than the first for shown_ranks alone
 };
 
-// How long a frame would take on a machine with a core for each rank.
+// The time that a frame would take on a machine with a core for each rank.
 struct PredictedFrame {
   std::string network;
   double seconds = 0;        // the median of frames after the first
@@ -63,7 +63,7 @@ struct ComparedStrategy {
   DrawnFrames drawn;
 };
 
-// What is drawn over the picture.
+// Lines that are drawn over the picture.
 struct ShownPartition {
   std::string name;
   loadbalance::Partition partition;
@@ -72,7 +72,7 @@ struct ShownPartition {
 };
 
 struct PartitionComparison {
-  // What one rank does alone: processor time of a frame; as DrawnFrames::work.
+  // The work of one rank alone: processor time of a frame; as DrawnFrames::work.
   double alone_seconds = 0, alone_work = 0;
   Spread alone;                              // of alone_seconds
   std::vector<ComparedPartition> rows;       // by ranks and regions
@@ -102,12 +102,13 @@ bool takes_longer(const Spread& seconds, const Spread& least);
 
 // Which partition to take, by what is counted and by processor time.
 struct PartitionChoice {
-  // Those whose over_share is the least or within kAsEven of it.
+  // The partitions whose over_share is the least or within kAsEven of it.
   std::vector<const ComparedPartition*> even;
-  // Those whose busiest rank takes least processor time, or not takes_longer() than that, by
-  // ascending medians; empty of ranks that are not drawn.
+  // The partitions whose busiest rank takes least processor time, or not takes_longer() than that,
+  // by ascending medians; empty of ranks that are not drawn.
   std::vector<const ComparedPartition*> quick;
-  // Those that are both, or `even` where none is, that are cut soonest or cannot be told from it.
+  // The partitions that are both, or `even` where none is, that are cut soonest or cannot be told
+  // from it.
   std::vector<const ComparedPartition*> best;
   // Whether `best` are among `quick`; true where nothing was drawn.
   bool agree = true;

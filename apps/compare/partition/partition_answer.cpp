@@ -36,7 +36,7 @@ std::vector<int> drawn_ranks(const Rows& rows) {
   return result;
 }
 
-// Those with so many ranks (0: any number) whose frames after the first are predicted to take
+// The rows with so many ranks (0: any number) whose frames after the first are predicted to take
 // least.
 Strategies best_strategies(const std::vector<ComparedStrategy>& strategies, int ranks,
                            std::string_view network) {
@@ -47,7 +47,7 @@ Strategies best_strategies(const std::vector<ComparedStrategy>& strategies, int 
       all, [&](const ComparedStrategy& one) { return prediction(one.drawn, network)->spread; });
 }
 
-// What the busiest ranks take, where that tells more than what is counted.
+// A sentence on the times of the busiest ranks, where they tell more than counts do.
 std::string processor_time(const PartitionChoice& choice, const ComparedPartition& best) {
   if (choice.quick.empty()) return "";
   const ComparedPartition& quickest = *choice.quick.front();

@@ -1,4 +1,4 @@
-// How a comparison of partitions is told: as JSON and as text.
+// The results of a comparison of partitions, as JSON and as text.
 #pragma once
 
 #include "apps/compare/partition/compare_partition.h"

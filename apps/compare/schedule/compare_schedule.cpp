@@ -179,7 +179,7 @@ class Comparison {
     }
   }
 
-  // The same time for all tiles as their medians take.
+  // Scales each sample so that all its tiles together take as long as their medians.
   void scale_samples() {
     for (std::vector<double>& sample : samples_) {
       const double total = std::accumulate(sample.begin(), sample.end(), 0.0);

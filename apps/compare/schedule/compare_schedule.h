@@ -27,8 +27,8 @@ struct ScheduleOver {
   double ray_imbalance = 1;   // rays of the rank that sends most over the mean
   double time_imbalance = 1;  // the same of the time at tiles
   double seconds = 0;         // until the last tile is done
-  // Of `seconds`, over what tiles took in single frames, brought to the same time for all of them:
-  // that of schedules differs where one is better in every frame.
+  // The spread of `seconds`, over what tiles took in single frames, brought to the same time for
+  // all of them: that of schedules differs where one is better in every frame.
   Spread spread;
   double idle = 0;  // of the ranks' time until then, the part spent waiting or at messages
 };
@@ -48,7 +48,7 @@ struct ComparedSchedule {
   std::optional<TracedFrames> traced;
 };
 
-// What a tile costs, whoever traces it.
+// The cost of a tile, whoever traces it.
 struct Tile {
   geometry::Rect pixels;
   std::uint64_t rays = 0;
@@ -79,11 +79,11 @@ int shown_ranks(const ScheduleRequest& request);
 ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,
                                     const Prepared& prepared, parallel::Progress& progress);
 
-// Of so many ranks over the i-th network of the rows, the schedule that is done first and those
+// The schedule that is done first with so many ranks over the i-th network of the rows, and those
 // that cannot be told from it (winners() in verdict.h). REQUIRES: there are such rows.
 std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,
                                                     int ranks, std::size_t network = 0);
-// The same by frames that were traced; empty if none were with so many ranks.
+// The best schedules by frames that were traced; empty if none were with so many ranks.
 std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,
                                                  int ranks);
 

@@ -1,4 +1,4 @@
-// How a comparison of schedules is told: as JSON and as text.
+// The results of a comparison of schedules, as JSON and as text.
 #pragma once
 
 #include "apps/compare/schedule/compare_schedule.h"

@@ -60,7 +60,7 @@ std::vector<std::string> names_of(const std::vector<const ComparedSchedule*>& ro
   return names;
 }
 
-// Of whole frames of ranks that had a core each.
+// Times of whole frames of ranks that had a core each.
 Html traced_sentence(const ScheduleComparison& comparison) {
   std::vector<const ComparedSchedule*> best;
   for (const int ranks : rank_counts(comparison)) {

@@ -31,8 +31,8 @@ namespace {
 constexpr std::size_t kFewestPoints = 100;  // of a part of them
 constexpr int kMostShownThreads = 8;        // their colours can be told apart
 constexpr int kPictureSide = 460;           // pixels; two fit beside each other
-// How often everything is timed: at least, at most, and as long as the repetitions of a way to
-// triangulate take no more than its share of so many seconds.
+// The number of times everything is timed: at least, at most, and as long as the repetitions of a
+// way to triangulate take no more than its share of so many seconds.
 struct Repetitions {
   int least, most;
   double seconds;

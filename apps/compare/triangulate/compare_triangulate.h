@@ -35,7 +35,7 @@ struct ComparedTriangulation {
   delaunay::Options how;  // resolved, without its pointers
   std::size_t points = 0;
   std::uint64_t distinct = 0, simplices = 0, hull_facets = 0;
-  // Of one run: counts, and the phases' seconds summed over threads.
+  // Statistics of one run: counts, and the phases' seconds summed over threads.
   delaunay::Statistics statistics;
   std::vector<std::uint64_t> simplices_by_thread;
   std::uint64_t fragments = 0;  // of every method, counted in the result
@@ -43,7 +43,7 @@ struct ComparedTriangulation {
   Spread seconds;  // of runs that count nothing
 };
 
-// What the threads made, in the plane, or in space where a plane cuts it.
+// A picture of the simplices by thread, in the plane, or in space where a plane cuts it.
 struct PictureOfMakers {
   std::string name;  // that of the way to triangulate
   std::size_t points = 0;

@@ -10,7 +10,7 @@
 
 namespace delray::apps {
 
-// Of the plane a picture from above; of space the cut through the middle of the points, across
+// A picture of the plane from above, or of space cut through the middle of the points, across
 // their shortest extent. Edges are drawn where simplices are large enough. The longer side has
 // `side` pixels; what is outside is transparent. Thread t has the hue of a page's series t
 // modulo 8. O(simplices + pixels).

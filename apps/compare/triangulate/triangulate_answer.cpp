@@ -26,7 +26,7 @@ std::string way_text(const Row& row) {
   return name_of(row.how) + " with " + threads_text(row.how.threads);
 }
 
-// What is as fast, and what the next method takes. REQUIRES: !best.empty().
+// The methods that are as fast, and the time of the next one. REQUIRES: !best.empty().
 std::string others_sentence(const Rows& rows, const Winners& best) {
   const Row& first = *best.front();
   std::vector<std::string> equals;
@@ -50,7 +50,7 @@ std::string others_sentence(const Rows& rows, const Winners& best) {
                                       : fmt::format(", {:.1f} times as long", times));
 }
 
-// What the others do that it does not.
+// The work of the other methods that the best does without.
 std::string reason(const Rows& rows, const Row& best) {
   const auto per_point = [](std::uint64_t count, const Row& row) {
     return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(row.points, 1));
@@ -125,7 +125,7 @@ std::string agreement(const TriangulateComparison& comparison, const Row& best) 
                      same.size(), best.simplices, what, best.hash);
 }
 
-// What to type, without files.
+// The command to type, without files.
 std::string command_of(const Row& row, int cores) {
   delaunay::Options plain;
   plain.dim = row.how.dim;

@@ -1,4 +1,4 @@
-// How a comparison of triangulation methods is told: as JSON and as text.
+// The results of a comparison of triangulation methods, as JSON and as text.
 #pragma once
 
 #include "apps/compare/triangulate/compare_triangulate.h"

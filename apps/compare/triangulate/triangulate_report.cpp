@@ -33,7 +33,7 @@ constexpr const char* kPhases[] = {"order", "locate", "subdivide", "legalize", "
 // The report's sequential algorithm.
 constexpr std::string_view kSequential = "insertion, dag";
 
-// Of the numbers of threads that were asked for the largest that does not share cores.
+// The largest of the requested numbers of threads that does not share cores.
 int threads_of_own(const TriangulateComparison& comparison) {
   int result = comparison.threads.front();
   for (const int count : comparison.threads)
@@ -53,13 +53,13 @@ using PointOf = std::function<std::optional<ChartPoint>(const Row&)>;
 ChartPoint time_at(double x, const Row& row) {
   return {x, row.seconds.median * 1e3, row.seconds.low * 1e3, row.seconds.high * 1e3};
 }
-// How many times as long `base` takes, over `divisor`.
+// The ratio of the times of `base` and the row, over `divisor`.
 ChartPoint ratio_at(double x, const Spread& base, const Spread& seconds, double divisor) {
   const double scale = base.median / divisor;
   return {x, scale / seconds.median, scale / seconds.high, scale / seconds.low};
 }
 
-// What a chart shows upwards.
+// The quantity that a chart shows upwards.
 struct Shown {
   std::string title, label;  // the label with units
   Scale scale = Scale::logarithmic;

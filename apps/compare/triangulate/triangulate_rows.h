@@ -1,4 +1,4 @@
-// Questions about the rows of a comparison of triangulations, which its page asks again and again.
+// Queries of the rows of a comparison of triangulations, which its page needs again and again.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ std::vector<std::size_t> sizes_of(const ComparedTriangulations& rows);
 std::size_t most_points(const ComparedTriangulations& rows);
 ComparedTriangulations rows_of(const ComparedTriangulations& rows,
                                const std::function<bool(const ComparedTriangulation&)>& wanted);
-// The same method and location, for as many points, with one thread; null where that is not there.
+// The row with the same method, location and number of points, with one thread; null without one.
 const ComparedTriangulation* base_of(const ComparedTriangulations& rows,
                                      const ComparedTriangulation& row);
 // Whether its method has one thread whatever it is told.
