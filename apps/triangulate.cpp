@@ -15,6 +15,7 @@
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
+#include "apps/triangulation_json.h"
 #include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
 #include "delaunay/triangulate.h"
@@ -68,7 +69,11 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
   const delaunay::Options& how = options.how;
   const delaunay::Triangulation& result = made.triangulation;
   const delaunay::Statistics& phases = made.statistics;
-  const delaunay::Synchronization& sync = phases.synchronization;
+  Json seconds_json = {
+      {"read", seconds.read}, {"triangulate", seconds.triangulate}, {"write", 0.0}};  // not yet
+  seconds_json.update(phases_json(phases));
+  Json sync = synchronization_json(phases.synchronization);
+  sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
   return {
       {"schema", "delray.triangulate/1"},
       {"input",
@@ -89,29 +94,9 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
        {{"simplices", result.size()},
         {"hull_facets", result.hull_facets},
         {"hash", to_string(hash(result))}}},
-      {"seconds",
-       {{"read", seconds.read},
-        {"triangulate", seconds.triangulate},
-        {"write", 0.0},  // not yet
-        {"order", phases.order},
-        {"locate", phases.locate},
-        {"subdivide", phases.subdivide},
-        {"legalize", phases.legalize},
-        {"extract", phases.extract}}},
+      {"seconds", seconds_json},
       {"memory", {{"peak_rss", peak_memory()}}},
-      {"sync",
-       {{"lock_calls", sync.lock_calls},
-        {"already_locked", sync.already_locked},
-        {"free", sync.free},
-        {"waits", sync.waits},
-        {"deadlocks", sync.deadlocks},
-        {"rollbacks", sync.rollbacks},
-        {"burglaries", sync.burglaries},
-        {"repaired", sync.repaired},
-        {"rebuilds", sync.rebuilds},
-        {"fragments", sync.fragments},
-        {"dag_nodes", phases.dag_nodes},
-        {"dag_node_bytes", phases.dag_node_bytes}}},
+      {"sync", sync},
   };
 }
 

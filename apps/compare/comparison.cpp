@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/options/help.h"
 #include "apps/options/outputs.h"
@@ -52,7 +53,15 @@ std::string range_text(const Spread& times) {
   return fmt::format("{:.4g}..{:.4g}", times.least * 1e3, times.most * 1e3);
 }
 
-int tell(const ComparisonOptions& options, Found&& found) {
+int shown_ranks(const std::vector<int>& ranks, int most) {
+  int shown = 0;
+  for (const int count : ranks) {
+    if (count <= most) shown = std::max(shown, count);
+  }
+  return shown > 0 ? shown : ranks.front();
+}
+
+int report_results(const ComparisonOptions& options, Found&& found) {
   if (options.statistics != "-") fmt::print("{}", aligned(found.table, line_width(STDOUT_FILENO)));
   if (!options.output.empty()) files::write_file(options.output, found.page());
   write_statistics(options.statistics, found.statistics);

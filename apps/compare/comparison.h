@@ -30,8 +30,11 @@ std::vector<OutputFile> outputs_of(const ComparisonOptions& options);
 
 // Least, most and number of the runs, and the interval of their median, which stands elsewhere.
 Json spread_json(const Spread& times);
-// Milliseconds as text for tables.
+// The range of times in milliseconds, for tables.
 std::string range_text(const Spread& times);
+
+// The largest of these numbers of ranks that is at most `most`, else the first.
+int shown_ranks(const std::vector<int>& ranks, int most);
 
 // Runs of a comparison. A stop that was asked for is heard between two of them, where it loses
 // nothing.
@@ -68,6 +71,6 @@ struct Found {
 };
 
 // Writes what was asked for and gives the exit code.
-int tell(const ComparisonOptions& options, Found&& found);
+int report_results(const ComparisonOptions& options, Found&& found);
 
 }  // namespace delray::apps

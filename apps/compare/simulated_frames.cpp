@@ -38,8 +38,8 @@ SimulatedFrames simulate_frames(const Prepared& prepared, const raster::RenderOp
             }
             comm::Ledger ledger = comm::gather_ledger(communicator, events);
             if (root) {
-              SimulatedFrame& told = repeat == 0 ? result.first : result.next.emplace_back();
-              told = {std::move(frame.statistics), std::move(ledger)};
+              SimulatedFrame& simulated = repeat == 0 ? result.first : result.next.emplace_back();
+              simulated = {std::move(frame.statistics), std::move(ledger)};
             }
             if (root && repeat == repeats)
               result.picture = std::get<image::Image8>(std::move(frame.picture));

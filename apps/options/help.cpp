@@ -80,10 +80,10 @@ std::string option_groups(const CommandText& command) {
 
 std::string HelpFormatter::make_help(const CLI::App* command, std::string name,
                                      CLI::AppFormatMode) const {
-  const CommandText told = command_text(*command);
+  const CommandText described = command_text(*command);
   std::string text;
-  for (const std::string& line : wrapped(told.description, page_width())) text += line + "\n";
-  text += "\n" + usage(told, name) + commands(told) + option_groups(told);
+  for (const std::string& line : wrapped(described.description, page_width())) text += line + "\n";
+  text += "\n" + usage(described, name) + commands(described) + option_groups(described);
   if (!command->get_footer().empty()) text += "\n" + command->get_footer();
   return text;
 }

@@ -27,12 +27,14 @@ class OptionRow {
     for (const auto& step : steps_) step(command, *option);
     return option;
   }
-  // The value that it is set to, for statistics; see told.
+  // The value that it is set to, for statistics; see reported.
   Json value(const Request& request) const { return value_(request); }
   const std::string& key() const { return key_; }
   // Why it changes nothing with the others; empty where it does.
   std::string idle(const Request& request) const { return idle_ ? idle_(request) : std::string(); }
-  bool is_told(const Request& request) const { return !key_.empty() && (!told_ || told_(request)); }
+  bool is_reported(const Request& request) const {
+    return !key_.empty() && (!reported_ || reported_(request));
+  }
   // Whether samples depend on it; see in_checkpoint.
   bool is_in_checkpoint() const { return in_checkpoint_; }
   std::string checkpoint_text(const Request& request) const {
@@ -63,9 +65,9 @@ class OptionRow {
     });
   }
   // The key in statistics, and where they have it.
-  OptionRow told(std::string key, std::function<bool(const Request&)> where = {}) && {
+  OptionRow reported(std::string key, std::function<bool(const Request&)> where = {}) && {
     key_ = std::move(key);
-    told_ = std::move(where);
+    reported_ = std::move(where);
     return std::move(*this);
   }
   // Samples depend on it: a checkpoint keeps it as this text, by default that of its value, and is
@@ -146,7 +148,7 @@ class OptionRow {
   std::function<Json(const Request&)> value_;
   std::vector<std::function<void(CLI::App&, CLI::Option&)>> steps_;
   std::function<std::string(const Request&)> idle_;
-  std::function<bool(const Request&)> told_;
+  std::function<bool(const Request&)> reported_;
   bool in_checkpoint_ = false;
   std::function<std::string(const Request&)> text_;
 };

@@ -112,17 +112,17 @@ std::vector<RenderOption> picture_options() {
           .type_name("WxH")
           .in_checkpoint(
               [](const RenderRequest& r) { return fmt::format("{}x{}", r.width, r.height); })
-          .told("size"),
+          .reported("size"),
       RenderOption::choice<Engine>(
           "--engine", [](auto& r) -> auto& { return r.engine; },
           {{"raster", Engine::raster}, {"raytrace", Engine::raytrace}}, group::kPicture,
           "Renderer: raster, the rasterizer (default), or raytrace, the ray tracer")
-          .told("engine"),
+          .reported("engine"),
       RenderOption::of(
           "--frames", [](auto& r) -> auto& { return r.frames; }, group::kOutput,
           "Render the picture this many times and report the median time (default: 1)")
           .transform(count_between(1, 100000))
-          .told("frames"),
+          .reported("frames"),
       RenderOption::of(
           "--background", [](auto& r) -> auto& { return r.background; }, group::kPicture,
           "What is behind the scene: environment, studio (grey, brighter above), transparent, a "
@@ -130,7 +130,7 @@ std::vector<RenderOption> picture_options() {
           .type_name("WHAT")
           .one_of(background_names(),
                   {"#rrggbb", [](const std::string& text) { return text.starts_with('#'); }})
-          .told("background"),
+          .reported("background"),
   };
 }
 
@@ -141,7 +141,7 @@ std::vector<RenderOption> animation_options() {
           "Animation of so many frames once around the scene: IMAGE-0000 and on")
           .transform(count_between(1, 1000000))
           .excludes("--frames")
-          .told("turntable"),
+          .reported("turntable"),
       RenderOption::of(
           "--camera-path", [](auto& r) -> auto& { return r.camera_path; }, group::kCamera,
           "Animation along the cameras in this file, one a line: [FRAME:] eye,at,up,fov")
@@ -150,7 +150,7 @@ std::vector<RenderOption> animation_options() {
           .excludes("--turntable")
           .excludes("--camera")
           .excludes("--view")
-          .told("camera_path"),
+          .reported("camera_path"),
       RenderOption::of(
           "--frames-at-once", [](auto& r) -> auto& { return r.frames_at_once; }, group::kCamera,
           "Frames of an animation to work on at the same time (default: threads + 2, but 4 to 8)")
@@ -170,7 +170,7 @@ std::vector<RenderOption> rasterizer_options() {
           "sort-middle, sort-last (default) or hybrid")
           .one_of(names_in(raster::strategies()))
           .unless(unless_raster())
-          .told("strategy", is_raster),
+          .reported("strategy", is_raster),
       RenderOption::of(
           "--partition", [](auto& r) -> auto& { return r.sharing.partition; }, group::kSharing,
           "How the screen is divided among ranks, for all strategies but sort-last (default: "
@@ -178,26 +178,26 @@ std::vector<RenderOption> rasterizer_options() {
           "stealing (default: none)")
           .one_of(names_in(loadbalance::partitioners()))
           .unless(unless_strategy(&Strategy::partitions, why_no_partition))
-          .told("partition", ray_tracer_or_strategy_that(&Strategy::partitions)),
+          .reported("partition", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::of(
           "--compose", [](auto& r) -> auto& { return r.raster.scheme; }, group::kSharing,
           "Compositing scheme, which merges the images of all ranks, for --strategy sort-last "
           "(default: binary-swap; radix-k may be given its radices, such as radix-k:4,2)")
           .unless(unless_raster(unless_strategy(&Strategy::composites)))
-          .told("compose", strategy_that(&Strategy::composites)),
+          .reported("compose", strategy_that(&Strategy::composites)),
       RenderOption::choice<raster::Lighting>(
           "--shading", [](auto& r) -> auto& { return r.raster.lighting; },
           {{"phong", raster::Lighting::phong}, {"gouraud", raster::Lighting::gouraud}},
           group::kRasterizer,
           "Lighting of surfaces: phong, at every pixel (default), or gouraud, at vertices")
           .unless(unless_raster())
-          .told("shading", is_raster),
+          .reported("shading", is_raster),
       RenderOption::of(
           "--codec", [](auto& r) -> auto& { return r.raster.codec; }, group::kSharing,
           "Pixel encoding between ranks, for --strategy sort-last (default: dense)")
           .one_of(names_in(composite::codecs()))
           .unless(unless_raster(unless_strategy(&Strategy::composites, why_no_codec)))
-          .told("codec", strategy_that(&Strategy::composites)),
+          .reported("codec", strategy_that(&Strategy::composites)),
       RenderOption::choice<raster::Blend>(
           "--blend", [](auto& r) -> auto& { return r.raster.blend; },
           {{"by-owner", raster::Blend::by_owner}, {"by-cell", raster::Blend::by_cell}},
@@ -206,7 +206,7 @@ std::vector<RenderOption> rasterizer_options() {
           "sorts all its fragments (default, exact), or by-cell, each rank blends those in its "
           "cell of space, and cells are merged front to back")
           .unless(unless_raster(unless_strategy(&Strategy::composites, why_no_codec)))
-          .told("blend", strategy_that(&Strategy::composites)),
+          .reported("blend", strategy_that(&Strategy::composites)),
       RenderOption::choice<raster::Shade>(
           "--shade", [](auto& r) -> auto& { return r.raster.shade; },
           {{"deferred", raster::Shade::deferred},
@@ -216,13 +216,13 @@ std::vector<RenderOption> rasterizer_options() {
           "When pixels are shaded: immediate, as they are drawn; deferred, once all is drawn "
           "(default); composited, once the images of all ranks are merged (sort-last)")
           .unless(unless_raster())
-          .told("shade", is_raster),
+          .reported("shade", is_raster),
       RenderOption::of(
           "--samples", [](auto& r) -> auto& { return r.raster.supersampling; }, group::kRasterizer,
           "Samples per pixel in each direction: 1 (default), 2 or 4, which is 16 per pixel")
           .check(one_of({"1", "2", "4"}))
           .unless(unless_raster())
-          .told("samples", is_raster),
+          .reported("samples", is_raster),
       RenderOption::choice<raster::Travel>(
           "--travel", [](auto& r) -> auto& { return r.raster.travel; },
           {{"geometry", raster::Travel::geometry}, {"numbers", raster::Travel::numbers}},
@@ -230,46 +230,46 @@ std::vector<RenderOption> rasterizer_options() {
           "How primitives are sent to other ranks, for --strategy sort-first and hybrid: as "
           "geometry (default), or as numbers, by which they are looked up in the scene")
           .unless(unless_raster(unless_strategy(&Strategy::travels, why_no_travel)))
-          .told("travel", strategy_that(&Strategy::partitions)),
+          .reported("travel", strategy_that(&Strategy::partitions)),
       RenderOption::choice<bool>(
           "--costs", [](auto& r) -> auto& { return r.sharing.measured_costs; },
           {{"model", false}, {"measured", true}}, group::kSharing,
           "Costs that partitions balance: model, an estimate (default), or measured, times of the "
           "last frame")
           .unless(unless_strategy(&Strategy::partitions, why_no_costs))
-          .told("costs", ray_tracer_or_strategy_that(&Strategy::partitions)),
+          .reported("costs", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::of(
           "--regions", [](auto& r) -> auto& { return r.sharing.regions_per_rank; }, group::kSharing,
           "Regions of the screen per rank (default: 1)")
           .transform(count_between(1, 64))
           .unless(unless_strategy(&Strategy::partitions, why_no_costs))
-          .told("regions", ray_tracer_or_strategy_that(&Strategy::partitions)),
+          .reported("regions", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::of(
           "--keep", [](auto& r) -> auto& { return r.sharing.keep_factor; }, group::kSharing,
           "Repartition when a rank exceeds this multiple of the mean load (default: 1.2)")
           .check(number_between(1.0, 1000.0))
           .unless(unless_strategy(&Strategy::partitions, why_no_costs))
-          .told("keep", ray_tracer_or_strategy_that(&Strategy::partitions)),
+          .reported("keep", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::of(
           "--block", [](auto& r) -> auto& { return r.sharing.block; }, group::kSharing,
           "Side in pixels of the blocks that --schedule hands out (default: 64; ray tracer: a "
           "multiple of 16, by default 16, or 32 with path)")
           .transform(count_between(1, 4096))
           .unless(unless_strategy(&Strategy::schedules, why_no_block))
-          .told("block", ray_tracer_or_strategy_that(&Strategy::partitions)),
+          .reported("block", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::choice<raster::Groups>(
           "--groups", [](auto& r) -> auto& { return r.raster.groups; },
           {{"one", raster::Groups::one}, {"two", raster::Groups::two}}, group::kSharing,
           "For --strategy sort-middle: one group of ranks, each for geometry and pixels (default), "
           "or two groups, one for geometry and one for pixels")
           .unless(unless_raster(unless_strategy(&Strategy::groups)))
-          .told("groups", strategy_that(&Strategy::groups)),
+          .reported("groups", strategy_that(&Strategy::groups)),
       RenderOption::of(
           "--geometry-ranks", [](auto& r) -> auto& { return r.raster.geometry_ranks; },
           group::kSharing, "Number of ranks for geometry, for --groups two (default: half of all)")
           .transform(count_between(1, 1000000))
           .unless(unless_raster(unless_strategy(&Strategy::groups, why_no_geometry_ranks)))
-          .told("geometry_ranks", strategy_that(&Strategy::groups)),
+          .reported("geometry_ranks", strategy_that(&Strategy::groups)),
       RenderOption::choice<raster::Redistribution>(
           "--redistribute", [](auto& r) -> auto& { return r.raster.redistribution; },
           {{"immediate", raster::Redistribution::immediate},
@@ -278,7 +278,7 @@ std::vector<RenderOption> rasterizer_options() {
           "For --strategy sort-middle: send triangles in batches as they are transformed "
           "(immediate, default), or all at-end")
           .unless(unless_raster(unless_strategy(&Strategy::groups)))
-          .told("redistribute", strategy_that(&Strategy::groups)),
+          .reported("redistribute", strategy_that(&Strategy::groups)),
   };
 }
 
@@ -293,20 +293,20 @@ std::vector<RenderOption> raytracer_options() {
           .one_of(names_in(raytrace::integrators()))
           .unless(unless_raytrace())
           .in_checkpoint()
-          .told("integrator", is_raytrace),
+          .reported("integrator", is_raytrace),
       RenderOption::of(
           "--spp", [](auto& r) -> auto& { return r.raytrace.samples; }, group::kRaytracer,
           "Samples per pixel (default: 1)")
           .transform(count_between(1, 65536))
           .unless(unless_raytrace())
-          .told("spp", is_raytrace),
+          .reported("spp", is_raytrace),
       RenderOption::of(
           "--depth", [](auto& r) -> auto& { return r.raytrace.trace.depth; }, group::kRaytracer,
           "Maximum reflections and refractions (default: 8)")
           .transform(count_between(0, 64))
           .unless(unless_raytrace())
           .in_checkpoint()
-          .told("depth", is_raytrace),
+          .reported("depth", is_raytrace),
       RenderOption::of(
           "--diffuse-depth", [](auto& r) -> auto& { return r.raytrace.trace.diffuse_depth; },
           group::kRaytracer,
@@ -314,7 +314,7 @@ std::vector<RenderOption> raytracer_options() {
           .transform(count_between(0, 1024))
           .unless(unless_integrator(&Integrator::scatters))
           .in_checkpoint()
-          .told("diffuse_depth", is_raytrace),
+          .reported("diffuse_depth", is_raytrace),
       RenderOption::of(
           "--reach", [](auto& r) -> auto& { return r.reach; }, group::kRaytracer,
           "Ambient occlusion radius in units of the scene, for --integrator ao (default: "
@@ -324,7 +324,7 @@ std::vector<RenderOption> raytracer_options() {
           .in_checkpoint([](const RenderRequest& r) {
             return r.reach > 0.0 ? fmt::format("{}", r.reach) : "unlimited";
           })
-          .told("reach", is_raytrace),
+          .reported("reach", is_raytrace),
       RenderOption::off(
           "--no-shadows", [](auto& r) -> auto& { return r.raytrace.trace.shadows; },
           group::kRaytracer,
@@ -333,7 +333,7 @@ std::vector<RenderOption> raytracer_options() {
           .in_checkpoint([](const RenderRequest& r) {
             return r.raytrace.trace.shadows ? "not given" : "given";
           })
-          .told("shadows", is_raytrace),
+          .reported("shadows", is_raytrace),
       RenderOption::choice<Quality>(
           "--build", [](auto& r) -> auto& { return r.raytrace.build.quality; },
           {{"low", Quality::low}, {"medium", Quality::medium}, {"high", Quality::high}},
@@ -342,7 +342,7 @@ std::vector<RenderOption> raytracer_options() {
           "or high (fast to trace, splits triangles)")
           .unless(unless_raytrace())
           .in_checkpoint()
-          .told("build", is_raytrace),
+          .reported("build", is_raytrace),
       RenderOption::choice<std::string>(
           "--isa", [](auto& r) -> auto& { return r.raytrace.build.isa; },
           {{"best", ""},
@@ -356,7 +356,7 @@ std::vector<RenderOption> raytracer_options() {
           "(default); avx2 may be faster than avx512 for incoherent rays")
           .unless(unless_raytrace())
           .in_checkpoint()
-          .told("isa", is_raytrace),
+          .reported("isa", is_raytrace),
       RenderOption::of(
           "--schedule", [](auto& r) -> auto& { return r.sharing.schedule; }, group::kSharing,
           "How ranks share the blocks of the picture (ray tracer, default: interlaced); "
@@ -364,35 +364,35 @@ std::vector<RenderOption> raytracer_options() {
           "regions)")
           .one_of(names_in(loadbalance::schedules()))
           .unless(unless_strategy(&raster::Strategy::schedules))
-          .told("schedule", ray_tracer_or_strategy_that(&raster::Strategy::partitions)),
+          .reported("schedule", ray_tracer_or_strategy_that(&raster::Strategy::partitions)),
       RenderOption::choice<bool>(
           "--master", [](auto& r) -> auto& { return r.sharing.master_works; },
           {{"works", true}, {"serves", false}}, group::kSharing,
           "Whether ranks that hand out blocks (schedules demand, guided and hierarchical) render "
           "some too: works, they do (default), or serves, they do not")
           .unless(why_no_master)
-          .told("master", ray_tracer_or_strategy_that(&raster::Strategy::partitions)),
+          .reported("master", ray_tracer_or_strategy_that(&raster::Strategy::partitions)),
       RenderOption::of(
           "--data", [](auto& r) -> auto& { return r.data; }, group::kSharing,
           "Ray tracer: distribution of the scene: replicated, all of it on every rank (default), "
           "object, ray, ring or hybrid")
           .one_of(names_in(raytrace::distributions()))
           .unless(unless_raytrace())
-          .told("data", is_raytrace),
+          .reported("data", is_raytrace),
       RenderOption::choice<Deal>(
           "--deal", [](auto& r) -> auto& { return r.share.deal; },
           {{"neighbours", Deal::neighbours}, {"random", Deal::random}}, group::kSharing,
           "Which rank gets which parts of a scene that --data distributes: neighbours stay "
           "together (default), or random")
           .unless(unless_raytrace(why_no_deal))
-          .told("deal", is_raytrace),
+          .reported("deal", is_raytrace),
       RenderOption::of(
           "--cache", [](auto& r) -> auto& { return r.cache_mebibytes; }, group::kSharing,
           "MiB of other ranks' parts of the scene that a rank keeps, for --data object and hybrid "
           "(default: a tenth of the scene)")
           .check(number_between(1e-3, 1e9))
           .unless(unless_raytrace(why_no_cache))
-          .told("cache", is_raytrace),
+          .reported("cache", is_raytrace),
   };
 }
 

@@ -159,7 +159,7 @@ std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
   auto prepared = std::make_shared<Prepared>();
   prepared->in_parts = in_parts;
-  prepared->told_by_name = has_parts(request);
+  prepared->known_by_name = has_parts(request);
   if (in_parts) {
     constexpr int kParts = 1 << 30;  // of which the first is nothing but camera and lights
     scenes::ScenePart part = scenes::generate_part(request.scene.file.path, 0, kParts);
@@ -209,7 +209,7 @@ void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
 // Of what a checkpoint is for. Where the name tells what is in the scene, ranks may have parts of
 // it.
 std::string fingerprint_of(const RenderRequest& request, const Prepared& prepared) {
-  if (!prepared.told_by_name) return raytrace::fingerprint(prepared.scene, "");
+  if (!prepared.known_by_name) return raytrace::fingerprint(prepared.scene, "");
   scenes::Scene lights;  // which --light may have changed
   lights.lights = prepared.scene.lights;
   lights.environment = prepared.scene.environment;

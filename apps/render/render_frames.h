@@ -28,7 +28,7 @@ struct Prepared {
   bool in_parts = false;
   std::string texture_hash;                   // before the shader took the texels
   std::string fingerprint;                    // likewise, of all; where there are checkpoints
-  bool told_by_name = false;                  // the name of the scene alone tells what is in it
+  bool known_by_name = false;                 // the name of the scene alone tells what is in it
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
   double load_seconds = 0, build_seconds = 0;
 

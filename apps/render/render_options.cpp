@@ -139,7 +139,7 @@ void add_options(std::initializer_list<std::string_view> names, CLI::App& comman
 Json chosen_options(const RenderRequest& request) {
   Json chosen;
   for (const RenderOption& option : all_options()) {
-    if (option.is_told(request)) chosen[option.key()] = option.value(request);
+    if (option.is_reported(request)) chosen[option.key()] = option.value(request);
   }
   return chosen;
 }

@@ -148,13 +148,13 @@ Json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 // As --camera takes it, unless it is orthographic: its height tells that.
 Json json_of(const scenes::Camera& camera, const glm::dvec3& origin) {
-  Json told = {{"eye", json_of(glm::dvec3(camera.eye) + origin)},
+  Json json = {{"eye", json_of(glm::dvec3(camera.eye) + origin)},
                {"at", json_of(glm::dvec3(camera.at) + origin)},
                {"up", json_of(camera.up)},
                {"fov", camera.vertical_fov}};
-  if (camera.orthographic()) told["height"] = camera.height;
-  if (!camera.name.empty()) told["name"] = camera.name;
-  return told;
+  if (camera.orthographic()) json["height"] = camera.height;
+  if (!camera.name.empty()) json["name"] = camera.name;
+  return json;
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ RenderOption sampling_option(const char* name, Field field, std::string help, st
         if (!is_raytrace(r)) return "--engine raster";
         return why != nullptr ? why(r) : "";
       })
-      .told(std::move(key), is_raytrace);
+      .reported(std::move(key), is_raytrace);
 }
 
 }  // namespace

@@ -34,6 +34,19 @@ Html plot(const std::string& title, const Margins& margins, double height, const
       margins.top, margins.right, margins.bottom, margins.left, height, escaped(title), marks);
 }
 
+Html figure(std::string_view look, const std::string& title, Source source, const Html& plot,
+            std::span<const Key> keys) {
+  Html legend;
+  for (const Key& key : keys) {
+    legend += fmt::format("<span class=\"key\"><i class=\"span {}\"></i>{}</span>", key.look,
+                          escaped(key.meaning));
+  }
+  return fmt::format(
+      "<figure class=\"{}\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
+      "<div class=\"legend\">{}</div></figure>\n",
+      look, escaped(title), name_of(source), plot, legend);
+}
+
 double text_width(std::string_view text) { return kLetter * static_cast<double>(text.size()); }
 
 Html ticks_across(std::span<const Tick> ticks, const std::function<double(double)>& position,

@@ -21,6 +21,15 @@ struct Margins {
 // An SVG element of the height, `marks` in it.
 Html plot(const std::string& title, const Margins& margins, double height, const Html& marks);
 
+// A colour's class in the style sheet, and what it stands for.
+struct Key {
+  std::string look, meaning;
+};
+
+// A figure of this class: the title, where its numbers are from, a plot, and what its colours mean.
+Html figure(std::string_view look, const std::string& title, Source source, const Html& plot,
+            std::span<const Key> keys);
+
 // Room that a text takes at most in the usual fonts, in pixels.
 double text_width(std::string_view text);
 

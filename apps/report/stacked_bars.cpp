@@ -51,16 +51,12 @@ Html stacked_bars(const StackedBars& chart) {
     }
     y += kBar;
   }
-  Html legend;
+  std::vector<internal::Key> keys;
   for (std::size_t i = 0; i < chart.kinds.size(); ++i) {
-    legend += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>{}</span>", i % 8,
-                          escaped(chart.kinds[i]));
+    keys.push_back({fmt::format("c{}", i % 8), chart.kinds[i]});
   }
-  return fmt::format(
-      "<figure class=\"chart\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
-      "<div class=\"legend\">{}</div></figure>\n",
-      escaped(chart.title), name_of(chart.source),
-      internal::plot(chart.title, margins, height, marks), legend);
+  return internal::figure("chart", chart.title, chart.source,
+                          internal::plot(chart.title, margins, height, marks), keys);
 }
 
 }  // namespace delray::apps::report

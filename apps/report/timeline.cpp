@@ -51,16 +51,12 @@ Html timeline(const Timeline& timeline) {
     }
     y += kLane;
   }
-  Html legend;
+  std::vector<internal::Key> keys;
   for (std::size_t i = 0; i < timeline.kinds.size(); ++i) {
-    legend += fmt::format("<span class=\"key\"><i class=\"span {}\"></i>{}</span>",
-                          look(static_cast<int>(i)), escaped(timeline.kinds[i]));
+    keys.push_back({look(static_cast<int>(i)), timeline.kinds[i]});
   }
-  return fmt::format(
-      "<figure class=\"timeline\"><figcaption>{} <span class=\"source\">{}</span></figcaption>{}"
-      "<div class=\"legend\">{}</div></figure>\n",
-      escaped(timeline.title), name_of(timeline.source),
-      internal::plot(timeline.title, margins, height, marks), legend);
+  return internal::figure("timeline", timeline.title, timeline.source,
+                          internal::plot(timeline.title, margins, height, marks), keys);
 }
 
 }  // namespace delray::apps::report

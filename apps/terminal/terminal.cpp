@@ -15,8 +15,8 @@ std::size_t line_width(int stream) {
   winsize size{};
   if (::ioctl(stream, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
   const char* const columns = std::getenv("COLUMNS");
-  const int told = columns != nullptr ? std::atoi(columns) : 0;
-  return told > 0 ? static_cast<std::size_t>(told) : kUsual;
+  const int given = columns != nullptr ? std::atoi(columns) : 0;
+  return given > 0 ? static_cast<std::size_t>(given) : kUsual;
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {

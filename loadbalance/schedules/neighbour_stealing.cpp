@@ -10,7 +10,6 @@
 // single rank has none.
 #include <algorithm>
 
-#include "comm/collectives.h"
 #include "loadbalance/schedules/initial_tasks.h"
 #include "loadbalance/schedules/schedules.h"
 #include "loadbalance/schedules/steal_protocol.h"
@@ -24,8 +23,7 @@ class Neighbour {
  public:
   Neighbour(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
             TaskFunction work)
-      : communicator_(communicator),
-        runner_(communicator, options, work),
+      : runner_(communicator, options, work),
         protocol_(communicator, runner_, tasks.count()),
         ahead_(options.ahead.value_or(2 * static_cast<std::uint32_t>(runner_.threads()))) {
     for (int bit = 1; bit < communicator.size(); bit *= 2) {
@@ -44,10 +42,7 @@ class Neighbour {
       if (answers_to_come_ == 0) protocol_.quiet();
       if (!protocol_.is_over()) protocol_.wait();
     }
-    // Who has left the run must not ask somebody who has not.
-    comm::barrier(communicator_);
-    runner_.waited();
-    return runner_.finish();
+    return protocol_.finish();
   }
 
  private:
@@ -121,7 +116,6 @@ class Neighbour {
                          [rank](const Other& candidate) { return candidate.rank == rank; });
   }
 
-  comm::Communicator& communicator_;
   TaskRunner runner_;
   StealProtocol protocol_;
   std::uint64_t ahead_;

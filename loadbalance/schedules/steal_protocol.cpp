@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "comm/collectives.h"
 #include "loadbalance/schedules/tags.h"
 
 namespace delray::loadbalance::internal {
@@ -83,6 +84,12 @@ void StealProtocol::quiet() {
     send(rank & (rank - 1), StealMessage::Kind::begun, units_);
     units_ = 0;
   }
+}
+
+RankReport StealProtocol::finish() {
+  comm::barrier(communicator_);
+  runner_.waited();
+  return runner_.finish();
 }
 
 void StealProtocol::end() {

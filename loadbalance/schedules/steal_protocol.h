@@ -45,6 +45,9 @@ class StealProtocol {
   bool holds_unit() const { return units_ > 0 || runner_.begun() > counted_; }
   void quiet();
   bool is_over() const { return over_; }
+  // Waits for all ranks, since one that has left must not ask another that has not, and ends the
+  // run. The last call. REQUIRES: it is over.
+  RankReport finish();
 
  private:
   void end();

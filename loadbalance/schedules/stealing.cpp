@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "comm/collectives.h"
 #include "loadbalance/schedules/initial_tasks.h"
 #include "loadbalance/schedules/schedules.h"
 #include "loadbalance/schedules/steal_protocol.h"
@@ -44,10 +43,7 @@ class Thief {
       }
       if (!protocol_.is_over()) protocol_.wait();
     }
-    // Who has left the run must not ask somebody who has not.
-    comm::barrier(communicator_);
-    runner_.waited();
-    return runner_.finish();
+    return protocol_.finish();
   }
 
  private:

@@ -43,13 +43,8 @@ class TaskQueue {
   std::vector<TaskRange> take_front(std::uint64_t amount) {
     std::vector<TaskRange> taken;
     while (amount > 0 && size_ > 0) {
-      TaskRange& front = ranges_.front();
-      const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(amount, front.count()));
-      taken.push_back({front.first, front.first + count});
-      front.first += count;
-      if (front.first == front.last) ranges_.pop_front();
-      size_ -= count;
-      amount -= count;
+      taken.push_back(pop(amount));
+      amount -= taken.back().count();
     }
     return taken;
   }

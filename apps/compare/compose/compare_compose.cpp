@@ -184,11 +184,7 @@ class Comparison {
 
   // The largest measured number of ranks that is small enough for pictures of each.
   int shown_ranks() const {
-    int shown = 0;
-    for (const int ranks : request_.ranks)
-      if (ranks <= kMostShownRanks) shown = std::max(shown, ranks);
-    if (shown == 0) shown = request_.ranks.front();
-    return session_.under_mpi ? session_ranks_ : shown;
+    return session_.under_mpi ? session_ranks_ : apps::shown_ranks(request_.ranks, kMostShownRanks);
   }
 
   void show_fastest(comm::Communicator& communicator, const raster::PartialImage& share) {
@@ -197,9 +193,9 @@ class Comparison {
       const ComparedScheme& best = *fastest(rows_, communicator.size()).front();
       name = best.scheme + '\n' + best.codec;
     }
-    const comm::Buffer told =
+    const comm::Buffer message =
         comm::broadcast(communicator, 0, comm::Buffer::of(std::span<const char>(name)));
-    const std::span<const char> letters = told.as<char>();
+    const std::span<const char> letters = message.as<char>();
     const std::string all(letters.begin(), letters.end());
     const std::size_t end = all.find('\n');
     ShownScheme shown = show_scheme(communicator, share, all.substr(0, end), all.substr(end + 1),

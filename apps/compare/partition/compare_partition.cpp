@@ -251,10 +251,7 @@ class Comparison {
 }  // namespace
 
 int shown_ranks(const PartitionRequest& request) {
-  int shown = 0;
-  for (const int ranks : request.ranks)
-    if (ranks <= kMostShownRanks) shown = std::max(shown, ranks);
-  return shown > 0 ? shown : request.ranks.front();
+  return shown_ranks(request.ranks, kMostShownRanks);
 }
 
 PartitionComparison compare_partition(const PartitionRequest& request, const Prepared& prepared,

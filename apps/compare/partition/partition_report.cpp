@@ -143,7 +143,7 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   };
   const double mean = mean_of(shown.work), predicted_mean = mean_of(shown.predicted);
   const auto over_mean = [](double value, double of) { return of > 0 ? value / of : 1.0; };
-  const auto told = [&](std::size_t rank) {
+  const auto share_text = [&](std::size_t rank) {
     return fmt::format(
         "{:.2f} of the mean, predicted {:.2f}; measured {}", over_mean(shown.work[rank], mean),
         over_mean(shown.predicted[rank], predicted_mean), time_text(shown.busy[rank]));
@@ -156,7 +156,7 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   for (const loadbalance::Region& region : shown.partition.regions) {
     const auto rank = static_cast<std::size_t>(region.owner);
     drawn.areas.push_back({region.rect, region.owner, over_mean(shown.work[rank], mean),
-                           fmt::format("rank {}: {}", region.owner, told(rank))});
+                           fmt::format("rank {}: {}", region.owner, share_text(rank))});
   }
   BarChart bars;
   bars.title = shown.name + ", by rank";
@@ -165,7 +165,7 @@ Html shown_partition(const PartitionRequest& request, const ShownPartition& show
   bars.mark = mean;
   const auto busiest = std::max_element(shown.work.begin(), shown.work.end());
   for (std::size_t rank = 0; rank < shown.work.size(); ++rank) {
-    bars.bars.push_back({fmt::format("rank {}", rank), shown.work[rank], told(rank),
+    bars.bars.push_back({fmt::format("rank {}", rank), shown.work[rank], share_text(rank),
                          shown.work.begin() + static_cast<std::ptrdiff_t>(rank) == busiest});
   }
   return "<div>" + overlay(drawn, kPicture) + bar_chart(bars) + "</div>";

@@ -258,10 +258,7 @@ class Comparison {
 }  // namespace
 
 int shown_ranks(const ScheduleRequest& request) {
-  int shown = 0;
-  for (const int ranks : request.ranks)
-    if (ranks <= kMostShownRanks) shown = std::max(shown, ranks);
-  return shown > 0 ? shown : request.ranks.front();
+  return shown_ranks(request.ranks, kMostShownRanks);
 }
 
 ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,

@@ -63,9 +63,10 @@ int run(Session& session, TriangulateRequest request) {
   const auto comparison = std::make_shared<const TriangulateComparison>(
       compare_triangulate(request, points, dim, session.progress));
   bar.end();
-  return tell(request, {triangulate_table(*comparison),
-                        triangulate_statistics(request, *comparison), comparison->unfinished,
-                        [&] { return triangulate_report(session, request, *comparison); }});
+  return report_results(
+      request,
+      {triangulate_table(*comparison), triangulate_statistics(request, *comparison),
+       comparison->unfinished, [&] { return triangulate_report(session, request, *comparison); }});
 }
 
 }  // namespace

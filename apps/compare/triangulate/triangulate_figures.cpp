@@ -3,15 +3,20 @@
 
 #include <fmt/format.h>
 
+#include "apps/triangulation_json.h"
+
 namespace delray::apps {
 namespace {
 
 Json statistics_of(const TriangulateComparison& comparison, const ComparedTriangulation& row) {
   const delaunay::Options& how = row.how;
   const delaunay::Statistics& phases = row.statistics;
-  const delaunay::Synchronization& sync = phases.synchronization;
   const double times_as_fast = speed_up(comparison.rows, row);
   const auto ratio = [&](double value) { return times_as_fast > 0 ? Json(value) : Json(nullptr); };
+  Json sync = synchronization_json(phases.synchronization);
+  sync["fragments"] = row.fragments;
+  Json seconds = {{"triangulate", row.seconds.median}};
+  seconds.update(phases_json(phases));
   return {{"method", how.method},
           {"location", how.location},
           {"split", how.split},
@@ -23,27 +28,11 @@ Json statistics_of(const TriangulateComparison& comparison, const ComparedTriang
           {"simplices", row.simplices},
           {"hull_facets", row.hull_facets},
           {"hash", row.hash},
-          {"sync",
-           {{"lock_calls", sync.lock_calls},
-            {"already_locked", sync.already_locked},
-            {"free", sync.free},
-            {"waits", sync.waits},
-            {"deadlocks", sync.deadlocks},
-            {"rollbacks", sync.rollbacks},
-            {"burglaries", sync.burglaries},
-            {"repaired", sync.repaired},
-            {"rebuilds", sync.rebuilds},
-            {"fragments", row.fragments}}},
+          {"sync", sync},
           {"simplices_by_thread", row.simplices_by_thread},
           {"dag_nodes", phases.dag_nodes},
           {"dag_node_bytes", phases.dag_node_bytes},
-          {"seconds",
-           {{"triangulate", row.seconds.median},
-            {"order", phases.order},
-            {"locate", phases.locate},
-            {"subdivide", phases.subdivide},
-            {"legalize", phases.legalize},
-            {"extract", phases.extract}}},
+          {"seconds", seconds},
           {"spread", {{"triangulate", spread_json(row.seconds)}}},
           {"speed_up", ratio(times_as_fast)},
           {"efficiency", ratio(times_as_fast / how.threads)}};
