@@ -92,6 +92,30 @@ double noisy_part(const raytrace::Film& film, float threshold) {
   return static_cast<double>(noisy) / static_cast<double>(film.window().area());
 }
 
+// Facts of the sampling, of at most so many samples per pixel, and channels where they are wanted.
+Extras extras_of(const raytrace::ProgressiveResult& result, const SamplingOptions& sampling,
+                 int samples) {
+  Extras extras;
+  extras.passes = result.passes;
+  extras.out_of_time = result.out_of_time;
+  extras.samples = result.film.pixels().empty()
+                       ? static_cast<double>(samples)
+                       : static_cast<double>(result.film.total_samples()) /
+                             static_cast<double>(result.film.pixels().size());
+  if (sampling.noise > 0.0) {
+    extras.noisy = noisy_part(result.film, static_cast<float>(sampling.noise));
+    if (extras.noisy > 0.0) {
+      spdlog::info("{:.3g} % of the picture is noisier than --noise {}: {} ended sampling",
+                   100.0 * extras.noisy, sampling.noise,
+                   result.out_of_time
+                       ? "--time"
+                       : fmt::format("a maximum of {} samples per pixel (--spp)", samples));
+    }
+  }
+  if (sampling.channels) extras.channels = channels_of(result, sampling.window);
+  return extras;
+}
+
 }  // namespace
 
 RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& renderer,
@@ -147,23 +171,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   done.statistics = std::move(result.statistics);
   if (!root) return done;
   if (!sampling.checkpoint.empty()) save(result.film);
-  done.extras.passes = result.passes;
-  done.extras.out_of_time = result.out_of_time;
-  done.extras.samples = result.film.pixels().empty()
-                            ? static_cast<double>(frame.samples)
-                            : static_cast<double>(result.film.total_samples()) /
-                                  static_cast<double>(result.film.pixels().size());
-  if (options.noise > 0.0F) {
-    done.extras.noisy = noisy_part(result.film, options.noise);
-    if (done.extras.noisy > 0.0) {
-      spdlog::info("{:.3g} % of the picture is noisier than --noise {}: {} ended sampling",
-                   100.0 * done.extras.noisy, sampling.noise,
-                   result.out_of_time
-                       ? "--time"
-                       : fmt::format("a maximum of {} samples per pixel (--spp)", frame.samples));
-    }
-  }
-  if (sampling.channels) done.extras.channels = channels_of(result, sampling.window);
+  done.extras = extras_of(result, sampling, frame.samples);
   done.picture = std::move(result.image);
   if (sampling.denoise) {
     raytrace::denoise(done.picture, result.features, variance_of(result.film, sampling.window));

@@ -108,22 +108,26 @@ struct HullFront {
   }
 };
 
-}  // namespace
+// Where the lower common tangent of two hulls touches them, and the ghosts of the edges before and
+// after its ends, kNoGhost on a side that is a single point.
+struct LowerTangent {
+  VertexNumber left, right;
+  SimplexNumber before_left, after_left, before_right, after_right;
+};
 
-std::array<Tangent, 2> merge(HullMesh hulls, const MergeFilter& filter, HullVertex from_left,
-                             HullVertex from_right, double extent, SimplexNumber spare) {
+// Walks down both hulls for as long as an end can move. A cross product beyond `error` has a sure
+// sign.
+LowerTangent lower_tangent(const HullMesh& hulls, const MergeFilter& filter, double error,
+                           HullVertex from_left, HullVertex from_right) {
   const glm::dvec2* points = hulls.points;
-  Mesh<2>& mesh = hulls.mesh;
-  const MergeFilter::Bounds bounds = filter.bounds(extent);
-  const double surely_above = std::max(bounds.cross, 0.0);
+  const Mesh<2>& mesh = hulls.mesh;
   const auto right_of = [&](VertexNumber a, VertexNumber b, VertexNumber c) {
     const glm::dvec2 ac = points[a] - points[c], bc = points[b] - points[c];
     const double cross = ac.x * bc.y - ac.y * bc.x;
-    if (std::abs(cross) > bounds.cross) return cross < 0;
+    if (std::abs(cross) > error) return cross < 0;
     return filter.right_of(points[a], points[b], points[c]);
   };
   VertexNumber left = from_left.vertex, right = from_right.vertex;
-  // The ghosts of the hull's edges around the tangent: before and after `left`, and `right`.
   SimplexNumber after_left = from_left.ghost, after_right = from_right.ghost;
   SimplexNumber before_left = kNoGhost, before_right = kNoGhost;
   if (after_left != kNoGhost) before_left = hulls.previous_ghost(after_left);
@@ -147,6 +151,19 @@ std::array<Tangent, 2> merge(HullMesh hulls, const MergeFilter& filter, HullVert
       moved = true;
     }
   }
+  return {left, right, before_left, after_left, before_right, after_right};
+}
+
+}  // namespace
+
+std::array<Tangent, 2> merge(HullMesh hulls, const MergeFilter& filter, HullVertex from_left,
+                             HullVertex from_right, double extent, SimplexNumber spare) {
+  const glm::dvec2* points = hulls.points;
+  Mesh<2>& mesh = hulls.mesh;
+  const MergeFilter::Bounds bounds = filter.bounds(extent);
+  const double surely_above = std::max(bounds.cross, 0.0);
+  auto [left, right, before_left, after_left, before_right, after_right] =
+      lower_tangent(hulls, filter, bounds.cross, from_left, from_right);
   const SimplexNumber lower = spare, upper = spare + 1;
   const Tangent start{left, right, lower};
   hulls.set_ghost(lower, left, right);

@@ -80,6 +80,87 @@ std::vector<double> totals(const MeasuredScheme& measured) {
   return result;
 }
 
+// Appends the schemes that were timed at least once.
+void append(const std::vector<MeasuredScheme>& all, int ranks, std::vector<ComparedScheme>& rows) {
+  for (const MeasuredScheme& measured : all) {
+    if (measured.compose_seconds.empty()) continue;
+    rows.push_back({measured.scheme,
+                    measured.codec,
+                    ranks,
+                    measured.compose,
+                    measured.gather,
+                    spread_of(measured.compose_seconds),
+                    spread_of(measured.gather_seconds),
+                    spread_of(totals(measured)),
+                    measured.hash,
+                    {}});
+  }
+}
+
+// Whether a simulation sends too many messages: by those of fewer ranks, which grow with their
+// square at most.
+bool takes_long(const CompareRequest& request, const std::vector<ComparedScheme>& rows,
+                const std::string& scheme, const std::string& codec, int ranks) {
+  if (request.most_messages == 0) return false;
+  const ComparedScheme* known = nullptr;
+  for (const ComparedScheme& row : rows) {
+    if (row.scheme == scheme && row.codec == codec && row.ranks < ranks &&
+        (known == nullptr || row.ranks > known->ranks))
+      known = &row;
+  }
+  if (known == nullptr) return false;
+  const double growth = static_cast<double>(ranks) / known->ranks;
+  return static_cast<double>(known->counts.messages) * growth * growth >
+         static_cast<double>(request.most_messages);
+}
+
+// The half of the table that a scheme is in; the two take turns.
+std::size_t half_of(const CompareRequest& request, const std::string& scheme) {
+  const std::vector<std::string> names = schemes_of(request);
+  const auto at = std::find(names.begin(), names.end(), scheme);
+  return static_cast<std::size_t>(at - names.begin()) % kHalves;
+}
+
+// The machine as the schemes of the other half show it, so that no scheme is predicted from its
+// own times. Ranks that have a core each and ranks that take turns tell nothing about each other.
+MachineModel fit_to_others(const CompareRequest& request, const MachineModel& here,
+                           const std::vector<composite::TimedScheme>& samples, int ranks,
+                           std::size_t half) {
+  std::vector<composite::TimedScheme> others;
+  for (const composite::TimedScheme& sample : samples) {
+    const auto count = sample.images.count();
+    if (half_of(request, sample.scheme) == half ||
+        (count <= cores_here()) != (ranks <= cores_here()))
+      continue;
+    // Ranks that share cores as these do tell most.
+    const double octaves = std::log2(static_cast<double>(count) / ranks);
+    others.push_back(sample);
+    others.back().weight = 1 / (1 + 16 * octaves * octaves);
+  }
+  return fit_machine(here, others);
+}
+
+// Transparent layers are lists of surfaces, for which there is one codec.
+std::vector<std::string> codecs_of(const CompareRequest& request, bool are_transparent) {
+  return are_transparent ? std::vector<std::string>{"deep"} : request.codecs;
+}
+
+// The numbers of ranks that are predicted, ascending: those of the rows, and without MPI those that
+// are too many to be measured.
+std::vector<int> predicted_ranks(const CompareRequest& request,
+                                 const std::vector<ComparedScheme>& rows, bool under_mpi) {
+  std::vector<int> ranks;
+  for (const ComparedScheme& row : rows) ranks.push_back(row.ranks);
+  if (!under_mpi) {
+    for (const int count : request.ranks) {
+      if (count > kMostMeasuredRanks) ranks.push_back(count);
+    }
+  }
+  std::sort(ranks.begin(), ranks.end());
+  ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+  return ranks;
+}
+
 class Comparison {
  public:
   Comparison(const Session& session, const CompareRequest& request, const Prepared& prepared,
@@ -127,28 +208,6 @@ class Comparison {
     return shapes(ranks).metadata_only(codec, request_.render.width);
   }
 
-  // Transparent layers are lists of surfaces, for which there is one codec.
-  std::vector<std::string> codecs(bool are_transparent) const {
-    return are_transparent ? std::vector<std::string>{"deep"} : request_.codecs;
-  }
-
-  // Appends the schemes that were timed at least once.
-  void append(const std::vector<MeasuredScheme>& all, int ranks) {
-    for (const MeasuredScheme& measured : all) {
-      if (measured.compose_seconds.empty()) continue;
-      rows_.push_back({measured.scheme,
-                       measured.codec,
-                       ranks,
-                       measured.compose,
-                       measured.gather,
-                       spread_of(measured.compose_seconds),
-                       spread_of(measured.gather_seconds),
-                       spread_of(totals(measured)),
-                       measured.hash,
-                       {}});
-    }
-  }
-
   // On every rank. All schemes and codecs take turns, so that none has the better minutes of the
   // machine.
   void measure_all(comm::Communicator& communicator, const raster::PartialImage& share) {
@@ -156,7 +215,7 @@ class Comparison {
     const bool root = communicator.rank() == 0;
     ShareLayers layers(share);
     std::vector<MeasuredScheme> all;
-    for (const std::string& codec : codecs(is_transparent(share))) {
+    for (const std::string& codec : codecs_of(request_, is_transparent(share))) {
       for (const std::string& scheme : schemes_of(request_))
         all.push_back({scheme, codec, {}, {}, {}, {}, {}});
     }
@@ -171,14 +230,14 @@ class Comparison {
         // All ranks stop before the same scheme.
         const bool stop = root && steps_.stop_requested();
         if (comm::all_reduce_value(communicator, stop ? 1 : 0, std::plus<>()) > 0) {
-          if (root) append(all, ranks);
+          if (root) append(all, ranks, rows_);
           throw parallel::Interrupted{};
         }
         measure(communicator, layers, request_, prepared_, turn == 0, measured);
         if (root) steps_.done();
       }
     }
-    if (root) append(all, ranks);
+    if (root) append(all, ranks, rows_);
     if (!request_.output.empty() && ranks == shown_ranks()) show_fastest(communicator, share);
   }
 
@@ -249,12 +308,12 @@ class Comparison {
 
   // Counts what was not measured, and predicts everything.
   void predict() {
-    const std::vector<int> counts = ranks_of_rows();
+    const std::vector<int> counts = predicted_ranks(request_, rows_, session_.under_mpi);
     if (counts.empty()) return;
     const bool are_transparent = shapes(counts.front()).are_transparent();
     if (are_transparent && request_.codecs != CompareRequest().codecs)
       spdlog::warn("something is transparent: lists of surfaces travel, whatever --codec says");
-    for (const std::string& codec : codecs(are_transparent)) predict(codec, counts);
+    for (const std::string& codec : codecs_of(request_, are_transparent)) predict(codec, counts);
   }
 
   void predict(const std::string& codec, const std::vector<int>& counts) {
@@ -276,15 +335,17 @@ class Comparison {
         }
         if (ranks > kMostRanksHere) continue;
         machines[half].emplace_back(
-            kThisMachine, fit_to_others({network_here(ranks), costs}, samples, ranks, half));
+            kThisMachine,
+            fit_to_others(request_, {network_here(ranks), costs}, samples, ranks, half));
       }
       if (ranks > kMostMeasuredRanks) {
         for (const std::string& scheme : schemes_of(request_)) {
-          if (takes_long(scheme, codec, ranks)) {
+          if (takes_long(request_, rows_, scheme, codec, ranks)) {
             result_.left_out.push_back({scheme, codec, ranks});
             steps_.done(kStepsOfPrediction);
           } else {
-            rows_.push_back(simulated_row(scheme, codec, images, machines[half_of(scheme)]));
+            rows_.push_back(
+                simulated_row(scheme, codec, images, machines[half_of(request_, scheme)]));
           }
         }
       } else {
@@ -292,39 +353,11 @@ class Comparison {
           if (row.codec != codec || row.ranks != ranks) continue;
           steps_.stop_if_asked();
           steps_.done(kStepsOfPrediction);
-          predict(row, images, machines[half_of(row.scheme)]);
+          predict(row, images, machines[half_of(request_, row.scheme)]);
         }
       }
       if (ranks > kMostFittedRanks) shapes_.erase(ranks);
     }
-  }
-
-  // By the messages of fewer ranks, which grow with their square at most.
-  bool takes_long(const std::string& scheme, const std::string& codec, int ranks) const {
-    if (request_.most_messages == 0) return false;
-    const ComparedScheme* known = nullptr;
-    for (const ComparedScheme& row : rows_) {
-      if (row.scheme == scheme && row.codec == codec && row.ranks < ranks &&
-          (known == nullptr || row.ranks > known->ranks))
-        known = &row;
-    }
-    if (known == nullptr) return false;
-    const double growth = static_cast<double>(ranks) / known->ranks;
-    return static_cast<double>(known->counts.messages) * growth * growth >
-           static_cast<double>(request_.most_messages);
-  }
-
-  std::vector<int> ranks_of_rows() const {
-    std::vector<int> ranks;
-    for (const ComparedScheme& row : rows_) ranks.push_back(row.ranks);
-    if (!session_.under_mpi) {
-      for (const int count : request_.ranks) {
-        if (count > kMostMeasuredRanks) ranks.push_back(count);
-      }
-    }
-    std::sort(ranks.begin(), ranks.end());
-    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
-    return ranks;
   }
 
   // Counted and predicted at once.
@@ -364,31 +397,6 @@ class Comparison {
                          std::max(1e-9, row.compose_seconds->median), 1, options()});
     }
     return samples;
-  }
-
-  // The half of the table that a scheme is in; the two take turns.
-  std::size_t half_of(const std::string& scheme) const {
-    const std::vector<std::string> names = schemes_of(request_);
-    const auto at = std::find(names.begin(), names.end(), scheme);
-    return static_cast<std::size_t>(at - names.begin()) % kHalves;
-  }
-
-  // The machine as the schemes of the other half show it, so that no scheme is predicted from its
-  // own times. Ranks that have a core each and ranks that take turns tell nothing about each other.
-  MachineModel fit_to_others(const MachineModel& here,
-                             const std::vector<composite::TimedScheme>& samples, int ranks,
-                             std::size_t half) const {
-    std::vector<composite::TimedScheme> others;
-    for (const composite::TimedScheme& sample : samples) {
-      const auto count = sample.images.count();
-      if (half_of(sample.scheme) == half || (count <= cores_here()) != (ranks <= cores_here()))
-        continue;
-      // Ranks that share cores as these do tell most.
-      const double octaves = std::log2(static_cast<double>(count) / ranks);
-      others.push_back(sample);
-      others.back().weight = 1 / (1 + 16 * octaves * octaves);
-    }
-    return fit_machine(here, others);
   }
 
   const Session& session_;

@@ -270,30 +270,56 @@ Html locks(const TriangulateComparison& comparison) {
              "do at the end, where a burglary may have left something wrong.");
 }
 
+// The simplices in the colours of their threads; empty without pictures.
+Html pictures_of_makers(const TriangulateComparison& comparison) {
+  if (comparison.pictures.empty()) return {};
+  const int threads = comparison.shown_threads;
+  Html result = paragraph(fmt::format(
+      "The {} coloured by the thread that made them, {}{}. Where the colours lie together, "
+      "threads seldom meet.",
+      simplices_text(comparison.dim), threads_text(threads),
+      comparison.dim == 3 ? ", where a plane through the middle cuts them" : ""));
+  result += "<div class=\"legend\">";
+  for (int thread = 0; thread < threads; ++thread) {
+    result += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>thread {}</span>",
+                          thread % 8, thread);
+  }
+  result += "</div>\n";
+  std::vector<Html> pictures;
+  for (const PictureOfMakers& one : comparison.pictures) {
+    pictures.push_back(picture(one.picture, fmt::format("{}, {} points: {} fragments (counted)",
+                                                        one.name, one.points, one.fragments)));
+  }
+  result += beside(pictures);
+  return result;
+}
+
+// The shares of the threads in the simplices of so many points; empty without rows.
+Html makers_bars(const TriangulateComparison& comparison, const Rows& rows, std::size_t points) {
+  StackedBars shares;
+  shares.title =
+      fmt::format("Who made the {} {} of {} points", rows.empty() ? 0 : rows.back().simplices,
+                  simplices_text(comparison.dim), points);
+  shares.unit = simplices_text(comparison.dim);
+  shares.source = Source::counted;
+  shares.shares = true;
+  for (int thread = 0; thread < comparison.shown_threads; ++thread)
+    shares.kinds.push_back(fmt::format("thread {}", thread));
+  for (const Row& row : rows) {
+    if (row.points != points || row.simplices == 0) continue;
+    StackedBar bar{name_of(row.how), {}};
+    for (const std::uint64_t count : row.simplices_by_thread)
+      bar.parts.push_back(static_cast<double>(count));
+    shares.bars.push_back(std::move(bar));
+  }
+  return shares.bars.empty() ? Html() : stacked_bars(shares);
+}
+
 Html fragments(const TriangulateComparison& comparison) {
   const int threads = comparison.shown_threads;
   const Rows rows =
       rows_of(comparison.rows, [&](const Row& row) { return row.how.threads == threads; });
-  Html result;
-  if (!comparison.pictures.empty()) {
-    result += paragraph(fmt::format(
-        "The {} coloured by the thread that made them, {}{}. Where the colours lie together, "
-        "threads seldom meet.",
-        simplices_text(comparison.dim), threads_text(threads),
-        comparison.dim == 3 ? ", where a plane through the middle cuts them" : ""));
-    result += "<div class=\"legend\">";
-    for (int thread = 0; thread < threads; ++thread) {
-      result += fmt::format("<span class=\"key\"><i class=\"span c{}\"></i>thread {}</span>",
-                            thread % 8, thread);
-    }
-    result += "</div>\n";
-    std::vector<Html> pictures;
-    for (const PictureOfMakers& one : comparison.pictures) {
-      pictures.push_back(picture(one.picture, fmt::format("{}, {} points: {} fragments (counted)",
-                                                          one.name, one.points, one.fragments)));
-    }
-    result += beside(pictures);
-  }
+  Html result = pictures_of_makers(comparison);
   const Html chart = over_points(
       rows,
       {"Fragments, " + threads_text(threads), "fragments", Scale::logarithmic, Source::counted},
@@ -318,23 +344,7 @@ Html fragments(const TriangulateComparison& comparison) {
   result += in_columns(
       {chart, "<div>" + heading(fmt::format("{} points, {}", points, threads_text(threads))) +
                   table(table_of) + "</div>"});
-  StackedBars shares;
-  shares.title =
-      fmt::format("Who made the {} {} of {} points", rows.empty() ? 0 : rows.back().simplices,
-                  simplices_text(comparison.dim), points);
-  shares.unit = simplices_text(comparison.dim);
-  shares.source = Source::counted;
-  shares.shares = true;
-  for (int thread = 0; thread < threads; ++thread)
-    shares.kinds.push_back(fmt::format("thread {}", thread));
-  for (const Row& row : rows) {
-    if (row.points != points || row.simplices == 0) continue;
-    StackedBar bar{name_of(row.how), {}};
-    for (const std::uint64_t count : row.simplices_by_thread)
-      bar.parts.push_back(static_cast<double>(count));
-    shares.bars.push_back(std::move(bar));
-  }
-  if (threads <= 8 && !shares.bars.empty()) result += stacked_bars(shares);
+  if (threads <= 8) result += makers_bars(comparison, rows, points);
   return result +
          paragraph(
              "A fragment is a connected set of simplices that one thread made: at best there are "
