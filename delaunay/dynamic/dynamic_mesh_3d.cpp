@@ -12,6 +12,7 @@
 
 #include "delaunay/dynamic/dynamic_mesh.h"
 #include "delaunay/insertion/first_tetrahedron.h"
+#include "delaunay/mesh/edge_pairs.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/predicates.h"
 #include "delaunay/predicates/conflict.h"
@@ -105,12 +106,7 @@ SimplexNumber DynamicMesh<3>::locate(std::span<const glm::dvec3> points, const g
 
 // Links the sides with each other over the edges that they have in common.
 void DynamicMesh<3>::link_sides() {
-  struct Edge {
-    VertexNumber low, high;
-    CornerNumber corner;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * sides_.size());
+  EdgePairs<CornerNumber> pairs(3 * sides_.size());
   for (const Side& side : sides_) {
     for (unsigned k = 0; k < 4; ++k) {
       if (k == side.corner) continue;
@@ -119,16 +115,10 @@ void DynamicMesh<3>::link_sides() {
       for (unsigned j = 0; j < 4; ++j) {
         if (j != k && j != side.corner) ends[next++] = side.vertices[j];
       }
-      edges.push_back(
-          {std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), corner_of(side.number, k)});
+      pairs.add(ends[0], ends[1], corner_of(side.number, k));
     }
   }
-  std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
-  });
-  for (std::size_t i = 0; i + 1 < edges.size(); i += 2) {
-    slots_.mesh().link(edges[i].corner, edges[i + 1].corner);
-  }
+  pairs.for_each([&](CornerNumber a, CornerNumber b) { slots_.mesh().link(a, b); });
 }
 
 SimplexNumber DynamicMesh<3>::insert(std::span<const glm::dvec3> points, VertexNumber vertex,

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "delaunay/mesh/edge_pairs.h"
 #include "delaunay/natural_neighbours.h"
 #include "delaunay/predicates/circumcentres.h"
 
@@ -174,26 +175,16 @@ struct EdgeOfSides {
 
 // The edges of the sides of a cavity, by their corners. O(n log n).
 inline std::vector<EdgeOfSides> edges_of(const std::vector<std::array<std::uint32_t, 3>>& sides) {
-  struct Directed {
-    std::uint64_t key;  // both ends, in ascending order
-    std::size_t edge;
-  };
-  std::vector<Directed> directed;
-  directed.reserve(3 * sides.size());
+  EdgePairs<std::size_t> pairs(3 * sides.size());
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(sides[i][k], sides[i][(k + 1) % 3]);
-      directed.push_back({std::uint64_t{low} << 32 | high, 3 * i + k});
-    }
+    for (std::size_t k = 0; k < 3; ++k) pairs.add(sides[i][k], sides[i][(k + 1) % 3], 3 * i + k);
   }
-  std::ranges::sort(directed, {}, &Directed::key);
   std::vector<EdgeOfSides> edges;
-  edges.reserve(directed.size() / 2);
-  for (std::size_t i = 0; i + 1 < directed.size(); i += 2) {
-    const std::size_t first = directed[i].edge;
+  edges.reserve(3 * sides.size() / 2);
+  pairs.for_each([&](std::size_t first, std::size_t second) {
     const auto& side = sides[first / 3];
-    edges.push_back({side[first % 3], side[(first + 1) % 3], first / 3, directed[i + 1].edge / 3});
-  }
+    edges.push_back({side[first % 3], side[(first + 1) % 3], first / 3, second / 3});
+  });
   return edges;
 }
 
