@@ -47,8 +47,8 @@ std::string objection(const comm::Communicator& communicator, const Layer* layer
   return ranks == all ? "" : "the order of compositing does not have each rank once";
 }
 
-// The same where ranks can composite with each other. Every bit of it is set in one of the two
-// halves, and in all of both on a rank that objects.
+// A value that is the same on ranks that can composite with each other. Every bit of it is set in
+// one of the two halves, and in all of both on a rank that objects.
 std::array<std::uint64_t, 2> agreement(const Layer* layer, std::string_view scheme,
                                        const ComposeOptions& options, bool objects) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0};

@@ -11,7 +11,7 @@
 
 namespace delray::composite {
 
-// How images are composited and travel, and to which rank.
+// Options of compositing images: how they travel, and to which rank.
 struct ImageOptions {
   Operator how = Operator::nearest;
   std::string_view scheme = "radix-k";  // with radices, if any: see choose_scheme
@@ -46,7 +46,7 @@ struct ImageBuffers {
   const float* depth = nullptr;  // null: none, for `over`
 };
 
-// The same of a copy, for which the renderer's own value of empty depth, such as 1, becomes
+// Composites a copy, for which the renderer's own value of empty depth, such as 1, becomes
 // kEmptyDepth, and the colours there {}.
 template <class Colour>
 image::BasicImage<Colour> compose_images(comm::Communicator& communicator,

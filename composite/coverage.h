@@ -38,15 +38,16 @@ class Coverage {
     bool is_full() const { return covered == end - begin; }
   };
 
-  // Of a range of `pixels`: find(begin, end, mask) sets the bits of those pixels of the range,
-  // which are a group, in a mask that is zero, and returns how many it set; it is called for each
-  // group, by several threads. O(pixels).
+  // The coverage of a range of `pixels`: find(begin, end, mask) sets the bits of those pixels of
+  // the range, which are a group, in a mask that is zero, and returns how many it set; it is called
+  // for each group, by several threads. O(pixels).
   Coverage(
       std::uint64_t pixels,
       parallel::FunctionRef<std::uint64_t(std::uint64_t begin, std::uint64_t end, GroupMask& mask)>
           find);
-  // What encode wrote for a range of `pixels`, at the start of a message. Throws comm::BadMessage
-  // for what it cannot have written: masks and counts agree, and nothing lies outside of the range.
+  // Reads what encode wrote for a range of `pixels`, at the start of a message. Throws
+  // comm::BadMessage for what it cannot have written: masks and counts agree, and nothing lies
+  // outside of the range.
   Coverage(std::uint64_t pixels, std::span<const std::byte> message);
 
   std::uint64_t covered() const { return covered_before_.back(); }

@@ -72,7 +72,7 @@ extern template class DeepLayer<image::RgbaF>;
 
 // ---
 
-// What encode() wrote.
+// The parts of a message that encode() wrote.
 template <class Payload>
 struct DeepLayer<Payload>::Arrived {
   Coverage coverage;

@@ -14,7 +14,7 @@
 
 namespace delray::composite {
 
-// What one thread drew of some pixels. The fragments of pixels[0] come first, then those of
+// Fragments that one thread drew of some pixels. Those of pixels[0] come first, then those of
 // pixels[1], and so on; those of one pixel are in order, none behind an opaque one.
 template <class Payload>
 struct DeepTile {
@@ -44,7 +44,8 @@ struct DeepImage {
       : width(w), height(h), lists(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {
     clear(0, lists.size());
   }
-  // What the tiles hold; other pixels are empty. No fragment is copied. O(pixels), parallel.
+  // An image of what the tiles hold; other pixels are empty. No fragment is copied. O(pixels),
+  // parallel.
   //
   // REQUIRES: no pixel is in two tiles, or twice in one.
   DeepImage(int w, int h, std::vector<DeepTile<Payload>>&& tiles) : DeepImage(w, h) {

@@ -27,13 +27,14 @@ class DeepShape {
     std::uint64_t index = 0;  // counted from the start of a range
     std::uint64_t size = 0;   // number of its surfaces, at least one
   };
-  // Those of a range that have any surfaces, ascending, and the surfaces of one after the other.
+  // The pixels of a range that have any surfaces, ascending, and the surfaces of one after the
+  // other.
   struct Lists {
     std::span<const Pixel> pixels;
     std::span<const Surface> surfaces;
   };
 
-  // Of an image of so many pixels, without surfaces.
+  // The shape of an image of so many pixels, without surfaces.
   explicit DeepShape(std::uint64_t pixels);
   template <class Payload>
   explicit DeepShape(const DeepImage<Payload>& image);

@@ -85,7 +85,7 @@ MachineModel fit_machine(const MachineModel& start, std::span<const TimedScheme>
     for (const TimedScheme& sample : samples) pull += kPull * sample.weight;
     for (std::size_t k = 0; k < kFactors; ++k) {
       for (std::size_t i = 0; i < errors.size(); ++i) {
-        // What lies far off, by chance or because of what the model knows nothing of, pulls no
+        // A sample that lies far off, by chance or for a reason outside of the model, pulls no
         // harder than an error of kFar (Huber 1964).
         const double slope = slopes[k][i] * samples[i].weight *
                              std::min(1.0, kFar / std::max(std::abs(errors[i]), kFar));

@@ -55,7 +55,7 @@ inline image::RgbaF blend(std::span<const Fragment> in_order) {
   return sum;
 }
 
-// What blend gave as a pixel stores it: as it is, or as 8-bit sRGB, each channel clamped.
+// The result of blend as a pixel stores it: as it is, or as 8-bit sRGB, each channel clamped.
 void store(const image::RgbaF& colour, image::RgbaF& pixel);
 void store(const image::RgbaF& colour, image::Rgba8& pixel);
 

@@ -1,4 +1,4 @@
-// Layers of images: what happens to pixels where two meet. How they travel is the codec's affair.
+// Layers of images: how pixels of two are merged. The codec decides how they travel.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace delray::composite {
 
-// What merging does to a pixel.
+// Operators that merge pixels.
 enum class Operator : std::uint8_t {
   // The nearer one wins, the lower interval of ranks on equal depths. A pixel that nothing covers
   // has kEmptyDepth and the colour {}, so that every codec leaves the same bytes.
@@ -54,7 +54,7 @@ class ImageLayer : public Layer {
 
  protected:
   enum class Action : std::uint8_t { merge_lower, merge_higher, replace, prune };
-  // What arrived of consecutive pixels, or of the covered ones among them; `depth` may be anything
+  // Consecutive pixels that arrived, or the covered ones among them; `depth` may be anything
   // where has_depth() is false.
   struct Pixels {
     const Colour* colour = nullptr;

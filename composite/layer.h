@@ -1,4 +1,4 @@
-// What compositing schemes move: a rank's partial image, seen only as ranges of pixels.
+// A rank's partial image, which compositing schemes see only as ranges of pixels.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,8 @@ class Layer {
   virtual bool empty() const = 0;
 };
 
-// What a rank owns after a scheme: final pixels in `ranges` of `layer`, the rest of it is garbage.
+// The pixels that a rank owns after a scheme: final ones in `ranges` of `layer`, the rest of it is
+// garbage.
 struct OwnedPixels {
   std::vector<PixelRange> ranges;
   std::unique_ptr<Layer> layer;

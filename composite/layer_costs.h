@@ -1,4 +1,4 @@
-// What cutting and merging of layers takes on a machine.
+// Costs of encoding and merging layers on a machine.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ struct LayerCosts {
   double merge_covered = 0;  // and for each pixel composited
 };
 
-// Of images with 8-bit colours, on this machine: threads, as ranks with a core each, composite
-// images of `pixels` pixels, empty, covered in part and full, with several schemes in turns; the
-// time that each spends in cuts and merges is taken, and the costs are fitted to the medians. Some
-// hundred times as long as it takes to composite once. Not the same from run to run.
+// Measures images with 8-bit colours, on this machine: threads, as ranks with a core each,
+// composite images of `pixels` pixels, empty, covered in part and full, with several schemes in
+// turns; the time that each spends in cuts and merges is taken, and the costs are fitted to the
+// medians. Some hundred times as long as it takes to composite once. Not the same from run to run.
 //
 // REQUIRES: pixels >= 4096.
 LayerCosts measure_layer_costs(const Codec& codec, std::uint64_t pixels = std::uint64_t{1} << 21);
 
-// The same of deep layers, which composite fragments, of RgbaF: where the images are covered, one
+// Measures deep layers, which composite fragments, of RgbaF: where the images are covered, one
 // to three each.
 LayerCosts measure_deep_layer_costs(std::uint64_t pixels = std::uint64_t{1} << 18);
 

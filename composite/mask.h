@@ -17,7 +17,7 @@ namespace delray::composite {
 // that have drawn little each fit into one process.
 class PixelMask {
  public:
-  // Of an image of so many pixels, none of them in the set.
+  // The mask of an image of so many pixels, none of them in the set.
   explicit PixelMask(std::uint64_t pixels);
   PixelMask(PixelMask&&) noexcept = default;
   PixelMask& operator=(PixelMask&&) noexcept = default;
@@ -48,7 +48,7 @@ class PixelMask {
   std::vector<std::unique_ptr<GroupMask>> groups_;  // null: none of its pixels
 };
 
-// What is known of a rank's image.
+// Metadata of a rank's image.
 struct ImageMasks {
   PixelMask covered;
   PixelMask unhidden;  // those of them that no lower rank hides

@@ -44,7 +44,8 @@ std::unique_ptr<Layer> make_metadata_only_dense(std::uint64_t pixels, std::size_
 std::unique_ptr<Layer> make_metadata_only_active(ImageMasks&& image, std::size_t pixel_bytes,
                                                  const LayerClock& clock = {});
 
-// The same for codec "bounds". REQUIRES: width, the image's, is >= 1 where it has pixels.
+// A metadata-only layer for codec "bounds". REQUIRES: width, the image's, is >= 1 where it has
+// pixels.
 std::unique_ptr<Layer> make_metadata_only_bounds(ImageMasks&& image, std::uint64_t width,
                                                  std::size_t pixel_bytes,
                                                  const LayerClock& clock = {});

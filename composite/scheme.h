@@ -11,10 +11,10 @@
 
 namespace delray::composite {
 
-// What schemes go by.
+// Parameters of schemes.
 struct ComposeOptions {
   int samples_per_pixel = 1;  // ranges are cut at multiples of it
-  // What a scheme that takes_radices goes by, each >= 1: radix-k the sizes of its groups, round by
+  // Radices of a scheme that takes_radices, each >= 1: radix-k the sizes of its groups, round by
   // round, mesh its columns. Where the number of ranks does not allow them it takes what is near;
   // without any it chooses.
   std::vector<int> radices = {};

@@ -29,7 +29,7 @@ Counts count(std::span<const comm::Tally> ranks, comm::Phase phase);
 // result is rank 0's. Call it on the communicator that was recorded, not on the recording.
 Counts count(comm::Communicator& communicator, const comm::Tally& own, comm::Phase phase);
 
-// What ranks know of their images, and how they send them.
+// Metadata of the ranks' images, and how they send them.
 struct MetadataOnlyImages {
   std::span<const ImageMasks> ranks;  // at least one, all of one size; without MetadataOnly::deep
   MetadataOnly codec = MetadataOnly::dense;

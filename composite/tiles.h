@@ -14,7 +14,7 @@
 
 namespace delray::composite {
 
-// Tiles are pieces of the image, dealt out to ranks in turn (OSPRay's: Usher, Wald, Amstutz et al.
+// Tiles are pieces of the image, assigned to ranks in turn (OSPRay's: Usher, Wald, Amstutz et al.
 // 2019). A rank draws them in any order, each into its own layer; the tile goes to its owner at
 // once, who merges what has come for it, in one fixed order, so that the result depends on nobody's
 // speed. All ranks make one, of layers of the same size, draw every tile once, and finish.
@@ -39,17 +39,17 @@ class TileCompositor {
   // nobody draws into the layer meanwhile, or only into tiles that are not drawn yet of a layer
   // with an image; neither this nor nothing_in was called for this tile before.
   void drawn(int tile);
-  // The same of a tile in which this rank has nothing: no pixels of it travel.
+  // Says that this rank has nothing in a tile: no pixels of it travel.
   void nothing_in(int tile);
   // Waits for the tiles of the others.
   OwnedPixels finish();
 
  private:
-  // Of a tile of this rank's own.
+  // The state of a tile that this rank owns.
   struct Own {
     bool drawn = false;
     std::size_t merged = 0;  // ranks of order_
-    // What has come before its turn; without a message from those who have nothing.
+    // Messages that have come before their turn; none from ranks that have nothing.
     std::map<int, std::optional<comm::Buffer>> not_yet{};
   };
   using Announced = std::map<int, std::deque<int>>;

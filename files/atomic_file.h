@@ -12,9 +12,9 @@ namespace delray::files {
 // fills and then commits. Not committed, or destroyed by an exception, it is removed and `path`
 // stays as it was. It has the permissions of the file that it replaces, else those of the umask.
 //
-// What cannot be replaced (OutputPath::in_place; "-" is standard output) is written as it is: the
-// bytes of write() at once, those of a temporary file, which then lies in the folder for such
-// files, on commit.
+// A file that cannot be replaced (OutputPath::in_place; "-" is standard output) is written as it
+// is: the bytes of write() at once, those of a temporary file, which then lies in the folder for
+// such files, on commit.
 //
 // Everything throws FileError (device), naming `path`.
 class AtomicFile {

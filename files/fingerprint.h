@@ -8,7 +8,8 @@
 
 namespace delray::files {
 
-// Of kParts parts of kPartBytes each, spread evenly over the file from its first byte to its last.
+// Hashes of kParts parts of kPartBytes each, spread evenly over the file from its first byte to its
+// last.
 struct Fingerprint {
   static constexpr std::size_t kParts = 16, kPartBytes = 65536;
 

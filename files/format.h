@@ -28,13 +28,13 @@ enum class Format {
   image,        // anything that OpenImageIO might read
 };
 
-// What a format is known by: a suffix, in lower case with its dot, or the bytes that its files
-// begin with.
+// The sign that a format is known by: a suffix, in lower case with its dot, or the bytes that its
+// files begin with.
 struct FormatSign {
   std::string_view text;
   Format format;
 };
-// Of several suffixes of a format the usual one comes first.
+// The usual suffix of a format comes first.
 inline constexpr std::array kFormatSuffixes = {
     FormatSign{".ply", Format::ply},          FormatSign{".obj", Format::obj},
     FormatSign{".off", Format::off},          FormatSign{".stl", Format::stl},
@@ -81,7 +81,7 @@ struct FileKind {
   bool by_delray = false;
 };
 
-// What says so, in a comment or in the header of an STL, and which way is up.
+// The comment, or header of an STL, in files that Delray wrote, which says too which way is up.
 inline constexpr std::string_view kWrittenByDelray = "written by delray; up: z";
 // The axis that a comment of an OBJ, OFF or PLY, or the header of an STL, calls up ("up: y"); 0 if
 // none does. O(1): in the first kilobytes.

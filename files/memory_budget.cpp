@@ -1,4 +1,4 @@
-// What is resident is read from /proc/self/statm, what there is from /proc/meminfo and the files of
+// Resident memory is read from /proc/self/statm, the machine's from /proc/meminfo and the files of
 // control groups, version 1 and 2 (cgroups(7)): the least limit of the group and those above it.
 #include "files/memory_budget.h"
 

@@ -1,4 +1,4 @@
-// How much memory a process may take: --memory.
+// The memory that a process may take: --memory.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ struct OutputPath {
   bool in_place = false;
   // The open file that "-", /dev/stdout or /dev/fd/N stand for.
   std::optional<int> descriptor;
-  // Of the file that is there and will be replaced.
+  // Attributes of the existing file that will be replaced.
   std::optional<mode_t> mode;
   std::optional<uid_t> owner;
   std::optional<gid_t> group;

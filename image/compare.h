@@ -7,7 +7,7 @@
 
 namespace delray::image {
 
-// How many pixels of two pictures differ, and by how much.
+// The number of pixels in which two pictures differ, and by how much.
 struct Comparison {
   std::uint64_t colour_differs = 0;    // pixels whose colour or alpha is not bitwise equal
   std::uint64_t depth_differs = 0;     // pixels whose depth is not bitwise equal

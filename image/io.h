@@ -44,7 +44,7 @@ struct Picture {
   std::vector<Attribute> attributes;
 };
 
-// What the header of a picture file says.
+// The contents of a picture file's header.
 struct PictureInfo {
   int width = 0, height = 0;
   std::string format;                 // "png", "openexr", ...
@@ -86,7 +86,7 @@ struct RawChannels {
 RawChannels read_float_channels(const std::filesystem::path& path,
                                 const files::MemoryBudget& memory = {});
 
-// What a picture file gets besides colours, and how exact it is.
+// Channels that a picture file gets besides colours, and how exact it is.
 struct WriteOptions {
   bool half = false;                  // EXR: 16-bit colour; depth and channels stay 32-bit
   std::span<const Channel> channels;  // EXR only

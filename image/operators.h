@@ -1,4 +1,4 @@
-// What merging two partial images does to each pixel: the z-test and the over operator.
+// Operators that merge two partial images pixel by pixel: the z-test and the over operator.
 //
 // SIMD through Highway, chosen at run time, with the same bytes on every instruction set. The
 // spans of a call have equal sizes; `other` may be unaligned but must not overlap the target.

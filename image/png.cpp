@@ -14,7 +14,7 @@
 namespace delray::image {
 namespace {
 
-// Of pictures, 6 (the default) takes half as long again for files 6 % smaller.
+// Level 6 (zlib's default) takes half as long again for pictures 6 % smaller.
 constexpr int kCompressionLevel = 4;
 
 struct Writer {

@@ -12,7 +12,7 @@ namespace delray::image {
 struct ToneCurve {
   const char* name;
   const char* description;
-  // Of a channel of linear light; never falls, 0 at 0. REQUIRES: light >= 0, not NaN.
+  // The curve for a channel of linear light; never falls, 0 at 0. REQUIRES: light >= 0, not NaN.
   float (*shown)(float light);
 };
 

@@ -19,7 +19,7 @@ struct Camera {
   float near = 0;              // distance of the near plane; 0: a small part of |at - eye|
   float aperture = 0;          // diameter of the lens, >= 0; the rasterizer sees through its centre
   float focus = 0;             // distance of what is sharp, along the view; 0: that of `at`
-  // Of an orthographic camera: how much of the world fits the frame's height, above 0, instead of
+  // The height of an orthographic camera's frame in the world, above 0, instead of
   // fov, lens and focus; `near` may be 0, and nothing lies beyond `far` (0: twice |at - eye|).
   float height = 0, far = 0;
   std::string name = {};  // in its file
@@ -34,7 +34,7 @@ struct Camera {
 //   x = half_width  + v.x / v.z * scale,   y = half_height - v.y / v.z * scale.
 // The centre of pixel (i, j) is (i + 0.5, j + 0.5); the ray through position (x, y) has direction
 //   forward + right * ((x - half_width) / scale) - up * ((y - half_height) / scale).
-// Of an orthographic view v.z is 1 in these, and what is added to forward is added to eye instead.
+// In an orthographic view v.z is 1 here, and the terms added to forward are added to eye instead.
 struct View {
   glm::vec3 eye, right, up, forward;  // unit vectors at right angles
   float scale = 1;                    // pixels per unit of v.x / v.z
@@ -58,7 +58,7 @@ struct View {
     if (!orthographic) return eye;
     return eye + right * ((x - half_width) / scale) - up * ((y - half_height) / scale);
   }
-  // What a pixel's width grows by per unit of distance, and what it is at first.
+  // The growth of a pixel's width per unit of distance, and its width at distance 0.
   float spread() const { return orthographic ? 0.0F : 1.0F / scale; }
   float first_width() const { return orthographic ? 1.0F / scale : 0.0F; }
 

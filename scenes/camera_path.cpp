@@ -107,7 +107,7 @@ std::vector<Camera> turntable(const Camera& camera, int frames, const glm::dvec3
 std::vector<CameraKey> read_camera_path(const std::filesystem::path& path, const glm::dvec3& origin,
                                         const files::MemoryBudget& memory) {
   constexpr std::size_t kStart = 4096;
-  // What is no text may have no end.
+  // A file that is no text may have no end.
   if (files::read_start(path, kStart, memory).find('\0') != std::string::npos) {
     throw files::FileError(files::Cause::input, path.string(), "line 1", "is not text");
   }

@@ -20,7 +20,7 @@ std::optional<Camera> parse_camera(std::string_view text, const glm::dvec3& orig
 // Once around the point that the camera looks at, about its `up`, counter-clockwise seen from
 // above: frame i is turned by i / frames of a circle, frame 0 is the camera itself.
 std::vector<Camera> turntable(const Camera& camera, int frames);
-// The same about an axis through `pivot`, which `at` goes round as well.
+// A turntable about an axis through `pivot`, which `at` goes round as well.
 std::vector<Camera> turntable(const Camera& camera, int frames, const glm::dvec3& pivot);
 
 // A camera at a frame of an animation.
@@ -36,7 +36,7 @@ struct CameraKey {
 // Throws files::FileError with the line of what is wrong, or if the file takes more than `memory`.
 std::vector<CameraKey> read_camera_path(const std::filesystem::path& path, const glm::dvec3& origin,
                                         const files::MemoryBudget& memory = {});
-// The same of a text; `name` is what errors call it.
+// Reads a camera path from a text; `name` is what errors call it.
 std::vector<CameraKey> parse_camera_path(std::string_view text, const std::string& name,
                                          const glm::dvec3& origin);
 

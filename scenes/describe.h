@@ -17,7 +17,7 @@ struct TextureDescription {
   bool srgb = true;
 };
 
-// What a scene holds: counts, names and bounds.
+// The contents of a scene: counts, names and bounds.
 struct Description {
   std::uint64_t meshes = 0, instances = 0;
   std::uint64_t triangles = 0, vertices = 0;                // of all instances

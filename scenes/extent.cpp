@@ -134,7 +134,7 @@ std::vector<glm::dvec3> Extent::operator()(std::span<const glm::dvec3> direction
       bound[i * n + k] = upper_bound(box, instances[i].transform, directions[k]);
     }
   });
-  // Those whose boxes reach farthest come first: hardly any other box reaches as far as their
+  // Instances whose boxes reach farthest come first: hardly any other box reaches as far as their
   // vertices do.
   std::vector<glm::dvec3> farthest;
   std::vector<std::uint8_t> done(instances.size());

@@ -1,4 +1,4 @@
-// How far a scene reaches: what cameras are fitted to.
+// The extent of a scene, which cameras are fitted to.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 namespace delray::scenes {
 
 // For each direction the point farthest along it, of several the one that is lexicographically
-// greatest; no points at all if there are none. The answer depends on no order: the farthest of the
-// answers for all parts of a scene, on whatever ranks they are, is the answer for the scene.
+// greatest; no points at all if there are none. The result depends on no order: the farthest of the
+// results for all parts of a scene, on whatever ranks they are, is the result for the scene.
 using FarthestPoints =
     std::function<std::vector<glm::dvec3>(std::span<const glm::dvec3> directions)>;
 

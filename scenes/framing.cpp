@@ -3,7 +3,7 @@
 // With the eye at (ex, ey, ef) in view coordinates a point (r, u, f) is within `tangent` of the
 // view's axis if |r - ex| <= tangent.x (f - ef). Over all points:
 //   max(r - tangent.x f) + tangent.x ef <= ex <= min(r + tangent.x f) - tangent.x ef.
-// The largest ef that leaves room for ex is the answer, and the same for u and ey: maxima along
+// The largest ef that leaves room for ex is the solution, and the same for u and ey: maxima along
 // four directions tell it. Where there is room left (in the direction that does not fill the
 // frame) the points come into its middle by making the tangent smaller until there is none.
 #include "scenes/framing.h"

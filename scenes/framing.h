@@ -28,7 +28,7 @@ Camera camera_around(const geometry::Box3& box, const char* name, bool z_up, flo
 // Around what is drawn of a scene, or the part of it in Scene::framed.
 Camera camera_around(const Scene& scene, const char* name, float aspect);
 
-// What an object on a turntable takes up of space: the points themselves and in `turns` - 1 equal
+// The space that an object on a turntable takes up: the points themselves and in `turns` - 1 equal
 // steps about an axis through the middle of their box, such as Camera::up. For a camera around
 // that, no turn leaves the frame. Refers to `farthest`. REQUIRES: the axis has a length.
 FarthestPoints turned(const FarthestPoints& farthest, const glm::dvec3& axis, int turns);

@@ -48,7 +48,7 @@ std::string full_name(std::string_view name);
 // The memory that making it takes, nearly. Throws as generate.
 std::uint64_t generated_bytes(std::string_view name);
 
-// The same in parts. Throws as generate.
+// Generation in parts. Throws as generate.
 bool has_parts(std::string_view name);
 // REQUIRES: has_parts(name), 0 <= part < parts.
 ScenePart generate_part(std::string_view name, int part, int parts);

@@ -20,7 +20,7 @@ inline bool hides(const image::RgbaF& colour) { return colour.a == 1; }
 // not smaller.
 std::uint64_t find_covered(std::span<const float> depth, GroupMask& mask);
 
-// The same of those that have a colour other than {}.
+// Finds pixels that have a colour other than {}.
 std::uint64_t find_coloured(std::span<const image::Rgba8> colour, GroupMask& mask);
 std::uint64_t find_coloured(std::span<const image::RgbaF> colour, GroupMask& mask);
 
@@ -39,7 +39,7 @@ void expand(const image::RgbaF* values, std::size_t readable, const GroupMask& m
             std::span<image::RgbaF> to);
 void expand(const float* values, std::size_t readable, const GroupMask& mask, std::span<float> to);
 
-// What compress gave, of two planes.
+// Unpacks what compress gave, of two planes.
 template <class Colour>
 struct ActivePixels {
   const Colour* colour;

@@ -52,7 +52,7 @@ inline PixelRange run_of(const Bounds& bounds, std::uint32_t y, std::uint64_t wi
   return overlap({y * width + bounds.x0, y * width + bounds.x1}, range);
 }
 
-// How many pixels of `range` lie in `bounds`. O(rows).
+// The number of pixels of `range` that lie in `bounds`. O(rows).
 inline std::uint64_t pixels_in(const Bounds& bounds, std::uint64_t width, PixelRange range) {
   std::uint64_t pixels = 0;
   for (std::uint32_t y = bounds.y0; y < bounds.y1; ++y) {

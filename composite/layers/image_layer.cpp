@@ -15,13 +15,13 @@ namespace {
 
 using internal::hides;
 
-// What lies behind.
+// The image that lies behind.
 void cover(std::span<float> depth, const float* front) {
   for (std::size_t i = 0; i < depth.size(); ++i) {
     depth[i] = front[i] == image::kEmptyDepth ? depth[i] : front[i];
   }
 }
-// What lies in front.
+// The image that lies in front.
 void fill(std::span<float> depth, const float* back) {
   for (std::size_t i = 0; i < depth.size(); ++i) {
     depth[i] = depth[i] == image::kEmptyDepth ? back[i] : depth[i];

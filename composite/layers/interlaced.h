@@ -8,9 +8,9 @@
 namespace delray::composite {
 
 // Schemes give each rank a run of pixels; where the picture is in the middle of the image, those
-// with the middle have the work. This layer, which schemes see in place of `layer`, has pieces of
-// the image dealt out to `parts` hands in turn, one hand after the other: an equal run for each of
-// as many ranks has a piece of every place (Moreland, Kendall, Peterka and Huang 2011).
+// with the middle have the work. This layer, which schemes see in place of `layer`, assigns pieces
+// of the image to `parts` sets in turn and orders them set by set: an equal run for each of as many
+// ranks has a piece of every place (Moreland, Kendall, Peterka and Huang 2011).
 //
 // An encoded range is the pieces' messages one after the other, each after a u64 that tells its
 // size and padded to a multiple of 8 bytes. Costs a copy of what travels, on either side.

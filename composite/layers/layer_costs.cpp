@@ -88,7 +88,7 @@ std::array<double, 3> fit(std::span<const Line> lines) {
   return prices;
 }
 
-// What the calls of a rank came to: of cuts and of merges.
+// Time of a rank's calls: of encoding and of merging.
 struct Spent {
   Line encode, merge;
   Spent& operator+=(const Spent& other) {
@@ -241,8 +241,8 @@ std::vector<Variant> variants_of(std::uint64_t pixels) {
     for (const char* scheme : {"binary-swap", "tree", "tiles"}) {
       variants.push_back({scheme, picture(side, share), 1, {}});
     }
-    // What a call takes, whatever it is of. The pixels stay in caches, so that they are to count
-    // only where large images leave a choice.
+    // Small pictures show the fixed time of a call. The pixels stay in caches, so that they are to
+    // count only where large images leave a choice.
     variants.push_back({"tiles", picture(std::max(1, side / 4), share), 0.01, {}});
   }
   return variants;

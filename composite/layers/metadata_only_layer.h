@@ -1,4 +1,4 @@
-// What all layers without pixels have in common: they take time.
+// Base of all layers without pixels, which only take time.
 #pragma once
 
 #include <cmath>

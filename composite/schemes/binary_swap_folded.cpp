@@ -1,7 +1,7 @@
 // Binary swap (Ma, Painter, Hansen and Krogh 1994), folded: n ranks, A pixels, p the largest power
 // of two up to n.
 //
-// Of n - p pairs of neighbours the second sends its whole image to the first and is done. Among the
+// In n - p pairs of neighbours the second sends its whole image to the first and is done. Among the
 // p that are left, partners exchange halves of the range that both hold, and merge the half that
 // they keep. log2 p rounds in which a rank sends and composites A (1 - 1/p), and one of A for
 // pairs.

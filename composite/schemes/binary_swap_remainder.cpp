@@ -15,8 +15,8 @@ OwnedPixels binary_swap_remainder(comm::Communicator& communicator, std::unique_
                                   const ComposeOptions& options) {
   const int samples = options.samples_per_pixel;
   PixelRange range{0, layer->pixels()};
-  // Those that hold the same range, in ascending order of the intervals they have merged; at first
-  // all ranks. After a round member i / 2 of either half is what was member i.
+  // The ranks that hold the same range, in ascending order of the intervals they have merged; at
+  // first all ranks. After a round member i / 2 of either half is what was member i.
   std::vector<int> ranks(static_cast<std::size_t>(communicator.size()));
   for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i] = static_cast<int>(i);
   int me = communicator.rank(), round = 0;

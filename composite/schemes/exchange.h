@@ -1,4 +1,4 @@
-// What schemes are made of: sending a range, merging one, and the direct exchange in a group.
+// Building blocks of schemes: sending a range, merging one, and the direct exchange in a group.
 #pragma once
 
 #include <cassert>
@@ -17,7 +17,7 @@ inline constexpr std::uint64_t kPixelsOfMessage = std::uint64_t{1} << 16;
 inline int messages_of(PixelRange range) {
   return range.size() == 0 ? 0 : static_cast<int>(range.size() / kPixelsOfMessage) + 1;
 }
-// What message i is of; nothing from messages_of(range) on, and before where there are fewer pixels
+// The pixels of message i; none from messages_of(range) on, and before where there are fewer pixels
 // than messages.
 inline PixelRange message_of(PixelRange range, int i, int samples_per_pixel) {
   const int count = messages_of(range);

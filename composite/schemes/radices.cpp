@@ -1,11 +1,11 @@
 // The radices of radix-k for any number of ranks.
 //
 // Rounds of direct-send in groups of k need a number of ranks that is a product of small factors.
-// Of others, some ranks are extra, as in 2-3-4 binary swap (Nonaka, Ono and Fujita 2018) and the
-// radix-k of Moreland (2018), but they need not join in the first round: an extra rank that joins
-// when P neighbours hold a P-th of their image each sends P messages and lets each of them merge
-// only A / P more. Which numbers are taken is decided by an estimate in which a message costs its
-// sender and its receiver 1 each, its way 3, and a whole image 220: fitted such that the times
+// With other numbers some ranks are extra, as in 2-3-4 binary swap (Nonaka, Ono and Fujita 2018)
+// and the radix-k of Moreland (2018), but they need not join in the first round: an extra rank that
+// joins when P neighbours hold a P-th of their image each sends P messages and lets each of them
+// merge only A / P more. Which numbers are taken is decided by an estimate in which a message costs
+// its sender and its receiver 1 each, its way 3, and a whole image 220: fitted such that the times
 // predicted for small and large images on the networks of comm/network.h are what they should be.
 #include "composite/schemes/radices.h"
 

@@ -78,7 +78,7 @@ OwnedPixels radix_k(comm::Communicator& communicator, std::unique_ptr<Layer> lay
 OwnedPixels two_three_swap(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
                            const ComposeOptions& options);
 
-// Direct-send of small tiles that are dealt out to the ranks in turn, composited as they arrive
+// Direct-send of small tiles that are assigned to the ranks in turn, composited as they arrive
 // (OSPRay's distributed framebuffer: Usher, Wald, Amstutz et al. 2019). See tiles.h.
 OwnedPixels tiles(comm::Communicator& communicator, std::unique_ptr<Layer> layer,
                   const ComposeOptions& options);

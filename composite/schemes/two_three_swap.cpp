@@ -110,7 +110,7 @@ void regroup(comm::Communicator& communicator, Layer& layer, const std::vector<O
       if (owners[i] != me && range.size() > 0) f(owners[i], range);
     }
   };
-  // What of the new piece others of the own group held is theirs alone so far.
+  // Parts of the new piece that others of the own group held are theirs alone so far.
   for_each_sender(mine, [&](int from, PixelRange range) {
     for_each_message(range, samples, [&](PixelRange message) {
       layer.replace(message, communicator.receive(from, kTagCompose));

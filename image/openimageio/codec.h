@@ -1,6 +1,6 @@
-// What of reading and writing needs OpenImageIO. It is a library of its own, delray_openimageio,
-// that io.cpp loads on first use: OpenImageIO brings 250 others, which take a program a sixth of a
-// second to start.
+// The part of reading and writing that needs OpenImageIO. It is a library of its own,
+// delray_openimageio, that io.cpp loads on first use: OpenImageIO brings 250 others, which take a
+// program a sixth of a second to start.
 #pragma once
 
 #include <optional>

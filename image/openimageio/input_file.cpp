@@ -115,7 +115,7 @@ void InputFile::fail(const std::string& what) const {
   throw files::FileError(files::Cause::input, name_, "", what);
 }
 
-// Of the messages that pile up in a reader the first says what happened, the others repeat it.
+// The first of the messages that pile up in a reader says what happened, the others repeat it.
 void InputFile::fail_as_damaged() const {
   const std::string all = input_->geterror();
   const std::string first = all.substr(0, all.find('\n'));

@@ -7,11 +7,11 @@
 
 namespace delray::image::openimageio {
 
-// What is wrong with the file up to its pixels, in words that follow its name; empty: nothing.
+// The fault of the file up to its pixels, in words that follow its name; empty: nothing.
 // O(bytes before the pixels).
 std::string png_header_fault(OIIO::Filesystem::IOProxy& file);
 
-// What is wrong with the file up to the end of its pixels, which are unpacked row by row and
+// The fault of the file up to the end of its pixels, which are unpacked row by row and
 // forgotten. O(bytes of pixels); memory for a row.
 std::string png_pixels_fault(OIIO::Filesystem::IOProxy& file);
 

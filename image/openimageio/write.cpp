@@ -13,7 +13,7 @@
 namespace delray::image::openimageio {
 namespace {
 
-// What OpenImageIO says, with the name that the user knows in place of the temporary one.
+// The message of OpenImageIO, with the name that the user knows in place of the temporary one.
 [[noreturn]] void fail(const Target& target, std::string what) {
   const std::string temporary = target.file.string();
   for (std::size_t at; !temporary.empty() && (at = what.find(temporary)) != std::string::npos;) {

@@ -1,5 +1,5 @@
 // A cluster: a piece of a scene's geometry that belongs to one rank, may travel whole, and can be
-// traced on its own. The unit of scenes that are distributed over ranks (Badouel et al. 1994; Wald
+// traced on its own. The unit of scenes that are distributed over ranks (Badouel et al. 1990; Wald
 // et al. 2001 call it a voxel).
 #pragma once
 

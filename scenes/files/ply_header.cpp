@@ -56,7 +56,7 @@ class PlyHeaderReader {
   }
 
  private:
-  // What separates `line` from the next.
+  // The end that separates `line` from the next.
   std::string_view end_of(std::string_view line) const {
     const auto at = static_cast<std::size_t>(line.data() - source_.content.data()) + line.size();
     const std::string_view rest = source_.content.substr(at);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kStlHeader = 84, kFacet = 50;  // bytes
 
-// Of `corners` so far.
+// Adds the triangle of the last three of `corners`.
 void add_triangle(std::size_t corners, Mesh& mesh) {
   const auto last = static_cast<std::uint32_t>(corners);
   mesh.triangles.emplace_back(last - 3, last - 2, last - 1);

@@ -16,7 +16,7 @@
 
 namespace delray::scenes::internal {
 
-// How a texture is used; one picture used in two ways becomes two textures.
+// The use of a texture; one picture used in two ways becomes two textures.
 struct TextureUse {
   bool srgb = true;
   Texture::Wrap wrap_u = Texture::Wrap::repeat, wrap_v = Texture::Wrap::repeat;
@@ -33,7 +33,7 @@ class TextureFiles {
   // names), or kNone, with a warning, if it is missing, damaged or outside of that folder. Throws
   // FileError (memory) only. Files with the same bytes are one texture, that of the first name.
   std::uint32_t from_file(const std::string& name, const TextureUse& use);
-  // The same for an encoded picture in memory. `name` tells pictures apart.
+  // Adds an encoded picture in memory. `name` tells pictures apart.
   std::uint32_t from_memory(const std::string& name, std::span<const std::byte> bytes,
                             const TextureUse& use);
 

@@ -24,7 +24,7 @@ glm::vec<N, double> read_coordinates(const Source& source, const Lines& lines, W
 void warn_if_coarse(const Source& source, double reach, double diagonal);
 
 // sRGB, as programs that write colours of vertices show them, from 0 to 1; alpha stays as it is.
-// What is not finite is 0, or alpha 1.
+// Values that are not finite become 0, or alpha 1.
 glm::vec4 linear_colour(const glm::dvec4& srgb);
 
 // Directions of unit length; all or none, as normals that are missing can be computed.
@@ -33,13 +33,13 @@ void normalize_or_clear(std::vector<T>& directions) {
   for (T& d : directions) {
     const float length = glm::length(glm::vec3(d));
     if (!(length > 1e-6F) || !std::isfinite(length)) return directions.clear();
-    // What has unit length already keeps its bits.
+    // Normals of unit length keep their bits.
     if (std::abs(length - 1.0F) < 1e-6F) continue;
     for (int k = 0; k < 3; ++k) d[k] /= length;
   }
 }
 
-// What things are made of that have no material: grey, or white under the colours of vertices.
+// The material of things that have none: grey, or white under the colours of vertices.
 Material plain_material(bool has_colours);
 
 // A scene of one mesh, relative to `origin`, with a plain material.

@@ -84,7 +84,7 @@ Scene generate_cornell(std::uint64_t triangles, std::uint64_t /*seed*/) {
   light.edge_u = lamp_u;
   light.edge_v = lamp_v;
   scene.lights.push_back(light);
-  // What light that is reflected more than once adds, for renderers that do not follow it.
+  // The light that is reflected more than once, for renderers that do not follow it.
   scene.environment.zenith = scene.environment.horizon = scene.environment.ground =
       glm::vec3(0.06F);
   Camera camera;

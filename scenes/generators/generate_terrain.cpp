@@ -63,7 +63,7 @@ class Strips {
   static constexpr std::size_t kRows = 8;
 
   Strips(std::size_t columns, std::size_t rows) : columns_(columns), rows_(rows) {}
-  // Of element i of row j.
+  // The number of element i of row j.
   std::size_t number(std::size_t i, std::size_t j) const {
     const std::size_t first = j / kRows * kRows;
     return first * columns_ + i * std::min(kRows, rows_ - first) + (j - first);
@@ -80,7 +80,7 @@ class Strips {
   std::size_t columns_, rows_;
 };
 
-// Of n x n vertices those on the borders of the rows of cells from `first` to `last`, and these
+// The vertices, of n x n, on the borders of the rows of cells from `first` to `last`, and these
 // cells, with numbers of their own. REQUIRES: first is a multiple of Strips::kRows.
 Mesh height_field(std::uint32_t n, std::uint64_t seed, std::size_t first, std::size_t last) {
   Mesh mesh;

@@ -42,7 +42,7 @@ struct NoiseSample {
 // differentiable. Coordinates: |x| < 2^30.
 NoiseSample noise(std::uint64_t seed, const glm::vec3& p);
 
-// The same in the plane; z of the gradient is 0. Half the cost.
+// Noise in the plane; z of the gradient is 0. Half the cost.
 NoiseSample noise(std::uint64_t seed, const glm::vec2& p);
 
 // (cos, sin) of 2 pi `turns`, to 1e-9.

@@ -43,14 +43,14 @@ std::vector<Place> places_of(const Mesh& mesh) {
   parallel::parallel_for(0, places.size(), kGrain, [&](std::size_t t) {
     const glm::uvec3& v = mesh.triangles[t];
     glm::vec3 sum = mesh.positions[v.x] + mesh.positions[v.y] + mesh.positions[v.z];
-    // What is not finite has to be somewhere.
+    // Coordinates that are not finite have to be somewhere.
     for (int k = 0; k < 3; ++k) sum[k] = std::isfinite(sum[k]) ? sum[k] : 0.0F;
     places[t] = {sum, static_cast<std::uint32_t>(t)};
   });
   return places;
 }
 
-// Those before `middle` are not behind the others along the longest side of their box.
+// Primitives before `middle` are not behind the others along the longest side of their box.
 void halve(std::span<Place> places, std::size_t middle) {
   geometry::Box3 box;
   for (const Place& place : places) box.include(place.at);

@@ -22,8 +22,8 @@ inline constexpr double kCoarse = 1e4;
 // The largest magnitude of a coordinate in the box; 0 for an empty one.
 double reach_of(const geometry::Box3d& box);
 
-// What to subtract from the coordinates in this box, in double precision, before they are rounded
-// to single: its centre where it reaches farther than kFar, else 0, as for an empty box.
+// The vector to subtract from the coordinates in this box, in double precision, before they are
+// rounded to single: its centre where it reaches farther than kFar, else 0, as for an empty box.
 glm::dvec3 origin_of(const geometry::Box3d& box);
 
 geometry::Box3d box_of(std::span<const glm::dvec3> positions);
@@ -31,7 +31,7 @@ geometry::Box3d box_of(std::span<const glm::vec3> positions);
 
 // Relative to the origin, in single precision. O(positions).
 std::vector<glm::vec3> relative_to(const glm::dvec3& origin, std::span<const glm::dvec3> positions);
-// The same in place.
+// Subtracts the origin in place.
 void make_relative_to(const glm::dvec3& origin, std::span<glm::vec3> positions);
 
 }  // namespace delray::scenes::internal

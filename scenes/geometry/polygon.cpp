@@ -70,7 +70,7 @@ bool is_convex(const std::vector<glm::dvec2>& flat) {
   return changes <= 2;
 }
 
-// What is left of the polygon: corner i is followed by next[i]; of corners taken out it is
+// The rest of the polygon: corner i is followed by next[i]; of corners taken out it is
 // kNothing.
 struct Outline {
   const std::vector<glm::dvec2>& at;
@@ -90,7 +90,7 @@ struct Outline {
   }
   void take_out(std::uint32_t i) { next[i] = previous[i] = kNothing; }
 
-  // Of two corners, the one that the sweep meets first.
+  // Whether the sweep comes to the first of two corners before the second.
   bool above(std::uint32_t i, std::uint32_t j) const {
     return at[i].y != at[j].y ? at[i].y > at[j].y : at[i].x < at[j].x;
   }
@@ -160,7 +160,7 @@ class Sweep {
         edges_(Less{this}),
         place_(outline.at.size(), edges_.end()) {}
 
-  // False if the polygon crosses itself in a way that leaves the sweep without an answer.
+  // False if the polygon crosses itself in a way that leaves the sweep without a result.
   bool run() {
     const std::size_t n = outline_.at.size();
     std::vector<std::uint32_t> order;
@@ -171,7 +171,7 @@ class Sweep {
       ending[i] = static_cast<std::uint8_t>((outline_.above(outline_.previous[i], i) ? 1 : 0) +
                                             (outline_.above(outline_.next[i], i) ? 1 : 0));
     }
-    // Of corners at one place those that end parts of the line come first.
+    // Corners at one place are sorted: those that end parts of the line come first.
     std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
       if (outline_.at[i] != outline_.at[j]) return outline_.above(i, j);
       return ending[i] != ending[j] ? ending[i] > ending[j] : i < j;

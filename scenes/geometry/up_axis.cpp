@@ -1,6 +1,6 @@
 // Adds up the area of flat triangles at the low end of y and of z and compares both with the
 // footprint. Degenerate: a scene with both bases or neither, or without extent along an axis, keeps
-// the usual answer of its format.
+// the usual axis of its format.
 #include "scenes/geometry/up_axis.h"
 
 #include <algorithm>

@@ -100,7 +100,7 @@ void check_version(const GltfDocument& document) {
   }
 }
 
-// Those that no material uses as well.
+// Notes images, also those that no material uses.
 void note_images(const GltfDocument& document) {
   const JsonView images = document.root()["images"];
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -26,7 +26,7 @@ GltfDocument read_document(const Source& source);
 // The bytes of bufferViews[number].
 std::string_view buffer_view(const GltfDocument& document, std::size_t number);
 
-// What "data:...;base64," URIs and percent signs stand for; false if `uri` is no data URI, resp.
+// Decodes "data:...;base64," URIs and percent signs; false if `uri` is no data URI, resp.
 // left as it is where it is malformed.
 bool decode_data_uri(std::string_view uri, std::string& bytes);
 std::string decode_percent(std::string_view uri);

@@ -44,8 +44,8 @@ struct Sizes {
   std::uint32_t triangles = 0, vertices = 0;
 };
 
-// What the bytes say that they unpack to: the decoder believes them before it looks any further.
-// glTF has bitstreams of version 2.2 only.
+// The counts that the bytes say they unpack to: the decoder believes them before it looks any
+// further. glTF has bitstreams of version 2.2 only.
 std::optional<Sizes> announced(std::string_view bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());

@@ -1,4 +1,4 @@
-// What a scene has and glTF has no words for: its environment and its area lights. They are kept
+// Parts of a scene that glTF has no words for: its environment and its area lights. They are kept
 // under "extras": {"delray": ...} of the glTF scene, where other programs pass over them.
 #pragma once
 

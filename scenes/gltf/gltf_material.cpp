@@ -70,7 +70,7 @@ struct MaterialUvs {
   }
 };
 
-// What the materials of a file have in common while they are read.
+// State that the materials of a file have in common while they are read.
 struct Reader {
   const GltfDocument& document;
   TextureFiles& textures;

@@ -88,7 +88,7 @@ class Attributes {
     }
     return values;
   }
-  // Those of compressed triangles; nothing if there are none.
+  // The indices of compressed triangles; nothing if there are none.
   std::optional<std::vector<std::uint32_t>> compressed_indices() const {
     if (!draco_) return std::nullopt;
     return draco_->indices();
@@ -140,7 +140,7 @@ std::vector<glm::vec2> read_uvs(Attributes& attributes, const UvUse& use) {
   return uvs;
 }
 
-// What the material's textures are looked up at.
+// The coordinates at which the material's textures are looked up.
 void read_all_uvs(const JsonView& primitive, Attributes& attributes, const GltfDocument& document,
                   GltfMaterial& material, Mesh& mesh) {
   if (material.uvs.empty()) {

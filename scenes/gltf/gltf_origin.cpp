@@ -22,7 +22,7 @@ geometry::Box3d placed(const geometry::Box3d& box, const glm::dmat4& world) {
   return result;
 }
 
-// How far things reach from 0 before and after they are placed.
+// The reach of things from 0 before and after they are placed.
 struct Reach {
   geometry::Box3d box;  // of all instances
   double vertices = 0;  // without the translation

@@ -192,7 +192,7 @@ class Writer {
     extend(json, "KHR_materials_volume", std::move(volume));
   }
 
-  // What is reflected besides the colours of the base.
+  // Reflection besides the colours of the base.
   void add_reflection(const Material& material, Json& json) {
     const Material plain;
     if (material.ior != plain.ior) extend(json, "KHR_materials_ior", {{"ior", material.ior}});
