@@ -3,7 +3,7 @@
 //
 // Every rank knows all boxes. Its own clusters are one scene, which clusters of the cache join when
 // that pays; all others are in a tree, by which rays find what they have not been tested against.
-// Clusters dealt out at random go by a hash of seed, rank and number. O(triangles of the part) and
+// Clusters assigned at random go by a hash of seed, rank and number. O(triangles of the part) and
 // one message to all.
 //
 // Degenerate: a cluster that is larger than the cache stays until another one comes; a rank may own
@@ -47,8 +47,8 @@ std::uint64_t scattered(std::uint64_t x) {  // the finaliser of SplitMix64
 }
 
 // Every rank's clusters to the ranks that chance chooses. Collective.
-std::vector<ClusterData> dealt_at_random(comm::Communicator& communicator,
-                                         std::vector<ClusterData>&& mine, std::uint64_t seed) {
+std::vector<ClusterData> assigned_at_random(comm::Communicator& communicator,
+                                            std::vector<ClusterData>&& mine, std::uint64_t seed) {
   std::vector<comm::Parcel> parcels;
   for (std::size_t i = 0; i < mine.size(); ++i) {
     const std::uint64_t key =
@@ -57,12 +57,12 @@ std::vector<ClusterData> dealt_at_random(comm::Communicator& communicator,
     parcels.push_back({to, pack(mine[i])});
     mine[i] = {};
   }
-  std::vector<ClusterData> dealt;
+  std::vector<ClusterData> assigned;
   for (comm::Parcel& parcel : comm::exchange(communicator, std::move(parcels))) {
-    dealt.push_back(unpack_cluster({parcel.message.data(), parcel.message.size()}));
+    assigned.push_back(unpack_cluster({parcel.message.data(), parcel.message.size()}));
     parcel.message = {};
   }
-  return dealt;
+  return assigned;
 }
 
 }  // namespace
@@ -122,8 +122,8 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
       build_(options.build),
       device_(build_) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.deal == ShareOptions::Deal::random)
-    mine = dealt_at_random(communicator, std::move(mine), options.seed);
+  if (options.assignment == ShareOptions::Assignment::random)
+    mine = assigned_at_random(communicator, std::move(mine), options.seed);
 
   // What there is to know of this rank's clusters, then their boxes.
   std::vector<Known> known;

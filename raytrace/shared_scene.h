@@ -20,9 +20,9 @@ namespace delray::raytrace {
 
 // How a scene is distributed.
 struct ShareOptions {
-  // Which ranks clusters go to: neighbours to one, so that a ray changes rank seldom, or dealt out
-  // at random, so that every rank has some of what the picture shows (Jevans 1989).
-  enum class Deal : std::uint8_t { neighbours, random } deal = Deal::neighbours;
+  // Which ranks clusters go to: neighbours to one, so that a ray changes rank seldom, or random
+  // ones, so that every rank has some of what the picture shows (Jevans 1989).
+  enum class Assignment : std::uint8_t { neighbours, random } assignment = Assignment::neighbours;
   std::uint64_t seed = 1;  // of random
   // Bytes that other ranks' clusters may take on this one, with their acceleration structures, but
   // for one cluster that is always kept; 0: a tenth of what all ranks have together.

@@ -1,4 +1,4 @@
-// What is rendered: meshes, placed by instances, with materials, textures, lights and cameras.
+// A scene to render: meshes, placed by instances, with materials, textures, lights and cameras.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct Mesh {
       triangles;  // indices into the attributes; counter-clockwise seen from outside
   std::uint32_t material = 0;
 
-  // Of textures of a set.
+  // The coordinates for textures of a set.
   const std::vector<glm::vec2>& uvs_of(int set) const { return set == 0 ? uvs : uvs2; }
 };
 
@@ -61,8 +61,8 @@ struct Material {
   // Inside a body that transmits, light of this colour is left after so long a way.
   glm::vec3 attenuation_colour{1.0F};
   float attenuation_distance = std::numeric_limits<float>::infinity();
-  // Of the body, for renderers that do not follow light through it; 0: a pane without an inside,
-  // which light passes straight.
+  // The thickness of the body, for renderers that do not follow light through it; 0: a pane without
+  // an inside, which light passes straight.
   float thickness = 1.0F;
 
   std::uint32_t base_colour_texture = kNone;
@@ -147,14 +147,14 @@ geometry::Box3 bounds(const Scene& scene);
 // than instances: the last is the count.
 std::vector<std::uint64_t> first_primitives(const Scene& scene);
 
-// Whether anything lights the scene: a light, an environment, or surfaces that glow (glow_lights).
-// O(triangles that glow).
+// Whether anything lights the scene: a light, an environment, or surfaces that emit it
+// (is_lit_by_emission). O(triangles that glow).
 bool has_light(const Scene& scene);
 
-// Whether what glows lights the scene: white surfaces around it would on average be no darker than
-// code 8 of 255 for it. Textures that are nowhere brighter than 1 are screens and signs, which
+// Whether emission lights the scene: white surfaces around it would on average be no darker than
+// code 8 of 255 by it. Textures that are nowhere brighter than 1 are screens and signs, which
 // light nothing. O(triangles that glow); parallel.
-bool glow_lights(const Scene& scene);
+bool is_lit_by_emission(const Scene& scene);
 
 // Adds a key light over the shoulder of who looks through `camera`, and a sky in place of the
 // environment. A diffuse surface of albedo 0.8 that faces the key light then has a radiance of

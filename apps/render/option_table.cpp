@@ -90,7 +90,7 @@ std::string why_no_master(const RenderRequest& r) {
 std::string why_no_geometry_ranks(const RenderRequest& r) {
   return r.raster.groups == raster::Groups::one ? "--groups one" : "";
 }
-std::string why_no_deal(const RenderRequest& r) {
+std::string why_no_assignment(const RenderRequest& r) {
   return raytrace::find_distribution(r.data)->replicated ? "--data " + r.data : "";
 }
 std::string why_no_cache(const RenderRequest& r) {
@@ -285,7 +285,7 @@ std::vector<RenderOption> rasterizer_options() {
 std::vector<RenderOption> raytracer_options() {
   using raytrace::Integrator;
   using Quality = raytrace::BuildOptions::Quality;
-  using Deal = raytrace::ShareOptions::Deal;
+  using Assignment = raytrace::ShareOptions::Assignment;
   return {
       RenderOption::of(
           "--integrator", [](auto& r) -> auto& { return r.raytrace.integrator; }, group::kRaytracer,
@@ -379,12 +379,12 @@ std::vector<RenderOption> raytracer_options() {
           .one_of(names_in(raytrace::distributions()))
           .unless(unless_raytrace())
           .reported("data", is_raytrace),
-      RenderOption::choice<Deal>(
-          "--deal", [](auto& r) -> auto& { return r.share.deal; },
-          {{"neighbours", Deal::neighbours}, {"random", Deal::random}}, group::kSharing,
+      RenderOption::choice<Assignment>(
+          "--deal", [](auto& r) -> auto& { return r.share.assignment; },
+          {{"neighbours", Assignment::neighbours}, {"random", Assignment::random}}, group::kSharing,
           "Which rank gets which parts of a scene that --data distributes: neighbours stay "
           "together (default), or random")
-          .unless(unless_raytrace(why_no_deal))
+          .unless(unless_raytrace(why_no_assignment))
           .reported("deal", is_raytrace),
       RenderOption::of(
           "--cache", [](auto& r) -> auto& { return r.cache_mebibytes; }, group::kSharing,

@@ -132,7 +132,7 @@ void require_memory_for_pictures(const RenderRequest& request) {
       fmt::format("{} x {} pixels", request.picture_width(), request.picture_height()));
 }
 
-// What Embree builds for a triangle that is stored: 65 to 87 bytes were measured.
+// Bytes that Embree builds for a triangle that is stored: 65 to 87 bytes were measured.
 void require_memory_for_embree(const RenderRequest& request, const scenes::Scene& scene) {
   constexpr std::uint64_t kBytesPerTriangle = 65, kBytesPerTriangleQuick = 80;
   std::uint64_t triangles = 0;
@@ -197,7 +197,7 @@ void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& 
 // Says so where nothing but what glows lights a scene, which rasterizers do not see.
 void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
   if (request.engine != Engine::raster || !scene.lights.empty() || has_sky(scene.environment) ||
-      !scenes::glow_lights(scene)) {
+      !scenes::is_lit_by_emission(scene)) {
     return;
   }
   spdlog::warn(
@@ -206,8 +206,8 @@ void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
       request.scene.file.path);
 }
 
-// Of what a checkpoint is for. Where the name tells what is in the scene, ranks may have parts of
-// it.
+// The fingerprint of the scene that a checkpoint is for. Where the name tells what is in the scene,
+// ranks may have parts of it.
 std::string fingerprint_of(const RenderRequest& request, const Prepared& prepared) {
   if (!prepared.known_by_name) return raytrace::fingerprint(prepared.scene, "");
   scenes::Scene lights;  // which --light may have changed

@@ -124,7 +124,7 @@ void compare(const std::string& name, const std::string& integrator, const Argum
       }
       raytrace::ShareOptions share;
       share.build = options.build;
-      if (arguments.random) share.deal = raytrace::ShareOptions::Deal::random;
+      if (arguments.random) share.assignment = raytrace::ShareOptions::Assignment::random;
       share.cache_bytes =
           static_cast<std::uint64_t>(variants[i].cache * static_cast<double>(tracer.bytes));
       sides[i].scene.emplace(raytrace::SharedScene::make(communicator, scene, share));
@@ -191,7 +191,7 @@ int main(int argc, char** argv) try {
   app.add_option("--integrator", arguments.integrators)->delimiter(',');
   app.add_option("--only", arguments.only, "variants beside replicated")->delimiter(';');
   app.add_flag("--turntable", arguments.turntable, "5 degrees from frame to frame");
-  app.add_flag("--random", arguments.random, "deal clusters out at random");
+  app.add_flag("--random", arguments.random, "assign clusters to ranks at random");
   app.add_option("SCENE", arguments.scenes);
   CLI11_PARSE(app, argc, argv);
   for (const std::string& scene : arguments.scenes) {

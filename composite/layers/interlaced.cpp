@@ -1,8 +1,8 @@
 // Maps ranges of the order that schemes see to pieces of the image, and cuts and merges piece by
 // piece (Moreland, Kendall, Peterka and Huang 2011).
 //
-// Each hand gets several pieces, fewer where they would be small. A range finds its pieces by
-// binary search. Degenerate: in small images a hand has one piece, which is the order that there
+// Each set gets several pieces, fewer where they would be small. A range finds its pieces by
+// binary search. Degenerate: in small images a set has one piece, which is the order that there
 // was.
 #include "composite/layers/interlaced.h"
 
@@ -17,8 +17,8 @@
 namespace delray::composite {
 namespace {
 
-// Of one hand; as tiles.cpp.
-constexpr std::uint64_t kPiecesOfHand = 8;
+// Pieces of one rank's pixels; as tiles.cpp.
+constexpr std::uint64_t kPiecesOfSet = 8;
 constexpr std::uint64_t kFewestPixels = 4096;
 
 constexpr std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
@@ -28,13 +28,13 @@ class InterlacedLayer final : public Layer {
   InterlacedLayer(std::unique_ptr<Layer> layer, int parts, int samples_per_pixel)
       : layer_(std::move(layer)) {
     const PixelRange all{0, layer_->pixels()};
-    const int of_hand = static_cast<int>(std::clamp<std::uint64_t>(
-        all.size() / static_cast<std::uint64_t>(parts) / kFewestPixels, 1, kPiecesOfHand));
+    const int of_set = static_cast<int>(std::clamp<std::uint64_t>(
+        all.size() / static_cast<std::uint64_t>(parts) / kFewestPixels, 1, kPiecesOfSet));
     std::uint64_t begin = 0;
-    for (int hand = 0; hand < parts; ++hand) {
-      for (int i = 0; i < of_hand; ++i) {
+    for (int set = 0; set < parts; ++set) {
+      for (int i = 0; i < of_set; ++i) {
         const PixelRange real =
-            internal::piece_of(all, i * parts + hand, of_hand * parts, samples_per_pixel);
+            internal::piece_of(all, i * parts + set, of_set * parts, samples_per_pixel);
         if (real.size() > 0) pieces_.push_back({begin, real});
         begin += real.size();
       }

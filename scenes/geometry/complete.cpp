@@ -57,7 +57,7 @@ void add_tangents(const Scene& scene, Mesh& mesh) {
 
 }  // namespace
 
-bool glow_lights(const Scene& scene) {
+bool is_lit_by_emission(const Scene& scene) {
   double power = 0.0;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -76,7 +76,7 @@ bool glow_lights(const Scene& scene) {
 bool has_light(const Scene& scene) {
   const Environment& sky = scene.environment;
   return !scene.lights.empty() || sky.texture != kNone || shines(sky.zenith) ||
-         shines(sky.horizon) || shines(sky.ground) || glow_lights(scene);
+         shines(sky.horizon) || shines(sky.ground) || is_lit_by_emission(scene);
 }
 
 void add_default_light(Scene& scene, const Camera& camera, float strength) {

@@ -94,7 +94,7 @@ TEST(Ring, WhatIsHitAtTheSameDistanceIsDecidedAlikeInAnyOrder) {
   options.tile = 16;
   const Result whole = render_alone(scene, scene.cameras[0], options);
   ShareOptions share;
-  share.deal = ShareOptions::Deal::random;
+  share.assignment = ShareOptions::Assignment::random;
   options.schedule = "demand";
   for (int time = 0; time < 20; ++time) {
     const Result result = shared_out(scene, options, *find_distribution("ring"), share, 4, 2);
@@ -109,7 +109,7 @@ struct Case {
 
 class Distributions : public testing::TestWithParam<Case> {};
 
-// Every schedule and both ways to deal come by turns; with DELRAY_FULL_TESTS both numbers of
+// Every schedule and both assignments come by turns; with DELRAY_FULL_TESTS both numbers of
 // threads.
 TEST_P(Distributions, GiveThePictureOfTheWholeScene) {
   const parallel::AllowThreads allowed(16);
@@ -127,8 +127,8 @@ TEST_P(Distributions, GiveThePictureOfTheWholeScene) {
       for (int threads = 1; threads <= 2; ++threads) {
         options.schedule = loadbalance::schedules()[turn++ % loadbalance::schedules().size()].name;
         ShareOptions share;
-        share.deal =
-            turn / 2 % 2 == 0 ? ShareOptions::Deal::random : ShareOptions::Deal::neighbours;
+        share.assignment = turn / 2 % 2 == 0 ? ShareOptions::Assignment::random
+                                             : ShareOptions::Assignment::neighbours;
         if (!full && (turn + turn / 8) % 2 == 0) continue;
         SCOPED_TRACE(std::string(distribution.name) + ' ' + options.schedule + ' ' +
                      std::to_string(ranks) + " x " + std::to_string(threads));

@@ -154,19 +154,19 @@ TEST(Complete, AddsNoLightToWhatGlowLights) {
 
 TEST(Complete, GlowThatLightsNothingVisiblyIsNoLight) {
   Scene faint = lit_by_glow(0.01F);
-  EXPECT_FALSE(glow_lights(faint));
+  EXPECT_FALSE(is_lit_by_emission(faint));
   complete(faint, Camera{});
   EXPECT_EQ(faint.lights.size(), 1U);
   // A screen; brighter than white it is a lamp.
   Scene screen = lit_by_glow(1.0F);
   screen.textures.push_back({"screen", 1, 1, {{255, 255, 255, 255}}});
   screen.materials[1].emission_texture = 0;
-  EXPECT_FALSE(glow_lights(screen));
+  EXPECT_FALSE(is_lit_by_emission(screen));
   screen.materials[1].emission = glm::vec3(4.0F);
-  EXPECT_TRUE(glow_lights(screen));
+  EXPECT_TRUE(is_lit_by_emission(screen));
   Scene unlit = lit_by_glow(1.0F);
   unlit.materials[1].unlit = true;
-  EXPECT_FALSE(glow_lights(unlit));
+  EXPECT_FALSE(is_lit_by_emission(unlit));
 }
 
 TEST(Complete, DefaultLightHasAStrength) {
