@@ -69,18 +69,18 @@ endif()
 
 # delray_compile_together(<target> [SIZE <sources>] [FIRST <source>...] [ALONE <source>...])
 #
-# Half of the time of a small source goes into headers, so SIZE (six) of a target are compiled in one go: first
-# those of FIRST, so that users of a heavy header share it, then the others by name. No two of them
-# declare the same name at the start of a line, so private names need not differ between files. Alone are
-# those of ALONE, which take long by themselves, and those that Highway compiles once per instruction set.
-# -DDELRAY_TOGETHER=OFF compiles each alone; with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources
-# show what they fail to include.
+# A unity build: half of the time of a small source goes into headers, so SIZE (six) of a target are
+# compiled in one go, first those of FIRST, so that users of a heavy header share it, then the others by
+# path. Private names must therefore differ within a target; where two of a batch do not, the compiler
+# says where. Alone are those of ALONE, which take long by themselves, and those that Highway compiles
+# once per instruction set. -DDELRAY_TOGETHER=OFF compiles each alone; with
+# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources show what they fail to include.
 function(delray_compile_together target)
   cmake_parse_arguments(ARG "" "SIZE" "FIRST;ALONE" ${ARGN})
   if(NOT ARG_SIZE)
     set(ARG_SIZE 6)
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_MODE GROUP)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_BATCH_SIZE ${ARG_SIZE})
   if(DELRAY_TOGETHER AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # takes sources for headers
   endif()
@@ -89,33 +89,12 @@ function(delray_compile_together target)
   list(TRANSFORM ARG_ALONE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   list(PREPEND sources ${ARG_FIRST})
   list(REMOVE_DUPLICATES sources)
-  list(REMOVE_ITEM sources ${ARG_ALONE})
+  set_target_properties(${target} PROPERTIES SOURCES "${sources}")
   foreach(source IN LISTS sources)
-    file(READ ${source} text)
-    if(text MATCHES "\n#define HWY_TARGET_INCLUDE")
-      continue()
+    file(STRINGS ${source} highway REGEX "^#define HWY_TARGET_INCLUDE" LIMIT_COUNT 1)
+    if(highway OR source IN_LIST ARG_ALONE)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
-    # A name is a line's word before its first bracket, colon, = or semicolon. Names of structures and
-    # constants within functions count too, as they would hide those of others.
-    string(REGEX MATCHALL " k[A-Z][A-Za-z0-9]* = " constants "${text}")
-    string(REGEX REPLACE "( : )|[][;={]" "(" text "${text}")
-    string(REGEX MATCHALL "\n( *(static )?(constexpr|struct|enum class)|[A-Za-z])[^\n(]*[ &*][A-Za-z0-9_]+ ?[(]"
-           names "${text}")
-    list(APPEND names ${constants})
-    list(TRANSFORM names REPLACE ".*[ &*]([A-Za-z0-9_]+) ?[(=] ?$" "\\1")
-    set(group 0)
-    while(TRUE)  # the first group with room and without any of these names
-      set(others ${names})
-      list(REMOVE_ITEM others ${names_${group}})
-      list(LENGTH sources_${group} size)
-      if(size LESS ARG_SIZE AND "${others}" STREQUAL "${names}")
-        break()
-      endif()
-      math(EXPR group "${group} + 1")
-    endwhile()
-    list(APPEND names_${group} ${names})
-    list(APPEND sources_${group} ${source})
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
   endforeach()
 endfunction()
 

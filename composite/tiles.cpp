@@ -21,12 +21,12 @@ namespace {
 // Enough to even out what is drawn where, and for merging to begin early.
 constexpr std::uint64_t kTilesOfRank = 16;
 // Below it a message costs more than its pixels.
-constexpr std::uint64_t kFewestPixels = 4096;
+constexpr std::uint64_t kFewestPixelsOfTile = 4096;
 
 int tiles_for(std::uint64_t pixels, int ranks) {
   const auto n = static_cast<std::uint64_t>(ranks);
-  return ranks *
-         static_cast<int>(std::clamp<std::uint64_t>(pixels / n / kFewestPixels, 1, kTilesOfRank));
+  return ranks * static_cast<int>(
+                     std::clamp<std::uint64_t>(pixels / n / kFewestPixelsOfTile, 1, kTilesOfRank));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@
 namespace delray::delaunay {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffU;
+constexpr std::uint32_t kNoPlace = 0xffffffffU;
 
 // Distinct places, along a Hilbert curve.
 struct Places {
@@ -78,7 +78,7 @@ class Simplification {
         max_error_(max_error),
         progress_(progress),
         is_kept_(places_.points.size(), false),
-        next_(places_.points.size(), kNone) {}
+        next_(places_.points.size(), kNoPlace) {}
 
   // REQUIRES: corners of the hull, at least three, in an order that is good for insertion.
   void start(const std::vector<std::uint32_t>& corners);
@@ -90,7 +90,7 @@ class Simplification {
   // A triangle's point that is farthest from it, of those beyond the bound.
   struct Candidate {
     double error = 0;
-    std::uint32_t place = kNone;
+    std::uint32_t place = kNoPlace;
     bool operator==(const Candidate&) const = default;
   };
   struct Entry {
@@ -134,7 +134,7 @@ class Simplification {
 void Simplification::reserve(std::size_t triangles) {
   if (triangles <= mesh_.size()) return;
   mesh_.grow(std::max<std::size_t>(triangles, 2 * mesh_.size()));
-  first_.resize(mesh_.size(), kNone);
+  first_.resize(mesh_.size(), kNoPlace);
   candidates_.resize(mesh_.size());
 }
 
@@ -170,13 +170,13 @@ bool Simplification::is_beyond(SimplexNumber triangle, std::uint32_t place) cons
 
 void Simplification::find_candidate(SimplexNumber triangle) {
   Candidate best;
-  for (std::uint32_t place = first_[triangle]; place != kNone; place = next_[place]) {
+  for (std::uint32_t place = first_[triangle]; place != kNoPlace; place = next_[place]) {
     const Candidate candidate{error(triangle, place), place};
-    if (best.place != kNone && !(Entry{best, 0} < Entry{candidate, 0})) continue;
+    if (best.place != kNoPlace && !(Entry{best, 0} < Entry{candidate, 0})) continue;
     if (is_beyond(triangle, place)) best = candidate;
   }
   candidates_[triangle] = best;
-  if (best.place != kNone) queue_.push({best, triangle});
+  if (best.place != kNoPlace) queue_.push({best, triangle});
 }
 
 void Simplification::start(const std::vector<std::uint32_t>& corners) {
@@ -213,7 +213,7 @@ void Simplification::share_out(std::uint32_t place, SimplexNumber triangle) {
   do {
     star_.push_back(corner);
     std::uint32_t& owned = first_[simplex_of(corner)];
-    for (; owned != kNone; owned = next_[owned]) {
+    for (; owned != kNoPlace; owned = next_[owned]) {
       if (owned != place) orphans_.push_back(owned);
     }
     corner = next_corner(mesh_.neighbour(next_corner(corner)));
@@ -262,7 +262,7 @@ SimplifiedTerrain Simplification::result() const {
     for (unsigned k = 0; k < 3; ++k) {
       triangulation.vertices.push_back(places_.rows[mesh_.vertex(corner_of(triangle, k))]);
     }
-    for (std::uint32_t place = first_[triangle]; place != kNone; place = next_[place]) {
+    for (std::uint32_t place = first_[triangle]; place != kNoPlace; place = next_[place]) {
       // They are all within the bound, whatever rounding says.
       result.largest_error =
           std::max(result.largest_error, std::min(error(triangle, place), max_error_));

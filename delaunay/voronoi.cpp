@@ -9,8 +9,6 @@
 namespace delray::delaunay {
 namespace {
 
-constexpr std::uint32_t kNone = Adjacency::kNone;
-
 struct Dual {
   PointView<double> points;
   const Triangulation& triangulation;
@@ -62,13 +60,14 @@ void append_in_turn(const Dual& dual, std::uint32_t vertex, std::vector<std::uin
   const std::uint32_t known = dual.adjacency.simplex_at[vertex];
   std::uint32_t first = known;
   // Clockwise, over the edge from the vertex to the next one of the triangle.
-  for (std::uint32_t t = beyond(known, 2); t != kNone && t != known; t = beyond(t, 2)) first = t;
-  if (beyond(first, 2) != kNone) first = known;
+  for (std::uint32_t t = beyond(known, 2); t != Adjacency::kNone && t != known; t = beyond(t, 2))
+    first = t;
+  if (beyond(first, 2) != Adjacency::kNone) first = known;
   std::uint32_t t = first;
   do {
     cells.push_back(t);
     t = beyond(t, 1);
-  } while (t != kNone && t != first);
+  } while (t != Adjacency::kNone && t != first);
 }
 
 }  // namespace
@@ -90,7 +89,7 @@ Voronoi voronoi(PointView<double> points, const Triangulation& triangulation,
   for (std::size_t i = 0; i < triangulation.vertices.size(); ++i) {
     const auto t = static_cast<std::uint32_t>(i / corners);
     const std::uint32_t next = adjacency.neighbours[i];
-    if (next == kNone) {
+    if (next == Adjacency::kNone) {
       result.ray_starts.push_back(t);
       result.ray_directions.push_back(outward_normal(dual, t, i % corners));
     } else if (t < next) {
@@ -102,7 +101,7 @@ Voronoi voronoi(PointView<double> points, const Triangulation& triangulation,
   result.cell_begin.assign(rows + 1, 0);
   if (triangulation.dim == 2) {
     for (std::uint32_t row = 0; row < rows; ++row) {
-      if (adjacency.simplex_at[row] != kNone) append_in_turn(dual, row, result.cells);
+      if (adjacency.simplex_at[row] != Adjacency::kNone) append_in_turn(dual, row, result.cells);
       result.cell_begin[row + 1] = static_cast<std::uint32_t>(result.cells.size());
     }
     return result;

@@ -21,8 +21,8 @@ namespace delray::files {
 namespace {
 
 constexpr int kAttempts = 16;  // names are 64 random bits: one is enough but for broken machines
-constexpr std::size_t kLongestSuffix = 16;            // longer ones are no format's
-constexpr std::size_t kChunk = std::size_t{1} << 20;  // of a copy
+constexpr std::size_t kLongestSuffix = 16;                // longer ones are no format's
+constexpr std::size_t kCopyChunk = std::size_t{1} << 20;  // of a copy
 
 // Hidden; with the suffix of `path`, as image libraries choose the format by it.
 std::string random_name(const std::filesystem::path& path) {
@@ -118,7 +118,7 @@ const std::filesystem::path& AtomicFile::temporary() {
 void AtomicFile::copy_in_place() {
   const int from = std::exchange(descriptor_, -1);
   open_in_place();
-  std::vector<char> chunk(kChunk);
+  std::vector<char> chunk(kCopyChunk);
   off_t at = 0;
   ssize_t got = 0;
   while ((got = ::pread(from, chunk.data(), chunk.size(), at)) > 0) {

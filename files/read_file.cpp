@@ -17,7 +17,8 @@
 namespace delray::files {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 20;  // one read; large enough to amortise the call
+constexpr std::size_t kReadChunk = std::size_t{1}
+                                   << 20;  // one read; large enough to amortise the call
 constexpr std::size_t kEverything = static_cast<std::size_t>(-1);
 
 struct Close {
@@ -47,7 +48,7 @@ bool read_on(std::FILE* file, const std::string& name, std::size_t limit, std::s
              const MemoryBudget& memory, std::string& content) {
   while (content.size() < limit) {
     const std::size_t old = content.size(), room = content.capacity() - old;
-    const std::size_t step = std::min({kChunk, limit - old, room > 0 ? room : kChunk});
+    const std::size_t step = std::min({kReadChunk, limit - old, room > 0 ? room : kReadChunk});
     // Where the string moves there are two of it for a while.
     if (old + step > granted && memory.left() < step + (room > 0 ? 0 : old)) {
       throw FileError(Cause::input, name, "",

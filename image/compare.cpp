@@ -12,7 +12,7 @@
 namespace delray::image {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 15;  // pixels; about 50 microseconds
+constexpr std::size_t kCompareGrain = std::size_t{1} << 15;  // pixels; about 50 microseconds
 
 double channel_difference(std::uint8_t a, std::uint8_t b) { return std::abs(a - b); }
 
@@ -61,7 +61,7 @@ Comparison compare_pixels(const BasicImage<Colour>& a, const BasicImage<Colour>&
     }
     return result;
   };
-  return parallel::parallel_reduce(0, a.pixels(), kGrain, Comparison{}, block, sum);
+  return parallel::parallel_reduce(0, a.pixels(), kCompareGrain, Comparison{}, block, sum);
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ Image8 difference_picture(const Image8& a, const Image8& b, int gain) {
         std::min<std::int64_t>(255, std::int64_t{std::abs(s - t)} * gain));
   };
   Image8 result(a.width, a.height);
-  parallel::parallel_for(0, a.pixels(), kGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, a.pixels(), kCompareGrain, [&](std::size_t i) {
     const Rgba8 s = a.colour[i], t = b.colour[i];
     Rgba8 difference{code(s.r, t.r), code(s.g, t.g), code(s.b, t.b), 255};
     if (difference == Rgba8{0, 0, 0, 255}) difference.b = code(s.a, t.a);

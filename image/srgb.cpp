@@ -7,11 +7,11 @@
 namespace delray::image {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 14;  // pixels; about 50 microseconds
+constexpr std::size_t kEncodeGrain = std::size_t{1} << 14;  // pixels; about 50 microseconds
 
 template <class From, class To, class Convert>
 void convert(const BasicImage<From>& from, BasicImage<To>& to, Convert&& colour) {
-  parallel::parallel_for(0, from.pixels(), kGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, from.pixels(), kEncodeGrain, [&](std::size_t i) {
     to.colour[i] = colour(from.colour[i]);
     to.depth[i] = from.depth[i];
   });

@@ -13,7 +13,7 @@
 namespace delray::image {
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // pixels: some ten microseconds
+constexpr std::size_t kToneGrain = 4096;  // pixels: some ten microseconds
 
 float linear(float light) { return light; }
 
@@ -51,8 +51,8 @@ const ToneCurve& tone_curve(std::string_view name) {
 
 void map_tones(ImageF& picture, float factor, const ToneCurve& curve) {
   const std::size_t n = picture.pixels();
-  parallel::parallel_for(0, (n + kGrain - 1) / kGrain, 1, [&](std::size_t block) {
-    for (std::size_t i = block * kGrain; i < std::min(n, (block + 1) * kGrain); ++i) {
+  parallel::parallel_for(0, (n + kToneGrain - 1) / kToneGrain, 1, [&](std::size_t block) {
+    for (std::size_t i = block * kToneGrain; i < std::min(n, (block + 1) * kToneGrain); ++i) {
       RgbaF& pixel = picture.colour[i];
       // Light without any coverage, such as glow, is taken as if it were opaque.
       const float alpha = pixel.a > 0.0F ? pixel.a : 1.0F;

@@ -26,7 +26,7 @@ namespace {
 using geometry::Rect;
 
 // A box cut off at the frame's border, never empty.
-struct Item {
+struct PlacedBox {
   Rect box;
   double cost = 0;
   double covered = 0;  // what part of its pixels
@@ -55,17 +55,17 @@ std::vector<std::uint32_t> order_by(std::size_t items, int begin, int length, Po
 
 class Sweep {
  public:
-  Sweep(Rect frame, double pixel_cost, std::vector<Item> everybodys, HybridPartition& result)
+  Sweep(Rect frame, double pixel_cost, std::vector<PlacedBox> everybodys, HybridPartition& result)
       : frame_(frame),
         pixel_cost_(pixel_cost),
         everybodys_(std::move(everybodys)),
         result_(result) {}
 
   // `screen` may be empty.
-  void split(const Rect& screen, std::vector<Item> items, int owner, int ranks, int depth) {
+  void split(const Rect& screen, std::vector<PlacedBox> items, int owner, int ranks, int depth) {
     if (ranks == 1) {
       if (!screen.empty()) result_.regions.regions.push_back({screen, owner});
-      for (const Item& item : items) result_.owners[item.index] = owner;
+      for (const PlacedBox& item : items) result_.owners[item.index] = owner;
       return;
     }
     const int low_ranks = internal::first_half(ranks, depth), high_ranks = ranks - low_ranks;
@@ -78,7 +78,7 @@ class Sweep {
     Rect low = screen, high = screen;
     (halves.axis.along_x ? low.x1 : low.y1) = halves.border;
     (halves.axis.along_x ? high.x0 : high.y0) = halves.border;
-    std::vector<Item> low_items, high_items;
+    std::vector<PlacedBox> low_items, high_items;
     for (std::size_t i = 0; i < items.size(); ++i)
       (halves.is_low[i] ? low_items : high_items).push_back(items[i]);
     items = {};
@@ -101,7 +101,7 @@ class Sweep {
   // In pixels: what rounding may make of none.
   static constexpr double kNoDifference = 1e-3;
 
-  Halves halve(const Rect& screen, const std::vector<Item>& items, Axis axis, int low_ranks,
+  Halves halve(const Rect& screen, const std::vector<PlacedBox>& items, Axis axis, int low_ranks,
                int high_ranks) const {
     Halves halves = assign(screen, items, axis, low_ranks, high_ranks);
     find_border(screen, items, halves);
@@ -111,7 +111,7 @@ class Sweep {
   // The cost of everybody's boxes before each line of the screen, and of all of it.
   std::vector<double> everybodys_before(const Rect& screen, Axis axis) const {
     std::vector<double> before(static_cast<std::size_t>(axis.length(screen)) + 1);
-    for (const Item& item : everybodys_) {
+    for (const PlacedBox& item : everybodys_) {
       const Rect inside = geometry::intersection(item.box, screen);
       if (inside.empty()) continue;
       const double per_line =
@@ -123,14 +123,14 @@ class Sweep {
     return before;
   }
 
-  Halves assign(const Rect& screen, const std::vector<Item>& items, Axis axis, int low_ranks,
+  Halves assign(const Rect& screen, const std::vector<PlacedBox>& items, Axis axis, int low_ranks,
                 int high_ranks) const {
     const int begin = axis.low(frame_), length = axis.length(frame_);
     const auto by_end = order_by(items.size(), begin, length,
                                  [&](std::size_t i) { return axis.high(items[i].box); });
     const auto by_begin = order_by(items.size(), begin, length,
                                    [&](std::size_t i) { return axis.low(items[i].box); });
-    const auto work = [&](const Item& item) {
+    const auto work = [&](const PlacedBox& item) {
       const auto outside =
           static_cast<double>(item.box.area() - geometry::intersection(item.box, screen).area());
       return item.cost + pixel_cost_ * outside * item.covered;
@@ -154,13 +154,13 @@ class Sweep {
           high_work + shared + before.back() - before[high_at - axis.low(screen)];
       if (low_sum * high_ranks <= high_sum * low_ranks) {
         while (is_assigned[*low_next]) ++low_next;
-        const Item& item = items[*low_next];
+        const PlacedBox& item = items[*low_next];
         halves.is_low[*low_next] = is_assigned[*low_next] = true;
         low_line = std::max(low_line, axis.high(item.box));
         low_work += work(item);
       } else {
         while (is_assigned[*high_next]) ++high_next;
-        const Item& item = items[*high_next];
+        const PlacedBox& item = items[*high_next];
         is_assigned[*high_next] = true;
         high_line = std::min(high_line, axis.low(item.box));
         high_work += work(item);
@@ -178,7 +178,7 @@ class Sweep {
 
   // The border with the fewest pixels on the wrong side; of borders that are as good as each other,
   // the one that leaves the halves most alike.
-  static void find_border(const Rect& screen, const std::vector<Item>& items, Halves& halves) {
+  static void find_border(const Rect& screen, const std::vector<PlacedBox>& items, Halves& halves) {
     const Axis axis = halves.axis;
     const int begin = axis.low(screen), length = axis.length(screen);
     // Pixels covered in line begin + k by boxes of the low half, or of the high one: no more than
@@ -223,7 +223,7 @@ class Sweep {
 
   Rect frame_;
   double pixel_cost_;
-  std::vector<Item> everybodys_;
+  std::vector<PlacedBox> everybodys_;
   HybridPartition& result_;
 };
 
@@ -234,7 +234,7 @@ HybridPartition hybrid_partition(std::span<const WeightedBox> boxes, Rect frame,
   if (ranks < 1 || !(options.pixel_cost >= 0) || !(options.largest_box >= 0))
     throw std::invalid_argument("there is at least one rank, and no cost or size is negative");
   HybridPartition result{std::vector<int>(boxes.size(), kNobody), {frame, {}}};
-  std::vector<Item> items, everybodys;
+  std::vector<PlacedBox> items, everybodys;
   double all = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Rect visible = geometry::intersection(boxes[i].box, frame);
@@ -245,7 +245,7 @@ HybridPartition hybrid_partition(std::span<const WeightedBox> boxes, Rect frame,
     all += boxes[i].cost;
   }
   if (ranks > 1) {
-    std::erase_if(items, [&](const Item& item) {
+    std::erase_if(items, [&](const PlacedBox& item) {
       if (item.cost * ranks <= options.largest_box * all) return false;
       result.owners[item.index] = kEverybody;
       everybodys.push_back(item);

@@ -16,7 +16,7 @@
 namespace delray::loadbalance {
 namespace {
 
-struct Item {
+struct WeightedCentre {
   glm::vec3 centre;
   std::uint32_t weight;
 };
@@ -25,7 +25,7 @@ class Cutter {
  public:
   explicit Cutter(KdCells& result) : result_(result) {}
 
-  void cut(std::span<Item> items, const geometry::Box3& space, int count) {
+  void cut(std::span<WeightedCentre> items, const geometry::Box3& space, int count) {
     if (count == 1) {
       result_.cells.push_back(space);
       return;
@@ -33,7 +33,7 @@ class Cutter {
     const int lower = count / 2;
     const KdCells::Plane plane = choose(items, space, lower, count);
     result_.planes.push_back(plane);
-    const auto middle = std::partition(items.begin(), items.end(), [&](const Item& item) {
+    const auto middle = std::partition(items.begin(), items.end(), [&](const WeightedCentre& item) {
       return item.centre[plane.axis] < plane.at;
     });
     geometry::Box3 below = space, above = space;
@@ -44,24 +44,25 @@ class Cutter {
 
  private:
   // Sorts the items.
-  static KdCells::Plane choose(std::span<Item> items, const geometry::Box3& space, int lower,
-                               int count) {
+  static KdCells::Plane choose(std::span<WeightedCentre> items, const geometry::Box3& space,
+                               int lower, int count) {
     if (items.empty()) return {0, std::clamp(0.0F, space.low.x, space.high.x)};
     geometry::Box3 centres;
     std::uint64_t weight = 0;
-    for (const Item& item : items) {
+    for (const WeightedCentre& item : items) {
       centres.include(item.centre);
       weight += item.weight;
     }
     const glm::vec3 size = centres.size();
     int axis = size.y > size.x ? 1 : 0;
     if (size.z > size[axis]) axis = 2;
-    std::sort(items.begin(), items.end(),
-              [&](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
+    std::sort(items.begin(), items.end(), [&](const WeightedCentre& a, const WeightedCentre& b) {
+      return a.centre[axis] < b.centre[axis];
+    });
     const std::uint64_t share =
         weight * static_cast<std::uint64_t>(lower) / static_cast<std::uint64_t>(count);
     std::uint64_t before = 0;
-    for (const Item& item : items) {
+    for (const WeightedCentre& item : items) {
       before += item.weight;
       if (before > share) return {axis, item.centre[axis]};
     }
@@ -96,7 +97,7 @@ KdCells cut_space(std::span<const geometry::Box3> boxes, std::span<const std::ui
                   int count) {
   if (boxes.size() != weights.size() || count < 1)
     throw std::invalid_argument("there is at least one cell, and a weight for each box");
-  std::vector<Item> items;
+  std::vector<WeightedCentre> items;
   items.reserve(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const glm::vec3 centre = boxes[i].centre();

@@ -23,7 +23,8 @@
 namespace delray::raytrace {
 namespace {
 
-constexpr std::size_t kRows = 4;  // of pixels, for a thread at a time: a millisecond of work
+constexpr std::size_t kRowsPerBlock =
+    4;  // of pixels, for a thread at a time: a millisecond of work
 
 // The cubic B-spline, as the transform has it, from the middle on.
 constexpr float kKernel[3] = {3.0F / 8.0F, 1.0F / 4.0F, 1.0F / 16.0F};
@@ -64,9 +65,10 @@ struct Plane {
 
 template <class F>
 void for_each_pixel(const Plane& plane, F&& f) {
-  parallel::parallel_for(0, static_cast<std::size_t>(plane.height), kRows, [&](std::size_t y) {
-    for (int x = 0; x < plane.width; ++x) f(x, static_cast<int>(y));
-  });
+  parallel::parallel_for(0, static_cast<std::size_t>(plane.height), kRowsPerBlock,
+                         [&](std::size_t y) {
+                           for (int x = 0; x < plane.width; ++x) f(x, static_cast<int>(y));
+                         });
 }
 
 template <class F>

@@ -13,14 +13,14 @@ namespace {
 constexpr std::uint64_t kManyBytes = 2 << 20;
 
 template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
+std::size_t array_bytes(const std::vector<T>& v) {
   return v.size() * sizeof(T);
 }
 
-std::size_t bytes_of(const scenes::Mesh& mesh) {
-  return bytes_of(mesh.triangles) + bytes_of(mesh.positions) + bytes_of(mesh.normals) +
-         bytes_of(mesh.uvs) + bytes_of(mesh.uvs2) + bytes_of(mesh.colours) +
-         bytes_of(mesh.tangents);
+std::size_t array_bytes(const scenes::Mesh& mesh) {
+  return array_bytes(mesh.triangles) + array_bytes(mesh.positions) + array_bytes(mesh.normals) +
+         array_bytes(mesh.uvs) + array_bytes(mesh.uvs2) + array_bytes(mesh.colours) +
+         array_bytes(mesh.tangents);
 }
 
 }  // namespace
@@ -40,9 +40,9 @@ Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader,
   LightTable lights(scene, shader);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   std::size_t bytes = 0;
-  for (const scenes::Mesh& mesh : scene.meshes) bytes += bytes_of(mesh);
+  for (const scenes::Mesh& mesh : scene.meshes) bytes += array_bytes(mesh);
   const bool large = is_large(bytes);
-  for (const GeometryInstance& instance : instances) bytes += bytes_of(instance.moved);
+  for (const GeometryInstance& instance : instances) bytes += array_bytes(instance.moved);
   bytes += embree.memory();
   return {std::move(shader),
           std::move(instances),

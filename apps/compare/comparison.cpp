@@ -53,7 +53,13 @@ std::string range_text(const Spread& times) {
   return fmt::format("{:.4g}..{:.4g}", times.least * 1e3, times.most * 1e3);
 }
 
-int shown_ranks(const std::vector<int>& ranks, int most) {
+std::string milliseconds_text(double seconds, int decimals) {
+  return fmt::format("{:.{}f}", seconds * 1e3, decimals);
+}
+
+std::string ratio_text(double ratio) { return fmt::format("{:.3f}", ratio); }
+
+int shown_ranks_of(const std::vector<int>& ranks, int most) {
   int shown = 0;
   for (const int count : ranks) {
     if (count <= most) shown = std::max(shown, count);

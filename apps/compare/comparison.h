@@ -32,9 +32,13 @@ std::vector<OutputFile> outputs_of(const ComparisonOptions& options);
 Json spread_json(const Spread& times);
 // The range of times in milliseconds, for tables.
 std::string range_text(const Spread& times);
+// For tables, with so many decimals.
+std::string milliseconds_text(double seconds, int decimals);
+std::string ratio_text(double ratio);  // with three decimals
 
-// The largest of these numbers of ranks that is at most `most`, else the first.
-int shown_ranks(const std::vector<int>& ranks, int most);
+constexpr int kMostShownRanks = 16;  // more are too many for one chart or timeline
+// The largest of `ranks` that is at most `most`, else the first. REQUIRES: !ranks.empty().
+int shown_ranks_of(const std::vector<int>& ranks, int most);
 
 // Runs of a comparison. A stop that was asked for is heard between two of them, where it loses
 // nothing.

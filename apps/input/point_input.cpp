@@ -25,11 +25,11 @@
 namespace delray::apps {
 namespace {
 
-constexpr std::size_t kColours = 3;
+constexpr std::size_t kColourChannels = 3;
 
 // A picture of one channel, or with --terrain-rgb of three, and perhaps an alpha channel.
 void check_channels(const PointInput& input, const image::RawChannels& picture) {
-  const std::size_t wanted = input.terrain_rgb ? kColours : 1;
+  const std::size_t wanted = input.terrain_rgb ? kColourChannels : 1;
   const std::size_t channels = picture.channels.size();
   const bool fits =
       channels == wanted || (channels == wanted + 1 && picture.channels.back() == "A");
@@ -94,7 +94,7 @@ delaunay::PointCloud read_elevations(const PointInput& input) {
   const image::RawChannels picture = image::read_float_channels(input.path, memory);
   check_channels(input, picture);
   const std::size_t channels = picture.channels.size();
-  const bool has_alpha = channels != (input.terrain_rgb ? kColours : 1);
+  const bool has_alpha = channels != (input.terrain_rgb ? kColourChannels : 1);
   delaunay::PointCloud cloud;
   cloud.has_z = true;
   memory.require(picture.values.size() / channels * sizeof(glm::dvec3), input.path);

@@ -20,10 +20,10 @@ struct NamedKind {
   const char* name;
   Background::Kind kind;
 };
-constexpr NamedKind kNamed[] = {{"auto", Background::Kind::automatic},
-                                {"environment", Background::Kind::environment},
-                                {"studio", Background::Kind::studio},
-                                {"transparent", Background::Kind::transparent}};
+constexpr NamedKind kNamedBackgrounds[] = {{"auto", Background::Kind::automatic},
+                                           {"environment", Background::Kind::environment},
+                                           {"studio", Background::Kind::studio},
+                                           {"transparent", Background::Kind::transparent}};
 
 constexpr glm::vec3 kStudioTop{0.93F, 0.94F, 0.96F}, kStudioBottom{0.56F, 0.61F, 0.68F};
 
@@ -72,10 +72,10 @@ void put_behind_picture(image::BasicImage<Colour>& picture, const Background& ba
 
 }  // namespace
 
-std::vector<std::string> background_names() { return names_in(kNamed); }
+std::vector<std::string> background_names() { return names_in(kNamedBackgrounds); }
 
 Background parse_background(const std::string& text) {
-  for (const NamedKind& named : kNamed) {
+  for (const NamedKind& named : kNamedBackgrounds) {
     if (text == named.name) return {named.kind, {}};
   }
   unsigned code = 0;

@@ -28,7 +28,6 @@ const loadbalance::Schedule* schedule_of(const RenderRequest& request) {
 }
 
 bool is_raster(const RenderRequest& request) { return request.engine == Engine::raster; }
-bool is_raytrace(const RenderRequest& request) { return request.engine == Engine::raytrace; }
 
 // Whether the rasterizer runs with a strategy that has a capability.
 using Capability = bool raster::Strategy::*;

@@ -60,6 +60,8 @@ struct RenderRequest {
   Background behind;
 };
 
+inline bool is_raytrace(const RenderRequest& request) { return request.engine == Engine::raytrace; }
+
 // Sets width and height by size. Throws UsageError.
 void parse_size(RenderRequest& request);
 

@@ -41,7 +41,6 @@ geometry::Rect parse_crop(const std::string& text, int width, int height) {
 
 bool writes_exr(const RenderRequest& r) { return image::picture_suffix(r.output) == ".exr"; }
 bool shows_colour(const RenderRequest& r) { return r.sampling.show == "colour"; }
-bool is_raytrace(const RenderRequest& r) { return r.engine == Engine::raytrace; }
 
 std::string why_no_frame_alone(const RenderRequest& r) {
   return r.is_animation() || r.frames > 1 ? "more than one frame" : "";

@@ -16,23 +16,23 @@ using geometry::Rect;
 using raytrace::ProgressiveResult;
 
 // A channel, and how it is shown: of three numbers or of one.
-struct Shown {
+struct ShownChannel {
   const char* name;
   const char* description;
   enum class Kind { direction, colour, id, number, square } kind;  // of a square, its root is shown
   const char* channel;                                             // the first of its channels
 };
 
-constexpr Shown kShown[] = {
-    {"normal", "normals of surfaces", Shown::Kind::direction, "normal.X"},
-    {"albedo", "base colours", Shown::Kind::colour, "albedo.R"},
-    {"instance", "instances, each in a colour of its own", Shown::Kind::id, "id.instance"},
-    {"material", "materials, each in a colour of its own", Shown::Kind::id, "id.material"},
-    {"depth", "distance along the view", Shown::Kind::number, "Z"},
-    {"variance", "of pixels: what is left of the noise", Shown::Kind::square, "variance"},
-    {"samples", "of each pixel", Shown::Kind::number, "samples"},
-    {"rays", "that each pixel took", Shown::Kind::number, "cost.rays"},
-    {"seconds", "that each pixel took", Shown::Kind::number, "cost.seconds"},
+constexpr ShownChannel kShown[] = {
+    {"normal", "normals of surfaces", ShownChannel::Kind::direction, "normal.X"},
+    {"albedo", "base colours", ShownChannel::Kind::colour, "albedo.R"},
+    {"instance", "instances, each in a colour of its own", ShownChannel::Kind::id, "id.instance"},
+    {"material", "materials, each in a colour of its own", ShownChannel::Kind::id, "id.material"},
+    {"depth", "distance along the view", ShownChannel::Kind::number, "Z"},
+    {"variance", "of pixels: what is left of the noise", ShownChannel::Kind::square, "variance"},
+    {"samples", "of each pixel", ShownChannel::Kind::number, "samples"},
+    {"rays", "that each pixel took", ShownChannel::Kind::number, "cost.rays"},
+    {"seconds", "that each pixel took", ShownChannel::Kind::number, "cost.seconds"},
 };
 
 template <class F>
@@ -120,13 +120,13 @@ std::vector<image::Channel> channels_of(const ProgressiveResult& result, const R
 
 double show(const std::string& name, const ProgressiveResult& result, const Rect& window,
             image::ImageF& picture) {
-  const Shown& shown = find_entry(kShown, name, "--show");
+  const ShownChannel& shown = find_entry(kShown, name, "--show");
   std::vector<image::Channel> channels = channels_of(result, window);
   channels.push_back({"Z", {picture.depth.data(), picture.depth.data() + picture.pixels()}});
   const auto first = std::find_if(channels.begin(), channels.end(),
                                   [&](const auto& c) { return c.name == shown.channel; });
   std::vector<float>& values = first->values;
-  if (shown.kind == Shown::Kind::square) {
+  if (shown.kind == ShownChannel::Kind::square) {
     for (float& v : values) v = std::sqrt(v);
   }
   const float top = top_of(values);
@@ -135,26 +135,27 @@ double show(const std::string& name, const ProgressiveResult& result, const Rect
     glm::vec3 colour(0.0F);
     bool covered = picture.depth[i] != image::kEmptyDepth;
     switch (shown.kind) {
-      case Shown::Kind::direction:
+      case ShownChannel::Kind::direction:
         colour =
             glm::vec3(first[0].values[i], first[1].values[i], first[2].values[i]) * 0.5F + 0.5F;
         break;
-      case Shown::Kind::colour:
+      case ShownChannel::Kind::colour:
         colour = {first[0].values[i], first[1].values[i], first[2].values[i]};
         break;
-      case Shown::Kind::id:
+      case ShownChannel::Kind::id:
         covered = values[i] >= 0.0F;
         colour = colour_of_id(values[i]);
         break;
-      case Shown::Kind::number:
-      case Shown::Kind::square:
+      case ShownChannel::Kind::number:
+      case ShownChannel::Kind::square:
         covered = std::isfinite(values[i]);
         colour = map.colour(top > 0.0F ? std::min(values[i] / top, 1.0F) : 0.0F);
         break;
     }
     picture.colour[i] = covered ? image::RgbaF{colour.x, colour.y, colour.z, 1.0F} : image::RgbaF{};
   }
-  return shown.kind == Shown::Kind::number || shown.kind == Shown::Kind::square ? top : 0.0;
+  return shown.kind == ShownChannel::Kind::number || shown.kind == ShownChannel::Kind::square ? top
+                                                                                              : 0.0;
 }
 
 }  // namespace delray::apps

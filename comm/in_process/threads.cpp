@@ -230,9 +230,9 @@ class ThreadCommunicator final : public Communicator {
 
   // The first message that matches, once there is one; null when the deadline passes before.
   Message* wait(std::unique_lock<std::mutex>& lock, int from, Tag tag, Deadline deadline) {
-    constexpr auto kNever = std::chrono::nanoseconds::max();
+    constexpr auto kForever = std::chrono::nanoseconds::max();
     auto& queue = group_->queues[rank_];
-    const bool forever = deadline.wait == kNever;
+    const bool forever = deadline.wait == kForever;
     const auto longest = std::min(deadline.wait, world_.timeout);
     Clock::time_point end{};
     bool end_known = false;
@@ -240,7 +240,7 @@ class ThreadCommunicator final : public Communicator {
     for (;;) {
       if (world_.failure.happened()) throw RunEnded{};
       if (auto* message = queue.find(from, tag)) return message;
-      if (longest != kNever) {
+      if (longest != kForever) {
         if (deadline.wait <= std::chrono::nanoseconds{0}) return nullptr;
         const auto now = Clock::now();
         if (!end_known) end = now + longest;
@@ -258,7 +258,7 @@ class ThreadCommunicator final : public Communicator {
         stays_awake = spin(lock);
         continue;
       }
-      sleep(lock, from, tag, forever, longest == kNever ? nullptr : &end);
+      sleep(lock, from, tag, forever, longest == kForever ? nullptr : &end);
     }
   }
 

@@ -14,7 +14,7 @@
 namespace delray::composite {
 namespace {
 
-constexpr std::size_t kGrain = 4;  // groups of 4096 pixels; some ten microseconds
+constexpr std::size_t kGroupsGrain = 4;  // groups of 4096 pixels; some ten microseconds
 
 }  // namespace
 
@@ -31,7 +31,7 @@ comm::Buffer ActiveLayer<Colour>::encode(PixelRange range) {
   comm::Buffer buffer(coverage.encoded_bytes() + covered * this->bytes_per_pixel());
   auto* const colours = reinterpret_cast<Colour*>(coverage.encode(buffer.data()));
   auto* const depths = reinterpret_cast<float*>(colours + covered);
-  parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, coverage.groups(), kGroupsGrain, [&](std::size_t i) {
     const Coverage::Group at = coverage.group(i);
     const auto copy = [&]<class T>(const T* from, T* to) {
       if (at.is_full()) {
@@ -57,7 +57,7 @@ std::uint64_t ActiveLayer<Colour>::apply(PixelRange range, const comm::Buffer& p
                       coverage.encoded_bytes() + covered * this->bytes_per_pixel());
   const auto* colour = reinterpret_cast<const Colour*>(pixels.data() + coverage.encoded_bytes());
   const auto* depth = reinterpret_cast<const float*>(colour + covered);
-  parallel::parallel_for(0, coverage.groups(), kGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, coverage.groups(), kGroupsGrain, [&](std::size_t i) {
     const Coverage::Group at = coverage.group(i);
     const std::size_t first = range.begin + at.begin, size = at.end - at.begin;
     const typename ImageLayer<Colour>::Pixels arrived{

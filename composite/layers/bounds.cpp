@@ -18,7 +18,7 @@ using internal::Bounds;
 using internal::bounds_of;
 using internal::run_of;
 
-constexpr std::size_t kGrain = 16;  // rows; some ten microseconds
+constexpr std::size_t kRowsGrain = 16;  // rows; some ten microseconds
 
 // Runs of all rows, and how many pixels lie in those before each; one element more.
 struct Runs {
@@ -49,7 +49,7 @@ comm::Buffer BoundsLayer<Colour>::encode(PixelRange range) {
   std::memcpy(buffer.data(), &bounds, sizeof bounds);
   auto* const colour = reinterpret_cast<Colour*>(buffer.data() + sizeof bounds);
   auto* const depth = reinterpret_cast<float*>(colour + runs.before.back());
-  parallel::parallel_for(0, runs.ranges.size(), kGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, runs.ranges.size(), kRowsGrain, [&](std::size_t i) {
     const PixelRange run = runs.ranges[i];
     std::copy_n(image.colour.data() + run.begin, run.size(), colour + runs.before[i]);
     if (this->has_depth()) {
@@ -75,7 +75,7 @@ std::uint64_t BoundsLayer<Colour>::apply(PixelRange range, const comm::Buffer& p
   const auto* const colour = reinterpret_cast<const Colour*>(pixels.data() + sizeof bounds);
   const auto* const depth = reinterpret_cast<const float*>(colour + all);
   if (all < range.size()) this->apply_to_none(action, range.begin, range.size());
-  parallel::parallel_for(0, runs.ranges.size(), kGrain, [&](std::size_t i) {
+  parallel::parallel_for(0, runs.ranges.size(), kRowsGrain, [&](std::size_t i) {
     const PixelRange run = runs.ranges[i];
     const std::uint64_t at = runs.before[i];
     this->apply_to_all(action, run.begin, run.size(),

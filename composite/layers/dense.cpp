@@ -11,7 +11,8 @@
 namespace delray::composite {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 16;  // pixels; about 30 microseconds of copying
+constexpr std::size_t kPixelsGrain = std::size_t{1}
+                                     << 16;  // pixels; about 30 microseconds of copying
 
 template <class T>
 void copy(T* to, const T* from, std::size_t first, std::size_t last) {
@@ -27,10 +28,12 @@ comm::Buffer DenseLayer<Colour>::encode(PixelRange range) {
   comm::Buffer buffer(range.size() * this->bytes_per_pixel());
   auto* colour = reinterpret_cast<Colour*>(buffer.data());
   auto* depth = reinterpret_cast<float*>(buffer.data() + range.size() * sizeof(Colour));
-  parallel::parallel_blocks(0, range.size(), kGrain, [&](std::size_t first, std::size_t last) {
-    copy(colour, image.colour.data() + range.begin, first, last);
-    if (this->has_depth()) copy(depth, image.depth.data() + range.begin, first, last);
-  });
+  parallel::parallel_blocks(0, range.size(), kPixelsGrain,
+                            [&](std::size_t first, std::size_t last) {
+                              copy(colour, image.colour.data() + range.begin, first, last);
+                              if (this->has_depth())
+                                copy(depth, image.depth.data() + range.begin, first, last);
+                            });
   return buffer;
 }
 
@@ -41,11 +44,12 @@ std::uint64_t DenseLayer<Colour>::apply(PixelRange range, const comm::Buffer& pi
   comm::check_message(pixels.size() == range.size() * this->bytes_per_pixel());
   const auto* colour = reinterpret_cast<const Colour*>(pixels.data());
   const auto* depth = reinterpret_cast<const float*>(pixels.data() + range.size() * sizeof(Colour));
-  parallel::parallel_blocks(0, range.size(), kGrain, [&](std::size_t first, std::size_t last) {
-    const std::size_t size = last - first;
-    this->apply_to_all(action, range.begin + first, size,
-                       {colour + first, this->has_depth() ? depth + first : nullptr, size});
-  });
+  parallel::parallel_blocks(
+      0, range.size(), kPixelsGrain, [&](std::size_t first, std::size_t last) {
+        const std::size_t size = last - first;
+        this->apply_to_all(action, range.begin + first, size,
+                           {colour + first, this->has_depth() ? depth + first : nullptr, size});
+      });
   return range.size();
 }
 

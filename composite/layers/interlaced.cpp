@@ -19,7 +19,7 @@ namespace {
 
 // Pieces of one rank's pixels; as tiles.cpp.
 constexpr std::uint64_t kPiecesOfSet = 8;
-constexpr std::uint64_t kFewestPixels = 4096;
+constexpr std::uint64_t kFewestPixelsOfPiece = 4096;
 
 constexpr std::size_t padded(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
 
@@ -29,7 +29,7 @@ class InterlacedLayer final : public Layer {
       : layer_(std::move(layer)) {
     const PixelRange all{0, layer_->pixels()};
     const int of_set = static_cast<int>(std::clamp<std::uint64_t>(
-        all.size() / static_cast<std::uint64_t>(parts) / kFewestPixels, 1, kPiecesOfSet));
+        all.size() / static_cast<std::uint64_t>(parts) / kFewestPixelsOfPiece, 1, kPiecesOfSet));
     std::uint64_t begin = 0;
     for (int set = 0; set < parts; ++set) {
       for (int i = 0; i < of_set; ++i) {

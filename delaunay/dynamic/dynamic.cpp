@@ -29,7 +29,7 @@
 namespace delray::delaunay {
 namespace {
 
-constexpr SimplexNumber kNowhere = kDeadVertex;
+constexpr SimplexNumber kNotInserted = kDeadVertex;
 
 // A mesh has at most 2 triangles, and as a rule less than 7 tetrahedra, to a point.
 template <int D>
@@ -54,7 +54,7 @@ bool is_positive(const std::array<glm::dvec3, 4>& p) {
 template <int D>
 struct DynamicTriangulation<D>::State {
   internal::DistinctPoints<D> sites;
-  // Per site: a simplex that once had it; kNowhere as long as it is to be inserted.
+  // Per site: a simplex that once had it; kNotInserted as long as it is to be inserted.
   std::vector<SimplexNumber> near;
 
   // While all sites are on one line (3D: plane) there is no mesh, but sites that span what they
@@ -84,7 +84,7 @@ struct DynamicTriangulation<D>::State {
   bool add_row(const Point& point) {
     const auto [site, is_new] = sites.add(point);
     near.resize(sites.size());
-    if (is_new) near[site] = kNowhere;
+    if (is_new) near[site] = kNotInserted;
     return is_new;
   }
 
@@ -124,7 +124,7 @@ struct DynamicTriangulation<D>::State {
   template <class F>
   void each_inserted(F&& f) const {
     for (std::uint32_t site = 0; site < sites.size(); ++site) {
-      if (sites.is_used(site) && near[site] != kNowhere) f(site);
+      if (sites.is_used(site) && near[site] != kNotInserted) f(site);
     }
   }
 

@@ -20,7 +20,7 @@
 namespace delray::delaunay::internal {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffU;
+constexpr std::uint32_t kNoWall = 0xffffffffU;
 
 // A facet of a positively oriented simplex, and the side of it that the simplex is on: simplices on
 // the same side of a facet are equal here.
@@ -214,10 +214,10 @@ void DynamicMesh<3>::fill() {
   const auto name = [&](VertexNumber vertex) {
     return vertex == kInfiniteVertex ? vertex : hole_vertices_[vertex];
   };
-  std::vector<std::uint32_t> wall_at(4 * std::size_t{hole_->used()}, kNone);
-  std::vector<SimplexNumber> number(hole_->used(), kNone), inside;
+  std::vector<std::uint32_t> wall_at(4 * std::size_t{hole_->used()}, kNoWall);
+  std::vector<SimplexNumber> number(hole_->used(), kNoWall), inside;
   const auto take = [&](SimplexNumber simplex) {
-    if (number[simplex] != kNone) return;
+    if (number[simplex] != kNoWall) return;
     number[simplex] = 0;
     inside.push_back(simplex);
   };
@@ -237,7 +237,7 @@ void DynamicMesh<3>::fill() {
   for (std::size_t i = 0; i < inside.size(); ++i) {
     for (unsigned k = 0; k < 4; ++k) {
       const CornerNumber corner = corner_of(inside[i], k);
-      if (wall_at[corner] == kNone) take(simplex_of(hole.neighbour(corner)));
+      if (wall_at[corner] == kNoWall) take(simplex_of(hole.neighbour(corner)));
     }
   }
   for (const SimplexNumber simplex : cavity_) slots_.retire(simplex);
@@ -248,7 +248,7 @@ void DynamicMesh<3>::fill() {
     for (unsigned k = 0; k < 4; ++k) {
       const CornerNumber from = corner_of(t, k), to = corner_of(number[t], k);
       mesh.set_vertex(to, name(hole.vertex(from)));
-      if (wall_at[from] != kNone) {
+      if (wall_at[from] != kNoWall) {
         mesh.link(to, sides_[wall_at[from]].outer);
         continue;
       }

@@ -11,15 +11,15 @@
 
 namespace delray::delaunay {
 
-// Where a point format keeps what is read, in bytes from the start of a record. All formats begin
-// with x, y, z as int32 and the intensity as uint16.
+// Where a point format keeps what is read, in bytes from the start of a record.
 struct LasPointFormat {
   std::size_t size;            // smallest record
   std::size_t colour;          // three uint16; 0 if there is none
   std::size_t classification;  // one byte
   std::uint8_t class_mask;     // the formats before 6 keep flags in the upper bits
 };
-inline constexpr std::size_t kLasIntensity = 12;
+// All formats begin with x, y, z as int32, the intensity as uint16 and a byte with returns.
+inline constexpr std::size_t kLasX = 0, kLasY = 4, kLasZ = 8, kLasIntensity = 12, kLasReturns = 14;
 
 struct LasHeader {
   unsigned format_number = 0;

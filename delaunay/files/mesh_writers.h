@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "delaunay/write_mesh.h"
 
@@ -15,6 +16,16 @@ void write_stl(const std::filesystem::path& path, const MeshView& mesh);
 void write_vtu(const std::filesystem::path& path, const MeshView& mesh);
 // Writes X.node and X.ele, whichever of them `path` names.
 void write_node(const std::filesystem::path& path, const MeshView& mesh);
+
+// The suffixes of a table of writers, as messages name them.
+template <class Writers>
+std::string known_suffixes(const Writers& writers) {
+  std::string list;
+  for (const auto& writer : writers) {
+    list += (list.empty() ? "" : " ") + std::string(writer.suffixes);
+  }
+  return list;
+}
 
 // Points alone.
 void write_node_points(const std::filesystem::path& path, const PointCloud& points);

@@ -27,7 +27,7 @@ bool has_colours(const Input& input, const RowIndex& rows) {
   return count >= 7;
 }
 
-std::uint8_t to_byte(double value) {
+std::uint8_t fraction_to_byte(double value) {
   return static_cast<std::uint8_t>(std::round(std::clamp(value, 0.0, 1.0) * 255));
 }
 
@@ -60,7 +60,7 @@ PointCloud read_obj_points(const Input& input) {
     for (int k = 0; k < 3; ++k) cloud.positions[i][k] = fields.number();
     if (cloud.colours.empty()) return;
     cloud.colours[i].a = 255;
-    for (int k = 0; k < 3; ++k) cloud.colours[i][k] = to_byte(fields.number());
+    for (int k = 0; k < 3; ++k) cloud.colours[i][k] = fraction_to_byte(fields.number());
   });
   const std::size_t lines = index_rows(input, {}, kAllRows, is_line).count;
   if (lines > 0) cloud.warnings.push_back(edges_left_out(lines));

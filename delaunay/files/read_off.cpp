@@ -11,14 +11,14 @@
 namespace delray::delaunay {
 namespace {
 
-struct Header {
+struct OffHeader {
   std::size_t vertices = 0, faces = 0;
   bool colours = false;
   TextPlace body;
 };
 
-Header parse_header(const Input& input) {
-  Header header;
+OffHeader parse_off_header(const Input& input) {
+  OffHeader header;
   TextPlace place;
   if (input.content.starts_with("\xef\xbb\xbf")) place.byte = 3;  // UTF-8 byte order mark
   std::array<std::size_t, 3> counts{};
@@ -106,13 +106,13 @@ PointCloud read_vertices(const Input& input, const RowIndex& rows, bool colours)
 }  // namespace
 
 PointCloud read_off_points(const Input& input) {
-  const Header header = parse_header(input);
+  const OffHeader header = parse_off_header(input);
   const RowIndex rows = index_exactly(input, header.body, header.vertices, "vertices");
   return read_vertices(input, rows, header.colours);
 }
 
 PointMesh read_off_mesh(const Input& input) {
-  const Header header = parse_header(input);
+  const OffHeader header = parse_off_header(input);
   const RowIndex rows = index_exactly(input, header.body, header.vertices, "vertices");
   PointMesh mesh;
   mesh.points = read_vertices(input, rows, header.colours);

@@ -7,11 +7,10 @@
 
 #include "delaunay/files/ply.h"
 #include "delaunay/files/point_readers.h"
+#include "delaunay/files/quantity.h"
 
 namespace delray::delaunay {
 namespace {
-
-enum Quantity { kX, kY, kZ, kRed, kGreen, kBlue, kAlpha, kIntensity, kClass, kQuantities };
 
 struct PropertyName {
   std::string_view name;

@@ -15,23 +15,11 @@
 #include <string>
 
 #include "delaunay/files/point_readers.h"
+#include "delaunay/files/quantity.h"
 #include "delaunay/files/text_rows.h"
 
 namespace delray::delaunay {
 namespace {
-
-enum Quantity {
-  kX,
-  kY,
-  kZ,
-  kRed,
-  kGreen,
-  kBlue,
-  kIntensity,
-  kClass,
-  kQuantities,
-  kSkipped = kQuantities
-};
 
 // columns[i] is the quantity in column i of the file.
 struct Layout {

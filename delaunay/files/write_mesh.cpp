@@ -15,7 +15,7 @@ namespace {
 
 using files::Format;
 
-constexpr std::array kWriters = {
+constexpr std::array kMeshWriters = {
     MeshWriter{Format::ply, "PLY", "binary, coordinates as double, with colours", ".ply", false,
                &write_ply},
     MeshWriter{Format::obj, "OBJ", "Wavefront, text", ".obj", false, &write_obj},
@@ -28,14 +28,6 @@ constexpr std::array kWriters = {
                ".node .ele", true, &write_node},
 };
 
-std::string known_suffixes() {
-  std::string list;
-  for (const MeshWriter& writer : kWriters) {
-    list += (list.empty() ? "" : " ") + std::string(writer.suffixes);
-  }
-  return list;
-}
-
 // The vertices of the facet opposite to vertex i, so that a positively oriented simplex lies to
 // their left (2D) or below them, seen counterclockwise from outside (3D).
 constexpr std::array<std::array<int, 2>, 3> kEdges = {{{1, 2}, {2, 0}, {0, 1}}};
@@ -44,15 +36,16 @@ constexpr std::array<std::array<int, 3>, 4> kTriangles = {
 
 }  // namespace
 
-std::span<const MeshWriter> mesh_writers() { return kWriters; }
+std::span<const MeshWriter> mesh_writers() { return kMeshWriters; }
 
 const MeshWriter& mesh_writer_for(const std::filesystem::path& path) {
   const Format format = path == "-" ? Format::ply : files::format_of_suffix(path);
-  for (const MeshWriter& writer : kWriters) {
+  for (const MeshWriter& writer : kMeshWriters) {
     if (writer.format == format) return writer;
   }
   throw std::invalid_argument(path.string() + ": no mesh format has the suffix \"" +
-                              path.extension().string() + "\"; legal are " + known_suffixes());
+                              path.extension().string() + "\"; legal are " +
+                              known_suffixes(kMeshWriters));
 }
 
 void write_mesh(const std::filesystem::path& path, const PointCloud& points,

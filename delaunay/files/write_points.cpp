@@ -20,7 +20,7 @@ void without_simplices(const std::filesystem::path& path, const PointCloud& poin
   kWriter(path, {points, 3, {}});
 }
 
-constexpr std::array kWriters = {
+constexpr std::array kPointWriters = {
     PointWriter{"XYZ", "text, coordinates separated by blanks", ".xyz .txt", &write_xyz},
     PointWriter{"CSV", "text, with a line of column names and all attributes", ".csv", &write_csv},
     PointWriter{"PLY", "binary, coordinates as double, with colours", ".ply",
@@ -40,14 +40,6 @@ bool lists(std::string_view suffixes, std::string suffix) {
     suffixes.remove_prefix(std::min(word.size() + 1, suffixes.size()));
   }
   return false;
-}
-
-std::string known_suffixes() {
-  std::string list;
-  for (const PointWriter& writer : kWriters) {
-    list += (list.empty() ? "" : " ") + std::string(writer.suffixes);
-  }
-  return list;
 }
 
 // Appends the coordinates of point i with `separator` between them.
@@ -105,15 +97,15 @@ void write_json(const std::filesystem::path& path, const PointCloud& points) {
   output.commit();
 }
 
-std::span<const PointWriter> point_writers() { return kWriters; }
+std::span<const PointWriter> point_writers() { return kPointWriters; }
 
 const PointWriter& point_writer_for(const std::filesystem::path& path) {
   const std::string suffix = path == "-" ? ".xyz" : path.extension().string();
-  for (const PointWriter& writer : kWriters) {
+  for (const PointWriter& writer : kPointWriters) {
     if (lists(writer.suffixes, suffix)) return writer;
   }
   throw std::invalid_argument(path.string() + ": no point format has the suffix \"" + suffix +
-                              "\"; legal are " + known_suffixes());
+                              "\"; legal are " + known_suffixes(kPointWriters));
 }
 
 void write_points(const std::filesystem::path& path, const PointCloud& points) {

@@ -13,7 +13,7 @@
 namespace delray::delaunay {
 namespace {
 
-constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kFreeSlot = std::numeric_limits<std::uint32_t>::max();
 
 std::uint64_t mix(std::uint64_t key) {
   key = (key ^ (key >> 32)) * 0xd6e8feb86659fd93;
@@ -58,14 +58,14 @@ std::vector<std::uint32_t> lowest_equal_rows(PointView<double> points, int dim) 
   std::vector<std::uint32_t> lowest(n);
   parallel::parallel_for(0, buckets, 1, [&](std::size_t b) {
     const std::size_t size = std::bit_ceil(2 * (begin[b + 1] - begin[b]) + 1);
-    std::vector<std::uint32_t> table(size, kFree);
+    std::vector<std::uint32_t> table(size, kFreeSlot);
     for (std::size_t r = begin[b]; r < begin[b + 1]; ++r) {
       const std::uint32_t row = rows[r];
       std::size_t slot = hashes[row] & (size - 1);
-      while (table[slot] != kFree && !equal(points, dim, table[slot], row)) {
+      while (table[slot] != kFreeSlot && !equal(points, dim, table[slot], row)) {
         slot = (slot + 1) & (size - 1);
       }
-      if (table[slot] == kFree) table[slot] = row;
+      if (table[slot] == kFreeSlot) table[slot] = row;
       lowest[row] = table[slot];
     }
   });

@@ -48,7 +48,7 @@ inline std::uint32_t number_of(const std::vector<std::uint32_t>& rows, std::uint
 
 // A part of what neighbours lose, and how far off it is before it is rounded.
 template <class T>
-struct Part {
+struct Loss {
   T size, error;
 };
 
@@ -58,7 +58,7 @@ class Shares {
  public:
   explicit Shares(std::size_t neighbours) : sums_(neighbours, T(0)) {}
 
-  void add(std::size_t neighbour, const Part<T>& part) {
+  void add(std::size_t neighbour, const Loss<T>& part) {
     using std::abs;
     sums_[neighbour] += part.size;
     error_ += part.error;
@@ -257,7 +257,7 @@ class SharesOfVolume {
         for (std::size_t i = 0; i < 3; ++i) {
           const std::uint32_t start = numbers_[t][kFacets[k][i]];
           const std::uint32_t end = numbers_[t][kFacets[k][(i + 1) % 3]];
-          const Part<T> part = cone(corners_[start], corners_[end], other, centres_[t]);
+          const Loss<T> part = cone(corners_[start], corners_[end], other, centres_[t]);
           shares_.add(start, part);
           shares_.add(end, part);
         }
@@ -272,7 +272,7 @@ class SharesOfVolume {
       const Middle &first = new_centres_[edge.first], &second = new_centres_[edge.second];
       // Around the edge from `end` to `start` the first tetrahedron follows the second, and so it
       // does from `start` to q.
-      const Part<T> between = cone(end, start, first, second);
+      const Loss<T> between = cone(end, start, first, second);
       shares_.add(edge.start, between);
       shares_.add(edge.end, between);
       shares_.add(edge.start, cone(start, origin, first, second));
@@ -280,7 +280,7 @@ class SharesOfVolume {
     }
   }
 
-  Part<T> cone(const Corner& i, const Corner& j, const Middle& from, const Middle& to) const {
+  Loss<T> cone(const Corner& i, const Corner& j, const Middle& from, const Middle& to) const {
     const T kU = Precision<T>::kRelative;
     const Vector3<T> middle = T(0.5) * (i.from_q + j.from_q), axis = j.from_q - i.from_q;
     const Vector3<T> f = from.at - middle, t = to.at - middle;

@@ -4,7 +4,7 @@
 namespace delray::delaunay::internal {
 namespace {
 
-constexpr std::uint32_t kNone = FacetMates::kNone;
+constexpr std::uint32_t kNoMate = FacetMates::kNone;
 
 // The plane, and the plane onto which space is projected along (e, e^2, 1) for an infinitesimal e,
 // so that no face of a tetrahedron is seen edge-on. Turns and the lexicographic order there are
@@ -42,10 +42,10 @@ struct Edge {
 // one lexicographic minimum, and so do several only if they are one.
 template <class View, class Point>
 Check check_polygon(std::size_t points, const std::vector<Edge>& edges, Point&& at) {
-  std::vector<std::uint32_t> leaving(points, kNone);  // edge per vertex
+  std::vector<std::uint32_t> leaving(points, kNoMate);  // edge per vertex
   for (std::size_t i = 0; i < edges.size(); ++i) {
     std::uint32_t& known = leaving[edges[i].start];
-    if (known != kNone) {
+    if (known != kNoMate) {
       return Objection{edges[i].simplex, "the boundary passes " + row(edges[i].start) + " twice"};
     }
     known = static_cast<std::uint32_t>(i);
@@ -78,7 +78,7 @@ struct Surface {
 Surface surface_of(const VerifiedMesh<3>& mesh) {
   Surface surface;
   for (std::size_t facet = 0; facet < mesh.vertices.size(); ++facet) {
-    if (mesh.facets.mates[facet] != kNone) continue;
+    if (mesh.facets.mates[facet] != kNoMate) continue;
     const auto face = mesh.outward(facet);
     surface.facets.push_back(static_cast<std::uint32_t>(facet));
     surface.triangles.insert(surface.triangles.end(), face.begin(), face.end());
@@ -98,7 +98,7 @@ Surface surface_of(const VerifiedMesh<3>& mesh) {
 Check check_hull(const VerifiedMesh<2>& mesh) {
   std::vector<Edge> edges;
   for (std::size_t facet = 0; facet < mesh.vertices.size(); ++facet) {
-    if (mesh.facets.mates[facet] != kNone) continue;
+    if (mesh.facets.mates[facet] != kNoMate) continue;
     const auto edge = mesh.outward(facet);
     edges.push_back({edge[0], edge[1], facet / 3});
   }
@@ -116,13 +116,13 @@ Check check_hull(const VerifiedMesh<3>& mesh) {
   const auto end = [&](std::size_t e) { return surface.triangles[e - e % 3 + (e + 2) % 3]; };
   const auto simplex = [&](std::size_t e) -> std::size_t { return surface.facets[e / 3] / 4; };
   const auto name = [&](std::size_t e) { return row(start(e)) + " and " + row(end(e)); };
-  if (const std::size_t crowded = surface.edges.crowded; crowded != kNone) {
+  if (const std::size_t crowded = surface.edges.crowded; crowded != kNoMate) {
     return Objection{simplex(crowded),
                      "more than two faces of the boundary meet between " + name(crowded)};
   }
   const auto is_open = [&](std::size_t e) {
     const std::uint32_t mate = surface.edges.mates[e];
-    return mate == kNone || start(mate) != end(e);
+    return mate == kNoMate || start(mate) != end(e);
   };
   const auto is_outline = [&](std::size_t e) {
     return surface.up[e / 3] != surface.up[surface.edges.mates[e] / 3];

@@ -48,11 +48,11 @@ std::vector<double> counted_mesh(const Costs& costs) {
   return mesh;
 }
 
-struct Node {
+struct CostNode {
   double count;
   Rect cells;
   // By count; of equal ones the larger first, so that empty frames are cut, too; then by place.
-  bool operator<(const Node& other) const {
+  bool operator<(const CostNode& other) const {
     return std::tuple(count, cells.area(), -cells.y0, -cells.x0) <
            std::tuple(other.count, other.cells.area(), -other.cells.y0, -other.cells.x0);
   }
@@ -65,11 +65,11 @@ Partition whitman(const Costs& costs, Rect frame, int parts) {
   Partition partition{frame, {}};
   if (frame.empty()) return partition;
   const SummedArea sums(costs.columns, costs.rows, counted_mesh(costs));
-  std::priority_queue<Node> open;  // nodes that have children
-  std::vector<Node> leaves;        // cells
+  std::priority_queue<CostNode> open;  // nodes that have children
+  std::vector<CostNode> leaves;        // cells
   const auto add = [&](const Rect& cells) {
     if (cells.empty()) return;
-    const Node node{sums.sum(cells), cells};
+    const CostNode node{sums.sum(cells), cells};
     if (cells.area() == 1) {
       leaves.push_back(node);
     } else {
@@ -91,7 +91,7 @@ Partition whitman(const Costs& costs, Rect frame, int parts) {
 
   std::vector<double> counts;
   counts.reserve(leaves.size());
-  for (const Node& leaf : leaves) counts.push_back(leaf.count);
+  for (const CostNode& leaf : leaves) counts.push_back(leaf.count);
   const std::vector<int> owners = largest_first(counts, parts);
   for (std::size_t k = 0; k < leaves.size(); ++k) {
     const Rect& cells = leaves[k].cells;

@@ -21,10 +21,11 @@
 namespace delray::loadbalance::internal {
 namespace {
 
-class Node {
+class MasterNode {
  public:
-  Node(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
-       TaskFunction work, const MasterTree& tree, Amount amount)
+  MasterNode(comm::Communicator& communicator, const TaskGrid& tasks,
+             const ScheduleOptions& options, TaskFunction work, const MasterTree& tree,
+             Amount amount)
       : communicator_(communicator),
         tree_(tree),
         amount_(amount),
@@ -150,7 +151,7 @@ MasterTree MasterTree::flat(const comm::Communicator& communicator,
 RankReport run_masters(comm::Communicator& communicator, const TaskGrid& tasks,
                        const ScheduleOptions& options, TaskFunction work, const MasterTree& tree,
                        Amount amount) {
-  return Node(communicator, tasks, options, work, tree, amount).run();
+  return MasterNode(communicator, tasks, options, work, tree, amount).run();
 }
 
 std::uint64_t batch_of(const ScheduleOptions& options) {

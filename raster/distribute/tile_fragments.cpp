@@ -15,7 +15,7 @@
 namespace delray::raster {
 namespace {
 
-struct Header {
+struct TileHeader {
   std::uint32_t tile = 0, fragments = 0;
 };
 
@@ -134,8 +134,8 @@ template <class Payload>
 comm::Buffer pack_tiles(std::span<const TileSpan<Payload>> tiles) {
   std::size_t bytes = 0;
   for (const TileSpan<Payload>& tile : tiles) {
-    bytes +=
-        sizeof(Header) + tile.fragments.size_bytes() + bytes_of_positions(tile.positions.size());
+    bytes += sizeof(TileHeader) + tile.fragments.size_bytes() +
+             bytes_of_positions(tile.positions.size());
   }
   comm::Buffer message(bytes);
   std::byte* to = message.data();
@@ -144,8 +144,8 @@ comm::Buffer pack_tiles(std::span<const TileSpan<Payload>> tiles) {
     to += size;
   };
   for (const TileSpan<Payload>& tile : tiles) {
-    const Header header{static_cast<std::uint32_t>(tile.tile),
-                        static_cast<std::uint32_t>(tile.fragments.size())};
+    const TileHeader header{static_cast<std::uint32_t>(tile.tile),
+                            static_cast<std::uint32_t>(tile.fragments.size())};
     append(&header, sizeof header);
     append(tile.fragments.data(), tile.fragments.size_bytes());
     append(tile.positions.data(), tile.positions.size_bytes());
@@ -160,9 +160,9 @@ std::vector<TileSpan<Payload>> unpack_tiles(const comm::Buffer& message) {
   using Seen = composite::DeepFragment<Payload>;
   std::vector<TileSpan<Payload>> tiles;
   for (const std::byte *from = message.data(), *end = from + message.size(); from != end;) {
-    const auto* const header = reinterpret_cast<const Header*>(from);
+    const auto* const header = reinterpret_cast<const TileHeader*>(from);
     const std::size_t count = header->fragments;
-    from += sizeof(Header);
+    from += sizeof(TileHeader);
     const auto* const fragments = reinterpret_cast<const Seen*>(from);
     from += count * sizeof(Seen);
     const auto* const positions = reinterpret_cast<const std::uint16_t*>(from);

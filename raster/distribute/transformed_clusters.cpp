@@ -34,18 +34,18 @@ enum Attribute : std::uint8_t {
 
 // Followed by first corners, second corners and third corners, a byte each and all filled up to
 // four bytes, positions, and the attributes in ascending order.
-struct Header {
+struct ClusterHeader {
   std::uint32_t cluster, material;
   std::uint16_t vertices, triangles;
   std::uint8_t attributes, mirrored;
   std::int16_t hidden_side;
 
-  bool same_mesh(const Header& other) const {
+  bool same_mesh(const ClusterHeader& other) const {
     return material == other.material && attributes == other.attributes &&
            mirrored == other.mirrored && hidden_side == other.hidden_side;
   }
 };
-static_assert(sizeof(Header) == 16);
+static_assert(sizeof(ClusterHeader) == 16);
 
 std::size_t corner_bytes(std::size_t triangles) { return (3 * triangles + 3) / 4 * 4; }
 
@@ -108,7 +108,7 @@ geometry::Box3 box_around(std::span<const glm::vec3> positions) {
 
 // A packed cluster, and where it goes.
 struct Section {
-  Header header;
+  ClusterHeader header;
   const std::byte* content = nullptr;
   ArrivedMesh* mesh = nullptr;
   std::uint32_t draw = 0;
@@ -167,9 +167,9 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
   };
   while (!bytes.empty()) {
     Section section;
-    std::memcpy(&section.header, bytes.data(), sizeof(Header));
-    const Header& header = section.header;
-    section.content = bytes.data() + sizeof(Header);
+    std::memcpy(&section.header, bytes.data(), sizeof(ClusterHeader));
+    const ClusterHeader& header = section.header;
+    section.content = bytes.data() + sizeof(ClusterHeader);
     if (sections.empty() || !header.same_mesh(sections.back().header) ||
         triangles + header.triangles > kBlockTriangles) {
       close_mesh();
@@ -192,7 +192,7 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
     vertices += header.vertices;
     corners += 3 * section.cluster.corner_stride();
     sections.push_back(section);
-    bytes = bytes.subspan(sizeof(Header) + corner_bytes(header.triangles) +
+    bytes = bytes.subspan(sizeof(ClusterHeader) + corner_bytes(header.triangles) +
                           header.vertices * vertex_bytes(header.attributes));
   }
   close_mesh();
@@ -256,13 +256,13 @@ void ClusterPacker::pack(std::span<const std::uint8_t> which, std::vector<std::b
 void ClusterPacker::append_section(std::uint32_t number, std::vector<std::byte>& bytes) {
   const scenes::Mesh& mesh = *draw_->mesh;
   const std::size_t triangles = corners_[0].size();
-  const Header header{number,
-                      mesh.material,
-                      static_cast<std::uint16_t>(vertices_.size()),
-                      static_cast<std::uint16_t>(triangles),
-                      attributes_,
-                      static_cast<std::uint8_t>(shaded_->handedness < 0),
-                      static_cast<std::int16_t>(prepared_->hidden_side)};
+  const ClusterHeader header{number,
+                             mesh.material,
+                             static_cast<std::uint16_t>(vertices_.size()),
+                             static_cast<std::uint16_t>(triangles),
+                             attributes_,
+                             static_cast<std::uint8_t>(shaded_->handedness < 0),
+                             static_cast<std::int16_t>(prepared_->hidden_side)};
   const std::size_t before = bytes.size();
   bytes.resize(before + sizeof(header) + corner_bytes(triangles) +
                vertices_.size() * vertex_bytes(attributes_));

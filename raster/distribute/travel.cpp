@@ -12,12 +12,12 @@ namespace {
 
 // Followed by triangles, then positions, then the attributes that `attributes` names, in ascending
 // order of their bits: all in units of four bytes.
-struct Header {
+struct PieceHeader {
   std::uint64_t primitive;
   std::uint32_t vertices, triangles, material, attributes;
   glm::mat4x3 transform;
 };
-static_assert(sizeof(Header) == 72);
+static_assert(sizeof(PieceHeader) == 72);
 
 // Calls f(attribute, bit) for each attribute that a mesh may have.
 template <class Mesh, class F>
@@ -93,7 +93,7 @@ comm::Buffer pack_geometry(std::span<const Piece> pieces) {
     const auto triangles = std::span(mesh.triangles).subspan(piece.first, piece.count);
     vertices.set(triangles);
     const std::span<const std::uint32_t> used = vertices.used();
-    Header header{
+    PieceHeader header{
         piece.primitive, static_cast<std::uint32_t>(used.size()), piece.count, mesh.material, 0,
         *piece.transform};
     std::size_t vertex_bytes = sizeof(mesh.positions[0]);
@@ -103,7 +103,8 @@ comm::Buffer pack_geometry(std::span<const Piece> pieces) {
       vertex_bytes += sizeof(attribute[0]);
     });
     const std::size_t before = bytes.size();
-    bytes.resize(before + sizeof(Header) + triangles.size_bytes() + used.size() * vertex_bytes);
+    bytes.resize(before + sizeof(PieceHeader) + triangles.size_bytes() +
+                 used.size() * vertex_bytes);
     std::byte* to = bytes.data() + before;
     const auto write = [&](const auto& value) {
       std::memcpy(to, &value, sizeof value);
@@ -125,7 +126,7 @@ comm::Buffer pack_geometry(std::span<const Piece> pieces) {
 void unpack_geometry(const comm::Buffer& message, Arrivals& arrivals) {
   Reader reader(message);
   while (!reader.at_end()) {
-    Header header;
+    PieceHeader header;
     reader.read(std::span(&header, 1));
     scenes::Mesh& mesh = arrivals.meshes.emplace_back();
     mesh.material = header.material;

@@ -15,7 +15,7 @@ namespace delray::raster {
 namespace {
 
 // Relative error of a sum of a few products, with a margin.
-constexpr float kRounding = 1e-5F;
+constexpr float kCullingSlack = 1e-5F;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geomet
     const glm::vec3 rows(std::abs(row.x), std::abs(row.y), std::abs(row.z));
     const glm::vec3 sizes = glm::abs(centre);
     const float error =
-        kRounding * (glm::dot(rows, sizes) + glm::dot(rows, half) + std::abs(row.w));
+        kCullingSlack * (glm::dot(rows, sizes) + glm::dot(rows, half) + std::abs(row.w));
     const float middle = glm::dot(glm::vec3(row), centre) + row.w;
     const float reach = glm::dot(rows, half) + error;
     low[k] = middle - reach;
@@ -69,8 +69,9 @@ ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geomet
                               pixel(view.half_height - bottom + kMargin, screen.height) + 1},
                              screen.frame());
   result.outside |= result.pixels.empty();
-  const float nearest = view.orthographic ? (low.z - view.far) / (view.far - view.near) - kRounding
-                                          : -view.near / low.z * (1 + kRounding);
+  const float nearest = view.orthographic
+                            ? (low.z - view.far) / (view.far - view.near) - kCullingSlack
+                            : -view.near / low.z * (1 + kCullingSlack);
   if (nearest > -1) result.nearest = nearest;
   return result;
 }
@@ -86,7 +87,7 @@ bool shows_hidden_side_only(const Screen& screen, const PreparedDraw& draw,
   const float across = std::sqrt(std::max(distance * distance - along * along, 0.0F));
   const float sine = std::sqrt(std::max(1 - cluster.cosine * cluster.cosine, 0.0F));
   // A lower bound of dot(n, p - eye) / |p - eye| over all normals n and points p of the cluster.
-  const float least = (along * cluster.cosine - across * sine - radius - kRounding * distance) /
+  const float least = (along * cluster.cosine - across * sine - radius - kCullingSlack * distance) /
                       (distance + radius);
   if (!(least > 0)) return false;
   // Snapping moves a corner by less than a subpixel: it cannot turn a triangle that is everywhere

@@ -24,7 +24,7 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
   return values.capacity() * sizeof(T);
 }
 
-class Writer {
+class ClusterWriter {
  public:
   template <class T>
   void value(const T& value) {
@@ -193,7 +193,7 @@ std::vector<geometry::Box3> boxes_of(const ClusterData& cluster) {
 }
 
 comm::Buffer pack(const ClusterData& cluster) {
-  Writer out;
+  ClusterWriter out;
   out.value(static_cast<std::uint64_t>(cluster.pieces.size()));
   for (const Piece& piece : cluster.pieces) {
     out.value(piece.mesh.material);

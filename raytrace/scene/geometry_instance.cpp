@@ -20,10 +20,6 @@ bool usable(const glm::vec3& p) {
   return std::abs(p.x) < kLargest && std::abs(p.y) < kLargest && std::abs(p.z) < kLargest;
 }
 
-float largest(const glm::vec3& v) {
-  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
-}
-
 void move_to_world(GeometryInstance& instance) {
   const std::vector<glm::vec3>& from = instance.mesh->positions;
   instance.moved.resize(from.size() + 1);
@@ -43,7 +39,7 @@ void look_at_material(GeometryInstance& instance, const shading::Shader& shader)
 // The largest coordinate of a mesh.
 float reach(const scenes::Mesh& mesh) {
   float result = 0.0F;
-  for (const glm::vec3& p : mesh.positions) result = std::max(result, largest(p));
+  for (const glm::vec3& p : mesh.positions) result = std::max(result, largest_magnitude(p));
   return result;
 }
 
@@ -54,7 +50,8 @@ void look_at_transform(GeometryInstance& instance, float mesh_reach) {
   // The matrix of cofactors is the inverse transpose times the determinant, and exists always. Its
   // size does not matter: it is that of a transform of about size 1, lest numbers overflow.
   int exponent = 0;
-  std::frexp(std::max(std::max(largest(linear[0]), largest(linear[1])), largest(linear[2])),
+  std::frexp(std::max(std::max(largest_magnitude(linear[0]), largest_magnitude(linear[1])),
+                      largest_magnitude(linear[2])),
              &exponent);
   const glm::mat3 m = linear * std::ldexp(1.0F, -exponent);
   const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
@@ -62,7 +59,7 @@ void look_at_transform(GeometryInstance& instance, float mesh_reach) {
   instance.normal_to_world = cofactors * instance.orientation;
   const float stretch =
       std::max(std::max(glm::length(linear[0]), glm::length(linear[1])), glm::length(linear[2]));
-  instance.transform_scale = stretch * mesh_reach + largest(instance.to_world[3]);
+  instance.transform_scale = stretch * mesh_reach + largest_magnitude(instance.to_world[3]);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Instances of a scene as the ray tracer sees them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -36,6 +38,11 @@ struct GeometryInstance {
 // to the scene, which has to outlive it. Instances of meshes that do not exist get a null mesh.
 std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
                                              const shading::Shader& shader, bool share_meshes);
+
+// The largest magnitude of a coordinate.
+inline float largest_magnitude(const glm::vec3& v) {
+  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
+}
 
 // Triangles that can never be hit: corners in one line or point, not finite, or beyond 1e18.
 // Counted over instances. Parallel; O(triangles).

@@ -11,10 +11,6 @@
 namespace delray::raytrace {
 namespace {
 
-float largest(const glm::vec3& v) {
-  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
-}
-
 glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
   const float squared = glm::dot(v, v);
   return squared > 0.0F ? v * (1.0F / std::sqrt(squared)) : otherwise;
@@ -56,14 +52,16 @@ Intersection intersection(const GeometryInstance& instance, const Hit& hit,
   Intersection result;
   shading::Point& point = result.point;
   point.position = a + ab * hit.u + ac * hit.v;
-  result.offset = kOffset * (std::max(std::max(largest(a), largest(b)), largest(c)) +
-                             std::max(largest(ab), largest(ac)) + instance.transform_scale);
+  result.offset =
+      kOffset *
+      (std::max(std::max(largest_magnitude(a), largest_magnitude(b)), largest_magnitude(c)) +
+       std::max(largest_magnitude(ab), largest_magnitude(ac)) + instance.transform_scale);
 
   glm::vec3 cross = glm::cross(ab, ac);
   const float squared = glm::dot(cross, cross);
   float area = std::sqrt(squared), length = area;
   if (!(squared >= kLeastSquare && squared <= kMostSquare)) {
-    const float size = std::max(largest(ab), largest(ac)), per = 1.0F / size;
+    const float size = std::max(largest_magnitude(ab), largest_magnitude(ac)), per = 1.0F / size;
     cross = glm::cross(ab * per, ac * per);
     length = std::sqrt(glm::dot(cross, cross));
     area = length * size * size;

@@ -18,9 +18,10 @@ namespace {
 
 // Lengths are metres.
 constexpr float kBlock = 64.0F, kStreet = 18.0F, kPitch = kBlock + kStreet;
-constexpr float kPavement = 0.25F;                  // height of a block above the streets
-constexpr std::uint64_t kTrianglesPerBlock = 9000;  // wanted on average; decides how many blocks
-constexpr std::uint64_t kTrianglesPerCell = 18;     // a window, its reveal, and the wall around it
+constexpr float kPavement = 0.25F;  // height of a block above the streets
+constexpr std::uint64_t kTrianglesPerCityBlock =
+    9000;                                        // wanted on average; decides how many blocks
+constexpr std::uint64_t kTrianglesPerCell = 18;  // a window, its reveal, and the wall around it
 
 struct Building {
   glm::vec3 low;
@@ -193,7 +194,8 @@ Mesh make_streets(float half) {
 }  // namespace
 
 Scene generate_city(std::uint64_t triangles, std::uint64_t seed) {
-  const double wanted = static_cast<double>(triangles) / static_cast<double>(kTrianglesPerBlock);
+  const double wanted =
+      static_cast<double>(triangles) / static_cast<double>(kTrianglesPerCityBlock);
   const auto side =
       static_cast<std::uint32_t>(std::clamp(std::lround(std::sqrt(wanted)), 1L, 400L));
   const std::vector<Block> blocks = plan(side, seed);

@@ -16,12 +16,12 @@
 namespace delray::tests {
 namespace {
 
-constexpr int kWidth = 1920, kHeight = 1080;
+constexpr int kFullWidth = 1920, kFullHeight = 1080;
 
 // Pixels that only one of the engines covers.
 std::uint64_t coverage_difference(scenes::Scene scene, bool orthographic = false) {
   scenes::Camera camera =
-      scenes::camera_around(scene, "default", static_cast<float>(kWidth) / kHeight);
+      scenes::camera_around(scene, "default", static_cast<float>(kFullWidth) / kFullHeight);
   if (orthographic) {
     const float distance = glm::distance(camera.eye, camera.at);
     camera.height = 0.7F * distance * std::tan(glm::radians(camera.vertical_fov * 0.5F));
@@ -31,13 +31,13 @@ std::uint64_t coverage_difference(scenes::Scene scene, bool orthographic = false
   std::uint64_t differs = 0;
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
     raster::RenderOptions raster_options;
-    raster_options.width = kWidth;
-    raster_options.height = kHeight;
+    raster_options.width = kFullWidth;
+    raster_options.height = kFullHeight;
     raster_options.float_pixels = true;
     raster_options.lighting = raster::Lighting::gouraud;
     raytrace::RenderOptions trace_options;
-    trace_options.width = kWidth;
-    trace_options.height = kHeight;
+    trace_options.width = kFullWidth;
+    trace_options.height = kFullHeight;
     trace_options.trace.depth = 0;
     const raster::Result drawn = raster::render(communicator, scene, camera, raster_options);
     const raytrace::Result traced = raytrace::render(communicator, scene, camera, trace_options);
@@ -47,7 +47,8 @@ std::uint64_t coverage_difference(scenes::Scene scene, bool orthographic = false
 }
 
 // A shift by half a pixel would differ in 0.08 % of the pixels.
-constexpr std::uint64_t kAllowed = static_cast<std::uint64_t>(kWidth) * kHeight / 20000;  // 0.005 %
+constexpr std::uint64_t kAllowed =
+    static_cast<std::uint64_t>(kFullWidth) * kFullHeight / 20000;  // 0.005 %
 
 class GeneratedScenes : public testing::TestWithParam<const char*> {};
 

@@ -20,14 +20,14 @@ namespace delray::tests {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kWidth = 96, kHeight = 64;
+constexpr int kGoldenWidth = 96, kGoldenHeight = 64;
 
 image::ImageF draw(const scenes::Scene& scene, const scenes::Camera& camera) {
   image::ImageF picture;
   comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
     raster::RenderOptions options;
-    options.width = kWidth;
-    options.height = kHeight;
+    options.width = kGoldenWidth;
+    options.height = kGoldenHeight;
     options.float_pixels = true;
     picture = std::get<image::ImageF>(raster::render(communicator, scene, camera, options).picture);
   });
@@ -38,8 +38,8 @@ image::ImageF trace(const scenes::Scene& scene, const scenes::Camera& camera) {
   image::ImageF picture;
   comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
     raytrace::RenderOptions options;
-    options.width = kWidth;
-    options.height = kHeight;
+    options.width = kGoldenWidth;
+    options.height = kGoldenHeight;
     options.build.isa = "avx2";  // Embree's last bits depend on it
     picture = raytrace::render(communicator, scene, camera, options).image;
   });
@@ -81,8 +81,8 @@ TEST_P(GoldenPicture, IsWhatItWas) {
     return;
   }
   const image::ImageF expected = image::read_image_float(path);
-  ASSERT_EQ(expected.width, kWidth);
-  ASSERT_EQ(expected.height, kHeight);
+  ASSERT_EQ(expected.width, kGoldenWidth);
+  ASSERT_EQ(expected.height, kGoldenHeight);
   const image::Comparison comparison = image::compare(expected, actual);
   const image::Image8 expected8 = image::to_8bit(expected), actual8 = image::to_8bit(actual);
   const bool same = golden.tolerated == 0

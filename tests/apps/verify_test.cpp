@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 // Half of it flat, so that most points are not needed.
-std::string hill() {
+std::string wavy_slope() {
   std::string text;
   for (int i = 0; i < 400; ++i) {
     const double x = i % 20 + 0.1 * std::sin(i * 7.0), y = i / 20 + 0.1 * std::cos(i * 5.0);
@@ -25,7 +25,7 @@ std::string hill() {
 
 TEST(VerifyCommand, ChecksMeshesThatLeaveOutPoints) {
   const Folder folder;
-  folder.write("p.xyz", hill());
+  folder.write("p.xyz", wavy_slope());
   for (const std::string format : {"ply", "obj", "off", "vtu", "stl", "node"}) {
     SCOPED_TRACE(format);
     const std::string mesh = "m." + format;
@@ -50,7 +50,7 @@ TEST(VerifyCommand, ChecksMeshesThatLeaveOutPoints) {
 
 TEST(VerifyCommand, ChecksStl) {
   const Folder folder;
-  folder.write("p.xyz", hill());
+  folder.write("p.xyz", wavy_slope());
   ASSERT_EQ(run("delray triangulate p.xyz -o m.stl", folder.path()).exit_code, 0);
   const Ran ran = run("delray verify m.stl --canonical --complete --points p.xyz", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
@@ -84,7 +84,7 @@ TEST(VerifyCommand, RefusesStlThatMayBeOfSeveralPoints) {
 
 TEST(VerifyCommand, ComparesHeights) {
   const Folder folder;
-  folder.write("p.xyz", hill());
+  folder.write("p.xyz", wavy_slope());
   for (const std::string format : {"ply", "obj", "off", "vtu", "node"}) {
     const std::string mesh = "m." + format;
     ASSERT_EQ(run("delray triangulate p.xyz -o " + mesh, folder.path()).exit_code, 0);

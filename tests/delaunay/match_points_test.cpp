@@ -8,11 +8,11 @@
 namespace delray::delaunay {
 namespace {
 
-using Points = std::vector<glm::dvec3>;
+using SpacePoints = std::vector<glm::dvec3>;
 
 TEST(MatchPoints, FindsTheLowestRow) {
-  const Points points = {{1, 2, 3}, {0, 0, 0}, {1, 2, 4}, {5, 5, 5}};
-  const Points vertices = {{-0.0, 0, 9}, {1, 2, 4}};
+  const SpacePoints points = {{1, 2, 3}, {0, 0, 0}, {1, 2, 4}, {5, 5, 5}};
+  const SpacePoints vertices = {{-0.0, 0, 9}, {1, 2, 4}};
   const PointMatch match = match_points(view(vertices), view(points), {.dim = 2});
   EXPECT_FALSE(match.unknown || match.ambiguous);
   EXPECT_EQ(match.rows, (std::vector<std::uint32_t>{1, 0}));
@@ -22,9 +22,9 @@ TEST(MatchPoints, FindsTheLowestRow) {
 }
 
 TEST(MatchPoints, RoundsToFloats) {
-  const Points points = {{0.1, 0.2, 0.3}, {1e300, 0, 0}, {0.1 + 1e-12, 0.2, 7}, {4, 4, 4}};
+  const SpacePoints points = {{0.1, 0.2, 0.3}, {1e300, 0, 0}, {0.1 + 1e-12, 0.2, 7}, {4, 4, 4}};
   const auto rounded = [](const glm::dvec3& p) { return glm::dvec3(glm::vec3(p)); };
-  const Points one = {rounded(points[3])}, two = {rounded(points[3]), rounded(points[0])};
+  const SpacePoints one = {rounded(points[3])}, two = {rounded(points[3]), rounded(points[0])};
   EXPECT_EQ(match_points(view(two), view(points), {.dim = 2}).unknown, 1U);
   const PointMatch good = match_points(view(one), view(points), {.dim = 2, .as_floats = true});
   EXPECT_FALSE(good.unknown || good.ambiguous);

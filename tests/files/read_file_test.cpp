@@ -14,7 +14,7 @@
 namespace delray::files {
 namespace {
 
-constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+constexpr std::uint64_t kFileMebibyte = std::uint64_t{1} << 20;
 
 Cause cause_of(const std::filesystem::path& path, const MemoryBudget& memory) {
   try {
@@ -45,7 +45,7 @@ TEST(ReadFile, ReadsFilesWhole) {
   const auto path = folder.write("a", content);
   EXPECT_EQ(read_file(path), content);
   EXPECT_EQ(read_start(path, 10), content.substr(0, 10));
-  EXPECT_EQ(read_start(path, 3 * kMebibyte), content.substr(0, 3 * kMebibyte));
+  EXPECT_EQ(read_start(path, 3 * kFileMebibyte), content.substr(0, 3 * kFileMebibyte));
   EXPECT_EQ(read_file(folder.write("empty", "")), "");
   EXPECT_FALSE(is_stream(path));
   EXPECT_FALSE(is_stream(folder / "none"));
@@ -54,7 +54,7 @@ TEST(ReadFile, ReadsFilesWhole) {
 TEST(ReadFile, LooksAtTheStartOfAStreamBeforeReadingIt) {
   const tests::TemporaryFolder folder;
   std::string content = "# a comment\n";
-  while (content.size() < 3 * kMebibyte) content += "v 1 2 3\n";
+  while (content.size() < 3 * kFileMebibyte) content += "v 1 2 3\n";
   content += "f 1 2 3\n";
   const FilledPipe pipe(folder / "p", content);
   EXPECT_TRUE(is_stream(folder / "p"));
@@ -68,7 +68,7 @@ TEST(ReadFile, LooksAtTheStartOfAStreamBeforeReadingIt) {
 
 TEST(ReadFile, EndlessStreamsAreBadInput) {
   EXPECT_TRUE(is_stream("/dev/zero"));
-  EXPECT_EQ(cause_of("/dev/zero", MemoryBudget(resident_set() + 50 * kMebibyte)), Cause::input);
+  EXPECT_EQ(cause_of("/dev/zero", MemoryBudget(resident_set() + 50 * kFileMebibyte)), Cause::input);
   EXPECT_EQ(read_start("/dev/zero", 4), std::string(4, '\0'));
 }
 
@@ -77,8 +77,8 @@ TEST(ReadFile, LargeFilesAreRefusedUnread) {
   const auto path = folder.write("sparse", "x");
   std::filesystem::resize_file(path, std::uint64_t{1} << 40);
   const std::uint64_t before = resident_set();
-  EXPECT_EQ(cause_of(path, MemoryBudget(before + 50 * kMebibyte)), Cause::memory);
-  EXPECT_LT(resident_set(), before + 10 * kMebibyte);
+  EXPECT_EQ(cause_of(path, MemoryBudget(before + 50 * kFileMebibyte)), Cause::memory);
+  EXPECT_LT(resident_set(), before + 10 * kFileMebibyte);
 }
 
 }  // namespace

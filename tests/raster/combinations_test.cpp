@@ -8,14 +8,12 @@
 #include <set>
 
 #include "comm/threads.h"
-#include "parallel/arena.h"
 #include "raster/strategies.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 
 namespace delray::raster {
 namespace {
-
-const parallel::AllowThreads kThreads(27);
 
 Picture rendered(const KindOfPicture& kind, const RenderOptions& options, int ranks, int threads) {
   Picture picture;

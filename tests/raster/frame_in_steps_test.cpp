@@ -11,12 +11,12 @@
 #include "parallel/arena.h"
 #include "raster/strategies.h"
 #include "scenes/camera_path.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 
 namespace delray::raster {
 namespace {
 
-const parallel::AllowThreads kThreads(12);
 constexpr std::size_t kFrames = 5, kSlots = 3;
 
 std::vector<scenes::Camera> around() {

@@ -2,17 +2,15 @@
 #include <gtest/gtest.h>
 
 #include "comm/threads.h"
-#include "parallel/arena.h"
 #include "raster/combinations.h"
 #include "raster/render.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 #include "tests/raster/random_scene.h"
 #include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
-
-const parallel::AllowThreads kThreads(12);
 
 Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
                 const RenderOptions& options, int ranks = 1) {

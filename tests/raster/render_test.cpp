@@ -14,14 +14,12 @@
 #include "parallel/arena.h"
 #include "raster/combinations.h"
 #include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 #include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
-
-// As many threads as the tests ask for, on machines with fewer cores too.
-const parallel::AllowThreads kThreads(12);
 
 Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
                 const RenderOptions& options, int ranks = 1, int threads = 1) {

@@ -7,15 +7,13 @@
 
 #include "comm/recording.h"
 #include "comm/threads.h"
-#include "parallel/arena.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 
 namespace delray::raster {
 namespace {
-
-const parallel::AllowThreads kThreads(16);
 
 using BytesByPhase = std::map<comm::Phase, std::uint64_t>;
 

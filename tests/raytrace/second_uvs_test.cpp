@@ -76,7 +76,7 @@ scenes::Scene with_second_uvs(scenes::Scene scene, std::size_t first_moved) {
   return scene;
 }
 
-void expect_same(const Result& a, const Result& b) {
+void expect_same_colours(const Result& a, const Result& b) {
   ASSERT_EQ(a.image.pixels(), b.image.pixels());
   EXPECT_EQ(std::memcmp(a.image.colour.data(), b.image.colour.data(),
                         a.image.pixels() * sizeof(image::RgbaF)),
@@ -95,8 +95,8 @@ TEST_P(SecondUvs, LookAsTheFirst) {
   options.samples = 4;
   options.integrator = GetParam();
   const Result expected = render_alone(scene, scene.cameras[0], options);
-  expect_same(render_alone(moved, moved.cameras[0], options), expected);
-  expect_same(render_alone(others, others.cameras[0], options), expected);
+  expect_same_colours(render_alone(moved, moved.cameras[0], options), expected);
+  expect_same_colours(render_alone(others, others.cameras[0], options), expected);
   for (const Distribution& distribution : distributions()) {
     SCOPED_TRACE(distribution.name);
     if (distribution.replicated) continue;
@@ -109,7 +109,7 @@ TEST_P(SecondUvs, LookAsTheFirst) {
       Result one = renderer.render(communicator, moved.cameras[0], options);
       if (communicator.rank() == 0) result = std::move(one);
     });
-    expect_same(result, expected);
+    expect_same_colours(result, expected);
   }
 }
 

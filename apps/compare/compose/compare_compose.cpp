@@ -44,7 +44,7 @@ using composite::MetadataOnlyImages;
 // Samples for the model of this machine are taken with this many ranks at most.
 constexpr int kMostFittedRanks = 16;
 // Pictures of more ranks would not fit a page.
-constexpr int kMostShownRanks = 8;
+constexpr int kMostShownPictures = 8;
 // A scheme is predicted from the times of the schemes of the other half.
 constexpr std::size_t kHalves = 2;
 // Steps of the progress bar for a prediction; a run is one step.
@@ -161,9 +161,9 @@ std::vector<int> predicted_ranks(const CompareRequest& request,
   return ranks;
 }
 
-class Comparison {
+class SchemeRuns {
  public:
-  Comparison(const Session& session, const CompareRequest& request, const Prepared& prepared,
+  SchemeRuns(const Session& session, const CompareRequest& request, const Prepared& prepared,
              parallel::Progress& progress)
       : session_(session), request_(request), prepared_(prepared), steps_(progress) {}
 
@@ -243,7 +243,7 @@ class Comparison {
 
   // The largest measured number of ranks that is small enough for pictures of each.
   int shown_ranks() const {
-    return session_.under_mpi ? session_ranks_ : apps::shown_ranks(request_.ranks, kMostShownRanks);
+    return session_.under_mpi ? session_ranks_ : shown_ranks_of(request_.ranks, kMostShownPictures);
   }
 
   void show_fastest(comm::Communicator& communicator, const raster::PartialImage& share) {
@@ -413,7 +413,7 @@ class Comparison {
 
 ComposeComparison compare_compose(const Session& session, const CompareRequest& request,
                                   const Prepared& prepared, parallel::Progress& progress) {
-  return Comparison(session, request, prepared, progress).run();
+  return SchemeRuns(session, request, prepared, progress).run();
 }
 
 namespace {

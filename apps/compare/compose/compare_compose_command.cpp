@@ -21,7 +21,7 @@
 namespace delray::apps {
 namespace {
 
-int list() {
+int list_for_compose() {
   list_schemes();
   list_codecs();
   list_networks();
@@ -45,7 +45,7 @@ void check_codecs(const CompareRequest& request, bool asked) {
 }
 
 int run(Session& session, const CLI::App& command, CompareRequest request) {
-  if (request.list) return list();
+  if (request.list) return list_for_compose();
   const bool asked = command.count("--ranks") > 0;
   check_codecs(request, asked);
   if (!asked) request.most_messages = request.quick ? kMostMessagesQuick : kMostMessages;

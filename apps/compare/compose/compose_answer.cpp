@@ -15,10 +15,10 @@ namespace delray::apps {
 namespace {
 
 using namespace report;
-using Rows = std::vector<ComparedScheme>;
-using Winners = std::vector<const ComparedScheme*>;
+using SchemeRows = std::vector<ComparedScheme>;
+using SchemeWinners = std::vector<const ComparedScheme*>;
 
-std::vector<std::string> names_of(const Winners& rows, bool codecs) {
+std::vector<std::string> names_of(const SchemeWinners& rows, bool codecs) {
   std::vector<std::string> names;
   for (const ComparedScheme* row : rows)
     names.push_back(codecs ? row->scheme + ", " + row->codec : row->scheme);
@@ -39,7 +39,7 @@ std::string cores_text(int cores) { return fmt::format("{} core{}", cores, cores
 double total(const Predicted& predicted) { return predicted.seconds + predicted.gather_seconds; }
 
 // With as many ranks the one that takes least after the best.
-const ComparedScheme* next_of(const Rows& rows, const Winners& best) {
+const ComparedScheme* next_of(const SchemeRows& rows, const SchemeWinners& best) {
   const ComparedScheme* next = nullptr;
   for (const ComparedScheme& row : rows) {
     if (row.ranks == best.front()->ranks && row.total_seconds &&
@@ -51,7 +51,8 @@ const ComparedScheme* next_of(const Rows& rows, const Winners& best) {
 }
 
 // REQUIRES: !best.empty().
-Html measured_sentence(const ComposeComparison& comparison, const Winners& best, bool codecs) {
+Html measured_sentence(const ComposeComparison& comparison, const SchemeWinners& best,
+                       bool codecs) {
   const ComparedScheme& first = *best.front();
   const std::vector<std::string> names = names_of(best, codecs);
   Html text =
@@ -75,7 +76,7 @@ Html measured_sentence(const ComposeComparison& comparison, const Winners& best,
 // On a machine that has a core for each rank.
 Html predicted_sentence(const ComposeComparison& comparison, int ranks, const std::string& network,
                         double factor, bool codecs) {
-  const Winners best = fastest_over(comparison.rows, ranks, network, factor);
+  const SchemeWinners best = fastest_over(comparison.rows, ranks, network, factor);
   if (best.empty()) return "";
   const std::vector<std::string> names = names_of(best, codecs);
   Html text = fmt::format("<p>On {} ranks over {} ", ranks, escaped(network));
@@ -90,7 +91,7 @@ Html predicted_sentence(const ComposeComparison& comparison, int ranks, const st
 }
 
 // A sentence on how sure the first place is.
-Html doubts(const Rows& rows, double factor) {
+Html doubts(const SchemeRows& rows, double factor) {
   const bool checked = std::any_of(rows.begin(), rows.end(), [](const ComparedScheme& row) {
     return row.total_seconds && prediction(row, kThisMachine) != nullptr;
   });
@@ -105,7 +106,7 @@ Html doubts(const Rows& rows, double factor) {
 }
 
 // As many as were measured, or are predicted where none was.
-int advised_ranks(const Rows& rows) {
+int advised_ranks(const SchemeRows& rows) {
   int ranks = 0;
   for (const ComparedScheme& row : rows)
     if (row.total_seconds) ranks = std::max(ranks, row.ranks);
@@ -113,10 +114,10 @@ int advised_ranks(const Rows& rows) {
 }
 
 // The rows with the most ranks that have a core each, or with the fewest.
-Winners winners_here(const ComposeComparison& comparison) {
-  Winners here;
+SchemeWinners winners_here(const ComposeComparison& comparison) {
+  SchemeWinners here;
   for (const int ranks : unique_of(comparison.rows, [](const auto& row) { return row.ranks; })) {
-    const Winners best = fastest(comparison.rows, ranks);
+    const SchemeWinners best = fastest(comparison.rows, ranks);
     if (!best.empty() && (here.empty() || ranks <= comparison.cores)) here = best;
   }
   return here;
@@ -132,14 +133,14 @@ Table table_of(const ComposeComparison& comparison, const std::vector<std::strin
     result.columns.push_back({"ms", true, false, {}});
   }
   for (const int ranks : unique_of(comparison.rows, [](const auto& row) { return row.ranks; })) {
-    const Winners best = fastest(comparison.rows, ranks);
+    const SchemeWinners best = fastest(comparison.rows, ranks);
     const bool shares = !best.empty() && ranks > comparison.cores;
     std::vector<std::string> line = {
         std::to_string(ranks),
         winners_cell(names_of(best, codecs)) + (shares ? " (cores shared)" : ""),
         best.empty() ? "-" : milliseconds_cell(*best.front()->total_seconds)};
     for (const std::string& network : networks) {
-      const Winners over = fastest_over(comparison.rows, ranks, network, factor);
+      const SchemeWinners over = fastest_over(comparison.rows, ranks, network, factor);
       line.push_back(winners_cell(names_of(over, codecs)));
       line.push_back(over.empty() ? "-"
                                   : short_number(total(*prediction(*over.front(), network)) * 1e3));
@@ -152,13 +153,13 @@ Table table_of(const ComposeComparison& comparison, const std::vector<std::strin
 }  // namespace
 
 Html compose_answer(const ComposeComparison& comparison) {
-  const Rows& rows = comparison.rows;
+  const SchemeRows& rows = comparison.rows;
   const bool codecs = codecs_of(rows).size() > 1;
   const double factor = prediction_factor(rows);
   std::vector<std::string> networks = networks_of(rows);
   std::erase(networks, kThisMachine);
   Html advice;
-  if (const Winners here = winners_here(comparison); !here.empty())
+  if (const SchemeWinners here = winners_here(comparison); !here.empty())
     advice += measured_sentence(comparison, here, codecs);
   const int ranks = advised_ranks(rows);
   if (!networks.empty() && ranks > comparison.cores)
@@ -186,11 +187,11 @@ Html omissions(const std::vector<LeftOut>& left_out) {
                    "same.");
 }
 
-std::vector<std::string> codecs_of(const Rows& rows) {
+std::vector<std::string> codecs_of(const SchemeRows& rows) {
   return unique_of(rows, [](const ComparedScheme& row) { return row.codec; });
 }
 
-std::vector<std::string> networks_of(const Rows& rows) {
+std::vector<std::string> networks_of(const SchemeRows& rows) {
   std::vector<std::string> result;
   for (const ComparedScheme& row : rows) {
     for (const Predicted& p : row.predicted) {

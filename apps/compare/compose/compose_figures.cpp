@@ -27,7 +27,7 @@ Json counts_of(const ComparedScheme& row) {
 Json median_of(const std::optional<Spread>& times) {
   return times ? Json(times->median) : Json(nullptr);
 }
-Json spread_of(const std::optional<Spread>& times) {
+Json optional_spread_json(const std::optional<Spread>& times) {
   return times ? spread_json(*times) : Json(nullptr);
 }
 
@@ -35,9 +35,8 @@ std::string millions(std::uint64_t amount) {
   return fmt::format("{:.3f}", static_cast<double>(amount) / 1e6);
 }
 
-std::string milliseconds(double seconds) { return fmt::format("{:.2f}", seconds * 1e3); }
-std::string milliseconds(const std::optional<Spread>& times) {
-  return times ? milliseconds(times->median) : "-";
+std::string median_milliseconds(const std::optional<Spread>& times) {
+  return times ? milliseconds_text(times->median, 2) : "-";
 }
 
 }  // namespace
@@ -51,9 +50,9 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
     one["seconds"] = {{"compose", median_of(row.compose_seconds)},
                       {"gather", median_of(row.gather_seconds)},
                       {"total", median_of(row.total_seconds)}};
-    one["spread"] = {{"compose", spread_of(row.compose_seconds)},
-                     {"gather", spread_of(row.gather_seconds)},
-                     {"total", spread_of(row.total_seconds)}};
+    one["spread"] = {{"compose", optional_spread_json(row.compose_seconds)},
+                     {"gather", optional_spread_json(row.gather_seconds)},
+                     {"total", optional_spread_json(row.total_seconds)}};
     one["predicted"] = Json::array();
     for (const Predicted& predicted : row.predicted) {
       one["predicted"].push_back({{"network", predicted.network},
@@ -109,13 +108,13 @@ TextTable compose_table(const std::vector<ComparedScheme>& rows) {
                                      millions(counts.bytes_received_max),
                                      millions(counts.pixels_composited_total),
                                      millions(counts.pixels_composited_max),
-                                     milliseconds(row.compose_seconds),
+                                     median_milliseconds(row.compose_seconds),
                                      row.compose_seconds ? range_text(*row.compose_seconds) : "-",
-                                     milliseconds(row.gather_seconds)};
+                                     median_milliseconds(row.gather_seconds)};
     for (const std::string& network : networks) {
       const auto at = std::find_if(row.predicted.begin(), row.predicted.end(),
                                    [&](const Predicted& one) { return one.network == network; });
-      line.push_back(at == row.predicted.end() ? "-" : milliseconds(at->seconds));
+      line.push_back(at == row.predicted.end() ? "-" : milliseconds_text(at->seconds, 2));
     }
     table.push_back(std::move(line));
   }

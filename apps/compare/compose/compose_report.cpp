@@ -33,11 +33,11 @@ ChartPoint point_of(const ComparedScheme& row, const Spread& seconds) {
           seconds.high * 1e3};
 }
 
-using PointOf = std::function<std::optional<ChartPoint>(const ComparedScheme&)>;
+using SchemePoint = std::function<std::optional<ChartPoint>(const ComparedScheme&)>;
 
 // A line for each scheme with the codec.
 std::vector<Series> series_of(const std::vector<ComparedScheme>& rows, const std::string& codec,
-                              Source source, const PointOf& point) {
+                              Source source, const SchemePoint& point) {
   std::vector<ComparedScheme> of_codec;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_codec),
                [&](const ComparedScheme& row) { return row.codec == codec; });
@@ -48,7 +48,7 @@ std::vector<Series> series_of(const std::vector<ComparedScheme>& rows, const std
 
 Html chart_over_ranks(const std::vector<ComparedScheme>& rows, const std::string& codec,
                       const std::string& title, const std::string& label, Source source,
-                      const PointOf& point) {
+                      const SchemePoint& point) {
   LineChart chart;
   chart.title = title + ", codec " + codec;
   chart.x_label = "ranks";

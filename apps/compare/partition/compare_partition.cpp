@@ -25,8 +25,6 @@
 namespace delray::apps {
 namespace {
 
-constexpr int kMostShownRanks = 16;
-
 DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::string hash) {
   DrawnFrames result;
   const auto bytes = [](const raster::Statistics& s) {
@@ -74,10 +72,10 @@ DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::stri
   return result;
 }
 
-class Comparison {
+class PartitionRuns {
  public:
-  Comparison(const PartitionRequest& request, const Prepared& prepared,
-             parallel::Progress& progress)
+  PartitionRuns(const PartitionRequest& request, const Prepared& prepared,
+                parallel::Progress& progress)
       : request_(request),
         prepared_(prepared),
         steps_(progress),
@@ -251,12 +249,12 @@ class Comparison {
 }  // namespace
 
 int shown_ranks(const PartitionRequest& request) {
-  return shown_ranks(request.ranks, kMostShownRanks);
+  return shown_ranks_of(request.ranks, kMostShownRanks);
 }
 
 PartitionComparison compare_partition(const PartitionRequest& request, const Prepared& prepared,
                                       parallel::Progress& progress) {
-  return Comparison(request, prepared, progress).run();
+  return PartitionRuns(request, prepared, progress).run();
 }
 
 double over_share(const ComparedPartition& row) {

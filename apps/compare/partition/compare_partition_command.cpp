@@ -15,7 +15,7 @@
 namespace delray::apps {
 namespace {
 
-int list() {
+int list_for_partition() {
   list_partitions();
   list_strategies();
   list_networks();
@@ -23,7 +23,7 @@ int list() {
 }
 
 int run(Session& session, const CLI::App& command, PartitionRequest request) {
-  if (request.list) return list();
+  if (request.list) return list_for_partition();
   if (session.under_mpi)
     throw UsageError("compare partition: its ranks take turns in one process; leave out mpirun");
   return run_scene_comparison(

@@ -14,7 +14,7 @@ namespace delray::apps {
 namespace {
 
 using namespace report;
-using Rows = std::vector<ComparedPartition>;
+using PartitionRows = std::vector<ComparedPartition>;
 using Partitions = std::vector<const ComparedPartition*>;
 using Strategies = std::vector<const ComparedStrategy*>;
 
@@ -29,7 +29,7 @@ std::string strategy_names(const Strategies& rows) {
   return winners_cell(names);
 }
 
-std::vector<int> drawn_ranks(const Rows& rows) {
+std::vector<int> drawn_ranks(const PartitionRows& rows) {
   std::vector<int> result;
   for (const ComparedPartition& row : rows)
     if (row.drawn && (result.empty() || result.back() != row.ranks)) result.push_back(row.ranks);
@@ -75,7 +75,7 @@ std::string processor_time(const PartitionChoice& choice, const ComparedPartitio
 }
 
 // Where processor time is shared out more evenly than by the best, and what that is worth.
-std::string evener(const Rows& rows, const ComparedPartition& best) {
+std::string evener(const PartitionRows& rows, const ComparedPartition& best) {
   if (!best.drawn) return "";
   const ComparedPartition* evenest = &best;
   for (const ComparedPartition& row : rows) {
@@ -226,8 +226,8 @@ Html partition_answer(const PartitionComparison& comparison) {
                        paragraph(caption) + table(table_of(comparison, ranks)));
 }
 
-Rows with_regions(const Rows& rows, int regions) {
-  Rows result;
+PartitionRows with_regions(const PartitionRows& rows, int regions) {
+  PartitionRows result;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(result),
                [&](const ComparedPartition& row) { return row.regions_per_rank == regions; });
   return result;

@@ -65,9 +65,6 @@ Json row_of(const ComparedStrategy& row) {
   return one;
 }
 
-std::string ratio(double value) { return fmt::format("{:.3f}", value); }
-std::string milliseconds(double seconds) { return fmt::format("{:.3f}", seconds * 1e3); }
-
 }  // namespace
 
 Json partition_statistics(const PartitionRequest& request, const Prepared& prepared,
@@ -100,19 +97,20 @@ TextTable partition_table(const std::vector<ComparedPartition>& rows) {
     const auto megabytes = [](std::uint64_t bytes) {
       return fmt::format("{:.3f}", static_cast<double>(bytes) / 1e6);
     };
-    table.push_back({std::to_string(row.ranks), std::to_string(row.regions), row.partition,
-                     std::to_string(row.primitives), std::to_string(row.shared), ratio(row.overlap),
-                     of([](const DrawnFrames& d) { return std::to_string(d.triangles_max); }),
-                     of([](const DrawnFrames& d) { return std::to_string(d.shaded_max); }),
-                     of([](const DrawnFrames& d) { return ratio(d.work_imbalance); }),
-                     of([](const DrawnFrames& d) { return ratio(d.work_over_share); }),
-                     of([&](const DrawnFrames& d) { return megabytes(d.bytes_total); }),
-                     of([&](const DrawnFrames& d) { return megabytes(d.bytes_next); }),
-                     milliseconds(row.cut_seconds.median), range_text(row.cut_seconds),
-                     of([](const DrawnFrames& d) { return milliseconds(d.busiest.median); }),
-                     of([](const DrawnFrames& d) { return range_text(d.busiest); }),
-                     of([](const DrawnFrames& d) { return ratio(d.imbalance.median); }),
-                     ratio(row.predicted_imbalance), ratio(row.predicted_over_share)});
+    table.push_back(
+        {std::to_string(row.ranks), std::to_string(row.regions), row.partition,
+         std::to_string(row.primitives), std::to_string(row.shared), ratio_text(row.overlap),
+         of([](const DrawnFrames& d) { return std::to_string(d.triangles_max); }),
+         of([](const DrawnFrames& d) { return std::to_string(d.shaded_max); }),
+         of([](const DrawnFrames& d) { return ratio_text(d.work_imbalance); }),
+         of([](const DrawnFrames& d) { return ratio_text(d.work_over_share); }),
+         of([&](const DrawnFrames& d) { return megabytes(d.bytes_total); }),
+         of([&](const DrawnFrames& d) { return megabytes(d.bytes_next); }),
+         milliseconds_text(row.cut_seconds.median, 3), range_text(row.cut_seconds),
+         of([](const DrawnFrames& d) { return milliseconds_text(d.busiest.median, 3); }),
+         of([](const DrawnFrames& d) { return range_text(d.busiest); }),
+         of([](const DrawnFrames& d) { return ratio_text(d.imbalance.median); }),
+         ratio_text(row.predicted_imbalance), ratio_text(row.predicted_over_share)});
   }
   return table;
 }

@@ -26,7 +26,7 @@ namespace delray::apps {
 namespace {
 
 using namespace report;
-using Rows = std::vector<ComparedPartition>;
+using PartitionRows = std::vector<ComparedPartition>;
 
 constexpr const char* kPicture = "picture";
 
@@ -35,10 +35,10 @@ ChartPoint point(double x, const Spread& spread, double unit) {
   return {x, spread.median * unit, spread.low * unit, spread.high * unit};
 }
 
-using PointOf = std::function<std::optional<ChartPoint>(const ComparedPartition&)>;
+using PartitionPoint = std::function<std::optional<ChartPoint>(const ComparedPartition&)>;
 
-Html chart(const Rows& rows, const std::string& title, const std::string& x, const std::string& y,
-           Source source, Scale scale, const PointOf& of) {
+Html chart(const PartitionRows& rows, const std::string& title, const std::string& x,
+           const std::string& y, Source source, Scale scale, const PartitionPoint& of) {
   LineChart chart;
   chart.title = title;
   chart.x_label = x;
@@ -56,20 +56,20 @@ double ranks_of(const ComparedPartition& row) { return static_cast<double>(row.r
 
 // Points at x(row).
 template <class X>
-PointOf work_imbalance(X x) {
+PartitionPoint work_imbalance(X x) {
   return [x](const ComparedPartition& row) -> std::optional<ChartPoint> {
     if (!row.drawn) return std::nullopt;
     return point(x(row), row.drawn->work_imbalance);
   };
 }
 template <class X>
-PointOf predicted_imbalance(X x) {
+PartitionPoint predicted_imbalance(X x) {
   return [x](const ComparedPartition& row) -> std::optional<ChartPoint> {
     return point(x(row), row.predicted_imbalance);
   };
 }
 template <class X>
-PointOf time_imbalance(X x) {
+PartitionPoint time_imbalance(X x) {
   return [x](const ComparedPartition& row) -> std::optional<ChartPoint> {
     if (!row.drawn) return std::nullopt;
     return point(x(row), row.drawn->imbalance, 1);
@@ -77,7 +77,7 @@ PointOf time_imbalance(X x) {
 }
 
 Html balance(const PartitionRequest& request, const PartitionComparison& comparison) {
-  const Rows rows = with_regions(comparison.rows, request.regions.front());
+  const PartitionRows rows = with_regions(comparison.rows, request.regions.front());
   const auto x_ranks = ranks_of;
   Html result = in_columns(
       {chart(rows, "How even the ranks' work is", "ranks", "most work over mean", Source::counted,
@@ -100,7 +100,7 @@ Html balance(const PartitionRequest& request, const PartitionComparison& compari
              })});
   if (request.regions.size() > 1) {
     const int ranks = shown_ranks(request);
-    Rows shown;
+    PartitionRows shown;
     std::copy_if(comparison.rows.begin(), comparison.rows.end(), std::back_inserter(shown),
                  [&](const ComparedPartition& row) { return row.ranks == ranks; });
     std::stable_sort(shown.begin(), shown.end(), [](const auto& a, const auto& b) {
@@ -183,7 +183,7 @@ Html regions(const PartitionRequest& request, const PartitionComparison& compari
 }
 
 Html price(const PartitionRequest& request, const PartitionComparison& comparison) {
-  const Rows rows = with_regions(comparison.rows, request.regions.front());
+  const PartitionRows rows = with_regions(comparison.rows, request.regions.front());
   const auto bytes = [](std::uint64_t DrawnFrames::*amount) {
     return [amount](const ComparedPartition& row) -> std::optional<ChartPoint> {
       if (!row.drawn) return std::nullopt;
@@ -261,7 +261,7 @@ Html strategies(const PartitionComparison& comparison) {
              "core for each rank.");
 }
 
-Html all_rows(const PartitionRequest& request, const Rows& rows) {
+Html all_rows(const PartitionRequest& request, const PartitionRows& rows) {
   const TextTable text = partition_table(rows);
   Table result;
   for (std::size_t i = 0; i < text[0].size(); ++i) {

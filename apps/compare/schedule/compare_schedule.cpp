@@ -27,7 +27,6 @@
 namespace delray::apps {
 namespace {
 
-constexpr int kMostShownRanks = 16;
 // Single frames that are handed out beside the medians of their tiles, for the spread.
 constexpr std::size_t kSampleFrames = 3;
 
@@ -56,10 +55,10 @@ ScheduleOver summary_of(const std::string& network, const loadbalance::Simulated
   return result;
 }
 
-class Comparison {
+class ScheduleRuns {
  public:
-  Comparison(const Session& session, const ScheduleRequest& request, const Prepared& prepared,
-             parallel::Progress& progress)
+  ScheduleRuns(const Session& session, const ScheduleRequest& request, const Prepared& prepared,
+               parallel::Progress& progress)
       : session_(session), request_(request), prepared_(prepared), steps_(progress) {
     options_.width = request.render.width;
     options_.height = request.render.height;
@@ -258,12 +257,12 @@ class Comparison {
 }  // namespace
 
 int shown_ranks(const ScheduleRequest& request) {
-  return shown_ranks(request.ranks, kMostShownRanks);
+  return shown_ranks_of(request.ranks, kMostShownRanks);
 }
 
 ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,
                                     const Prepared& prepared, parallel::Progress& progress) {
-  return Comparison(session, request, prepared, progress).run();
+  return ScheduleRuns(session, request, prepared, progress).run();
 }
 
 std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,

@@ -15,7 +15,7 @@
 namespace delray::apps {
 namespace {
 
-int list() {
+int list_for_schedule() {
   list_schedules();
   list_integrators();
   list_networks();
@@ -23,7 +23,7 @@ int list() {
 }
 
 int run(Session& session, const CLI::App& command, ScheduleRequest request) {
-  if (request.list) return list();
+  if (request.list) return list_for_schedule();
   if (session.under_mpi)
     throw UsageError("compare schedule: its ranks are simulated in one process; leave out mpirun");
   if (request.tile % raytrace::kTaskSide != 0) {

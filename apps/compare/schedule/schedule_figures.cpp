@@ -40,9 +40,6 @@ Json row_of(const ComparedSchedule& row) {
   return one;
 }
 
-std::string ratio(double value) { return fmt::format("{:.3f}", value); }
-std::string milliseconds(double seconds) { return fmt::format("{:.3f}", seconds * 1e3); }
-
 }  // namespace
 
 Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepared,
@@ -86,10 +83,10 @@ TextTable schedule_table(const ScheduleComparison& comparison) {
         std::to_string(counted.steals),
         std::to_string(counted.messages),
         fmt::format("{:.1f}", static_cast<double>(counted.bytes) / 1024),
-        ratio(counted.ray_imbalance),
-        row.traced ? milliseconds(row.traced->seconds.median) : "-",
+        ratio_text(counted.ray_imbalance),
+        row.traced ? milliseconds_text(row.traced->seconds.median, 3) : "-",
         row.traced ? range_text(row.traced->seconds) : "-"};
-    for (const ScheduleOver& over : row.over) line.push_back(milliseconds(over.seconds));
+    for (const ScheduleOver& over : row.over) line.push_back(milliseconds_text(over.seconds, 3));
     table.push_back(std::move(line));
   }
   return table;

@@ -158,10 +158,10 @@ Html first_screen(const ScheduleRequest& request, const ScheduleComparison& comp
           table(best_of));
 }
 
-using PointOf = std::function<std::optional<ChartPoint>(const ComparedSchedule&)>;
+using SchedulePoint = std::function<std::optional<ChartPoint>(const ComparedSchedule&)>;
 
 Html chart_by_ranks(const ScheduleComparison& comparison, const std::string& title,
-                    const std::string& label, Source source, Scale scale, const PointOf& of) {
+                    const std::string& label, Source source, Scale scale, const SchedulePoint& of) {
   LineChart chart;
   chart.title = title;
   chart.x_label = "ranks";
@@ -175,7 +175,7 @@ Html chart_by_ranks(const ScheduleComparison& comparison, const std::string& tit
   return line_chart(chart);
 }
 
-PointOf value_of(std::function<double(const ScheduleOver&)> value, std::size_t network = 0) {
+SchedulePoint value_of(std::function<double(const ScheduleOver&)> value, std::size_t network = 0) {
   return [value = std::move(value),
           network](const ComparedSchedule& row) -> std::optional<ChartPoint> {
     const double y = value(row.over[network]);

@@ -86,10 +86,10 @@ std::vector<std::uint32_t> shuffled_rows(std::size_t points, std::uint64_t seed)
   return rows;
 }
 
-class Comparison {
+class TriangulationRuns {
  public:
-  Comparison(const TriangulateRequest& request, const delaunay::PointCloud& points, int dim,
-             parallel::Progress& progress)
+  TriangulationRuns(const TriangulateRequest& request, const delaunay::PointCloud& points, int dim,
+                    parallel::Progress& progress)
       : request_(request), points_(points), steps_(progress) {
     result_.dim = dim;
     result_.points = points.size();
@@ -260,7 +260,7 @@ std::vector<const ComparedTriangulation*> fastest(const std::vector<ComparedTria
 TriangulateComparison compare_triangulate(const TriangulateRequest& request,
                                           const delaunay::PointCloud& points, int dim,
                                           parallel::Progress& progress) {
-  return Comparison(request, points, dim, progress).run();
+  return TriangulationRuns(request, points, dim, progress).run();
 }
 
 }  // namespace delray::apps

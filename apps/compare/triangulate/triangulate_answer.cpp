@@ -20,14 +20,14 @@ using namespace report;
 using Row = ComparedTriangulation;
 using Rows = ComparedTriangulations;
 
-using Winners = std::vector<const Row*>;
+using TriangulationWinners = std::vector<const Row*>;
 
 std::string way_text(const Row& row) {
   return name_of(row.how) + " with " + threads_text(row.how.threads);
 }
 
 // The methods that are as fast, and the time of the next one. REQUIRES: !best.empty().
-std::string others_sentence(const Rows& rows, const Winners& best) {
+std::string others_sentence(const Rows& rows, const TriangulationWinners& best) {
   const Row& first = *best.front();
   std::vector<std::string> equals;
   for (std::size_t i = 1; i < best.size(); ++i) equals.push_back(way_text(*best[i]));
@@ -149,8 +149,8 @@ Html triangulate_answer(const TriangulateComparison& comparison) {
   // More threads than cores may win by chance, where there is little to do.
   const Rows uncrowded =
       rows_of(rows, [&](const Row& row) { return row.how.threads <= comparison.cores; });
-  const Winners own_cores = fastest(uncrowded, points, 0);
-  const Winners winners = own_cores.empty() ? fastest(rows, points, 0) : own_cores;
+  const TriangulationWinners own_cores = fastest(uncrowded, points, 0);
+  const TriangulationWinners winners = own_cores.empty() ? fastest(rows, points, 0) : own_cores;
   const Row& best = *winners.front();
   std::string text = fmt::format("<p>Use {} with {}: {} points in {}D take {}.",
                                  strong(name_of(best.how)), strong(threads_text(best.how.threads)),
@@ -171,7 +171,7 @@ Html triangulate_answer(const TriangulateComparison& comparison) {
   for (const std::size_t size : sizes_of(rows)) {
     std::vector<std::string> line = {std::to_string(size)};
     for (const int threads : comparison.threads) {
-      const Winners of_size = fastest(rows, size, threads);
+      const TriangulationWinners of_size = fastest(rows, size, threads);
       std::vector<std::string> names;
       for (const Row* row : of_size) names.push_back(name_of(row->how));
       line.push_back(winners_cell(names));

@@ -42,7 +42,6 @@ std::string per_point(std::uint64_t count, const ComparedTriangulation& row) {
   if (row.statistics.synchronization.lock_calls == 0) return "-";
   return fmt::format("{:.4g}", static_cast<double>(count) / static_cast<double>(row.points));
 }
-std::string milliseconds(double seconds) { return fmt::format("{:.2f}", seconds * 1e3); }
 
 }  // namespace
 
@@ -78,8 +77,9 @@ TextTable triangulate_table(const TriangulateComparison& comparison) {
     const bool ratios = times_as_fast > 0, locks = sync.lock_calls > 0;
     table.push_back(
         {std::to_string(row.points), name_of(row.how), std::to_string(row.how.threads),
-         milliseconds(row.seconds.median), milliseconds(row.seconds.least),
-         milliseconds(row.seconds.most), ratios ? fmt::format("{:.2f}", times_as_fast) : "-",
+         milliseconds_text(row.seconds.median, 2), milliseconds_text(row.seconds.least, 2),
+         milliseconds_text(row.seconds.most, 2),
+         ratios ? fmt::format("{:.2f}", times_as_fast) : "-",
          ratios ? fmt::format("{:.2f}", times_as_fast / row.how.threads) : "-",
          std::to_string(row.fragments), per_point(sync.lock_calls, row),
          locks ? std::to_string(sync.waits) : "-", locks ? std::to_string(sync.deadlocks) : "-",

@@ -31,7 +31,7 @@ using Rows = ComparedTriangulations;
 
 constexpr const char* kPhases[] = {"order", "locate", "subdivide", "legalize", "extract"};
 // The report's sequential algorithm.
-constexpr std::string_view kSequential = "insertion, dag";
+constexpr std::string_view kSequentialRow = "insertion, dag";
 
 // The largest of the requested numbers of threads that does not share cores.
 int threads_of_own(const TriangulateComparison& comparison) {
@@ -48,7 +48,7 @@ bool has_own_split(const Row& row) {
   return row.how.split == resolve(plain).split;
 }
 
-using PointOf = std::function<std::optional<ChartPoint>(const Row&)>;
+using TriangulationPoint = std::function<std::optional<ChartPoint>(const Row&)>;
 
 ChartPoint time_at(double x, const Row& row) {
   return {x, row.seconds.median * 1e3, row.seconds.low * 1e3, row.seconds.high * 1e3};
@@ -84,16 +84,16 @@ Html chart_of(const Shown& shown, const std::string& x_label, std::vector<Series
 report::Look look(const std::string& name) { return look_of(Family::method, name); }
 
 Html chart_of(const Rows& rows, const Shown& shown, const std::string& x_label,
-              const PointOf& point) {
+              const TriangulationPoint& point) {
   return chart_of(
       shown, x_label,
       series_by(
           rows, [](const Row& row) { return name_of(row.how); }, look, shown.source, point));
 }
-Html over_threads(const Rows& rows, const Shown& shown, const PointOf& point) {
+Html over_threads(const Rows& rows, const Shown& shown, const TriangulationPoint& point) {
   return chart_of(rows, shown, "threads", point);
 }
-Html over_points(const Rows& rows, const Shown& shown, const PointOf& point) {
+Html over_points(const Rows& rows, const Shown& shown, const TriangulationPoint& point) {
   return chart_of(rows, shown, "points", point);
 }
 
@@ -147,13 +147,14 @@ Html speed_ups(const TriangulateComparison& comparison) {
         such, shown("Speed-up over one thread, " + threads_text(threads), "speed-up"),
         [&](const Row& row) { return ratio(static_cast<double>(row.points), row, 1); }));
   }
-  const auto sequential = std::ranges::find_if(
-      all, [&](const Row& row) { return row.points == points && name_of(row.how) == kSequential; });
+  const auto sequential = std::ranges::find_if(all, [&](const Row& row) {
+    return row.points == points && name_of(row.how) == kSequentialRow;
+  });
   if (sequential != all.end()) {
     charts.push_back(
         over_threads(rows_of(all, [&](const Row& row) { return row.points == points; }),
                      {"Times as fast as the report's sequential algorithm, which is " +
-                          std::string(kSequential) + of,
+                          std::string(kSequentialRow) + of,
                       "times as fast", Scale::logarithmic, Source::measured, true},
                      [&](const Row& row) {
                        return ratio_at(row.how.threads, sequential->seconds, row.seconds, 1);

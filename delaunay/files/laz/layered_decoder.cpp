@@ -5,21 +5,21 @@
 
 #include <algorithm>
 
+#include "delaunay/files/las_header.h"
 #include "delaunay/files/laz/laz_items.h"
 
 namespace delray::delaunay::laz {
 namespace {
 
 // Of a record.
-constexpr std::size_t kX = 0, kY = 4, kZ = 8, kIntensity = 12, kReturns = 14, kFlags = 15,
-                      kClassification = 16, kPointSize = 30;
+constexpr std::size_t kFlags = 15, kLayeredClass = 16, kLayeredSize = 30;
 // The layers that are read, in the order of the nine that every chunk has.
 constexpr std::size_t kPlane = 0, kHeights = 1, kClasses = 2, kIntensities = 4, kLayers = 9;
 
 // Which predictor of steps a point has, by its number of returns and its own number: single, first
 // of two, second of two, first, middle and last of several. Numbers that no pulse has fall in
 // somewhere.
-constexpr std::uint8_t kReturnMap[16][16] = {
+constexpr std::uint8_t kLayeredReturnMap[16][16] = {
     {0, 1, 2, 3, 4, 5, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5},
     {1, 0, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3},
     {2, 1, 2, 4, 4, 4, 4, 4, 4, 4, 4, 3, 3, 3, 3, 3},
@@ -46,24 +46,21 @@ struct Point {
 };
 
 Point parse_point(const char* record) {
-  const auto returns = load<std::uint8_t>(record + kReturns);
-  return {load<std::int32_t>(record + kX),
-          load<std::int32_t>(record + kY),
-          load<std::int32_t>(record + kZ),
-          load<std::uint16_t>(record + kIntensity),
-          static_cast<std::uint8_t>(returns & 15),
-          static_cast<std::uint8_t>(returns >> 4),
-          load<std::uint8_t>(record + kClassification)};
+  const auto returns = load<std::uint8_t>(record + kLasReturns);
+  return {load<std::int32_t>(record + kLasX),        load<std::int32_t>(record + kLasY),
+          load<std::int32_t>(record + kLasZ),        load<std::uint16_t>(record + kLasIntensity),
+          static_cast<std::uint8_t>(returns & 15),   static_cast<std::uint8_t>(returns >> 4),
+          load<std::uint8_t>(record + kLayeredClass)};
 }
 
 void store_point(char* record, const Point& point, unsigned channel) {
-  store(record + kX, point.x);
-  store(record + kY, point.y);
-  store(record + kZ, point.z);
-  store(record + kIntensity, point.intensity);
-  record[kReturns] = static_cast<char>(point.number | point.count << 4);
+  store(record + kLasX, point.x);
+  store(record + kLasY, point.y);
+  store(record + kLasZ, point.z);
+  store(record + kLasIntensity, point.intensity);
+  record[kLasReturns] = static_cast<char>(point.number | point.count << 4);
   record[kFlags] = static_cast<char>((record[kFlags] & 0xcf) | channel << 4);
-  record[kClassification] = static_cast<char>(point.classification);
+  record[kLayeredClass] = static_cast<char>(point.classification);
 }
 
 unsigned decode_lazily(ArithmeticDecoder& decoder, SymbolModel& model, unsigned symbols) {
@@ -149,7 +146,7 @@ struct LayeredDecoder::Channel {
     }
     last.number = static_cast<std::uint8_t>(decode_number(layers, now));
     time_changed = now.time();
-    const unsigned map = kReturnMap[last.count][last.number] * 2U + (now.time() ? 1 : 0);
+    const unsigned map = kLayeredReturnMap[last.count][last.number] * 2U + (now.time() ? 1 : 0);
     const unsigned single = last.count == 1 ? 1 : 0;
     // 3: single, 2: first, 1: last, 0: one in between.
     const unsigned place = (last.number == 1 ? 2U : 0U) + (last.number >= last.count ? 1U : 0U);
@@ -227,7 +224,7 @@ bool LayeredDecoder::decode(std::string_view chunk, std::span<char> records) {
   if (channels_[current_] == nullptr) channels_[current_] = std::make_unique<Channel>();
   channels_[current_]->begin(parse_point(first));
   if (items_.colour) {
-    colours_.reset(layer[colours], load<Colour>(first + kPointSize), current_, items_.version);
+    colours_.reset(layer[colours], load<Colour>(first + kLayeredSize), current_, items_.version);
   }
   Channel* channel = channels_[current_].get();
   for (std::size_t at = size; at < records.size(); at += size) {
@@ -241,7 +238,7 @@ bool LayeredDecoder::decode(std::string_view chunk, std::span<char> records) {
     channel->decode_point(layers, now);
     store_point(record, channel->last, current_);
     if (items_.colour) {
-      store(record + kPointSize, colours_.decode(current_, now.channel()));
+      store(record + kLayeredSize, colours_.decode(current_, now.channel()));
     }
     if (layers.overrun() || colours_.overrun()) return false;
   }

@@ -4,16 +4,18 @@
 // 2013).
 #include "delaunay/files/laz/pointwise_decoder.h"
 
+#include "delaunay/files/las_header.h"
+
 namespace delray::delaunay::laz {
 namespace {
 
 // Of a record.
-constexpr std::size_t kX = 0, kY = 4, kZ = 8, kIntensity = 12, kReturns = 14, kClassification = 15,
-                      kScanAngle = 16, kUserData = 17, kSource = 18, kPointSize = 20;
+constexpr std::size_t kPointwiseClass = 15, kScanAngle = 16, kUserData = 17, kSource = 18,
+                      kPointwiseSize = 20;
 
 // Which predictor of steps and of intensity a point has, by its number of returns and its own
 // number.
-constexpr std::uint8_t kReturnMap[8][8] = {
+constexpr std::uint8_t kPointwiseReturnMap[8][8] = {
     {15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},
     {13, 1, 2, 4, 7, 11, 11, 10},    {12, 3, 4, 5, 8, 12, 12, 11},
     {11, 6, 7, 8, 9, 13, 13, 12},    {10, 10, 11, 12, 13, 14, 14, 13},
@@ -142,22 +144,22 @@ void PointwiseDecoder::reset(const char* first) {
   y_steps_ = {};
   last_intensity_ = {};
   last_z_ = {};
-  if (items_.time) times_.reset(load<std::int64_t>(first + kPointSize));
+  if (items_.time) times_.reset(load<std::int64_t>(first + kPointwiseSize));
   if (items_.colour) colours_.reset();
   for (SymbolModel& model : extra_bytes_) model.reset(256);
 }
 
 void PointwiseDecoder::decode_point(ArithmeticDecoder& decoder, const char* last, char* now) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(last[at]); };
-  std::memcpy(now, last, kPointSize);
+  std::memcpy(now, last, kPointwiseSize);
 
   const unsigned changes = decoder.decode(changes_);
   if ((changes & 32) != 0) {
-    now[kReturns] = static_cast<char>(decode_byte(decoder, returns_[byte(kReturns)]));
+    now[kLasReturns] = static_cast<char>(decode_byte(decoder, returns_[byte(kLasReturns)]));
   }
-  const auto returns = static_cast<unsigned char>(now[kReturns]);
+  const auto returns = static_cast<unsigned char>(now[kLasReturns]);
   const unsigned number = returns & 7, count = returns >> 3 & 7;
-  const unsigned map = kReturnMap[count][number];
+  const unsigned map = kPointwiseReturnMap[count][number];
   const unsigned level = count > number ? count - number : number - count;
   const unsigned single = count == 1 ? 1 : 0;
   if (changes != 0) {
@@ -165,11 +167,11 @@ void PointwiseDecoder::decode_point(ArithmeticDecoder& decoder, const char* last
       last_intensity_[map] = static_cast<std::uint16_t>(
           intensities_.decode(decoder, last_intensity_[map], std::min(map, 3U)));
     }
-    store(now + kIntensity, last_intensity_[map]);
+    store(now + kLasIntensity, last_intensity_[map]);
   }
   if ((changes & 8) != 0) {
-    now[kClassification] =
-        static_cast<char>(decode_byte(decoder, classifications_[byte(kClassification)]));
+    now[kPointwiseClass] =
+        static_cast<char>(decode_byte(decoder, classifications_[byte(kPointwiseClass)]));
   }
   if ((changes & 4) != 0) {
     now[kScanAngle] =
@@ -185,14 +187,14 @@ void PointwiseDecoder::decode_point(ArithmeticDecoder& decoder, const char* last
 
   const std::int32_t dx = x_.decode(decoder, x_steps_[map].get(), single);
   x_steps_[map].add(dx);
-  store(now + kX, add(load<std::int32_t>(last + kX), dx));
+  store(now + kLasX, add(load<std::int32_t>(last + kLasX), dx));
   const std::int32_t dy =
       y_.decode(decoder, y_steps_[map].get(), single + even_context(x_.magnitude(), 20));
   y_steps_[map].add(dy);
-  store(now + kY, add(load<std::int32_t>(last + kY), dy));
+  store(now + kLasY, add(load<std::int32_t>(last + kLasY), dy));
   const unsigned magnitude = (x_.magnitude() + y_.magnitude()) / 2;
   last_z_[level] = z_.decode(decoder, last_z_[level], single + even_context(magnitude, 18));
-  store(now + kZ, last_z_[level]);
+  store(now + kLasZ, last_z_[level]);
 }
 
 bool PointwiseDecoder::decode(std::string_view chunk, std::span<char> records) {
@@ -203,12 +205,12 @@ bool PointwiseDecoder::decode(std::string_view chunk, std::span<char> records) {
   if (records.size() == size) return true;
 
   ArithmeticDecoder decoder(chunk.substr(size));
-  const std::size_t time = kPointSize, colour = time + (items_.time ? 8 : 0),
+  const std::size_t time = kPointwiseSize, colour = time + (items_.time ? 8 : 0),
                     extra = colour + (items_.colour ? 6 : 0);
   // Of the first point the second one sees no intensity.
-  std::array<char, kPointSize> first;
-  std::memcpy(first.data(), records.data(), kPointSize);
-  store(first.data() + kIntensity, std::uint16_t{0});
+  std::array<char, kPointwiseSize> first;
+  std::memcpy(first.data(), records.data(), kPointwiseSize);
+  store(first.data() + kLasIntensity, std::uint16_t{0});
   for (std::size_t at = size; at < records.size(); at += size) {
     char* now = records.data() + at;
     const char* last = now - size;

@@ -10,7 +10,7 @@
 namespace delray::comm::internal {
 namespace {
 
-constexpr std::size_t kBytes = 100'000;
+constexpr std::size_t kBlockBytes = 100'000;
 constexpr std::int64_t kProcess = 7;
 
 struct alignas(64) Line {
@@ -29,29 +29,29 @@ class SharedBlocks : public ::testing::Test {
 };
 
 TEST_F(SharedBlocks, AreNotUsedAgainBeforeTheyAreBack) {
-  Block* const lent = pool_.take(kBytes);
+  Block* const lent = pool_.take(kBlockBytes);
   ASSERT_TRUE(pool_.is_shared(*lent));
   const std::size_t place = pool_.lend(lent);
   EXPECT_EQ(static_cast<void*>(reinterpret_cast<std::byte*>(lines_.data()) + place), lent);
-  Block* const next = pool_.take(kBytes);
+  Block* const next = pool_.take(kBlockBytes);
   EXPECT_NE(next, lent);
   EXPECT_FALSE(other_.is_shared(*lent));
   other_.give_back(lent);
-  EXPECT_EQ(pool_.take(kBytes), lent);
+  EXPECT_EQ(pool_.take(kBlockBytes), lent);
   pool_.give_back(next);
-  EXPECT_EQ(pool_.take(kBytes), next);
+  EXPECT_EQ(pool_.take(kBlockBytes), next);
 }
 
 TEST_F(SharedBlocks, AreFollowedByThoseOfTheHeap) {
   std::set<Block*> shared;
-  Block* block = pool_.take(kBytes);
-  for (; pool_.is_shared(*block); block = pool_.take(kBytes)) shared.insert(block);
+  Block* block = pool_.take(kBlockBytes);
+  for (; pool_.is_shared(*block); block = pool_.take(kBlockBytes)) shared.insert(block);
   EXPECT_GE(shared.size(), 8U);
   EXPECT_LE(shared.size(), 10U);
-  std::fill_n(block->memory(), kBytes, std::byte{1});
+  std::fill_n(block->memory(), kBlockBytes, std::byte{1});
   pool_.give_back(block);
   pool_.give_back(*shared.begin());
-  EXPECT_EQ(pool_.take(kBytes), *shared.begin());
+  EXPECT_EQ(pool_.take(kBlockBytes), *shared.begin());
 }
 
 }  // namespace

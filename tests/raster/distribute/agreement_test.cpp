@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "comm/threads.h"
-#include "parallel/arena.h"
+#include "tests/raster/allow_threads.h"
 
 namespace delray::raster {
 namespace {
-
-const parallel::AllowThreads kThreads(4);
 
 TEST(Agreement, HoldsWhereNothingChangesForAnybody) {
   comm::run_threads(4, 1, [](comm::Communicator& all) {

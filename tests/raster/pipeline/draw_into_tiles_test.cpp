@@ -8,13 +8,12 @@
 
 #include "parallel/arena.h"
 #include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/coverage.h"
 #include "tests/support/targets.h"
 
 namespace delray::raster {
 namespace {
-
-const parallel::AllowThreads kThreads(12);
 
 // A bumpy square of n x n cells on a wall 2 units before the eye, wider than the frame.
 scenes::Mesh wall(std::mt19937& random, std::uint32_t n, float width, float roughness) {

@@ -7,16 +7,13 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "comm/threads.h"
-#include "parallel/arena.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/random_scene.h"
 
 namespace delray::raster {
 namespace {
-
-// As many threads as the tests ask for, on machines with fewer cores too.
-const parallel::AllowThreads kThreads(12);
 
 bool same_bytes(const Picture& a, const Picture& b) {
   if (a.index() != b.index()) return false;

@@ -11,12 +11,11 @@
 #include "raster/render.h"
 #include "scenes/camera_path.h"
 #include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/random_scene.h"
 
 namespace delray::raster {
 namespace {
-
-const parallel::AllowThreads kThreads(12);
 
 RenderOptions sort_first_options() {
   RenderOptions options;

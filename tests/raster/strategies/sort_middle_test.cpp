@@ -8,18 +8,16 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "comm/threads.h"
-#include "parallel/arena.h"
 #include "raster/distribute/transformed_clusters.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
 #include "tests/raster/random_scene.h"
 
 namespace delray::raster {
 namespace {
 
-const parallel::AllowThreads kThreads(12);
-
-bool same_bytes(const Picture& a, const Picture& b) {
+bool same_picture_bytes(const Picture& a, const Picture& b) {
   return a.index() == b.index() &&
          std::visit(
              [&](const auto& image) {
@@ -33,8 +31,8 @@ bool same_bytes(const Picture& a, const Picture& b) {
              a);
 }
 
-Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
-                const RenderOptions& options, int ranks = 1, int threads = 1) {
+Result rendered_by_ranks(const scenes::Scene& scene, const scenes::Camera& camera,
+                         const RenderOptions& options, int ranks = 1, int threads = 1) {
   Result result;
   comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
     Result mine = render(communicator, scene, camera, options);
@@ -57,12 +55,12 @@ std::vector<RenderOptions> variants(RenderOptions options) {
   return result;
 }
 
-std::string described(const RenderOptions& options) {
+std::string described_ranks(const RenderOptions& options) {
   return std::string(options.groups == Groups::one ? "one group" : "two groups") +
          (options.redistribution == Redistribution::at_end ? ", at end" : ", immediate");
 }
 
-RenderOptions small_picture() {
+RenderOptions small_sort_middle() {
   RenderOptions options;
   options.width = 75;
   options.height = 70;
@@ -71,12 +69,13 @@ RenderOptions small_picture() {
 
 void expect_one_picture(const scenes::Scene& scene, const scenes::Camera& camera,
                         const RenderOptions& base, std::span<const int> rank_counts) {
-  const Picture expected = rendered(scene, camera, base).picture;
+  const Picture expected = rendered_by_ranks(scene, camera, base).picture;
   for (const RenderOptions& options : variants(base)) {
     for (const int ranks : rank_counts) {
       const int threads = 1 + (ranks + static_cast<int>(options.groups)) % 3;
-      EXPECT_TRUE(same_bytes(rendered(scene, camera, options, ranks, threads).picture, expected))
-          << described(options) << ", " << ranks << " ranks x " << threads;
+      EXPECT_TRUE(same_picture_bytes(
+          rendered_by_ranks(scene, camera, options, ranks, threads).picture, expected))
+          << described_ranks(options) << ", " << ranks << " ranks x " << threads;
     }
   }
 }
@@ -90,7 +89,7 @@ TEST(SortMiddle, OnePictureWithEveryKindOfShading) {
         SCOPED_TRACE(::testing::Message()
                      << "gouraud " << (lighting == Lighting::gouraud) << " transparent "
                      << transparent << " samples " << samples);
-        RenderOptions options = small_picture();
+        RenderOptions options = small_sort_middle();
         options.width /= samples;
         options.height /= samples;
         options.supersampling = samples;
@@ -113,7 +112,7 @@ TEST(SortMiddle, OnePictureWithEveryKindOfShading) {
 TEST(SortMiddle, ClustersWithMoreLitVerticesThanABytesNumbersAreCutInTwo) {
   scenes::Scene scene = scenes::generate("gen:terrain:3000");
   for (scenes::Mesh& mesh : scene.meshes) mesh.normals.clear();
-  RenderOptions options = small_picture();
+  RenderOptions options = small_sort_middle();
   options.lighting = Lighting::gouraud;
   expect_one_picture(scene, scene.cameras[0], options, std::array{2, 5});
 
@@ -158,7 +157,7 @@ TEST(SortMiddle, CamerasAmidTheSceneAndAtItsEdges) {
       scenes::Camera camera = random_scene_camera();
       camera.eye = eye;
       camera.vertical_fov = 110;
-      RenderOptions options = small_picture();
+      RenderOptions options = small_sort_middle();
       options.lighting = lighting;
       expect_one_picture(scene, camera, options, std::array{3, 6});
     }
@@ -174,8 +173,8 @@ TEST(SortMiddle, EqualDepthsGoToTheLowestPrimitiveWhateverArrivesFirst) {
                      {0, glm::mat4x3(1.0F)},
                      {3, glm::mat4x3(1.0F)},
                      {4, glm::mat4x3(1.0F)}};
-  const RenderOptions base = small_picture();
-  const Picture expected = rendered(scene, random_scene_camera(), base).picture;
+  const RenderOptions base = small_sort_middle();
+  const Picture expected = rendered_by_ranks(scene, random_scene_camera(), base).picture;
   for (const RenderOptions& options : variants(base)) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
       comm::run_simulated(3 + static_cast<int>(seed), comm::any_order(), seed,
@@ -183,8 +182,8 @@ TEST(SortMiddle, EqualDepthsGoToTheLowestPrimitiveWhateverArrivesFirst) {
                             const Result result =
                                 render(communicator, scene, random_scene_camera(), options);
                             if (communicator.rank() != 0) return;
-                            EXPECT_TRUE(same_bytes(result.picture, expected))
-                                << described(options) << ", seed " << seed;
+                            EXPECT_TRUE(same_picture_bytes(result.picture, expected))
+                                << described_ranks(options) << ", seed " << seed;
                           });
     }
   }
@@ -193,7 +192,7 @@ TEST(SortMiddle, EqualDepthsGoToTheLowestPrimitiveWhateverArrivesFirst) {
 TEST(SortMiddle, FewerTrianglesThanRanks) {
   scenes::Scene scene = random_scene(33, 1);
   scene.instances.resize(2);
-  RenderOptions options = small_picture();
+  RenderOptions options = small_sort_middle();
   expect_one_picture(scene, random_scene_camera(), options, std::array{5, 9});
   options.width = options.height = 1;
   expect_one_picture(scene, random_scene_camera(), options, std::array{5});
@@ -201,7 +200,7 @@ TEST(SortMiddle, FewerTrianglesThanRanks) {
 
 TEST(SortMiddle, CountsWhatTravels) {
   const scenes::Scene scene = scenes::generate("gen:terrain:20000");
-  RenderOptions base = small_picture();
+  RenderOptions base = small_sort_middle();
   base.lighting = Lighting::gouraud;
   base.partition = "interlaced";  // the same regions whatever pixels cost
   struct Sent {
@@ -232,7 +231,7 @@ TEST(SortMiddle, CountsWhatTravels) {
   };
   std::uint64_t messages_at_end = 0, messages_at_once = 0;
   for (RenderOptions options : variants(base)) {
-    SCOPED_TRACE(described(options));
+    SCOPED_TRACE(described_ranks(options));
     const Sent alone = sent(options, 1);
     EXPECT_EQ(alone.statistics.triangles_travelled, 0U);
     EXPECT_EQ(alone.messages, 0U);
@@ -303,14 +302,14 @@ TEST(SortMiddle, RanksDrawWhatTheyHaveMostOf) {
 
 TEST(SortMiddle, TheSecondGroupHasNoPrimitivesAndTheFirstNoPixels) {
   const scenes::Scene scene = scenes::generate("gen:terrain:20000");
-  RenderOptions options = small_picture();
+  RenderOptions options = small_sort_middle();
   options.strategy = "sort-middle";
   options.groups = Groups::two;
-  const Picture expected = rendered(scene, scene.cameras[0], small_picture()).picture;
+  const Picture expected = rendered_by_ranks(scene, scene.cameras[0], small_sort_middle()).picture;
   for (const int geometry_ranks : {0, 1, 4}) {
     options.geometry_ranks = geometry_ranks;
-    const Result result = rendered(scene, scene.cameras[0], options, 5);
-    EXPECT_TRUE(same_bytes(result.picture, expected));
+    const Result result = rendered_by_ranks(scene, scene.cameras[0], options, 5);
+    EXPECT_TRUE(same_picture_bytes(result.picture, expected));
     for (const RankStatistics& rank : result.statistics.ranks) {
       const bool first = rank.rank < (geometry_ranks == 0 ? 2 : geometry_ranks);
       EXPECT_EQ(rank.tasks == 0, first) << rank.rank;
@@ -325,9 +324,9 @@ TEST(SortMiddle, TheSecondGroupHasNoPrimitivesAndTheFirstNoPixels) {
 // Those that draw get triangles in several rounds, before geometry is all done elsewhere.
 TEST(SortMiddle, ImmediateBatchesAreDrawnAsTheyCome) {
   const scenes::Scene scene = scenes::generate("gen:terrain:100000");
-  for (RenderOptions options : variants(small_picture())) {
+  for (RenderOptions options : variants(small_sort_middle())) {
     if (options.groups == Groups::one) continue;
-    SCOPED_TRACE(described(options));
+    SCOPED_TRACE(described_ranks(options));
     std::set<std::int32_t> rounds;
     std::size_t messages = 0;
     constexpr int kOrders = 4;  // of what happens when
@@ -355,7 +354,7 @@ TEST(SortMiddle, ImmediateBatchesAreDrawnAsTheyCome) {
 TEST(SortMiddle, RenderersMayChangeHowTheyRenderFromFrameToFrame) {
   const scenes::Scene scene = random_scene(34);
   std::vector<RenderOptions> frames;
-  for (RenderOptions options : variants(small_picture())) {
+  for (RenderOptions options : variants(small_sort_middle())) {
     options.costs = CostSource::measured;
     options.lighting = frames.size() % 2 == 0 ? Lighting::gouraud : Lighting::phong;
     options.regions_per_rank = 1 + static_cast<int>(frames.size()) % 3;
@@ -366,14 +365,14 @@ TEST(SortMiddle, RenderersMayChangeHowTheyRenderFromFrameToFrame) {
   std::vector<Picture> expected;
   for (RenderOptions options : frames) {
     options.strategy = "sort-last";
-    expected.push_back(rendered(scene, random_scene_camera(), options).picture);
+    expected.push_back(rendered_by_ranks(scene, random_scene_camera(), options).picture);
   }
   comm::run_threads(5, 1, [&](comm::Communicator& communicator) {
     Renderer renderer(scene);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       Result result = renderer.render(communicator, random_scene_camera(), frames[i]);
       if (communicator.rank() != 0) continue;
-      EXPECT_TRUE(same_bytes(result.picture, expected[i])) << i;
+      EXPECT_TRUE(same_picture_bytes(result.picture, expected[i])) << i;
       renderer.recycle(std::move(result.picture));
     }
   });

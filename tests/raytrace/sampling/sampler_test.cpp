@@ -93,15 +93,15 @@ TEST(Sampler, NothingIsCorrelatedFromPixelToPixelOrDimensionToDimension) {
 }
 
 TEST(Sampler, EachSampleIsUniformOverPixels) {
-  constexpr int kBins = 16, kPixels = 32000;
+  constexpr int kBinsOfSide = 16, kPixels = 32000;
   for (const std::uint32_t sample : {0U, 1U, 6U, 1000U}) {
-    std::vector<double> bins(kBins * kBins, 0.0);
+    std::vector<double> bins(kBinsOfSide * kBinsOfSide, 0.0);
     for (int x = 0; x < kPixels; ++x) {
       const glm::vec2 p = sobol_pair(pixel_key(6, x, 1), sample, 2);
-      bins[static_cast<std::size_t>(p.x * kBins) * kBins + static_cast<std::size_t>(p.y * kBins)] +=
-          1;
+      bins[static_cast<std::size_t>(p.x * kBinsOfSide) * kBinsOfSide +
+           static_cast<std::size_t>(p.y * kBinsOfSide)] += 1;
     }
-    constexpr double kExpected = static_cast<double>(kPixels) / (kBins * kBins);
+    constexpr double kExpected = static_cast<double>(kPixels) / (kBinsOfSide * kBinsOfSide);
     double chi2 = 0;
     for (const double count : bins) chi2 += std::pow(count - kExpected, 2) / kExpected;
     EXPECT_LT(chi2, 255 + 4 * std::sqrt(2 * 255.0)) << sample;  // 255 degrees of freedom
