@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -18,12 +19,12 @@ namespace {
 // A block takes some tens of microseconds.
 constexpr std::size_t kSimplicesPerBlock = 4096;
 
-template <std::size_t Corners>
-Hash128 hash_of_range(const Triangulation& triangulation, std::size_t first, std::size_t last) {
+template <std::size_t Corners, class Row>
+Hash128 hash_of_range(std::span<const Row> vertices, std::size_t first, std::size_t last) {
   Hash128 sum;
   for (std::size_t t = first; t < last; ++t) {
     std::array<std::uint64_t, Corners> rows;
-    std::copy_n(&triangulation.vertices[t * Corners], Corners, rows.begin());
+    std::copy_n(&vertices[t * Corners], Corners, rows.begin());
     for (std::size_t i = 1; i < Corners; ++i) {
       for (std::size_t j = i; j > 0; --j) {
         std::tie(rows[j - 1], rows[j]) = std::minmax({rows[j - 1], rows[j]});
@@ -33,6 +34,18 @@ Hash128 hash_of_range(const Triangulation& triangulation, std::size_t first, std
     sum = sum + Hash128{simplex.high64, simplex.low64};
   }
   return sum;
+}
+
+template <class Row>
+Hash128 hash_all(int dim, std::span<const Row> vertices) {
+  const std::size_t simplices = vertices.size() / (static_cast<std::size_t>(dim) + 1);
+  return parallel::parallel_reduce(
+      0, simplices, kSimplicesPerBlock, Hash128{},
+      [&](std::size_t first, std::size_t last) {
+        return dim == 2 ? hash_of_range<3>(vertices, first, last)
+                        : hash_of_range<4>(vertices, first, last);
+      },
+      [](const Hash128& a, const Hash128& b) { return a + b; });
 }
 
 }  // namespace
@@ -50,14 +63,10 @@ std::string to_string(const Hash128& hash) {
   return text.data();
 }
 
+Hash128 hash(int dim, std::span<const std::uint64_t> vertices) { return hash_all(dim, vertices); }
+
 Hash128 hash(const Triangulation& triangulation) {
-  return parallel::parallel_reduce(
-      0, triangulation.size(), kSimplicesPerBlock, Hash128{},
-      [&](std::size_t first, std::size_t last) {
-        return triangulation.dim == 2 ? hash_of_range<3>(triangulation, first, last)
-                                      : hash_of_range<4>(triangulation, first, last);
-      },
-      [](const Hash128& a, const Hash128& b) { return a + b; });
+  return hash_all(triangulation.dim, std::span<const std::uint32_t>(triangulation.vertices));
 }
 
 }  // namespace delray::delaunay

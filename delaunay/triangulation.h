@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,8 @@ std::string to_string(const Hash128& hash);  // 32 lower-case hex digits, high h
 
 // Parallel, without sorting. O(simplices).
 Hash128 hash(const Triangulation& triangulation);
+// Of simplices that are given by dim + 1 rows each; hashes of parts add up to that of the whole.
+// REQUIRES: dim is 2 or 3.
+Hash128 hash(int dim, std::span<const std::uint64_t> vertices);
 
 }  // namespace delray::delaunay

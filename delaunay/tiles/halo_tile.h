@@ -1,0 +1,78 @@
+// One tile: its points, those of others that it knows, and whom it must tell of its own.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "delaunay/tiles.h"
+#include "delaunay/tiles/box_tree.h"
+#include "geometry/box.h"
+
+namespace delray::delaunay {
+
+// What all other tiles are told of a tile from the start. With the extreme points nobody's hull
+// sees half of the world.
+struct TileSummary {
+  geometry::Box3d box;  // tight; empty without points; z is 0 in 2D
+  RowPoint extremes[6];
+  std::uint64_t extreme_count = 0;
+};
+
+// Tiles by number, and where their boxes are.
+struct TileBoxes {
+  explicit TileBoxes(std::span<const TileSummary> summaries);
+
+  BoxTree<glm::dvec2> plane;
+  BoxTree<glm::dvec3> space;
+};
+
+// A point for a tile.
+struct TileMessage {
+  std::uint64_t tile = 0;
+  std::uint32_t point = 0;  // its place among the known ones of the sender
+  auto operator<=>(const TileMessage&) const = default;
+};
+
+// Triangulates the points that it knows and finds simplices that points of other tiles could be in
+// conflict with: whose closed circumscribed ball (for facets of the hull, the closed half-space
+// beyond) touches their boxes. Those tiles are told of its own vertices of such a simplex. When
+// nobody has anything new to tell, the stars of all own vertices are final.
+//
+// Proof: let a point conflict with a simplex of own vertex v. Shrink the ball towards v until one
+// point q of all is left on it. The owner of q was told of v, as the ball touches its box; the ball
+// through v and q is empty, so the owner has the edge vq, in a simplex whose ball holds v and so
+// touches this tile's box: it has told this tile of q.
+class HaloTile {
+ public:
+  // `own` by ascending rows.
+  HaloTile(int tile, int dim, std::vector<RowPoint> own);
+
+  TileSummary summary() const;
+  // Takes the points in that it does not know.
+  void add_halo(std::span<const RowPoint> points);
+  // Triangulates unless it knows nothing new.
+  void triangulate(const Options& options);
+  // The own points that other tiles must be told of and have not been; ascending.
+  std::vector<TileMessage> find_messages(const TileBoxes& boxes,
+                                         std::span<const TileSummary> tiles);
+  const RowPoint& point(std::uint32_t known) const { return known_[known]; }
+  // Appends the simplices that are this tile's, and counts.
+  void collect(TiledTriangulation& result) const;
+
+ private:
+  template <int D>
+  std::vector<TileMessage> messages_of_simplices(const BoxTree<glm::vec<D, double>>& boxes) const;
+  bool is_own(std::uint32_t known) const { return known < own_; }
+
+  int tile_, dim_;
+  std::vector<RowPoint> known_;  // own points first
+  std::uint32_t own_;
+  std::unordered_set<std::uint64_t> halo_rows_;
+  bool changed_ = true;
+  Triangulation triangulation_;
+  std::unordered_set<std::uint64_t> told_;  // tile << 32 | point
+};
+
+}  // namespace delray::delaunay

@@ -1,0 +1,180 @@
+#include "delaunay/tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "comm/threads.h"
+#include "delaunay/generate.h"
+#include "delaunay/triangulate.h"
+#include "loadbalance/partition.h"
+
+namespace delray::delaunay {
+namespace {
+
+struct Whole {
+  Hash128 hash;
+  std::uint64_t distinct = 0, hull_facets = 0, simplices = 0;
+  std::vector<TileStatistics> tiles;
+  int rounds = 0;
+};
+
+std::vector<RowPoint> with_rows(const std::vector<glm::dvec3>& positions, std::uint64_t first) {
+  std::vector<RowPoint> points;
+  for (const glm::dvec3& position : positions) points.push_back({position, first + points.size()});
+  return points;
+}
+
+// Every rank has some of the points: runs of rows, or each so-many-th one.
+Whole triangulate_on(int ranks, const std::vector<RowPoint>& points, const TileOptions& options,
+                     bool runs) {
+  Whole whole;
+  std::mutex mutex;
+  comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+    const auto rank = static_cast<std::size_t>(communicator.rank());
+    const auto size = static_cast<std::size_t>(ranks);
+    std::vector<RowPoint> mine;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if ((runs ? i * size / points.size() : i % size) == rank) mine.push_back(points[i]);
+    }
+    const TiledTriangulation part = triangulate_tiles(communicator, mine, options);
+    const std::lock_guard lock(mutex);
+    whole.hash = whole.hash + hash(part.dim, part.vertices);
+    whole.distinct += part.distinct;
+    whole.hull_facets += part.hull_facets;
+    whole.simplices += part.vertices.size() / (static_cast<std::size_t>(part.dim) + 1);
+    whole.tiles.insert(whole.tiles.end(), part.tiles.begin(), part.tiles.end());
+    whole.rounds = part.rounds;
+  });
+  return whole;
+}
+
+void expect_whole(const std::vector<glm::dvec3>& positions, int dim, int ranks,
+                  const TileOptions& given, bool runs) {
+  TileOptions options = given;
+  options.triangulate.dim = dim;
+  Options in_core;
+  in_core.dim = dim;
+  const Triangulation expected = triangulate(view(positions), in_core).triangulation;
+  const Whole got = triangulate_on(ranks, with_rows(positions, 0), options, runs);
+  EXPECT_EQ(to_string(got.hash), to_string(hash(expected)));
+  EXPECT_EQ(got.simplices, expected.size());
+  EXPECT_EQ(got.distinct, expected.distinct);
+  EXPECT_EQ(got.hull_facets, expected.hull_facets);
+}
+
+TEST(Tiles, GiveTheTriangulationOfAllPoints) {
+  for (const int dim : {2, 3}) {
+    for (const PointGenerator& kind : point_generators()) {
+      const std::size_t n = dim == 2 ? 1500 : 400;
+      const auto positions = kind.generate(n, dim, 3).positions;
+      for (const int tiles : {1, 2, 7, 16}) {
+        SCOPED_TRACE(std::string(kind.name) + ", " + std::to_string(dim) + "D, " +
+                     std::to_string(tiles) + " tiles");
+        expect_whole(positions, dim, tiles % 4 + 1, {tiles}, tiles % 2 == 0);
+      }
+    }
+  }
+}
+
+TEST(Tiles, GiveTheSameForEveryNumberOfRanksAndPartition) {
+  const auto positions = generate_points("clusters", 3000, 2, 5).positions;
+  for (const int ranks : {1, 2, 3, 4, 8}) expect_whole(positions, 2, ranks, {0}, true);
+  for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
+    SCOPED_TRACE(partitioner.name);
+    expect_whole(positions, 2, 3, {5, partitioner.name}, false);
+  }
+}
+
+TEST(Tiles, TakeFewPoints) {
+  const std::vector<glm::dvec3> positions = {{0, 0, 0}, {1, 0, 0},   {0, 1, 0}, {0, 0, 1},
+                                             {1, 1, 1}, {2, 0.5, 3}, {0, 0, 0}, {-1, -2, 0.5}};
+  for (const int dim : {2, 3}) {
+    for (std::size_t n = 0; n <= positions.size(); ++n) {
+      SCOPED_TRACE(std::to_string(n) + " points, " + std::to_string(dim) + "D");
+      expect_whole({positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(n)}, dim, 3,
+                   {5}, true);
+    }
+  }
+}
+
+// Each tile has points of one line or plane only, and knows of no other until told.
+TEST(Tiles, MeetAcrossFlatOnes) {
+  std::vector<glm::dvec3> positions;
+  for (int i = 0; i < 40; ++i) {
+    for (int row = 0; row < 4; ++row) positions.emplace_back(i, 1000 * row, (i * 7 + row) % 5);
+  }
+  for (const int tiles : {2, 4, 8}) {
+    expect_whole(positions, 2, 2, {tiles}, true);
+    expect_whole(positions, 3, 2, {tiles}, false);
+  }
+  for (glm::dvec3& position : positions) position.y = 5;
+  expect_whole(positions, 2, 3, {4}, true);  // no simplices at all
+}
+
+TEST(Tiles, LowestRowRepresentsEqualPoints) {
+  auto positions = generate_points("uniform", 500, 2, 1).positions;
+  const auto copies = positions;
+  positions.insert(positions.begin(), copies.rbegin(), copies.rend());
+  for (const bool runs : {false, true}) expect_whole(positions, 2, 4, {6}, runs);
+}
+
+TEST(Tiles, KeepRowsBeyondThirtyTwoBits) {
+  const auto positions = generate_points("uniform", 300, 2, 1).positions;
+  constexpr std::uint64_t kFar = std::uint64_t{1} << 40;
+  TileOptions options{4};
+  comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+    const auto points = with_rows(positions, kFar);
+    const TiledTriangulation far = triangulate_tiles(communicator, points, options);
+    const TiledTriangulation near =
+        triangulate_tiles(communicator, with_rows(positions, 0), options);
+    ASSERT_EQ(far.vertices.size(), near.vertices.size());
+    for (std::size_t i = 0; i < far.vertices.size(); ++i) {
+      ASSERT_EQ(far.vertices[i], near.vertices[i] + kFar);
+    }
+  });
+}
+
+// Halos grow with the border of a tile, not with its inside, and one exchange is enough.
+TEST(Tiles, TellFewOfUniformPoints) {
+  const auto points = with_rows(generate_points("uniform", 40000, 2, 7).positions, 0);
+  const Whole whole = triangulate_on(4, points, {16}, true);
+  EXPECT_EQ(whole.rounds, 1);
+  std::uint64_t halo = 0;
+  for (const TileStatistics& tile : whole.tiles) {
+    halo += tile.halo;
+    EXPECT_LT(tile.halo, 600U) << "of " << tile.points;
+  }
+  EXPECT_LT(halo, 4000U);
+}
+
+TEST(Tiles, RefuseWhatCannotBe) {
+  const std::vector<RowPoint> points = {{{0, 0, 0}, 7}, {{1, std::nan(""), 0}, 8}};
+  comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
+    const auto complaint = [&](std::span<const RowPoint> given, const TileOptions& options) {
+      try {
+        triangulate_tiles(communicator, given, options);
+      } catch (const std::invalid_argument& error) {
+        return std::string(error.what());
+      }
+      return std::string();
+    };
+    const std::span<const RowPoint> given = points;
+    // Only one of the ranks has it; both say so.
+    EXPECT_NE(complaint(communicator.rank() == 0 ? given : given.first(0), {}).find("row 8"),
+              std::string::npos);
+    EXPECT_NE(complaint(given.first(1), {-1}).find("-1 tiles"), std::string::npos);
+    EXPECT_NE(complaint(given.first(1), {1, "no"}).find("'no' is no partition"), std::string::npos);
+    TileOptions flat;
+    flat.triangulate.dim = 4;
+    EXPECT_NE(complaint(given.first(1), flat), "");
+  });
+}
+
+}  // namespace
+}  // namespace delray::delaunay
