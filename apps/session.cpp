@@ -1,4 +1,4 @@
-// Maps exceptions to messages and exit codes, in one place for all subcommands.
+// Turns exceptions into messages, in one place for all subcommands.
 #include "apps/session.h"
 
 #include <spdlog/spdlog.h>
@@ -10,43 +10,18 @@
 #include "apps/launch.h"
 #include "apps/options/help.h"
 #include "comm/failure.h"
-#include "files/error.h"
 
 namespace delray::apps {
 namespace {
-
-// The exit code of the exception in flight, after telling what it was.
-int report_failure() {
-  try {
-    throw;
-  } catch (const std::invalid_argument& error) {  // UsageError, and names that are in no table
-    spdlog::error("{}", error.what());
-    return kUsage;
-  } catch (const files::FileError& error) {
-    spdlog::error("{}", error.what());
-    return error.cause() == files::Cause::input ? kBadInput : kFailed;
-  } catch (const parallel::Interrupted&) {
-    spdlog::error("interrupted");
-    return kInterrupted;
-  } catch (const comm::OutOfMemory& error) {
-    spdlog::error("{}", error.what());
-    return kFailed;
-  } catch (const comm::RankFailure& failure) {
-    spdlog::error("{}", failure.what());
-    return kRankLost;
-  } catch (const std::bad_alloc&) {
-    spdlog::error("out of memory");
-    return kFailed;
-  } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
-    return kFailed;
-  }
-}
 
 // The message of the exception in flight.
 std::string text_of_failure() {
   try {
     throw;
+  } catch (const comm::OutOfMemory& error) {  // which names the rank
+    return error.what();
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -83,7 +58,10 @@ int run_guarded(Session& session) {
   } catch (...) {
     // All processes of mpirun are here with the same failure; one speaks, and exits with the code,
     // for mpirun ends the others when it does.
-    if (session.first_process || !session.has_ranks) return report_failure();
+    if (session.first_process || !session.has_ranks) {
+      spdlog::error("{}", text_of_failure());
+      return comm::exit_code_of(std::current_exception());
+    }
     if (!has_met_ranks()) meet_ranks_with_failure(session, text_of_failure());
     return kDone;
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "comm/exit_code.h"
 #include "comm/handshake.h"
 #include "parallel/progress.h"
 
@@ -15,15 +16,7 @@ class App;
 
 namespace delray::apps {
 
-enum ExitCode {
-  kDone = 0,
-  kFailed = 1,       // while running: disk full, device, out of memory
-  kUsage = 2,        // wrong usage
-  kBadInput = 3,     // a file is not what it should be
-  kNotVerified = 4,  // verification failed
-  kRankLost = 5,     // a rank was lost or timed out
-  kInterrupted = 130,
-};
+using enum comm::ExitCode;
 
 // Options that cannot be, or cannot be together: exit code 2.
 struct UsageError : std::invalid_argument {

@@ -64,7 +64,6 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/dynamic", {"flip", "insertion", "mesh", "predicates"}},
     {"delaunay/natural_neighbours", {"insertion", "predicates"}},
     {"delaunay/files", {"mesh"}},
-    {"delaunay/tiles", {}},
     {"delaunay/verify", {"mesh"}},
     {"raster/shading", {"pipeline"}},
     {"raster/distribute", {"pipeline", "shading"}},

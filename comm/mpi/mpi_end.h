@@ -8,8 +8,6 @@
 
 namespace delray::comm::internal {
 
-inline constexpr int kExitRankLost = 5;
-
 // Writes "error: rank 2 failed in phase compose: why" to stderr and ends all ranks of
 // `communicator`.
 [[noreturn]] void end_all_ranks(MPI_Comm communicator, int rank, Phase phase,

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "comm/exit_code.h"
 #include "comm/mpi/mpi_end.h"
 
 namespace delray::comm::internal {
@@ -80,7 +81,7 @@ void Engine::reap() {
 }
 
 void Engine::end(const std::string& why) const {
-  end_all_ranks(root, root_rank, phase, why, kExitRankLost);
+  end_all_ranks(root, root_rank, phase, why, kRankLost);
 }
 
 void Engine::end_stalled(const std::string& why, int waits_for) const {
@@ -96,7 +97,7 @@ void Engine::end_stalled(const std::string& why, int waits_for) const {
     const auto what = doing_of(*this, rank);
     if (!what) break;
     if (what->waits_for == kWaitsForNobody) {
-      end_all_ranks(root, rank, what->phase, why, kExitRankLost);
+      end_all_ranks(root, rank, what->phase, why, kRankLost);
     }
     rank = what->waits_for;
   }

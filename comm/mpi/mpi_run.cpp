@@ -1,5 +1,5 @@
-// Starts and ends a program under MPI: detects launchers by their environment variables, maps
-// exceptions to exit codes, and reports the phase when the process is told to end.
+// Starts and ends a program under MPI: detects launchers by their environment variables, ends
+// all ranks with the exit code of a failure, and reports the phase when the process is told to end.
 #include "comm/mpi.h"
 
 #include <sys/uio.h>
@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "comm/agree_on_failure.h"
+#include "comm/exit_code.h"
 #include "comm/failure.h"
 #include "comm/in_process/first_failure.h"
 #include "comm/mpi/mpi_end.h"
@@ -132,20 +133,6 @@ void avoid_forbidden_copies() {
   }
 }
 
-int exit_code_of(const std::exception_ptr& exception) {
-  try {
-    std::rethrow_exception(exception);
-  } catch (const files::FileError& error) {
-    return error.cause() == files::Cause::input ? 3 : 1;
-  } catch (const parallel::Interrupted&) {
-    return 130;
-  } catch (const std::invalid_argument&) {
-    return 2;
-  } catch (...) {
-    return tells_of_no_memory(exception) ? 1 : internal::kExitRankLost;
-  }
-}
-
 // What the line about a failure says.
 std::string reason_of(const std::exception_ptr& failure) {
   return tells_of_no_memory(failure) ? "out of memory" : internal::describe(failure);
@@ -208,7 +195,7 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
     if (failure && !is_agreed(failure)) {
       if (communicator->rank() != 0 && is_interruption(failure)) wait_for_the_end();
       internal::end_all_ranks(world, communicator->rank(), internal::noted_phase(),
-                              reason_of(failure), exit_code_of(failure));
+                              reason_of(failure), exit_code_of(failure, kRankLost));
     }
   }
   if (!initialized) MPI_Finalize();

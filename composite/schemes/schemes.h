@@ -66,7 +66,7 @@ OwnedPixels direct_send(comm::Communicator& communicator, std::unique_ptr<Layer>
 // Radix-k (Peterka, Goodell, Ross, Shen and Thakur 2009): rounds of direct-send in groups of k. The
 // product m of all radices is n or, where n has large factors, a little less: the n - m extra ranks
 // are spread over blocks of P neighbours each, to whose members they send a P-th of their image,
-// and own nothing (radices.h). SubCommunicator send A (1 - 1/m) and composite as much, and A / P
+// and own nothing (radices.h). Members send A (1 - 1/m) and composite as much, and A / P
 // for each extra rank of the block. Options: the radices, round by round, of which the last is
 // repeated; a factor is taken as near below each as there is. Without: up to 8.
 OwnedPixels radix_k(comm::Communicator& communicator, std::unique_ptr<Layer> layer,

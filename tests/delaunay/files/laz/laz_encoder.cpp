@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "delaunay/files/laz/laz_items.h"
 #include "tests/delaunay/files/laz/arithmetic_encoder.h"
@@ -350,15 +351,14 @@ std::string encode_layered_chunk(const LasFile& file, const LazOptions& options,
   std::array<Channel, 4> channels;
   Channel* channel = &channels[channel_of(records)];
   channel->begin(std::string(records, size));
-  LayeredColourEncoder colours(records + 30, channel_of(records), options.version);
+  std::optional<LayeredColourEncoder> colours;
+  if (file.format >= 7) colours.emplace(records + 30, channel_of(records), options.version);
   Layers layers;
   for (std::size_t i = 1; i < count; ++i) {
     const char* now = records + i * size;
     const Channel* before = channel;
     encode_layered_point(layers, channel, channels, now);
-    if (file.format >= 7) {
-      colours.encode(layers.colours, channel_of(now), channel != before, now + 30);
-    }
+    if (colours) colours->encode(layers.colours, channel_of(now), channel != before, now + 30);
     channel->last.assign(now, size);
   }
 
