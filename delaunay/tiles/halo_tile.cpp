@@ -16,7 +16,7 @@
 namespace delray::delaunay {
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // simplices: some tenths of a millisecond
+constexpr std::size_t kSimplicesGrain = 4096;  // simplices: some tenths of a millisecond
 
 template <class Point>
 std::vector<geometry::Box<Point>> boxes_of(std::span<const TileSummary> summaries) {
@@ -101,7 +101,7 @@ std::vector<TileMessage> HaloTile::messages_of_simplices(
   const auto scan = [&]<std::size_t Corners>(std::span<const std::uint32_t> vertices,
                                              const auto& touches_of) {
     parallel::parallel_blocks(
-        0, vertices.size() / Corners, kGrain, [&](std::size_t first, std::size_t last) {
+        0, vertices.size() / Corners, kSimplicesGrain, [&](std::size_t first, std::size_t last) {
           std::vector<TileMessage> messages;
           for (std::size_t s = first; s < last; ++s) {
             const auto rows = vertices.subspan(s * Corners, Corners);

@@ -281,7 +281,7 @@ TEST(Practice, RaysGoAsFarAndThroughWhatIsAsked) {
   // Whatever the hierarchy, the picture is the same but for rounding.
   EXPECT_NEAR(mean("--integrator direct --build low"), shadowed, 1e-3 * shadowed);
   EXPECT_NEAR(mean("--integrator direct --build high --isa sse4.2"), shadowed, 1e-3 * shadowed);
-  const Json told = Json::parse(folder.read("f.json"));
+  const json told = json::parse(folder.read("f.json"));
   EXPECT_EQ(told["options"]["build"], "high");
   EXPECT_EQ(told["options"]["isa"], "sse4.2");
 }

@@ -15,7 +15,7 @@
 namespace delray::delaunay {
 namespace {
 
-void expect_same(const std::vector<glm::dvec3>& points, const std::string& name) {
+void expect_as_cgal_2d(const std::vector<glm::dvec3>& points, const std::string& name) {
   const Triangulation expected = bench::triangulate_with_cgal2(points);
   for (const Method& method : methods()) {
     if (std::ranges::find(method.dims, 2) == method.dims.end()) continue;
@@ -34,7 +34,7 @@ void expect_same(const std::vector<glm::dvec3>& points, const std::string& name)
 TEST(Cgal2d, AgreesOnGeneratedPoints) {
   for (const PointGenerator& generator : point_generators()) {
     for (const std::size_t n : {100, 20000}) {
-      expect_same(generator.generate(n, 2, n).positions, std::string(generator.name));
+      expect_as_cgal_2d(generator.generate(n, 2, n).positions, std::string(generator.name));
     }
   }
 }
@@ -45,8 +45,8 @@ TEST(Cgal2d, AgreesOnHardPoints) {
       for (std::uint64_t seed = 0; seed < 10; ++seed) {
         std::vector<glm::dvec3> points;
         for (const auto& p : kind.make(n, seed)) points.emplace_back(p, 0);
-        expect_same(points,
-                    kind.name + ", n " + std::to_string(n) + ", seed " + std::to_string(seed));
+        expect_as_cgal_2d(
+            points, kind.name + ", n " + std::to_string(n) + ", seed " + std::to_string(seed));
       }
     }
   }

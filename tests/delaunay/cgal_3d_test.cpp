@@ -15,8 +15,8 @@
 namespace delray::delaunay {
 namespace {
 
-void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,
-                 const std::vector<int>& threads) {
+void expect_as_cgal_3d(const std::vector<glm::dvec3>& points, const std::string& name,
+                       const std::vector<int>& threads) {
   const Triangulation expected = bench::triangulate_with_cgal3(points);
   for (const Method& method : methods()) {
     if (std::ranges::find(method.dims, 3) == method.dims.end()) continue;
@@ -41,8 +41,8 @@ TEST(Cgal3d, AgreesOnGeneratedPoints) {
     for (const std::size_t n : {100, 3000}) {
       // Lines in space have quadratically many tetrahedra.
       const bool quadratic = generator.name == "two-lines" || generator.name == "spiral";
-      expect_same(generator.generate(quadratic ? 100 + n / 10 : n, 3, n).positions,
-                  std::string(generator.name), {1, 2});
+      expect_as_cgal_3d(generator.generate(quadratic ? 100 + n / 10 : n, 3, n).positions,
+                        std::string(generator.name), {1, 2});
     }
   }
 }
@@ -51,8 +51,9 @@ TEST(Cgal3d, AgreesOnHardPoints) {
   for (const HardPoints3d& kind : hard_points_3d()) {
     for (const std::size_t n : {10, 30, 150}) {
       for (std::uint64_t seed = 0; seed < 3; ++seed) {
-        expect_same(kind.make(n, seed),
-                    kind.name + ", n " + std::to_string(n) + ", seed " + std::to_string(seed), {1});
+        expect_as_cgal_3d(kind.make(n, seed),
+                          kind.name + ", n " + std::to_string(n) + ", seed " + std::to_string(seed),
+                          {1});
       }
     }
   }

@@ -21,8 +21,8 @@ Triangulation triangulate_with(const std::vector<glm::dvec3>& points, int thread
   return triangulate(view(points), options).triangulation;
 }
 
-void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,
-                 std::initializer_list<int> threads) {
+void expect_equal_rounds(const std::vector<glm::dvec3>& points, const std::string& name,
+                         std::initializer_list<int> threads) {
   const Triangulation expected = triangulate_with(points, 1);
   for (const int count : threads) {
     const Triangulation actual = triangulate_with(points, count);
@@ -37,19 +37,19 @@ void expect_same(const std::vector<glm::dvec3>& points, const std::string& name,
 TEST(CavityRounds, ThreadsMakeTheSameSimplices) {
   for (const char* kind : {"uniform", "gauss", "cluster", "grid", "sphere", "duplicates", "arc",
                            "terrain", "coplanar", "ulp"}) {
-    expect_same(generate_points(kind, 12000, 3, 5).positions, kind, {2, 3, 8});
+    expect_equal_rounds(generate_points(kind, 12000, 3, 5).positions, kind, {2, 3, 8});
   }
 }
 
 TEST(CavityRounds, EightRegionsMakeTheSameSimplices) {
-  expect_same(generate_points("uniform", 20000, 3, 6).positions, "uniform", {8});
+  expect_equal_rounds(generate_points("uniform", 20000, 3, 6).positions, "uniform", {8});
 }
 
 TEST(CavityRounds, PointsOfFewPlacesMakeTheSameSimplices) {
   for (const HardPoints3d& kind : hard_points_3d()) {
     // Two lines, and others that are like them, have quadratically many tetrahedra.
     if (kind.name == "near a sphere" || kind.name == "of all sizes") continue;
-    expect_same(kind.make(6000, 1), kind.name, {2});
+    expect_equal_rounds(kind.make(6000, 1), kind.name, {2});
   }
 }
 
@@ -61,7 +61,7 @@ TEST(CavityRounds, MeshGrowsBetweenPasses) {
   }
   const Triangulation expected = triangulate_with(points, 1);
   EXPECT_GT(expected.size(), 9 * points.size());
-  expect_same(points, "with lines", {2, 3});
+  expect_equal_rounds(points, "with lines", {2, 3});
 }
 
 }  // namespace

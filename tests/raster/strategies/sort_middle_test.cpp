@@ -287,9 +287,9 @@ TEST(SortMiddle, RanksDrawWhatTheyHaveMostOf) {
   for (const float side : {2.0F, -2.0F}) {
     camera.eye = {0, 0.5F, side};
     options.strategy = "sort-first";
-    const Result expected = rendered(scene, camera, options, 1);
+    const Result expected = rendered_by_ranks(scene, camera, options, 1);
     options.strategy = "sort-middle";
-    const Result result = rendered(scene, camera, options, 2);
+    const Result result = rendered_by_ranks(scene, camera, options, 2);
     EXPECT_TRUE(same_bytes(result.picture, expected.picture));
     EXPECT_GT(result.statistics.fragments, 10000U);
     EXPECT_LT(result.statistics.triangles_travelled, 8192U / 10) << side;
