@@ -45,11 +45,11 @@ int launched_size();
 // An exception in one rank ends all: a line on stderr with rank, phase and reason, then MPI_Abort
 // with exit code 5 (for errors of one rank alone that are nobody's fault: 3 for bad input, 2 for
 // std::invalid_argument, 1 for a failing device and where there is no memory, 130 when interrupted:
-// then rank 0, which may have something to save, ends the others as long as it does so within
-// seconds). An exception that all ranks agreed on
-// (comm/agree_on_failure.h) is rethrown on every rank after MPI was finalised. When the launcher
-// ends this process (SIGTERM, as after the death of another rank), a line on stderr names the
-// phase, before a handler that the program had installed is called.
+// then rank 0, which may have something to save, ends the others as long as it does so within a
+// minute). An exception that all ranks agreed on (comm/agree_on_failure.h) is rethrown on every
+// rank after MPI was finalised. When the launcher ends this process (SIGTERM, as after the death of
+// another rank), a line on stderr names the phase, before a handler that the program had installed
+// is called.
 void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& body,
              const MpiOptions& options = {});
 

@@ -22,6 +22,7 @@ struct RowPoint {
   std::uint64_t row = 0;
 };
 
+// How points are cut into tiles, and how each is triangulated.
 struct TileOptions {
   int tiles = 0;                       // at least one; 0: one for each rank
   std::string partition = "kd-split";  // of loadbalance::partitioners()

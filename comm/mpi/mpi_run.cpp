@@ -115,10 +115,11 @@ bool is_interruption(const std::exception_ptr& exception) {
   }
 }
 
-// Where all ranks are interrupted rank 0 may be about to save what there is, and ends the others
-// afterwards; this one does nothing until then, or until it seems to be alone.
+// Where all ranks are interrupted rank 0 may be about to save what there is, which a busy disk
+// delays, and ends the others afterwards; this one does nothing until then, or until it seems to be
+// alone.
 void wait_for_the_end() {
-  constexpr std::chrono::seconds kLongest{10};
+  constexpr std::chrono::minutes kLongest{1};
   std::signal(SIGTERM, SIG_DFL);
   std::this_thread::sleep_for(kLongest);
 }

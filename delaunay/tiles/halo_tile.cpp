@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -131,14 +132,29 @@ std::vector<TileMessage> HaloTile::messages_of_simplices(
   return all;
 }
 
+std::vector<std::uint32_t> HaloTile::distinct_own() const {
+  std::vector<std::uint32_t> rows(own_);
+  std::iota(rows.begin(), rows.end(), 0U);
+  std::ranges::sort(rows, [&](std::uint32_t a, std::uint32_t b) {
+    return comes_before(known_[a], known_[b], 0, dim_, /*descending=*/false);
+  });
+  const auto equal = [&](std::uint32_t a, std::uint32_t b) {
+    const glm::dvec3 &p = known_[a].position, &q = known_[b].position;
+    return p.x == q.x && p.y == q.y && (dim_ == 2 || p.z == q.z);
+  };
+  rows.erase(std::unique(rows.begin(), rows.end(), equal), rows.end());
+  return rows;
+}
+
 std::vector<TileMessage> HaloTile::find_messages(const TileBoxes& boxes,
                                                  std::span<const TileSummary> tiles) {
   std::vector<TileMessage> messages;
   if (own_ > 0 && triangulation_.size() == 0) {
     // All in one line or plane: anything may be a neighbour.
+    const std::vector<std::uint32_t> distinct = distinct_own();
     for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
       if (static_cast<int>(tile) == tile_ || tiles[tile].box.empty()) continue;
-      for (std::uint32_t i = 0; i < own_; ++i) messages.push_back({tile, i});
+      for (const std::uint32_t i : distinct) messages.push_back({tile, i});
     }
   } else if (own_ > 0) {
     messages =

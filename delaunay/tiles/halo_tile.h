@@ -64,6 +64,8 @@ class HaloTile {
  private:
   template <int D>
   std::vector<TileMessage> messages_of_simplices(const BoxTree<glm::vec<D, double>>& boxes) const;
+  // Of equal own points the one with the lowest row, which represents them.
+  std::vector<std::uint32_t> distinct_own() const;
   bool is_own(std::uint32_t known) const { return known < own_; }
 
   int tile_, dim_;
