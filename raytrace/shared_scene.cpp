@@ -27,6 +27,10 @@ namespace {
 // of a tenth of the scene holds many, and large enough that a ray meets few.
 constexpr std::uint64_t kClusters = 64, kFewestTriangles = 64, kMostTriangles = 1 << 14;
 
+// Bytes that a cluster takes with its acceleration structure, for each byte of its geometry, at
+// most.
+constexpr std::uint64_t kBytesWithStructure = 4;
+
 std::uint32_t triangles_of_cluster(std::uint64_t all, int ranks) {
   const std::uint64_t share = all / (kClusters * static_cast<std::uint64_t>(ranks));
   return static_cast<std::uint32_t>(std::clamp(share, kFewestTriangles, kMostTriangles));
@@ -185,6 +189,10 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
     degenerate_ += degenerate[i];
     owned_.emplace(first_mine + static_cast<std::uint32_t>(i), std::move(ready[i]));
   }
+  std::uint64_t bytes_of_others = 0;
+  for (std::size_t i = 0; i < owners_.size(); ++i)
+    bytes_of_others += owners_[i] == communicator.rank() ? 0 : packed_bytes_[i];
+  has_room_for_all_ = options.cache_bytes >= kBytesWithStructure * bytes_of_others;
   make_resident(false);
   const std::uint64_t all_bytes = comm::all_reduce_value(communicator, bytes(), std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
@@ -196,7 +204,6 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
 std::uint64_t SharedScene::bytes() const {
   std::uint64_t sum = resident_->bytes() + elsewhere_.bytes() + given_bytes_;
   for (const auto& [number, cluster] : owned_) sum += cluster->bytes();
-  for (const auto& [number, scene] : taken_over_) sum += scene->bytes();
   for (const auto& [number, cached] : cached_) {
     sum += cached.cluster->bytes() + (cached.scene != nullptr ? cached.scene->bytes() : 0);
   }
@@ -208,6 +215,7 @@ std::shared_ptr<const ClusterScene> SharedScene::alone(
   // Built in a fraction of the time: it may be dropped soon. Hits are the same.
   BuildOptions quickly = build_;
   quickly.quality = BuildOptions::Quality::low;
+  quickly.changing = false;
   return std::make_shared<const ClusterScene>(std::vector{cluster}, quickly, device_);
 }
 
@@ -220,15 +228,20 @@ void SharedScene::make_resident(bool with_cached) {
       cached.scene = nullptr;
     }
   }
-  taken_over_.clear();
   std::fill(is_resident_.begin(), is_resident_.end(), std::uint8_t{0});
   std::vector<std::shared_ptr<const Cluster>> resident;
   for (auto& [number, cluster] : clusters) {
     is_resident_[number] = 1;
     resident.push_back(std::move(cluster));
   }
-  resident_ = nullptr;  // before there is another one: memory
-  resident_ = std::make_unique<const ClusterScene>(std::move(resident), build_, device_);
+  if (build_.changing) {
+    resident_->change(std::move(resident));
+  } else {
+    // What has changed once will do so again.
+    build_.changing = has_room_for_all_ || resident_ != nullptr;
+    resident_ = nullptr;  // before there is another one: memory
+    resident_ = std::make_unique<ClusterScene>(std::move(resident), build_, device_);
+  }
   std::vector<ClusterBox> elsewhere;
   std::copy_if(boxes_.begin(), boxes_.end(), std::back_inserter(elsewhere),
                [&](const ClusterBox& box) { return is_resident_[box.cluster] == 0; });
@@ -239,31 +252,30 @@ void SharedScene::make_resident(bool with_cached) {
   note_bytes();
 }
 
+// Of clusters in the cache that are not resident.
+std::uint64_t SharedScene::missing_triangles() const {
+  std::uint64_t triangles = 0;
+  for (const auto& [number, cached] : cached_)
+    triangles += is_resident(number) ? 0 : cached.cluster->triangles();
+  return triangles;
+}
+
 void SharedScene::begin_frame() {
   const bool settled = evicted_ == std::exchange(evicted_before_, evicted_);
-  std::uint64_t triangles = 0, more = 0;
+  std::uint64_t owned_triangles = 0;
+  bool took_over = false;
   for (const auto& [number, cluster] : owned_) {
-    triangles += cluster->triangles();
-    more += is_resident_[number] == 0 ? 1 : 0;
+    owned_triangles += cluster->triangles();
+    took_over = took_over || !is_resident(number);
   }
-  for (const auto& [number, cached] : cached_) {
-    if (!settled) break;
-    triangles += cached.cluster->triangles();
-    more += cached.scene != nullptr ? 1 : 0;
-  }
-  const bool is_worth_it = more > 0 && tests_ * triangles_per_test_ >= triangles;
-  const bool holds_too_much = given_bytes_ * 8 > bytes();
-  if (is_worth_it || holds_too_much) make_resident(settled);
-  for (const auto& [number, cluster] : owned_) {
-    if (!is_resident(number) && !taken_over_.contains(number))
-      taken_over_.emplace(number, alone(cluster));
-  }
-  note_bytes();
+  const std::uint64_t missing = settled ? missing_triangles() : 0;
+  const std::uint64_t cost = missing + (build_.changing ? 0 : owned_triangles);
+  const bool gathers = missing > 0 && (has_room_for_all_ || tests_ * triangles_per_test_ >= cost);
+  const bool holds_too_much = given_bytes_ > (build_.changing ? 0 : bytes() / 8);
+  if (took_over || gathers || holds_too_much) make_resident(gathers || has_resident_cached_);
 }
 
 std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
-  if (const auto taken = taken_over_.find(cluster); taken != taken_over_.end())
-    return taken->second;
   const auto at = cached_.find(cluster);
   if (at == cached_.end()) return nullptr;
   Cached& cached = at->second;
@@ -287,7 +299,6 @@ std::shared_ptr<const ClusterScene> SharedScene::put(std::uint32_t cluster, Clus
 void SharedScene::give_away(std::uint32_t cluster) {
   const auto own = owned_.find(cluster);
   if (is_resident(cluster)) given_bytes_ += own->second->bytes();
-  taken_over_.erase(cluster);
   owned_.erase(own);
 }
 

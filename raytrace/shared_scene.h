@@ -56,9 +56,10 @@ class SharedScene {
   // Whether any instance of the whole scene is an Embree instance, or can be seen through.
   bool has_instances() const { return has_instances_; }
 
-  // Parallel. To be called before a frame: gathers clusters that came from other ranks into the
-  // resident scene, once rays have spent as much on them one by one as building it will take, and
-  // only while the cache has room for all that is used.
+  // Parallel. To be called before a frame: gathers clusters that this rank owns by now into the
+  // resident scene, and those of the cache while it has room for all that is used: at once where it
+  // has room for the whole scene, else when rays have spent as much on them one by one as building
+  // will take.
   void begin_frame();
   // Most of what is at hand, as one scene.
   const ClusterScene& resident() const { return *resident_; }
@@ -75,11 +76,9 @@ class SharedScene {
   // longest while there is too much.
   std::shared_ptr<const ClusterScene> put(std::uint32_t cluster, ClusterData&& data);
   // Owned clusters that change rank for good. One that was resident stays so until the next frame,
-  // when one that was taken over comes to hand.
+  // when one that was taken over becomes resident.
   void give_away(std::uint32_t cluster);
   void take_over(std::uint32_t cluster, ClusterData&& data);
-  // Whether any that were taken over are not resident yet.
-  bool has_taken_over() const { return !taken_over_.empty(); }
   bool owns(std::uint32_t cluster) const { return owned_.contains(cluster); }
   const std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>>& owned() const {
     return owned_;
@@ -99,6 +98,7 @@ class SharedScene {
   void note_bytes();
   void drop_old();
   void make_resident(bool with_cached);
+  std::uint64_t missing_triangles() const;
   std::shared_ptr<const ClusterScene> alone(const std::shared_ptr<const Cluster>& cluster) const;
 
   struct Cached {
@@ -114,19 +114,19 @@ class SharedScene {
   EmbreeDevice device_;            // of what comes later
   std::vector<ClusterBox> boxes_;  // of all clusters
   geometry::Box3 bounds_;
-  std::unique_ptr<const ClusterScene> resident_;
+  std::unique_ptr<ClusterScene> resident_;
   std::vector<std::uint8_t> is_resident_;  // by cluster
   ClusterTree elsewhere_;
   std::vector<int> owners_;                  // by cluster
   std::vector<std::uint64_t> packed_bytes_;  // by cluster
   std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>> owned_;
   std::unordered_map<std::uint32_t, Cached> cached_;
-  std::unordered_map<std::uint32_t, std::shared_ptr<const ClusterScene>> taken_over_;
   std::list<std::uint32_t> uses_;  // cached clusters, what was used last at the front
   std::uint64_t cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
   std::uint64_t given_bytes_ = 0;     // of clusters that are resident, but not owned any more
   bool has_resident_cached_ = false;  // whether clusters of the cache are resident
-  // Rays against single clusters since the resident scene was made, how many triangles are worth
+  bool has_room_for_all_ = false;     // in the cache
+  // Rays against single clusters since the resident scene changed, how many triangles are worth
   // one, and what had been evicted when the last frame began.
   std::uint64_t tests_ = 0, triangles_per_test_ = 4, evicted_before_ = 0;
   bool has_instances_ = false;

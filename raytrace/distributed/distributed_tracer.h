@@ -87,7 +87,7 @@ class DistributedTracer {
   comm::Communicator& communicator_;
   SharedScene& scene_;
   const TiledFrame& frame_;
-  int last_sample_;  // one past it
+  int last_sample_;             // one past it
   std::size_t most_in_flight_;  // tasks
   Kernels kernels_;
   comm::Termination termination_;

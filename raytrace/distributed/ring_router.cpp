@@ -6,7 +6,6 @@
 // that frame meet it there still, wherever it goes meanwhile, so that none is missed. Degenerate:
 // alone there is nobody to go round.
 #include <cstddef>
-#include <unordered_set>
 
 #include "raytrace/distributed/ray_router.h"
 #include "raytrace/distributed/ring_loads.h"
@@ -32,19 +31,9 @@ class RingRouter final : public RayRouter {
   void choose_next(const Line& line, Progression& way) const override {
     way.next = kMiss;
     if (is_back(way)) return;
-    const auto is_elsewhere = [&](const ClusterHit& hit) { return !was_here(hit.cluster); };
-    if (context_.scene.has_taken_over()) {
-      const auto is_next = [&](const ClusterHit& hit) {
-        return was_here(hit.cluster) && !way.has_met(hit.cluster);
-      };
-      if (const ClusterHit hit = first(line, way.last, is_next); hit.cluster != kNoCluster) {
-        way.last = hit;
-        way.next = hit.cluster;
-        return;
-      }
-    }
     // On its own rank a ray that meets nothing else is done.
-    if (way.hops == 0 && first(line, kBegin, is_elsewhere).cluster == kNoCluster) return;
+    if (way.hops == 0 && context_.scene.elsewhere().next(line, kBegin).cluster == kNoCluster)
+      return;
     if (context_.messenger.ranks() == 1) return;
     ++way.hops;
     way.last = kBegin;
@@ -56,7 +45,6 @@ class RingRouter final : public RayRouter {
   void receive(int, const MessageHeader& header, std::span<const std::byte> content) override {
     if (header.kind == MessageKind::load) return loads_.hear(header.load);
     context_.scene.take_over(header.cluster, unpack_cluster(content));
-    came_.insert(header.cluster);
   }
 
   void take_turn(bool) override {
@@ -78,21 +66,6 @@ class RingRouter final : public RayRouter {
     return way.hops == static_cast<std::uint32_t>(context_.messenger.ranks());
   }
 
-  // Whether a cluster was at hand here when the frame began. Those that came meanwhile are where
-  // they were, too; who counted them as here could miss them, where they came behind a ray.
-  bool was_here(std::uint32_t cluster) const {
-    return context_.scene.owns(cluster) && !came_.contains(cluster);
-  }
-
-  // The first hit after `after` with a cluster that is `wanted`.
-  template <class Wanted>
-  ClusterHit first(const Line& line, ClusterHit after, const Wanted& wanted) const {
-    do {
-      after = context_.scene.elsewhere().next(line, after);
-    } while (after.cluster != kNoCluster && !wanted(after));
-    return after;
-  }
-
   // Gives a cluster to the next rank, whose next frame begins with it.
   void give(std::uint64_t load) {
     for (const auto& [number, cluster] : context_.scene.owned()) {
@@ -112,9 +85,8 @@ class RingRouter final : public RayRouter {
   }
 
   RoutingContext context_;
-  std::unordered_set<std::uint32_t> came_;  // in this frame
-  std::size_t given_ = 0, most_given_;      // in this frame
-  RingLoads loads_;                         // of this rank and the next
+  std::size_t given_ = 0, most_given_;  // in this frame
+  RingLoads loads_;                     // of this rank and the next
 };
 
 }  // namespace

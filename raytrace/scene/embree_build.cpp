@@ -3,6 +3,7 @@
 // Degenerate: vertices that end at a page are copied, as Embree reads past the last one.
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 #include "raytrace/scene/embree_filters.h"
 #include "raytrace/scene/embree_objects.h"
@@ -29,12 +30,14 @@ bool last_vertex_is_readable(const glm::vec3* positions, std::size_t size, std::
   return capacity > size || reinterpret_cast<std::uintptr_t>(positions + size) % kSmallestPage != 0;
 }
 
-Tree new_tree(RTCDevice device, const BuildOptions& options) {
+Tree new_tree(RTCDevice device, const BuildOptions& options, bool changing) {
   Tree tree(rtcNewScene(device));
   check(device, "making a scene");
-  rtcSetSceneBuildQuality(tree.get(), quality(options.quality));
+  // Of low quality is a tree over trees, one for each instance, which are built as those say.
+  rtcSetSceneBuildQuality(tree.get(), changing ? RTC_BUILD_QUALITY_LOW : quality(options.quality));
   const int robust = options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
-  rtcSetSceneFlags(tree.get(), static_cast<RTCSceneFlags>(robust | kFilterOfQuery));
+  const int dynamic = changing ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE;
+  rtcSetSceneFlags(tree.get(), static_cast<RTCSceneFlags>(robust | dynamic | kFilterOfQuery));
   return tree;
 }
 
@@ -48,29 +51,27 @@ void commit(RTCDevice device, RTCScene tree) {
   check(device, "building the acceleration structure");
 }
 
-void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
-                      const GeometryInstance& instance, const BuildOptions& options) {
+void attach_triangles(const EmbreeScene::State& state, RTCScene tree, unsigned number,
+                      const GeometryInstance& instance, EmbreeScene::State::Triangles& triangles) {
   RTCDevice device = state.device;
   const scenes::Mesh& mesh = *instance.mesh;
   const glm::vec3* positions = instance.positions;
   const bool moved = !instance.moved.empty();
   if (!last_vertex_is_readable(positions, mesh.positions.size(),
                                moved ? mesh.positions.size() + 1 : mesh.positions.capacity())) {
-    auto copy = std::make_unique<std::vector<glm::vec3>>();
-    copy->reserve(mesh.positions.size() + 1);
-    copy->assign(positions, positions + mesh.positions.size());
-    positions = copy->data();
-    state.copies.push_back(std::move(copy));
+    triangles.copy.reserve(mesh.positions.size() + 1);
+    triangles.copy.assign(positions, positions + mesh.positions.size());
+    positions = triangles.copy.data();
   }
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
                              sizeof(glm::vec3), mesh.positions.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
-  rtcSetGeometryBuildQuality(geometry, quality(options.quality));
+  rtcSetGeometryBuildQuality(geometry, quality(state.options.quality));
   if (instance.see_through) rtcSetGeometryOccludedFilterFunction(geometry, note_and_pass);
   if (instance.opaque) {
-    state.opaque.push_back(instance.opaque);
+    triangles.opaque = instance.opaque;
     rtcSetGeometryUserData(geometry, const_cast<std::uint64_t*>(instance.opaque->data()));
   }
   rtcCommitGeometry(geometry);
@@ -79,17 +80,17 @@ void attach_triangles(EmbreeScene::State& state, RTCScene tree, unsigned number,
   check(device, "adding triangles");
 }
 
-void attach_instance(EmbreeScene::State& state, unsigned number, const GeometryInstance& instance,
-                     const BuildOptions& options) {
+void attach_instance(EmbreeScene::State& state, unsigned number, const GeometryInstance& instance) {
   RTCDevice device = state.device;
-  Tree& mesh = state.meshes[instance.mesh_number];
-  if (!mesh) {
-    mesh = new_tree(device, options);
-    attach_triangles(state, mesh.get(), 0, instance, options);
-    commit(device, mesh.get());
+  if (state.meshes.size() <= instance.mesh_number) state.meshes.resize(instance.mesh_number + 1);
+  EmbreeScene::State::Mesh& mesh = state.meshes[instance.mesh_number];
+  if (!mesh.tree) {
+    mesh.tree = new_tree(device, state.options, false);
+    attach_triangles(state, mesh.tree.get(), 0, instance, mesh.triangles);
+    commit(device, mesh.tree.get());
   }
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, mesh.get());
+  rtcSetGeometryInstancedScene(geometry, mesh.tree.get());
   rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &instance.to_world);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(state.top.get(), geometry, number);
@@ -97,33 +98,59 @@ void attach_instance(EmbreeScene::State& state, unsigned number, const GeometryI
   check(device, "adding an instance");
 }
 
+void attach(EmbreeScene::State& state, unsigned number, const GeometryInstance& instance) {
+  if (instance.mesh == nullptr || instance.mesh->triangles.empty()) return;
+  EmbreeScene::State::Instance& own = state.instances[number];
+  if (own.attached) return;
+  own.attached = true;
+  if (instance.instanced) {
+    own.mesh = instance.mesh_number;
+    attach_instance(state, number, instance);
+  } else {
+    own.mesh = kMiss;
+    attach_triangles(state, state.top.get(), number, instance, own.triangles);
+  }
+}
+
+void detach(EmbreeScene::State& state, unsigned number) {
+  EmbreeScene::State::Instance& own = state.instances[number];
+  if (!own.attached) return;
+  rtcDetachGeometry(state.top.get(), number);
+  if (own.mesh != kMiss) state.meshes[own.mesh] = {};  // Embree keeps it for other instances
+  own = {};
+}
+
 }  // namespace
 
 EmbreeScene::EmbreeScene(std::span<const GeometryInstance> instances, const BuildOptions& options,
                          const EmbreeDevice& common, std::span<const GeometryNumbers> numbers)
-    : state_(
-          new State{common, common.state_->device.get(), common.state_->widest_packet, numbers}) {
-  RTCDevice device = state_->device;
+    : state_(new State{common, common.state_->device.get(), common.state_->widest_packet, options,
+                       numbers}) {
   const std::uint64_t before = common.memory();
+  state_->top = new_tree(state_->device, options, options.changing);
+  std::vector<std::uint32_t> all(instances.size());
+  std::iota(all.begin(), all.end(), 0U);
+  change(all, instances, numbers);
+  state_->memory = common.memory() - before;
+}
 
-  std::size_t meshes = 0;
-  for (const GeometryInstance& p : instances)
-    meshes = std::max<std::size_t>(meshes, p.mesh_number + 1);
-  state_->meshes.resize(meshes);
-  state_->top = new_tree(device, options);
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    const GeometryInstance& instance = instances[i];
+void EmbreeScene::change(std::span<const std::uint32_t> changed,
+                         std::span<const GeometryInstance> instances,
+                         std::span<const GeometryNumbers> numbers) {
+  State& state = *state_;
+  const std::uint64_t before = state.common.memory();
+  state.numbers = numbers;
+  state.instances.resize(instances.size());
+  for (const std::uint32_t i : changed) detach(state, i);
+  for (const std::uint32_t i : changed) attach(state, i, instances[i]);
+  commit(state.device, state.top.get());
+  has_see_through_ = has_instances_ = false;
+  for (const GeometryInstance& instance : instances) {
     if (instance.mesh == nullptr || instance.mesh->triangles.empty()) continue;
     has_see_through_ = has_see_through_ || instance.see_through;
     has_instances_ = has_instances_ || instance.instanced;
-    if (instance.instanced) {
-      attach_instance(*state_, static_cast<unsigned>(i), instance, options);
-    } else {
-      attach_triangles(*state_, state_->top.get(), static_cast<unsigned>(i), instance, options);
-    }
   }
-  commit(device, state_->top.get());
-  state_->memory = common.memory() - before;
+  state.memory += state.common.memory() - before;
 }
 
 EmbreeScene::~EmbreeScene() = default;

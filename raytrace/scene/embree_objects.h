@@ -41,13 +41,27 @@ struct EmbreeScene::State {
   EmbreeDevice common;
   RTCDevice device;  // the same
   int widest_packet;
+  BuildOptions options;
   std::span<const GeometryNumbers> numbers;
   std::uint64_t memory = 0;
-  std::vector<Tree> meshes = {};  // element i: of mesh i where it is shared, else null
+
+  // What Embree refers to of triangles beside the mesh.
+  struct Triangles {
+    std::vector<glm::vec3> copy = {};  // of positions that were unreadable
+    std::shared_ptr<const std::vector<std::uint64_t>> opaque = {};
+  };
+  struct Mesh {
+    Triangles triangles = {};
+    Tree tree = {};
+  };
+  struct Instance {
+    Triangles triangles = {};  // where it has a mesh of its own
+    std::uint32_t mesh = 0;
+    bool attached = false;
+  };
+  std::vector<Mesh> meshes = {};         // element i: of mesh i where it is shared
+  std::vector<Instance> instances = {};  // element i: of instance i
   Tree top = {};
-  std::vector<std::unique_ptr<std::vector<glm::vec3>>> copies =
-      {};  // of positions that were unreadable
-  std::vector<std::shared_ptr<const std::vector<std::uint64_t>>> opaque = {};  // of geometries
 };
 
 }  // namespace delray::raytrace

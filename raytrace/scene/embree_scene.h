@@ -17,6 +17,7 @@ struct BuildOptions {
   enum class Quality : std::uint8_t { low, medium, high } quality = Quality::medium;
   bool robust = true;        // no ray slips between two triangles that share an edge
   bool share_meshes = true;  // meshes placed more than once become Embree instances
+  bool changing = false;     // EmbreeScene::change; half as much memory again
   std::string isa;           // sse2, sse4.2, avx, avx2, avx512 (where present); empty: the best
 };
 
@@ -37,7 +38,7 @@ class EmbreeDevice {
   std::shared_ptr<State> state_;
 };
 
-// Immutable once made; any number of threads may send rays at the same time.
+// Any number of threads may send rays at the same time.
 class EmbreeScene {
  public:
   // Builds in the caller's arena; scenes of one device one after the other, or memory() of one
@@ -55,6 +56,13 @@ class EmbreeScene {
   ~EmbreeScene();
   EmbreeScene(EmbreeScene&&) noexcept;
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
+
+  // Elements `changed` of `instances` are others than before; those with a null mesh are taken
+  // away. `instances` and `numbers` are all of them, and may lie elsewhere than before. Instances
+  // with the same mesh come and go together. O(n log n) of the triangles that come, with
+  // BuildOptions::changing, else of all. REQUIRES: no rays meanwhile.
+  void change(std::span<const std::uint32_t> changed, std::span<const GeometryInstance> instances,
+              std::span<const GeometryNumbers> numbers);
 
   // Nearest hits; `coherent`: the rays of a packet stay close to each other, which makes it faster
   // and changes nothing else. Where a ray goes through an edge or a corner and meets several
