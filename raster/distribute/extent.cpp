@@ -106,8 +106,7 @@ Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t 
     }
     for (std::uint32_t p = place; p < last; ++p)
       if (vertices_.any_outside || boxes_.pixels[p] == TriangleBoxes::kAlone)
-        set_up(screen_, draw, vertices_, corners_at(block, cluster, p), cluster.first + p, 0,
-               include_triangle);
+        set_up({screen_, draw, block, cluster, vertices_}, p, 0, include_triangle);
   }
   if (result.triangles == 0) result.box = {};
   return result;

@@ -44,20 +44,20 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
   const MeshCluster& mesh_cluster = block.clusters[cluster.part];
   const ScreenVertices& vertices = memory().vertices;
   TriangleBoxes& boxes = memory().boxes;
-  if (!vertices.any_outside) find_boxes({rank_.screen, draw, block, mesh_cluster, vertices}, boxes);
+  const ClusterOnScreen on_screen{rank_.screen, draw, block, mesh_cluster, vertices};
+  if (!vertices.any_outside) find_boxes(on_screen, boxes);
   for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
     const bool alone = vertices.any_outside || boxes.pixels[place] == TriangleBoxes::kAlone;
     if (!alone && boxes.pixels[place] == TriangleBoxes::kCulled) continue;
     geometry::Rect box = boxes.box(place);
     if (alone) {
       box = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
-      const Fate fate = set_up(rank_.screen, draw, vertices, corners_at(block, mesh_cluster, place),
-                               cluster.first + place, 0,
-                               [&](const ScreenTriangle&, const geometry::Rect& pixels) {
-                                 box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0),
-                                        std::max(box.x1, pixels.x1), std::max(box.y1, pixels.y1)};
-                               });
-      if (fate == Fate::culled) continue;
+      const SetUpOutcome outcome =
+          set_up(on_screen, place, 0, [&](const ScreenTriangle&, const geometry::Rect& pixels) {
+            box = {std::min(box.x0, pixels.x0), std::min(box.y0, pixels.y0),
+                   std::max(box.x1, pixels.x1), std::max(box.y1, pixels.y1)};
+          });
+      if (outcome == SetUpOutcome::culled) continue;
     }
     if (!one_owner) find_owners(box);
     bool travels = false;

@@ -42,14 +42,23 @@ static_assert(std::int64_t{2} * kCompact * (kCompact + 16 * kSubpixels) < INT32_
 // What a cluster's triangles have in common. Each is set up as seen from an origin of its own, a
 // pixel's corner in the frame; that of a compact cluster's triangles is one and the same.
 struct ClusterInSetUp {
-  explicit ClusterInSetUp(const ScreenVertices& all) : vertices(all) {}
+  explicit ClusterInSetUp(const ClusterToSetUp& cluster)
+      : wanted(cluster),
+        vertices(cluster.on_screen.vertices),
+        clip(cluster.clip),
+        centre_x(cluster.on_screen.screen.centre_x),
+        centre_y(cluster.on_screen.screen.centre_y),
+        tiles_x(cluster.on_screen.screen.tiles_x),
+        first_number(cluster.first_number) {}
 
+  const ClusterToSetUp& wanted;
   const ScreenVertices& vertices;
   std::int32_t position[kClusterVertices + ScreenVertices::kPadding];  // if compact: x | y << 16
   int origin_x = 0, origin_y = 0;                                      // if compact
   geometry::Rect clip;                                                 // pixels of the frame
   DepthsAround around;                                                 // in them
-  int centre_x = 0, centre_y = 0, tiles_x = 0;                         // the screen's
+  int centre_x, centre_y, tiles_x;                                     // the screen's
+  std::uint32_t first_number;                                          // at place 0
 };
 
 // Small triangles: positions x | y << 16 of the corners seen from the origin, and their numbers a |
@@ -81,8 +90,7 @@ struct SmallSetUp {
 };
 
 HWY_INLINE SmallSetUp set_up_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles,
-                                   std::size_t first, std::size_t count,
-                                   std::uint32_t first_number) {
+                                   std::size_t first, std::size_t count) {
   const Ints d;
   const Floats df;
   const hn::RebindToUnsigned<Ints> du;
@@ -122,7 +130,8 @@ HWY_INLINE SmallSetUp set_up_small(const ClusterInSetUp& cluster, const SmallTri
   const F per_subpixel = hn::Set(df, 1.0F / kSubpixels);
   s.from_x = hn::Mul(hn::ConvertTo(df, hn::Sub(x, ax)), per_subpixel);
   s.from_y = hn::Mul(hn::ConvertTo(df, hn::Sub(y, ay)), per_subpixel);
-  s.number = hn::Add(hn::Set(du, first_number), hn::ShiftRight<24>(hn::BitCast(du, corners)));
+  s.number =
+      hn::Add(hn::Set(du, cluster.first_number), hn::ShiftRight<24>(hn::BitCast(du, corners)));
   return s;
 }
 
@@ -134,11 +143,10 @@ HWY_INLINE void store4(V a, V b, V c, V d, void* to) {
 
 // One vector of triangles from `first` on, at most `count` of them, as windows.
 void set_up_windows(const ClusterInSetUp& cluster, const SmallTriangles& triangles,
-                    std::size_t first, std::size_t count, std::uint32_t first_number,
-                    WindowTriangles& windows) {
+                    std::size_t first, std::size_t count, WindowTriangles& windows) {
   const Ints d;
   const Floats df;
-  const SmallSetUp s = set_up_small(cluster, triangles, first, count, first_number);
+  const SmallSetUp s = set_up_small(cluster, triangles, first, count);
   // Windows start at multiples of their width: what one triangle has stored is soon loaded again
   // for the next, which is slow unless both are the same vectors.
   static_assert(WindowTriangles::kWindowWidth == 8);
@@ -177,11 +185,11 @@ void set_up_windows(const ClusterInSetUp& cluster, const SmallTriangles& triangl
 
 // One vector of small triangles from `first` on, at most `count` of them, pixel by pixel.
 void draw_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles, std::size_t first,
-                std::size_t count, std::uint32_t first_number, SetUpResult& result) {
+                std::size_t count, SetUpResult& result) {
   const Ints d;
   const Floats df;
   const hn::RebindToUnsigned<Ints> du;
-  const SmallSetUp s = set_up_small(cluster, triangles, first, count, first_number);
+  const SmallSetUp s = set_up_small(cluster, triangles, first, count);
   const auto& [origin, box, columns, rows, e0, e1, e2, slope, depth0, nearest, farthest, from_x,
                from_y, number] = s;
   const I none = hn::Set(d, -1);
@@ -225,18 +233,80 @@ void draw_small(const ClusterInSetUp& cluster, const SmallTriangles& triangles, 
 }
 static_assert(kTileSize == 1 << 6 && kTilePixels == 1 << 12);
 
-// Of `keep`, those that are hidden: their boxes' pixels [x0, x1] x [y0, y1] of the frame show what
-// is nearer.
-HWY_INLINE Mask hidden_of(const ClusterInSetUp& cluster, Mask keep, I a, I b, I c, I x0, I y0, I x1,
-                          I y1) {
+// Corners of triangles and where they are, seen from the origin, by coordinates and in one word
+// each, x | y << 16.
+struct PlacedTriangles {
+  Origins origin;
+  I ax, ay, bx, by, cx, cy;
+  I a, b, c;
+};
+
+HWY_INLINE PlacedTriangles place_compact(const ClusterInSetUp& cluster, const Corners& corners) {
+  const Ints d;
+  PlacedTriangles t;
+  t.origin = {hn::Set(d, cluster.origin_x), hn::Set(d, cluster.origin_y)};
+  t.a = hn::GatherIndex(d, cluster.position, corners.a);
+  t.b = hn::GatherIndex(d, cluster.position, corners.b);
+  t.c = hn::GatherIndex(d, cluster.position, corners.c);
+  t.ax = low_half(t.a), t.ay = high_half(t.a);
+  t.bx = low_half(t.b), t.by = high_half(t.b);
+  t.cx = low_half(t.c), t.cy = high_half(t.c);
+  return t;
+}
+
+// Each from an origin of its own. Meaningless where a triangle is too wide.
+HWY_INLINE PlacedTriangles place_wide(const ClusterInSetUp& cluster, const Corners& corners,
+                                      Mask& too_wide) {
+  const Ints d;
+  const ScreenVertices& vertices = cluster.vertices;
+  PlacedTriangles t;
+  t.ax = hn::GatherIndex(d, vertices.x, corners.a),
+  t.ay = hn::GatherIndex(d, vertices.y, corners.a);
+  t.bx = hn::GatherIndex(d, vertices.x, corners.b),
+  t.by = hn::GatherIndex(d, vertices.y, corners.b);
+  t.cx = hn::GatherIndex(d, vertices.x, corners.c),
+  t.cy = hn::GatherIndex(d, vertices.y, corners.c);
+  const I low_x = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(t.ax, t.bx), t.cx));
+  const I low_y = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(t.ay, t.by), t.cy));
+  const I first_x = hn::ShiftLeft<kSubpixelBits>(low_x);
+  const I first_y = hn::ShiftLeft<kSubpixelBits>(low_y);
+  t.origin = {hn::Add(low_x, hn::Set(d, cluster.centre_x)),
+              hn::Add(low_y, hn::Set(d, cluster.centre_y))};
+  t.ax = hn::Sub(t.ax, first_x), t.bx = hn::Sub(t.bx, first_x), t.cx = hn::Sub(t.cx, first_x);
+  t.ay = hn::Sub(t.ay, first_y), t.by = hn::Sub(t.by, first_y), t.cy = hn::Sub(t.cy, first_y);
+  const I farthest =
+      hn::Max(hn::Max(hn::Max(t.ax, t.ay), hn::Max(t.bx, t.by)), hn::Max(t.cx, t.cy));
+  too_wide = hn::Gt(farthest, hn::Set(d, kCompact - 1));
+  t.a = hn::Or(t.ax, hn::ShiftLeft<16>(t.ay));
+  t.b = hn::Or(t.bx, hn::ShiftLeft<16>(t.by));
+  t.c = hn::Or(t.cx, hn::ShiftLeft<16>(t.cy));
+  return t;
+}
+
+// Sets up the triangles at some places one by one, and returns how many these are.
+HWY_INLINE std::size_t set_up_alone(const ClusterInSetUp& cluster, I places, Mask alone,
+                                    SetUpResult& result) {
+  const Ints d;
+  if (hn::AllFalse(d, alone)) return 0;
+  HWY_ALIGN std::int32_t which[kMostLanes];
+  append(places, alone, which);
+  const std::size_t count = hn::CountTrue(d, alone);
+  for (std::size_t k = 0; k < count; ++k)
+    set_up_place(cluster.wanted, static_cast<std::uint32_t>(which[k]), result);
+  return count;
+}
+
+// Of `keep`, those that are hidden: the pixels of their boxes, in the frame, show what is nearer.
+HWY_INLINE Mask hidden_of(const ClusterInSetUp& cluster, Mask keep, const Corners& corners,
+                          const Boxes& pixels) {
   static_assert(VisibilityTile::kBlockWidth == 16 && VisibilityTile::kBlockHeight == 8);
   const Ints d;
   const Floats df;
   const DepthsAround& around = cluster.around;
-  const I block_x = hn::ShiftRight<4>(x0), block_y = hn::ShiftRight<3>(y0);
+  const I block_x = hn::ShiftRight<4>(pixels.x0), block_y = hn::ShiftRight<3>(pixels.y0);
   const I one = hn::Set(d, 1);
-  const Mask many = hn::Or(hn::Gt(hn::ShiftRight<4>(x1), hn::Add(block_x, one)),
-                           hn::Gt(hn::ShiftRight<3>(y1), hn::Add(block_y, one)));
+  const Mask many = hn::Or(hn::Gt(hn::ShiftRight<4>(pixels.x1), hn::Add(block_x, one)),
+                           hn::Gt(hn::ShiftRight<3>(pixels.y1), hn::Add(block_y, one)));
   const Mask known = hn::AndNot(many, keep);
   if (hn::AllFalse(d, known)) return known;
   const I place =
@@ -244,140 +314,81 @@ HWY_INLINE Mask hidden_of(const ClusterInSetUp& cluster, Mask keep, I a, I b, I 
               hn::Sub(block_x, hn::Set(d, around.x0)));
   const I farthest = hn::GatherIndex(d, around.farthest, hn::IfThenElseZero(known, place));
   const float* depths = cluster.vertices.depth;
-  const F nearest = hn::Min(hn::Min(hn::GatherIndex(df, depths, a), hn::GatherIndex(df, depths, b)),
-                            hn::GatherIndex(df, depths, c));
+  const F nearest = hn::Min(
+      hn::Min(hn::GatherIndex(df, depths, corners.a), hn::GatherIndex(df, depths, corners.b)),
+      hn::GatherIndex(df, depths, corners.c));
   return hn::And(known, hn::Gt(hn::Not(hn::BitCast(d, nearest)), farthest));
 }
 
-enum class Extent : bool { compact, wide };
-
-template <Extent extent>
-void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                    const Cluster& places, const ClusterInSetUp& cluster,
-                    std::uint32_t first_number, SetUpResult& result) {
-  const MeshCluster& mesh_cluster = block.clusters[places.part];
-  const geometry::Rect& clip = cluster.clip;
+// How triangles are drawn: those of a few pixels pixel by pixel, those that are wider window by
+// window if they lie in one tile; others are handed on.
+struct SizeMasks {
+  Mask small, medium;
+};
+HWY_INLINE SizeMasks sizes_of(I columns, I rows, const Boxes& pixels, Mask keep,
+                              Mask windows_wanted) {
   const Ints d;
-  const Bytes db;
-  const std::size_t lanes = hn::Lanes(d);
-  const std::uint8_t* corners = block.corners.data() + mesh_cluster.first_corner;
-  const std::size_t stride = mesh_cluster.corner_stride();
-  SmallTriangles small, medium;
-  const Mask windows_wanted = hn::FirstN(d, result.fragments_only ? 0 : lanes);
-  const I zero = hn::Zero(d);
   const I small_side = hn::Set(d, kSmallSide);
-  std::size_t kept = 0, set_up_alone = 0;
-  for (std::size_t place = places.begin / lanes * lanes; place < places.end; place += lanes) {
-    // Of a constant; counted from a variable, lanes are filled one by one.
-    const I places_here = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(place)));
-    const I a = hn::PromoteTo(d, hn::LoadU(db, corners + place));
-    const I b = hn::PromoteTo(d, hn::LoadU(db, corners + stride + place));
-    const I c = hn::PromoteTo(d, hn::LoadU(db, corners + 2 * stride + place));
-    Mask in_range = hn::And(hn::Gt(places_here, hn::Set(d, places.begin - 1)),
-                            hn::Lt(places_here, hn::Set(d, places.end)));
-    I pa, pb, pc, ax, ay, bx, by, cx, cy;
-    Origins origin;
-    if constexpr (extent == Extent::compact) {
-      origin = {hn::Set(d, cluster.origin_x), hn::Set(d, cluster.origin_y)};
-      pa = hn::GatherIndex(d, cluster.position, a);
-      pb = hn::GatherIndex(d, cluster.position, b);
-      pc = hn::GatherIndex(d, cluster.position, c);
-      ax = low_half(pa), ay = high_half(pa);
-      bx = low_half(pb), by = high_half(pb);
-      cx = low_half(pc), cy = high_half(pc);
-    } else {
-      ax = hn::GatherIndex(d, cluster.vertices.x, a),
-      ay = hn::GatherIndex(d, cluster.vertices.y, a);
-      bx = hn::GatherIndex(d, cluster.vertices.x, b),
-      by = hn::GatherIndex(d, cluster.vertices.y, b);
-      cx = hn::GatherIndex(d, cluster.vertices.x, c),
-      cy = hn::GatherIndex(d, cluster.vertices.y, c);
-      const I low_x = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(ax, bx), cx));
-      const I low_y = hn::ShiftRight<kSubpixelBits>(hn::Min(hn::Min(ay, by), cy));
-      const I first_x = hn::ShiftLeft<kSubpixelBits>(low_x);
-      const I first_y = hn::ShiftLeft<kSubpixelBits>(low_y);
-      origin = {hn::Add(low_x, hn::Set(d, cluster.centre_x)),
-                hn::Add(low_y, hn::Set(d, cluster.centre_y))};
-      ax = hn::Sub(ax, first_x), bx = hn::Sub(bx, first_x), cx = hn::Sub(cx, first_x);
-      ay = hn::Sub(ay, first_y), by = hn::Sub(by, first_y), cy = hn::Sub(cy, first_y);
-      const I farthest = hn::Max(hn::Max(hn::Max(ax, ay), hn::Max(bx, by)), hn::Max(cx, cy));
-      const Mask alone = hn::And(in_range, hn::Gt(farthest, hn::Set(d, kCompact - 1)));
-      if (!hn::AllFalse(d, alone)) {
-        HWY_ALIGN std::int32_t which[kMostLanes];
-        append(places_here, alone, which);
-        const std::size_t count = hn::CountTrue(d, alone);
-        for (std::size_t k = 0; k < count; ++k) {
-          set_up_place(screen, draw, block, places, cluster.vertices,
-                       static_cast<std::uint32_t>(which[k]), first_number, clip, result);
-        }
-        set_up_alone += count;
-        in_range = hn::AndNot(alone, in_range);
-      }
-      pa = hn::Or(ax, hn::ShiftLeft<16>(ay));
-      pb = hn::Or(bx, hn::ShiftLeft<16>(by));
-      pc = hn::Or(cx, hn::ShiftLeft<16>(cy));
-    }
-    const Boxes box = boxes_of(clip, origin, ax, ay, bx, by, cx, cy);
-    const I columns = hn::Sub(box.x1, box.x0), rows = hn::Sub(box.y1, box.y0);
-    const I area = hn::Sub(hn::Mul(hn::Sub(bx, ax), hn::Sub(cy, ay)),
-                           hn::Mul(hn::Sub(cx, ax), hn::Sub(by, ay)));
-    const Mask clockwise = hn::Gt(area, zero), counter = hn::Lt(area, zero);
-    const Mask shown = draw.hidden_side == 0  ? hn::Or(clockwise, counter)
-                       : draw.hidden_side > 0 ? counter
-                                              : clockwise;
-    Mask keep = hn::And(hn::And(hn::Gt(hn::Or(columns, rows), hn::Set(d, -1)), shown), in_range);
-    kept += hn::CountTrue(d, keep);
-    const I pixel_x0 = hn::Add(box.x0, origin.x), pixel_y0 = hn::Add(box.y0, origin.y);
-    const I pixel_x1 = hn::Add(box.x1, origin.x), pixel_y1 = hn::Add(box.y1, origin.y);
-    if (cluster.around.may_hide) {
-      keep = hn::AndNot(hidden_of(cluster, keep, a, b, c, pixel_x0, pixel_y0, pixel_x1, pixel_y1),
-                        keep);
-    }
-    if (hn::AllFalse(d, keep)) continue;
-    // Triangles of a few pixels are drawn pixel by pixel, those that are wider window by window if
-    // they lie in one tile.
-    const I border = hn::Or(hn::Xor(pixel_x0, pixel_x1), hn::Xor(pixel_y0, pixel_y1));
-    const Mask tiny = hn::Lt(hn::Add(hn::Mul(columns, rows), hn::Add(columns, rows)),
-                             hn::Set(d, kTinyBox));  // (columns + 1) * (rows + 1) - 1
-    const Mask fits = hn::And(hn::And(hn::Lt(columns, hn::Set(d, WindowTriangles::kMostColumns)),
-                                      hn::Lt(rows, hn::Set(d, WindowTriangles::kMostRows))),
-                              hn::Lt(border, hn::Set(d, kTileSize)));
-    const Mask is_medium = hn::And(hn::AndNot(tiny, hn::And(keep, fits)), windows_wanted);
-    const Mask is_small = hn::AndNot(
-        is_medium, hn::And(keep, hn::And(hn::Lt(columns, small_side), hn::Lt(rows, small_side))));
-    const I turned_b = hn::IfThenElse(counter, c, b), turned_c = hn::IfThenElse(counter, b, c);
-    const I names = hn::Or(hn::Or(a, hn::ShiftLeft<8>(turned_b)),
-                           hn::Or(hn::ShiftLeft<16>(turned_c), hn::ShiftLeft<24>(places_here)));
-    const auto append_to = [&](Mask mask, SmallTriangles& triangles) {
-      append(pa, mask, triangles.a + triangles.size);
-      append(hn::IfThenElse(counter, pc, pb), mask, triangles.b + triangles.size);
-      append(hn::IfThenElse(counter, pb, pc), mask, triangles.c + triangles.size);
-      append(names, mask, triangles.corners + triangles.size);
-      append(origin.x, mask, triangles.origin_x + triangles.size);
-      append(origin.y, mask, triangles.origin_y + triangles.size);
-      triangles.size += hn::CountTrue(d, mask);
-    };
-    append_to(is_small, small);
-    if (!hn::AllFalse(d, is_medium)) append_to(is_medium, medium);
+  const I border = hn::Or(hn::Xor(pixels.x0, pixels.x1), hn::Xor(pixels.y0, pixels.y1));
+  const Mask tiny = hn::Lt(hn::Add(hn::Mul(columns, rows), hn::Add(columns, rows)),
+                           hn::Set(d, kTinyBox));  // (columns + 1) * (rows + 1) - 1
+  const Mask fits = hn::And(hn::And(hn::Lt(columns, hn::Set(d, WindowTriangles::kMostColumns)),
+                                    hn::Lt(rows, hn::Set(d, WindowTriangles::kMostRows))),
+                            hn::Lt(border, hn::Set(d, kTileSize)));
+  SizeMasks sizes;
+  sizes.medium = hn::And(hn::AndNot(tiny, hn::And(keep, fits)), windows_wanted);
+  sizes.small = hn::AndNot(
+      sizes.medium, hn::And(keep, hn::And(hn::Lt(columns, small_side), hn::Lt(rows, small_side))));
+  return sizes;
+}
 
-    const Mask is_other = hn::AndNot(hn::Or(is_small, is_medium), keep);
-    if (hn::AllFalse(d, is_other)) continue;
-    HWY_ALIGN std::int32_t others[kMostLanes];
-    append(names, is_other, others);
-    const std::size_t count = hn::CountTrue(d, is_other);
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto name = static_cast<std::uint32_t>(others[k]);
-      const ScreenVertex v[3] = {cluster.vertices[name & 0xFF], cluster.vertices[name >> 8 & 0xFF],
-                                 cluster.vertices[name >> 16 & 0xFF]};
-      append_triangle(screen, clip, {{v[0], v[1], v[2]}, first_number + (name >> 24)},
-                      centres_in_box(v[0], v[1], v[2], screen), false, result);
-    }
+// Triangles whose corners run clockwise, in the order of SmallTriangles::corners.
+struct ClockwiseTriangles {
+  Origins origin;
+  I a, b, c;  // positions
+  I corners;
+};
+HWY_INLINE ClockwiseTriangles turn(const PlacedTriangles& t, const Corners& corners, Mask counter,
+                                   I places) {
+  const I b = hn::IfThenElse(counter, corners.c, corners.b);
+  const I c = hn::IfThenElse(counter, corners.b, corners.c);
+  return {t.origin, t.a, hn::IfThenElse(counter, t.c, t.b), hn::IfThenElse(counter, t.b, t.c),
+          hn::Or(hn::Or(corners.a, hn::ShiftLeft<8>(b)),
+                 hn::Or(hn::ShiftLeft<16>(c), hn::ShiftLeft<24>(places)))};
+}
+
+HWY_INLINE void append_to(SmallTriangles& triangles, const ClockwiseTriangles& t, Mask mask) {
+  const Ints d;
+  append(t.a, mask, triangles.a + triangles.size);
+  append(t.b, mask, triangles.b + triangles.size);
+  append(t.c, mask, triangles.c + triangles.size);
+  append(t.corners, mask, triangles.corners + triangles.size);
+  append(t.origin.x, mask, triangles.origin_x + triangles.size);
+  append(t.origin.y, mask, triangles.origin_y + triangles.size);
+  triangles.size += hn::CountTrue(d, mask);
+}
+
+// Hands on triangles that are neither small nor medium, to be drawn tile by tile.
+HWY_INLINE void hand_on(const ClusterInSetUp& cluster, I corners, Mask others,
+                        SetUpResult& result) {
+  const Ints d;
+  if (hn::AllFalse(d, others)) return;
+  HWY_ALIGN std::int32_t which[kMostLanes];
+  append(corners, others, which);
+  const std::size_t count = hn::CountTrue(d, others);
+  const ScreenVertices& vertices = cluster.vertices;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto name = static_cast<std::uint32_t>(which[k]);
+    const ScreenVertex v[3] = {vertices[name & 0xFF], vertices[name >> 8 & 0xFF],
+                               vertices[name >> 16 & 0xFF]};
+    append_triangle(cluster.wanted, {{v[0], v[1], v[2]}, cluster.first_number + (name >> 24)},
+                    centres_in_box(v[0], v[1], v[2], cluster.wanted.on_screen.screen), result);
   }
-  const std::uint64_t in = places.end - places.begin - set_up_alone;
-  result.counts.in += in;
-  result.counts.culled += in - kept;
-  result.counts.rasterized += kept;
+}
 
+HWY_INLINE void draw_sorted(const ClusterInSetUp& cluster, const SmallTriangles& small,
+                            const SmallTriangles& medium, SetUpResult& result) {
+  const std::size_t lanes = hn::Lanes(Ints());
   // The worst that may follow, and a vector more.
   const std::size_t most = result.fragments + small.size * kSmallSide * kSmallSide + kMostLanes;
   if (result.address.size() < most) {
@@ -386,23 +397,74 @@ void set_up_vectors(const Screen& screen, const PreparedDraw& draw, const Cluste
     result.number.resize(2 * most);
   }
   result.windows.reserve(result.windows.size + medium.size + kMostLanes);
-  for (std::size_t i = 0; i < medium.size; i += lanes) {
-    set_up_windows(cluster, medium, i, std::min(lanes, medium.size - i), first_number,
-                   result.windows);
-  }
+  for (std::size_t i = 0; i < medium.size; i += lanes)
+    set_up_windows(cluster, medium, i, std::min(lanes, medium.size - i), result.windows);
   for (std::size_t i = 0; i < small.size; i += lanes)
-    draw_small(cluster, small, i, std::min(lanes, small.size - i), first_number, result);
+    draw_small(cluster, small, i, std::min(lanes, small.size - i), result);
 }
 
-void set_up_compact(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                    const Cluster& places, const ClusterInSetUp& cluster,
-                    std::uint32_t first_number, SetUpResult& result) {
-  set_up_vectors<Extent::compact>(screen, draw, block, places, cluster, first_number, result);
+enum class Extent : bool { compact, wide };
+
+template <Extent extent>
+void set_up_vectors(const ClusterInSetUp& cluster, SetUpResult& result) {
+  const ClusterToSetUp& wanted = cluster.wanted;
+  const MeshCluster& mesh_cluster = wanted.on_screen.cluster;
+  const Ints d;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::uint8_t* all_corners =
+      wanted.on_screen.block.corners.data() + mesh_cluster.first_corner;
+  const std::size_t stride = mesh_cluster.corner_stride();
+  const int hidden_side = wanted.on_screen.draw.hidden_side;
+  const auto begin = static_cast<std::int32_t>(wanted.begin);
+  const auto end = static_cast<std::int32_t>(wanted.end);
+  SmallTriangles small, medium;
+  const Mask windows_wanted = hn::FirstN(d, result.fragments_only ? 0 : lanes);
+  const I zero = hn::Zero(d);
+  std::size_t kept = 0, alone = 0;
+  for (std::size_t place = wanted.begin / lanes * lanes; place < wanted.end; place += lanes) {
+    // Of a constant; counted from a variable, lanes are filled one by one.
+    const I places = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(place)));
+    const Corners corners = load_corners(all_corners, stride, place);
+    Mask in_range = hn::And(hn::Gt(places, hn::Set(d, begin - 1)), hn::Lt(places, hn::Set(d, end)));
+    PlacedTriangles t;
+    if constexpr (extent == Extent::compact) {
+      t = place_compact(cluster, corners);
+    } else {
+      Mask too_wide;
+      t = place_wide(cluster, corners, too_wide);
+      alone += set_up_alone(cluster, places, hn::And(in_range, too_wide), result);
+      in_range = hn::AndNot(too_wide, in_range);
+    }
+    const Boxes box = boxes_of(cluster.clip, t.origin, t.ax, t.ay, t.bx, t.by, t.cx, t.cy);
+    const I columns = hn::Sub(box.x1, box.x0), rows = hn::Sub(box.y1, box.y0);
+    const I area = hn::Sub(hn::Mul(hn::Sub(t.bx, t.ax), hn::Sub(t.cy, t.ay)),
+                           hn::Mul(hn::Sub(t.cx, t.ax), hn::Sub(t.by, t.ay)));
+    const Mask clockwise = hn::Gt(area, zero), counter = hn::Lt(area, zero);
+    const Mask shown = shown_of(hidden_side, clockwise, counter);
+    Mask keep = hn::And(hn::And(hn::Gt(hn::Or(columns, rows), hn::Set(d, -1)), shown), in_range);
+    kept += hn::CountTrue(d, keep);
+    const Boxes pixels = {hn::Add(box.x0, t.origin.x), hn::Add(box.y0, t.origin.y),
+                          hn::Add(box.x1, t.origin.x), hn::Add(box.y1, t.origin.y)};
+    if (cluster.around.may_hide) keep = hn::AndNot(hidden_of(cluster, keep, corners, pixels), keep);
+    if (hn::AllFalse(d, keep)) continue;
+    const SizeMasks sizes = sizes_of(columns, rows, pixels, keep, windows_wanted);
+    const ClockwiseTriangles turned = turn(t, corners, counter, places);
+    append_to(small, turned, sizes.small);
+    if (!hn::AllFalse(d, sizes.medium)) append_to(medium, turned, sizes.medium);
+    hand_on(cluster, turned.corners, hn::AndNot(hn::Or(sizes.small, sizes.medium), keep), result);
+  }
+  const std::uint64_t in = wanted.end - wanted.begin - alone;
+  result.counts.in += in;
+  result.counts.culled += in - kept;
+  result.counts.rasterized += kept;
+  draw_sorted(cluster, small, medium, result);
 }
-void set_up_wide(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                 const Cluster& places, const ClusterInSetUp& cluster, std::uint32_t first_number,
-                 SetUpResult& result) {
-  set_up_vectors<Extent::wide>(screen, draw, block, places, cluster, first_number, result);
+
+void set_up_compact(const ClusterInSetUp& cluster, SetUpResult& result) {
+  set_up_vectors<Extent::compact>(cluster, result);
+}
+void set_up_wide(const ClusterInSetUp& cluster, SetUpResult& result) {
+  set_up_vectors<Extent::wide>(cluster, result);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -415,31 +477,16 @@ namespace delray::raster {
 HWY_EXPORT(set_up_compact);
 HWY_EXPORT(set_up_wide);
 
-namespace {
-
-// Clusters that are clipped, masked or blended.
-void set_up_each(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                 const Cluster& cluster, const ScreenVertices& vertices, std::uint32_t first_number,
-                 const geometry::Rect& clip, SetUpResult& result) {
-  for (std::uint32_t place = cluster.begin; place < cluster.end; ++place)
-    set_up_place(screen, draw, block, cluster, vertices, place, first_number, clip, result);
-}
-
-}  // namespace
-
-void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                    const Cluster& cluster, const ScreenVertices& vertices,
-                    std::uint32_t first_number, const geometry::Rect& clip, const FrameTiles& tiles,
-                    SetUpResult& result) {
+void set_up_cluster(const ClusterToSetUp& cluster, const FrameTiles& tiles, SetUpResult& result) {
+  const ScreenVertices& vertices = cluster.on_screen.vertices;
+  const PreparedDraw& draw = cluster.on_screen.draw;
   if (draw.masked || draw.blended || vertices.any_outside) {
-    set_up_each(screen, draw, block, cluster, vertices, first_number, clip, result);
+    for (std::uint32_t place = cluster.begin; place < cluster.end; ++place)
+      set_up_place(cluster, place, result);
     return;
   }
-  ClusterInSetUp in_set_up(vertices);
-  in_set_up.clip = clip;
-  in_set_up.centre_x = screen.centre_x;
-  in_set_up.centre_y = screen.centre_y;
-  in_set_up.tiles_x = screen.tiles_x;
+  ClusterInSetUp in_set_up(cluster);
+  const Screen& screen = cluster.on_screen.screen;
   const auto pixel = [](std::int32_t coordinate, int centre) {
     return (coordinate >> kSubpixelBits) + centre;
   };
@@ -447,22 +494,20 @@ void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const Cluste
                                             pixel(vertices.low_y, screen.centre_y),
                                             pixel(vertices.high_x, screen.centre_x) + 1,
                                             pixel(vertices.high_y, screen.centre_y) + 1},
-                                           clip),
+                                           cluster.clip),
                     vertices.farthest, in_set_up.around);
   // Whole pixels, so that pixel centres are where they are in the frame.
   const int low_x = vertices.low_x >> kSubpixelBits, low_y = vertices.low_y >> kSubpixelBits;
   const int origin_x = low_x * kSubpixels, origin_y = low_y * kSubpixels;
   if (vertices.high_x - origin_x >= kCompact || vertices.high_y - origin_y >= kCompact) {
-    HWY_DYNAMIC_DISPATCH(set_up_wide)
-    (screen, draw, block, cluster, in_set_up, first_number, result);
+    HWY_DYNAMIC_DISPATCH(set_up_wide)(in_set_up, result);
     return;
   }
   in_set_up.origin_x = low_x + screen.centre_x;
   in_set_up.origin_y = low_y + screen.centre_y;
-  for (std::size_t i = 0; i < block.clusters[cluster.part].vertices; ++i)
+  for (std::size_t i = 0; i < cluster.on_screen.cluster.vertices; ++i)
     in_set_up.position[i] = (vertices.x[i] - origin_x) | (vertices.y[i] - origin_y) << 16;
-  HWY_DYNAMIC_DISPATCH(set_up_compact)
-  (screen, draw, block, cluster, in_set_up, first_number, result);
+  HWY_DYNAMIC_DISPATCH(set_up_compact)(in_set_up, result);
 }
 
 }  // namespace delray::raster

@@ -43,12 +43,16 @@ struct SetUpResult {
 // Triangles that touch more tiles than this are large.
 inline constexpr int kFewTiles = 4;
 
-// Sets up places [cluster.begin, cluster.end) of the cluster and appends what may be seen in
-// `wanted` (pixels of the frame); place p has the number `first_number` + p. Counts them. Small
+// Triangles of a cluster that are set up together.
+struct ClusterToSetUp {
+  ClusterOnScreen on_screen;
+  std::uint32_t begin, end;    // places [begin, end) of the cluster
+  std::uint32_t first_number;  // the triangle at place p has the number first_number + p
+  geometry::Rect clip;         // pixels of the frame that are wanted
+};
+
+// Sets up the cluster's triangles, appends what may be seen within `clip`, and counts them. Small
 // triangles that are known to be hidden in `tiles` are left out, but counted.
-void set_up_cluster(const Screen& screen, const PreparedDraw& draw, const ClusterBlock& block,
-                    const Cluster& cluster, const ScreenVertices& vertices,
-                    std::uint32_t first_number, const geometry::Rect& clip, const FrameTiles& tiles,
-                    SetUpResult& result);
+void set_up_cluster(const ClusterToSetUp& cluster, const FrameTiles& tiles, SetUpResult& result);
 
 }  // namespace delray::raster

@@ -53,7 +53,11 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
   }
   transform(draw.to_view, task.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
             worker.vertices);
-  set_up_cluster(task.screen, draw, block, cluster, worker.vertices, k << kClusterBits, task.clip,
+  set_up_cluster({{task.screen, draw, block, mesh_cluster, worker.vertices},
+                  cluster.begin,
+                  cluster.end,
+                  k << kClusterBits,
+                  task.clip},
                  tiles, worker.result);
 }
 

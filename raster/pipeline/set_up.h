@@ -1,14 +1,15 @@
-// One triangle of a mesh as the triangles that it is on the screen.
+// One triangle of a mesh as the triangles that it is on the screen: culled, whole, or the parts
+// that clipping leaves of it.
 #pragma once
 
 #include <array>
 
 #include "raster/pipeline/clip.h"
-#include "raster/pipeline/prepared_draw.h"
+#include "raster/pipeline/cluster_on_screen.h"
 
 namespace delray::raster {
 
-// What became of the triangles that were looked at.
+// How many triangles were looked at, and what became of them.
 struct TriangleCounts {
   std::uint64_t in = 0;
   std::uint64_t culled = 0;   // off the screen, between pixel centres, without area, or facing away
@@ -27,26 +28,20 @@ struct TriangleCounts {
   }
 };
 
-// A triangle of a cluster: numbers of its corners within the cluster.
-struct LocalCorners {
-  std::uint32_t a, b, c;
-};
-inline LocalCorners corners_at(const ClusterBlock& block, const MeshCluster& cluster,
-                               std::uint32_t place) {
-  const std::uint8_t* corners = block.corners.data() + cluster.first_corner + place;
-  const std::uint32_t stride = cluster.corner_stride();
-  return {corners[0], corners[stride], corners[std::size_t{2} * stride]};
-}
+// What setting up a triangle has made of it. Culled: nothing is left.
+enum class SetUpOutcome : std::uint8_t { whole, clipped, culled };
 
-enum class Fate : std::uint8_t { whole, clipped, culled };
-
-// Hands `emit(triangle, pixels)` every part of the triangle that has area and a box with a pixel
-// centre of the frame in it; `number` is passed on. Parts have positive area. The triangle is
-// number `t` of the mesh, and has `corners` among `vertices`.
+// Hands `emit(triangle, pixels)` every part of the cluster's triangle at `place` that has area and
+// a box with a pixel centre of the frame in it; the parts get `number`, and positive area.
 template <class Emit>
-Fate set_up(const Screen& screen, const PreparedDraw& draw, const ScreenVertices& vertices,
-            const LocalCorners& corners, std::uint32_t t, std::uint32_t number, Emit&& emit) {
-  const ScreenVertex a = vertices[corners.a], b = vertices[corners.b], c = vertices[corners.c];
+SetUpOutcome set_up(const ClusterOnScreen& cluster, std::uint32_t place, std::uint32_t number,
+                    Emit&& emit) {
+  const Screen& screen = cluster.screen;
+  const PreparedDraw& draw = cluster.draw;
+  const LocalCorners corners = corners_at(cluster.block, cluster.cluster, place);
+  const ScreenVertex a = cluster.vertices[corners.a];
+  const ScreenVertex b = cluster.vertices[corners.b];
+  const ScreenVertex c = cluster.vertices[corners.c];
   bool any = false;
   const auto part = [&](const ScreenVertex& p, const ScreenVertex& q, const ScreenVertex& r) {
     const geometry::Rect pixels = centres_in_box(p, q, r, screen);
@@ -60,10 +55,10 @@ Fate set_up(const Screen& screen, const PreparedDraw& draw, const ScreenVertices
 
   if (a.x != kOutside && b.x != kOutside && c.x != kOutside) {
     part(a, b, c);
-    return any ? Fate::whole : Fate::culled;
+    return any ? SetUpOutcome::whole : SetUpOutcome::culled;
   }
   const scenes::Mesh& mesh = *draw.draw->mesh;
-  const glm::uvec3& corner = mesh.triangles[t];
+  const glm::uvec3& corner = mesh.triangles[cluster.cluster.first + place];
   const ScreenPolygon polygon =
       clip(screen,
            {draw.to_view(mesh.positions[corner.x]), draw.to_view(mesh.positions[corner.y]),
@@ -71,7 +66,7 @@ Fate set_up(const Screen& screen, const PreparedDraw& draw, const ScreenVertices
            {a, b, c});
   for (int i = 2; i < polygon.size; ++i)
     part(polygon.vertex[0], polygon.vertex[i - 1], polygon.vertex[i]);
-  return any ? Fate::clipped : Fate::culled;
+  return any ? SetUpOutcome::clipped : SetUpOutcome::culled;
 }
 
 }  // namespace delray::raster

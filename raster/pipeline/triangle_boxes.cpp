@@ -34,7 +34,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 void find_boxes(const ClusterOnScreen& of, TriangleBoxes& boxes) {
   const Ints d;
-  const Bytes db;
   const std::size_t lanes = hn::Lanes(d);
   const std::uint8_t* corners = of.block.corners.data() + of.cluster.first_corner;
   const std::size_t stride = of.cluster.corner_stride();
@@ -42,9 +41,7 @@ void find_boxes(const ClusterOnScreen& of, TriangleBoxes& boxes) {
   const I zero = hn::Zero(d), one = hn::Set(d, 1);
   Mask any_alone = hn::FirstN(d, 0);
   for (std::size_t place = 0; place < of.cluster.count; place += lanes) {
-    const I a = hn::PromoteTo(d, hn::LoadU(db, corners + place));
-    const I b = hn::PromoteTo(d, hn::LoadU(db, corners + stride + place));
-    const I c = hn::PromoteTo(d, hn::LoadU(db, corners + 2 * stride + place));
+    const auto [a, b, c] = load_corners(corners, stride, place);
     const I ax = hn::GatherIndex(d, of.vertices.x, a), ay = hn::GatherIndex(d, of.vertices.y, a);
     const I bx = hn::GatherIndex(d, of.vertices.x, b), by = hn::GatherIndex(d, of.vertices.y, b);
     const I cx = hn::GatherIndex(d, of.vertices.x, c), cy = hn::GatherIndex(d, of.vertices.y, c);
@@ -55,9 +52,7 @@ void find_boxes(const ClusterOnScreen& of, TriangleBoxes& boxes) {
         hn::Max(hn::Max(hn::Abs(abx), hn::Abs(aby)), hn::Max(hn::Abs(acx), hn::Abs(acy)));
     const I area = hn::Sub(hn::Mul(abx, acy), hn::Mul(acx, aby));
     const Mask clockwise = hn::Gt(area, zero), counter = hn::Lt(area, zero);
-    const Mask shown = of.draw.hidden_side == 0  ? hn::Or(clockwise, counter)
-                       : of.draw.hidden_side > 0 ? counter
-                                                 : clockwise;
+    const Mask shown = shown_of(of.draw.hidden_side, clockwise, counter);
     const I columns = hn::Add(hn::Sub(box.x1, box.x0), one);
     const I rows = hn::Add(hn::Sub(box.y1, box.y0), one);
     const I in_box = hn::Mul(columns, rows);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "raster/pipeline/prepared_draw.h"
+#include "raster/pipeline/cluster_on_screen.h"
 
 namespace delray::raster {
 
@@ -35,15 +35,6 @@ struct TriangleBoxes {
 struct SumOfBoxes {
   geometry::Rect box;  // around all; empty where all are culled
   std::uint64_t triangles = 0, pixels = 0;
-};
-
-// A cluster of a draw's mesh, transformed.
-struct ClusterOnScreen {
-  const Screen& screen;
-  const PreparedDraw& draw;
-  const ClusterBlock& block;
-  const MeshCluster& cluster;
-  const ScreenVertices& vertices;
 };
 
 // Boxes of all its triangles. O(triangles), a few nanoseconds each.

@@ -71,6 +71,25 @@ HWY_INLINE Boxes boxes_of(const geometry::Rect& clip, const Origins& origin, I a
           hn::Min(last(ay, by, cy), hn::Sub(hn::Set(d, clip.y1 - 1), origin.y))};
 }
 
+// Corners of triangles: their numbers within the cluster.
+struct Corners {
+  I a, b, c;
+};
+// Those at places [place, place + lanes), in arrays of which the next corner's is `stride` farther.
+HWY_INLINE Corners load_corners(const std::uint8_t* corners, std::size_t stride,
+                                std::size_t place) {
+  const Ints d;
+  const Bytes db;
+  return {hn::PromoteTo(d, hn::LoadU(db, corners + place)),
+          hn::PromoteTo(d, hn::LoadU(db, corners + stride + place)),
+          hn::PromoteTo(d, hn::LoadU(db, corners + 2 * stride + place))};
+}
+
+// The triangles that are not culled by their side: see PreparedDraw::hidden_side.
+HWY_INLINE Mask shown_of(int hidden_side, Mask clockwise, Mask counter) {
+  return hidden_side == 0 ? hn::Or(clockwise, counter) : hidden_side > 0 ? counter : clockwise;
+}
+
 // An edge function at the first pixel of each triangle's box, less 1 where the edge is neither top
 // nor left, and its steps; see tile_triangle.h.
 struct Edges {

@@ -89,16 +89,15 @@ inline SetUpMesh set_up_mesh(const Screen& screen, const scenes::Mesh& mesh, int
     transform(prepared.draw.to_view, screen, mesh.positions, block.vertices_of(mesh_cluster),
               vertices);
     for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-      const Fate fate =
-          set_up(screen, prepared.draw, vertices, corners_at(block, mesh_cluster, place),
-                 cluster.first + place, k << kClusterBits | place,
-                 [&](const ScreenTriangle& triangle, const geometry::Rect&) {
-                   result.triangles.push_back(triangle);
-                 });
+      const SetUpOutcome outcome = set_up(
+          {screen, prepared.draw, block, mesh_cluster, vertices}, place, k << kClusterBits | place,
+          [&](const ScreenTriangle& triangle, const geometry::Rect&) {
+            result.triangles.push_back(triangle);
+          });
       ++result.counts.in;
-      result.counts.culled += fate == Fate::culled;
-      result.counts.clipped += fate == Fate::clipped;
-      result.counts.rasterized += fate != Fate::culled;
+      result.counts.culled += outcome == SetUpOutcome::culled;
+      result.counts.clipped += outcome == SetUpOutcome::clipped;
+      result.counts.rasterized += outcome != SetUpOutcome::culled;
     }
   }
   return result;

@@ -158,8 +158,8 @@ std::vector<std::int64_t> expected_keys(const Screen& screen, const scenes::Scen
       }
     };
     for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-      set_up(screen, draw, vertices, corners_at(block, block.clusters[cluster.part], place),
-             cluster.first + place, k << kClusterBits | place, draw_one);
+      set_up({screen, draw, block, block.clusters[cluster.part], vertices}, place,
+             k << kClusterBits | place, draw_one);
     }
   }
   return keys;

@@ -50,7 +50,7 @@ TEST(TriangleBoxes, AreThoseOfSetUp) {
         bool any_alone = false;
         int culled = 0, kept = 0;
         for (std::uint32_t place = 0; place < cluster.count; ++place) {
-          set_up(screen, prepared.draw, vertices, corners_at(block, cluster, place), place, 0,
+          set_up({screen, prepared.draw, block, cluster, vertices}, place, 0,
                  [&](const ScreenTriangle& t, const geometry::Rect& box) {
                    const std::int64_t area =
                        doubled_area(t.vertex[0], t.vertex[1], t.vertex[2]) >> 17;
