@@ -2,9 +2,9 @@
 // tile and in parallel, triangles that touch many tiles, blended ones, and whatever the caller
 // makes of the tile.
 //
-// Threads take tiles in order from a counter. Memory of a thread belongs to one drawing and forgets
-// its triangles for the next. Degenerate: tiles in which nothing is drawn have no visibility
-// memory; the caller sees an empty view.
+// Threads take tiles in order from a counter. Each has a worker's memory, which forgets its
+// triangles when the next drawing begins. Degenerate: tiles in which nothing is drawn have no
+// visibility memory; the caller sees an empty view.
 #include "raster/distribute/regions.h"
 
 #include <algorithm>
@@ -17,15 +17,6 @@
 #include "raster/pipeline/processor_seconds.h"
 
 namespace delray::raster {
-
-namespace {
-
-std::uint64_t next_number() {
-  static std::atomic<std::uint64_t> drawings{0};
-  return ++drawings;
-}
-
-}  // namespace
 
 void RegionCounts::operator+=(const RegionCounts& other) {
   phases += other.phases;
@@ -62,7 +53,6 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
     : task_(task),
       scratch_(scratch),
       tiles_(make_tile_jobs(task.screen, task.regions)),
-      number_(next_number()),
       own_frame_(std::move(own)),
       frame_(own_frame_ != nullptr ? own_frame_.get() : frame),
       into_tiles_{task.screen,
@@ -70,8 +60,9 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
                   frame_->draws(),
                   tiles_.clip,
                   task.options.skip_hidden_clusters,
-                  [this](std::uint32_t number, int x, int y) {
-                    return alpha_test(frame_->shading(), memory().seen, number, x, y);
+                  [this](std::size_t worker, std::uint32_t number, int x, int y) {
+                    return alpha_test(frame_->shading(), scratch_.tile_memory[worker]->seen, number,
+                                      x, y);
                   },
                   {},
                   task.progress} {
@@ -79,24 +70,19 @@ RegionDrawing::RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFra
   if (task.progress != nullptr) task.progress->start(tiles_.jobs.size());
   scratch_.tiles.begin(screen, tiles_);
   begin_drawing(screen, scratch_.workers);
+  while (scratch_.tile_memory.size() < scratch_.workers.size())
+    scratch_.tile_memory.push_back(std::make_unique<TileMemory>());
+  // The triangles of another drawing have the same numbers.
+  for (const auto& memory : scratch_.tile_memory) memory->seen.clear();
   if (task.options.shade != Shade::immediate) return;
   const auto pixels =
       static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
   if (scratch_.shaded.size() < pixels) scratch_.shaded = image::Plane<image::RgbaF>(pixels);
-  into_tiles_.shade_now = [this](std::uint32_t number, int x, int y) {
+  into_tiles_.shade_now = [this](std::size_t worker, std::uint32_t number, int x, int y) {
     scratch_.shaded[static_cast<std::size_t>(y) * static_cast<std::size_t>(task_.screen.width) +
                     static_cast<std::size_t>(x)] =
-        colour_at(frame_->shading(), memory().seen, number, x, y);
+        colour_at(frame_->shading(), scratch_.tile_memory[worker]->seen, number, x, y);
   };
-}
-
-// The triangles that a thread remembers belong to one drawing.
-TileMemory& RegionDrawing::memory() const {
-  static thread_local TileMemory of_thread;
-  static thread_local std::uint64_t seen_in = 0;
-  if (seen_in != number_) of_thread.seen.clear();
-  seen_in = number_;
-  return of_thread;
 }
 
 std::vector<std::uint32_t> RegionDrawing::nearest_first(
@@ -174,9 +160,9 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
   ProcessorSeconds rasterize_seconds, shade_seconds;
   std::atomic<std::uint64_t> fragments{0}, shaded{0};
   std::atomic<std::size_t> next{0};
-  parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t) {
+  parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t worker) {
     StageClock<2> clock;
-    TileMemory& mine = memory();
+    TileMemory& mine = *scratch_.tile_memory[worker];
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
@@ -191,8 +177,8 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
         tile->clear(scratch_.tiles.rect(index));
       }
       if (tile != nullptr) {
-        shaded_here += draw_large(into_tiles_, index, scratch_.deferred.large,
-                                  scratch_.tiles.rect(index), *tile);
+        shaded_here += draw_large(into_tiles_, worker, scratch_.deferred.large,
+                                  {index, scratch_.tiles.rect(index), *tile});
       }
       if (tile != nullptr) drop_hidden(index, *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,

@@ -14,13 +14,14 @@ namespace delray::raster {
 // Memory that one frame leaves to the next.
 struct Scratch {
   Picture spare;  // nobody's any more
-  // By tile: whether it is clear in the picture whose colours are at `clear_in`, or `taken` when it
-  // was taken for the frame at hand.
+  // By tile: whether it is clear in the picture whose colours are at `clear_in`, or `taken` when
+  // that picture was taken for the frame at hand.
   std::vector<std::uint8_t> clear_tiles;
   const void* clear_in = nullptr;
   const void* taken = nullptr;
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
+  std::vector<std::unique_ptr<TileMemory>> tile_memory;  // by worker
   DeferredTriangles deferred;
   image::Plane<image::RgbaF> shaded;  // of a frame that is shaded as it is drawn
 };
@@ -103,7 +104,6 @@ class RegionDrawing {
  private:
   RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
                 const PreparedFrame* frame, Scratch& scratch);
-  TileMemory& memory() const;
   void end_drawing_into(RegionCounts& counts);
   void drop_hidden(int tile, VisibilityTile& visibility) const;
   void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
@@ -111,7 +111,6 @@ class RegionDrawing {
   const RegionTask task_;
   Scratch& scratch_;
   const TileJobs tiles_;
-  const std::uint64_t number_;  // no other drawing has it
   std::unique_ptr<PreparedFrame> own_frame_;
   const PreparedFrame* frame_;
   DrawIntoTiles into_tiles_;

@@ -108,6 +108,17 @@ void sort_by_tile(Worker& worker) {
   for (const Worker::TouchedTile& touched : worker.touched) counts[touched.tile] = {};
 }
 
+// The callbacks of a drawing as those of one worker.
+auto alpha_test_of(const DrawIntoTiles& task, std::size_t worker) {
+  return [&task, worker](std::uint32_t number, int x, int y) {
+    return task.alpha_test(worker, number, x, y);
+  };
+}
+auto shade_now_of(const DrawIntoTiles& task, std::size_t worker) {
+  return
+      [&task, worker](std::uint32_t number, int x, int y) { task.shade_now(worker, number, x, y); };
+}
+
 void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Worker& worker,
                FrameTiles& tiles) {
   const auto index = static_cast<int>(touched.tile);
@@ -118,10 +129,12 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
           .subspan(touched.first_fragment, touched.last_fragment - touched.first_fragment);
   const auto entries = std::span(worker.entries)
                            .subspan(touched.first_entry, touched.last_entry - touched.first_entry);
+  const auto alpha_test = alpha_test_of(task, worker.index);
   if (task.shade_now) {
-    worker.shaded += draw_and_shade(fragments, rect, task.shade_now, tile);
-    worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries,
-                                    task.alpha_test, task.shade_now, tile);
+    const auto shade_now = shade_now_of(task, worker.index);
+    worker.shaded += draw_and_shade(fragments, rect, shade_now, tile);
+    worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries, alpha_test,
+                                    shade_now, tile);
     return;
   }
   rasterize_windows(worker.result.windows,
@@ -131,7 +144,7 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
   rasterize_fragments(fragments, tile);
   if (entries.empty()) return;
   rasterize(task.screen, rect, worker.result.triangles, entries, tile);
-  rasterize_masked(task.screen, rect, worker.result.triangles, entries, task.alpha_test, tile);
+  rasterize_masked(task.screen, rect, worker.result.triangles, entries, alpha_test, tile);
 }
 
 // Tiles that another thread has at the moment come later.
@@ -254,7 +267,10 @@ std::vector<std::uint32_t> nearest_first(const DrawIntoTiles& task,
 
 void begin_drawing(const Screen& screen, std::vector<std::unique_ptr<Worker>>& workers) {
   const auto threads = static_cast<std::size_t>(parallel::arena_threads());
-  while (workers.size() < threads) workers.push_back(std::make_unique<Worker>());
+  while (workers.size() < threads) {
+    workers.push_back(std::make_unique<Worker>());
+    workers.back()->index = workers.size() - 1;
+  }
   for (const auto& worker : workers) {
     worker->result.clear();
     worker->result.large_triangles.clear();
@@ -324,16 +340,17 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
   return end_drawing(task.screen, workers, deferred, costs);
 }
 
-std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
-                         const geometry::Rect& rect, VisibilityTile& visibility) {
-  const std::span<const std::uint32_t> entries = large.of_tile(tile);
+std::uint64_t draw_large(const DrawIntoTiles& task, std::size_t worker, BinnedTriangles& large,
+                         const OwnTile& tile) {
+  const std::span<const std::uint32_t> entries = large.of_tile(tile.number);
   if (entries.empty()) return 0;
+  const auto alpha_test = alpha_test_of(task, worker);
   if (task.shade_now) {
-    return draw_and_shade(task.screen, rect, large.triangles, entries, task.alpha_test,
-                          task.shade_now, visibility);
+    return draw_and_shade(task.screen, tile.rect, large.triangles, entries, alpha_test,
+                          shade_now_of(task, worker), tile.visibility);
   }
-  rasterize(task.screen, rect, large.triangles, entries, visibility);
-  rasterize_masked(task.screen, rect, large.triangles, entries, task.alpha_test, visibility);
+  rasterize(task.screen, tile.rect, large.triangles, entries, tile.visibility);
+  rasterize_masked(task.screen, tile.rect, large.triangles, entries, alpha_test, tile.visibility);
   return 0;
 }
 

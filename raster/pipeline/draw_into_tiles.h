@@ -13,7 +13,7 @@
 
 namespace delray::raster {
 
-// What a thread needs, kept from batch to batch and frame to frame.
+// Memory of a thread while it draws, kept from batch to batch and frame to frame.
 struct Worker {
   struct TileCounts {
     std::uint32_t fragments = 0, entries = 0, windows = 0;
@@ -24,6 +24,7 @@ struct Worker {
     std::uint32_t first_window, last_window;
   };
 
+  std::size_t index = 0;  // among the drawing's
   ScreenVertices vertices;
   SetUpResult result;
   std::vector<TileCounts> counts;  // by tile; zero but while a batch is sorted
@@ -58,11 +59,12 @@ struct DrawIntoTiles {
   std::span<const PreparedDraw> draws;
   geometry::Rect clip;
   bool skip_hidden_clusters;
-  // Whether alpha leaves anything of a triangle of a masked draw at a pixel; called by any thread.
-  std::function<bool(std::uint32_t number, int x, int y)> alpha_test;
+  // Whether alpha leaves anything of a triangle of a masked draw at a pixel. Called by threads that
+  // each have a worker, by its index.
+  std::function<bool(std::size_t worker, std::uint32_t number, int x, int y)> alpha_test;
   // Called for every pixel as soon as it shows another triangle, by the thread that has its tile;
   // pixels are drawn one by one then. Empty: never.
-  std::function<void(std::uint32_t number, int x, int y)> shade_now;
+  std::function<void(std::size_t worker, std::uint32_t number, int x, int y)> shade_now;
   parallel::Progress* progress = nullptr;
 };
 
@@ -92,14 +94,14 @@ TriangleCounts draw_into_tiles(const DrawIntoTiles& task, FrameTiles& tiles,
                                std::vector<std::unique_ptr<Worker>>& workers,
                                DeferredTriangles& deferred, DrawCosts& costs);
 
-// Draws the large triangles of a tile, nearest first. The tile is the caller's alone. Returns how
-// often a pixel was shaded.
-std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
-                         const geometry::Rect& rect, VisibilityTile& visibility);
-inline std::uint64_t draw_large(const DrawIntoTiles& task, int tile, BinnedTriangles& large,
-                                FrameTiles& tiles) {
-  if (large.of_tile(tile).empty()) return 0;
-  return draw_large(task, tile, large, tiles.rect(tile), tiles.open(tile));
-}
+// A tile that a thread has for itself.
+struct OwnTile {
+  int number;
+  geometry::Rect rect;
+  VisibilityTile& visibility;
+};
+// Draws the large triangles of a tile, nearest first. Returns how often a pixel was shaded.
+std::uint64_t draw_large(const DrawIntoTiles& task, std::size_t worker, BinnedTriangles& large,
+                         const OwnTile& tile);
 
 }  // namespace delray::raster

@@ -412,7 +412,7 @@ void rasterize_windows(const WindowTriangles& triangles, std::span<const std::ui
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
                       std::span<const ScreenTriangle> triangles,
                       std::span<const std::uint32_t> entries,
-                      const std::function<bool(std::uint32_t, int, int)>& alpha_test,
+                      parallel::FunctionRef<bool(std::uint32_t, int, int)> alpha_test,
                       VisibilityTile& tile) {
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
@@ -429,8 +429,8 @@ void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
 std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
                              std::span<const ScreenTriangle> triangles,
                              std::span<const std::uint32_t> entries,
-                             const std::function<bool(std::uint32_t, int, int)>& alpha_test,
-                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             parallel::FunctionRef<bool(std::uint32_t, int, int)> alpha_test,
+                             parallel::FunctionRef<void(std::uint32_t, int, int)> shade,
                              VisibilityTile& tile) {
   std::uint64_t shaded = 0;
   const int tile_x = rect.x0 / kTileSize * kTileSize;
@@ -450,7 +450,7 @@ std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
 }
 
 std::uint64_t draw_and_shade(std::span<const Fragment> fragments, const geometry::Rect& rect,
-                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             parallel::FunctionRef<void(std::uint32_t, int, int)> shade,
                              VisibilityTile& tile) {
   std::uint64_t shaded = 0;
   const int tile_x = rect.x0 / kTileSize * kTileSize;

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "image/image.h"
+#include "parallel/function_ref.h"
 #include "raster/pipeline/tile_triangle.h"
 
 namespace delray::raster {
@@ -137,10 +137,10 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
                std::span<const ScreenTriangle> triangles, std::span<const std::uint32_t> entries,
                VisibilityTile& tile);
 
-// The same for fragments.
+// As rasterize, of fragments.
 void rasterize_fragments(std::span<const Fragment> fragments, VisibilityTile& tile);
 
-// The same for those that `which` names; all of them lie in the tile.
+// As rasterize, of the windows that `which` names; all of them lie in the tile.
 void rasterize_windows(const WindowTriangles& triangles, std::span<const std::uint32_t> which,
                        VisibilityTile& tile);
 
@@ -162,23 +162,24 @@ void for_each_covered(const Screen& screen, const geometry::Rect& rect,
   }
 }
 
-// The same for masked entries alone: a pixel counts as covered if solid(number, x, y) says so.
+// As rasterize, of masked entries alone: a pixel counts as covered if alpha_test(number, x, y) says
+// so.
 void rasterize_masked(const Screen& screen, const geometry::Rect& rect,
                       std::span<const ScreenTriangle> triangles,
                       std::span<const std::uint32_t> entries,
-                      const std::function<bool(std::uint32_t, int, int)>& alpha_test,
+                      parallel::FunctionRef<bool(std::uint32_t, int, int)> alpha_test,
                       VisibilityTile& tile);
 
-// The same for all entries, masked or not, and for fragments in `rect`'s tile, pixel by pixel:
-// `shade` is called whenever a pixel comes to show another triangle. They return how often.
+// As rasterize, of all entries, masked or not, or of fragments in `rect`'s tile, pixel by pixel:
+// shade(number, x, y) is called whenever a pixel comes to show another triangle. Returns how often.
 std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
                              std::span<const ScreenTriangle> triangles,
                              std::span<const std::uint32_t> entries,
-                             const std::function<bool(std::uint32_t, int, int)>& alpha_test,
-                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             parallel::FunctionRef<bool(std::uint32_t, int, int)> alpha_test,
+                             parallel::FunctionRef<void(std::uint32_t, int, int)> shade,
                              VisibilityTile& tile);
 std::uint64_t draw_and_shade(std::span<const Fragment> fragments, const geometry::Rect& rect,
-                             const std::function<void(std::uint32_t, int, int)>& shade,
+                             parallel::FunctionRef<void(std::uint32_t, int, int)> shade,
                              VisibilityTile& tile);
 
 }  // namespace delray::raster

@@ -35,15 +35,20 @@ void expect_as_pixel_by_pixel(const scenes::Scene& scene, const scenes::Camera& 
   const std::vector<PreparedDraw> draws = prepare_draws(screen, list, shader, false);
   const geometry::Rect frame_rect = screen.frame();
   const TileJobs jobs = make_tile_jobs(screen, {&frame_rect, 1});
-  const DrawIntoTiles task{
-      screen, list, draws, jobs.clip, true, [](std::uint32_t, int, int) { return true; }, {}};
+  const DrawIntoTiles task{screen, list,
+                           draws,  jobs.clip,
+                           true,   [](std::size_t, std::uint32_t, int, int) { return true; },
+                           {}};
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
   DeferredTriangles deferred;
   DrawCosts costs;
   tiles.begin(screen, jobs);
   draw_into_tiles(task, tiles, workers, deferred, costs);
-  for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, deferred.large, tiles);
+  for (const TileJob& job : jobs.jobs) {
+    if (deferred.large.of_tile(job.tile).empty()) continue;
+    draw_large(task, 0, deferred.large, {job.tile, tiles.rect(job.tile), tiles.open(job.tile)});
+  }
 
   const FrameShading frame = make_frame_shading(screen, shader, list, lighting, width % 2 == 0);
   SeenTriangles seen;

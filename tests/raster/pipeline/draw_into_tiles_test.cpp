@@ -99,8 +99,7 @@ std::vector<std::int64_t> drawn(const Screen& screen, const scenes::Scene& scene
                            draws,
                            jobs.clip,
                            setting.skip_hidden,
-                           [](std::uint32_t, int, int) {
-        return true; },
+                           [](std::size_t, std::uint32_t, int, int) { return true; },
                            {}};
   FrameTiles tiles;
   std::vector<std::unique_ptr<Worker>> workers;
@@ -111,7 +110,10 @@ std::vector<std::int64_t> drawn(const Screen& screen, const scenes::Scene& scene
     for (int frame = 0; frame < 2; ++frame) {  // the second finds the memory of the first
       tiles.begin(screen, jobs);
       counts = draw_into_tiles(task, tiles, workers, deferred, costs);
-      for (const TileJob& job : jobs.jobs) draw_large(task, job.tile, deferred.large, tiles);
+      for (const TileJob& job : jobs.jobs) {
+        if (deferred.large.of_tile(job.tile).empty()) continue;
+        draw_large(task, 0, deferred.large, {job.tile, tiles.rect(job.tile), tiles.open(job.tile)});
+      }
     }
   });
   for (const TileJob& job : jobs.jobs) {
