@@ -10,7 +10,7 @@
 
 #include "comm/collectives.h"
 #include "comm/failure.h"
-#include "comm/in_process/first_failure.h"
+#include "comm/transport/first_failure.h"
 #include "files/error.h"
 #include "parallel/progress.h"
 

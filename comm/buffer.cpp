@@ -1,7 +1,7 @@
 // Takes the memory of large messages from the pool of blocks, that of small ones from the heap.
 #include "comm/buffer.h"
 
-#include "comm/in_process/block_pool.h"
+#include "comm/transport/block_pool.h"
 
 namespace delray::comm {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "comm/in_process/message_queue.h"
+#include "comm/transport/message_queue.h"
 
 namespace delray::comm::internal {
 

@@ -23,8 +23,8 @@
 
 #include "comm/collectives.h"
 #include "comm/in_process/fiber.h"
-#include "comm/in_process/first_failure.h"
 #include "comm/in_process/group.h"
+#include "comm/transport/first_failure.h"
 
 namespace delray::comm {
 namespace {

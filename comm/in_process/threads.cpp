@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "comm/collectives.h"
-#include "comm/in_process/first_failure.h"
 #include "comm/in_process/group.h"
+#include "comm/transport/first_failure.h"
 #include "parallel/arena.h"
 
 namespace delray::comm {

@@ -20,10 +20,10 @@
 #include <vector>
 
 #include "comm/collectives.h"
-#include "comm/in_process/first_failure.h"
 #include "comm/mpi/mpi_end.h"
 #include "comm/mpi/mpi_engine.h"
 #include "comm/mpi/mpi_port.h"
+#include "comm/transport/first_failure.h"
 
 namespace delray::comm {
 namespace {

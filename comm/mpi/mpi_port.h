@@ -5,10 +5,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "comm/in_process/message_queue.h"
 #include "comm/mpi/mpi_engine.h"
 #include "comm/mpi/mpi_header.h"
 #include "comm/mpi/shared_message.h"
+#include "comm/transport/message_queue.h"
 
 namespace delray::comm::internal {
 

@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-#include "comm/in_process/block_pool.h"
+#include "comm/transport/block_pool.h"
 
 namespace delray::comm::internal {
 namespace {

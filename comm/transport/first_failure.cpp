@@ -1,6 +1,6 @@
 // Records the first failure under a lock, with a flag beside it that is cheap to read, and decides
 // which exceptions reach the caller as they were thrown.
-#include "comm/in_process/first_failure.h"
+#include "comm/transport/first_failure.h"
 
 #include <stdexcept>
 #include <utility>

@@ -1,5 +1,5 @@
 // The message queue against a plain list, under random calls.
-#include "comm/in_process/message_queue.h"
+#include "comm/transport/message_queue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Blocks of shared memory that are lent, and those of the heap that follow.
-#include "comm/in_process/block_pool.h"
+#include "comm/transport/block_pool.h"
 
 #include <gtest/gtest.h>
 

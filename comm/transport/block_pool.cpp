@@ -6,7 +6,7 @@
 //
 // Degenerate: once memory is shared, blocks of the heap are no longer kept; beyond a limit they are
 // freed at once.
-#include "comm/in_process/block_pool.h"
+#include "comm/transport/block_pool.h"
 
 #include <bit>
 #include <new>
