@@ -130,12 +130,12 @@ void compare_ranks(comm::Communicator& communicator, const Session& session,
   meet(communicator, session, "none", std::move(facts));
 }
 
-void meet_ranks_with_failure(const Session& session, const std::string& why) {
+void fail_where_ranks_meet(const Session& session, const std::string& why) {
   if (!session.under_mpi || !session.has_ranks) return;
   try {
     comm::run_mpi(nullptr, nullptr,
                   [&](comm::Communicator& communicator) { meet(communicator, session, why, {}); });
-  } catch (const std::invalid_argument&) {  // told by rank 0
+  } catch (const std::invalid_argument&) {  // rank 0 reports it
   }
 }
 

@@ -46,10 +46,10 @@ int threads_per_rank(const Launch& launch, int ranks);
 void compare_ranks(comm::Communicator& communicator, const Session& session,
                    const std::vector<std::string>& inputs);
 
-// For a process of mpirun that cannot begin, while others may: tells them why in place of
-// compare_ranks, which ends them. Does not return before they have.
-void meet_ranks_with_failure(const Session& session, const std::string& why);
-// Whether run_ranks has met other processes of mpirun.
+// Ends the processes of mpirun that meet in compare_ranks, since this one cannot begin; rank 0
+// reports `why`. Returns when they have met, at once without mpirun.
+void fail_where_ranks_meet(const Session& session, const std::string& why);
+// Whether this process has met those of mpirun in run_ranks.
 bool has_met_ranks();
 
 // Runs `body` on every rank, each inside an arena of its own, and returns when all have. Throws

@@ -130,7 +130,7 @@ int run(int argc, char** argv) {
     if (session.first_process) {
       spdlog::error("{}", why);
     } else {
-      meet_ranks_with_failure(session, why);
+      fail_where_ranks_meet(session, why);
     }
     return session.first_process ? kUsage : kDone;
   }

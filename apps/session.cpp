@@ -62,7 +62,7 @@ int run_guarded(Session& session) {
       spdlog::error("{}", text_of_failure());
       return comm::exit_code_of(std::current_exception());
     }
-    if (!has_met_ranks()) meet_ranks_with_failure(session, text_of_failure());
+    if (!has_met_ranks()) fail_where_ranks_meet(session, text_of_failure());
     return kDone;
   }
 }

@@ -46,8 +46,8 @@ class OutOfMemory : public std::bad_alloc {
   std::array<char, 80> text_{};
 };
 
-// Whether that is what an exception tells: std::bad_alloc, a container that cannot be that large, a
-// thread that the system does not start.
+// Whether an exception means that memory or threads have run out: std::bad_alloc, a container that
+// cannot be that large, a thread that the system does not start.
 bool tells_of_no_memory(const std::exception_ptr& exception);
 
 // Unwinds the other ranks of a run in which one has failed: thrown by every call that sends or

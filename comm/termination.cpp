@@ -28,7 +28,7 @@ Termination::Termination(Communicator& communicator, Tag control)
   for_each_child(communicator.rank(), communicator.size(), [&](int) { ++children_; });
 }
 
-void Termination::tell_children(Control::Kind kind) {
+void Termination::send_to_children(Control::Kind kind) {
   for_each_child(communicator_.rank(), communicator_.size(), [&](int child) {
     communicator_.send(child, control_, Buffer::of_value(Control{kind, 0, {}}));
   });
@@ -43,7 +43,7 @@ void Termination::handle(const Envelope& envelope) {
       missing_ = children_;
       subtree_ = {};
       ++waves_;
-      tell_children(Control::Kind::ask);
+      send_to_children(Control::Kind::ask);
       break;
     case Control::Kind::answer:
       subtree_.sent += control.counters.sent;
@@ -52,7 +52,7 @@ void Termination::handle(const Envelope& envelope) {
       break;
     case Control::Kind::end:
       over_ = true;
-      tell_children(Control::Kind::end);
+      send_to_children(Control::Kind::end);
       break;
   }
 }
@@ -68,7 +68,7 @@ void Termination::idle() {
       missing_ = children_;
       subtree_ = {};
       ++waves_;
-      tell_children(Control::Kind::ask);
+      send_to_children(Control::Kind::ask);
     }
     if (!in_wave_ || missing_ > 0) return;
     in_wave_ = false;
@@ -85,7 +85,7 @@ void Termination::idle() {
     has_last_ = true;
     if (over) {
       over_ = true;
-      tell_children(Control::Kind::end);
+      send_to_children(Control::Kind::end);
       return;
     }
   }

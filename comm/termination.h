@@ -52,7 +52,7 @@ class Termination {
     std::uint32_t unused = 0;
     Counters counters{};
   };
-  void tell_children(Control::Kind kind);
+  void send_to_children(Control::Kind kind);
 
   Communicator& communicator_;
   Tag control_;

@@ -8,7 +8,8 @@
 namespace delray::loadbalance {
 
 // Each triangle is set up and each pixel that it covers is filled, at a fixed price (Mueller 1995).
-// In any unit: only ratios matter to partitions.
+// In any unit: only ratios matter to partitions. The default prices are for comparisons of
+// partitions by themselves; the rasterizer takes those of raster::cost_model(), by its lighting.
 struct RasterCostModel {
   double per_triangle = 0.5;
   double per_pixel = 1;

@@ -27,7 +27,7 @@
 namespace delray::raster {
 namespace {
 
-// One rank's share of the statistics, as it travels to rank 0.
+// What one rank did, as it travels to rank 0, which sums up the statistics of the frame.
 struct Report {
   RankStatistics rank;
   Phases phases;
@@ -93,10 +93,11 @@ void check(const scenes::Camera& camera) {
   }
 }
 
+// Makes distances along the view axis of depths (-near / distance); empty pixels stay.
 void to_distances(std::span<float> depths, const scenes::View& view) {
   constexpr std::size_t kGrain = 1 << 16;  // pixels: some ten microseconds
   parallel::parallel_blocks(0, depths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    // Without a branch, for the compiler to vectorize.
+    // Branchless, so that the compiler vectorizes it.
     for (std::size_t i = begin; i < end; ++i) {
       const float distance = distance_of(depths[i], view);
       depths[i] = depths[i] < 0 ? distance : depths[i];
@@ -130,6 +131,7 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
   return report;
 }
 
+// Of all ranks' reports.
 Statistics summarize(std::span<const comm::Buffer> reports) {
   Statistics statistics;
   double busiest = 0, sum = 0;
@@ -173,7 +175,7 @@ void Phases::operator+=(const Phases& other) {
 
 namespace {
 
-// The scratch memory of frames in steps.
+// Scratch memory for frames in steps, several of which may be under way. Any thread.
 class ScratchPool {
  public:
   std::unique_ptr<Scratch> take() {
@@ -207,7 +209,7 @@ struct Renderer::Memory {
 };
 
 struct Renderer::Frame {
-  // `scratch` may be another frame's later.
+  // `scratch` is the frame's until it is rasterized.
   Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
         const scenes::Camera& camera, const RenderOptions& clip, parallel::Progress* progress)
       : options((check(clip, communicator.size()), check(camera), clip)),
@@ -275,7 +277,7 @@ class Renderer::Steps final : public FrameInSteps {
   Result compose() override {
     comm::Communicator& recording = frame_.recording;
     recording.mark(comm::Phase::rasterize, 0);
-    frame_.rank.tell_work(frame_.rank.counts);
+    frame_.rank.report_work(frame_.rank.counts);
     return frame_.finish(communicator_, steps_->compose());
   }
 

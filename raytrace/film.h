@@ -15,7 +15,8 @@
 
 namespace delray::raytrace {
 
-// Pixels: a cell gets more samples or does not. What is walked through at a time.
+// A cell is a square of so many pixels a side. Whether more samples are taken is decided for a cell
+// as a whole, and costs are kept by cell.
 inline constexpr int kCellSide = 16;
 
 // How many samples the chunk has that begins with sample `first`, and how many chunks so many
@@ -24,7 +25,7 @@ inline constexpr int kCellSide = 16;
 int chunk_size(int first);
 int chunks(int samples);
 
-// What samples of one pixel add up to.
+// The sum of a pixel's samples.
 struct PixelSum {
   image::RgbaF colour;               // linear, premultiplied
   float squares = 0.0F;              // of the luminances of chunks' means, times their samples
@@ -39,7 +40,7 @@ inline float luminance(const image::RgbaF& c) {
 // Adds the next chunk of a pixel, of so many samples, by its mean.
 void add_chunk(const image::RgbaF& mean, float depth, int samples, PixelSum& sum);
 
-// What the samples of a cell took, per pixel.
+// What the samples of a cell have cost so far, per pixel of it.
 struct CellCost {
   float rays = 0.0F, seconds = 0.0F;
 };
@@ -102,7 +103,7 @@ std::vector<float> variance(const Film& film);
 inline constexpr int kLeastChunks = 4;
 std::vector<float> noise(const Film& film);
 
-// Of each cell 1 if it still gets samples: it has less than `most`, and its noise is above the
+// By cell, 1 if it still gets samples: it has less than `most`, and its noise is above the
 // threshold (<= 0: noise counts for nothing). 0 otherwise.
 std::vector<std::uint8_t> unfinished(const Film& film, int most, float threshold);
 

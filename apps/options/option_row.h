@@ -30,8 +30,11 @@ class OptionRow {
   // The value that it is set to, for statistics; see reported.
   Json value(const Request& request) const { return value_(request); }
   const std::string& key() const { return key_; }
-  // Why it changes nothing with the others; empty where it does.
-  std::string idle(const Request& request) const { return idle_ ? idle_(request) : std::string(); }
+  // Why the option changes nothing beside the others of a request; empty where it does: see
+  // unless().
+  std::string why_idle(const Request& request) const {
+    return why_idle_ ? why_idle_(request) : std::string();
+  }
   bool is_reported(const Request& request) const {
     return !key_.empty() && (!reported_ || reported_(request));
   }
@@ -77,8 +80,9 @@ class OptionRow {
     text_ = std::move(text);
     return std::move(*this);
   }
+  // The option changes nothing where `why_idle` returns a text, which says why.
   OptionRow unless(std::function<std::string(const Request&)> why_idle) && {
-    idle_ = std::move(why_idle);
+    why_idle_ = std::move(why_idle);
     return std::move(*this);
   }
 
@@ -147,7 +151,7 @@ class OptionRow {
   std::function<CLI::Option*(CLI::App&, Request&)> add_;
   std::function<Json(const Request&)> value_;
   std::vector<std::function<void(CLI::App&, CLI::Option&)>> steps_;
-  std::function<std::string(const Request&)> idle_;
+  std::function<std::string(const Request&)> why_idle_;
   std::function<bool(const Request&)> reported_;
   bool in_checkpoint_ = false;
   std::function<std::string(const Request&)> text_;

@@ -76,7 +76,7 @@ void complete(const CLI::App& command, RenderRequest& request) {
 void refuse_idle(const CLI::App& command, const RenderRequest& request) {
   for (const RenderOption& option : all_options()) {
     if (command.count(option.flag()) == 0) continue;
-    const std::string why = option.idle(request);
+    const std::string why = option.why_idle(request);
     if (!why.empty()) throw UsageError(fmt::format("{} has no effect with {}", option.flag(), why));
   }
 }

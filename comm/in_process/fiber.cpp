@@ -81,7 +81,7 @@ struct Fiber::State {
   }
 
   // `fake_stack`: null when the fiber leaves for good.
-  void tell_of_leaving([[maybe_unused]] void** fake_stack) const {
+  void announce_leaving([[maybe_unused]] void** fake_stack) const {
 #if defined(DELRAY_FIBER_TSAN)
     __tsan_switch_to_fiber(owner_fiber, 0);
 #endif
@@ -90,7 +90,7 @@ struct Fiber::State {
 #endif
   }
 
-  void tell_of_entering([[maybe_unused]] void* fake_stack) {
+  void announce_entering([[maybe_unused]] void* fake_stack) {
 #if defined(DELRAY_FIBER_ASAN)
     __sanitizer_finish_switch_fiber(fake_stack, &owner_stack, &owner_stack_bytes);
 #endif
@@ -112,10 +112,10 @@ Fiber::Fiber(std::size_t stack_bytes, std::function<void()> body)
 #endif
   state.own = context::fiber(std::allocator_arg, context::preallocated(stack.sp, stack.size, stack),
                              stacks, [&state, body = std::move(body)](context::fiber&& owner) {
-                               state.tell_of_entering(nullptr);
+                               state.announce_entering(nullptr);
                                state.owner = std::move(owner);
                                body();
-                               state.tell_of_leaving(nullptr);
+                               state.announce_leaving(nullptr);
                                return std::move(state.owner);
                              });
 }
@@ -135,9 +135,9 @@ void Fiber::resume() {
 
 void Fiber::suspend() {
   void* fake_stack = nullptr;
-  state_->tell_of_leaving(&fake_stack);
+  state_->announce_leaving(&fake_stack);
   state_->owner = std::move(state_->owner).resume();
-  state_->tell_of_entering(fake_stack);
+  state_->announce_entering(fake_stack);
 }
 
 bool Fiber::finished() const { return !state_->own; }

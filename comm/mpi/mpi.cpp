@@ -34,7 +34,7 @@ using internal::completed;
 using internal::Engine;
 using internal::kWaitsForNobody;
 using internal::Port;
-using internal::TellWaiting;
+using internal::PublishedWait;
 using internal::Transfer;
 using internal::Wait;
 
@@ -90,7 +90,7 @@ class MpiCommunicator final : public Communicator {
     const Tag tag = message->tag;
     Transfer incoming = queue_.take(message);
     if (completed(incoming.requests)) return std::move(incoming.buffer);
-    const TellWaiting telling(*engine_, source);
+    const PublishedWait published(*engine_, source);
     const Wait waited(engine_->options.timeout);
     Backoff backoff(*engine_);
     while (!completed(incoming.requests)) {
@@ -136,7 +136,7 @@ class MpiCommunicator final : public Communicator {
   void mark(Phase phase, int) override {
     engine_->phase = phase;
     internal::note_phase(phase);
-    if (!engine_->local_ranks.empty()) internal::tell_phase(phase);
+    if (!engine_->local_ranks.empty()) internal::publish_phase(phase);
   }
   void work(Work, std::uint64_t) override {}
 
@@ -177,7 +177,7 @@ class MpiCommunicator final : public Communicator {
   Message* wait(int from, Tag tag, Deadline deadline, bool whole) {
     if (Message* message = find(from, tag, whole)) return message;
     const bool forever = deadline.wait == std::chrono::nanoseconds::max();
-    const TellWaiting telling(*engine_, forever ? root_rank_or_any(from) : kWaitsForNobody);
+    const PublishedWait published(*engine_, forever ? root_rank_or_any(from) : kWaitsForNobody);
     const Wait stalled(engine_->options.timeout), late(deadline.wait);
     Backoff backoff(*engine_);
     for (bool first = true;; first = false) {
@@ -211,7 +211,7 @@ class MpiCommunicator final : public Communicator {
     bool finished_mine = false;
     int finished_all = 0;
     {
-      const TellWaiting telling(*engine_, kAnyRank);
+      const PublishedWait published(*engine_, kAnyRank);
       const Wait waited(engine_->options.timeout);
       for (Backoff backoff(*engine_); !finished_all; backoff.pause(!finished_mine)) {
         if (waited.is_over()) {

@@ -24,7 +24,7 @@ struct Transfer {
   std::vector<MPI_Request> requests;
 };
 
-// Whether all are; then there are none any more.
+// Whether MPI has completed all requests, which empties the vector.
 bool completed(std::vector<MPI_Request>& requests);
 
 class Port;
@@ -35,13 +35,15 @@ struct Engine {
   MPI_Comm root = MPI_COMM_NULL;
   MPI_Comm for_splits = MPI_COMM_NULL;  // as root; nobody receives there what MPI sends to split
   int root_rank = 0;
-  bool cores_are_scarce = false;      // for the ranks of this machine
-  Clock::time_point crowded_until{};  // by whatever else runs on it, as far as was noticed
-  std::int64_t switches = 0;          // how often this thread had lost its core by then
+  bool cores_are_scarce = false;  // for the ranks of this machine
+  // Until when other programs are taken to want this process's core, and how often this thread had
+  // lost the core when that was noticed last.
+  Clock::time_point crowded_until{};
+  std::int64_t switches = 0;
   Clock::time_point start = Clock::now();
   Phase phase = Phase::other;
-  // Messages that were sent, and those that came but were never received. Front to back in the
-  // order of the calls.
+  // Messages that MPI has not completed: sends, and receives of what nobody waited for to the end.
+  // In the order of the calls.
   std::deque<Transfer> unfinished;
   std::size_t next_sweep = 64;
   // MPI communicators, `root` first, the others in the order in which they were made; all live to
@@ -67,29 +69,29 @@ struct Engine {
 // `root`.
 void look_at_this_machine(Engine& engine);
 
-// Tells the node-local ranks whom this process waits for, as long as it lives.
-class TellWaiting {
+// Shows the node-local ranks whom this process waits for, from its construction to its destruction.
+class PublishedWait {
  public:
   // `rank` is one of the root communicator, or kAnyRank.
-  TellWaiting(const Engine& engine, int rank) : tells_(!engine.local_ranks.empty()) {
-    if (tells_) tell_waiting(rank);
+  PublishedWait(const Engine& engine, int rank) : publishes_(!engine.local_ranks.empty()) {
+    if (publishes_) publish_waiting(rank);
   }
-  ~TellWaiting() {
-    if (tells_) tell_waiting(kWaitsForNobody);
+  ~PublishedWait() {
+    if (publishes_) publish_waiting(kWaitsForNobody);
   }
-  TellWaiting(const TellWaiting&) = delete;
-  TellWaiting& operator=(const TellWaiting&) = delete;
+  PublishedWait(const PublishedWait&) = delete;
+  PublishedWait& operator=(const PublishedWait&) = delete;
 
  private:
-  bool tells_;
+  bool publishes_;
 };
 
-// Waits between two looks at MPI: at first not at all, so that an answer is taken at once; then it
-// lets others run; at last it sleeps, so that ranks without a core of their own do not take turns
-// at finding nothing. While messages are on their way, which large ones are only as long as both
-// ends look, it takes long to sleep. A rank that does not get its core back soon sleeps earlier for
-// some time: others have work for the core, and whoever was woken comes before those who never
-// slept.
+// Waits between two calls that poll MPI: at first not at all, so that an answer is taken at once;
+// then it yields the core; at last it sleeps, so that ranks without a core of their own do not take
+// turns at polling. It yields longer while messages are on their way, since large ones move only
+// while both ends poll. A rank that does not get its core back soon after a yield sleeps earlier
+// for some time: others have work for the core, and the system prefers threads that were woken to
+// those that never slept.
 class Backoff {
  public:
   explicit Backoff(Engine& engine)
@@ -100,7 +102,7 @@ class Backoff {
                : is_crowded_           ? kSpins - kFewSpins
                                        : 0) {}
 
-  // How often others have rung for this process. To be read before one looks.
+  // How often others have rung for this process. To be read before polling, and given to pause().
   std::uint32_t rings() const { return engine_.local_ranks.empty() ? 0 : internal::rings(); }
 
   void pause(bool on_their_way = false, std::optional<std::uint32_t> rings_seen = std::nullopt);
@@ -110,16 +112,16 @@ class Backoff {
 
   void notice_others();
 
-  // A look and a yield take about a microsecond where nobody else wants the core.
+  // Polling and yielding once takes about a microsecond where nobody else wants the core.
   static constexpr int kSpins = 1000, kYields = 1000, kYieldsOnTheWay = 100000;
-  // Whoever is to answer may just have a core.
+  // Spins on a crowded machine: the rank that is to answer may have a core at the moment.
   static constexpr int kFewSpins = 300;
-  // Where those who send ring: for all messages, or but for those from other machines. Should MPI
-  // deliver only after the bell, or the sender have no bell for it, looks go on at longer and
-  // longer intervals.
+  // Where senders ring: always, or unless they are on other machines. MPI may deliver only after
+  // the bell, or the sender have none for this process, so polling goes on at longer and longer
+  // intervals.
   static constexpr int kYieldsBeforeSleep = 4;
   static constexpr Microseconds kLongestSleep{8000}, kShortSleep{50};
-  // Where nobody rings.
+  // Where no sender rings.
   static constexpr Microseconds kShortestSleep{20}, kLongShortSleep{200};
 
   Engine& engine_;
@@ -129,7 +131,7 @@ class Backoff {
   Microseconds long_sleep_{1000}, short_sleep_ = kShortestSleep;
 };
 
-// How long a rank has waited, against how long it may. Takes no time where the limit is max().
+// A limit to how long a rank waits. Reads no clock where the limit is max().
 class Wait {
  public:
   explicit Wait(std::chrono::nanoseconds limit) : limit_(limit) {

@@ -283,11 +283,11 @@ void ring(const SharedMemory& other) {
   if (theirs->is_asleep.load()) futex(theirs->rings, FUTEX_WAKE, 1, nullptr);
 }
 
-void tell_phase(Phase phase) {
+void publish_phase(Phase phase) {
   beginning_of(own().memory).phase.store(phase, std::memory_order_relaxed);
 }
 
-void tell_waiting(std::int32_t for_rank) {
+void publish_waiting(std::int32_t for_rank) {
   beginning_of(own().memory).waits_for.store(for_rank, std::memory_order_relaxed);
 }
 

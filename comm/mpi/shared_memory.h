@@ -51,15 +51,15 @@ void sleep_until_rung(std::uint32_t rings_seen, std::chrono::microseconds longes
 // Nothing where this process cannot reach the other, which then has ended.
 void ring(const SharedMemory& other);
 
-// What a process tells the node-local ranks of itself, for messages about stalls.
+// What a process shows the node-local ranks of itself, for messages about stalls.
 inline constexpr std::int32_t kWaitsForNobody = -2;  // it works, or is lost
 struct Doing {
   Phase phase = Phase::other;
   std::int32_t waits_for = kWaitsForNobody;  // a rank, or kAnyRank
 };
 // REQUIRES for these two: this process shares its memory.
-void tell_phase(Phase phase);
-void tell_waiting(std::int32_t for_rank);
+void publish_phase(Phase phase);
+void publish_waiting(std::int32_t for_rank);
 // Nothing where the other is out of reach.
 std::optional<Doing> doing(const SharedMemory& other);
 

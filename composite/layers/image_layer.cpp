@@ -15,14 +15,14 @@ namespace {
 
 using internal::hides;
 
-// The image that lies behind.
-void cover(std::span<float> depth, const float* front) {
+// Depths of an image over which another is blended: where that has a depth it lies in front.
+void put_depths_in_front(std::span<float> depth, const float* front) {
   for (std::size_t i = 0; i < depth.size(); ++i) {
     depth[i] = front[i] == image::kEmptyDepth ? depth[i] : front[i];
   }
 }
-// The image that lies in front.
-void fill(std::span<float> depth, const float* back) {
+// Depths of an image that is blended over another: that one shows where there is no depth yet.
+void put_depths_behind(std::span<float> depth, const float* back) {
   for (std::size_t i = 0; i < depth.size(); ++i) {
     depth[i] = depth[i] == image::kEmptyDepth ? back[i] : depth[i];
   }
@@ -43,7 +43,7 @@ void for_each_bit(const GroupMask& mask, F&& f) {
 
 template <class Colour>
 bool ImageLayer<Colour>::empty() const {
-  // In strides: what is covered is met soon wherever it lies.
+  // In strides, so that a pixel that is covered is found soon wherever it lies.
   constexpr std::size_t kStride = 32;
   for (std::size_t first = 0; first < kStride; ++first) {
     for (std::size_t begin = first * kGroupPixels; begin < image_.pixels();
@@ -92,10 +92,10 @@ void ImageLayer<Colour>::apply_to_all(Action action, std::size_t first, std::siz
                    action == Action::merge_lower ? image::Tie::other : image::Tie::target);
   } else if (action == Action::merge_lower) {
     image::blend_front(colour, other);
-    if (has_depth()) cover(depth, pixels.depth);
+    if (has_depth()) put_depths_in_front(depth, pixels.depth);
   } else {
     image::blend_back(colour, other);
-    if (has_depth()) fill(depth, pixels.depth);
+    if (has_depth()) put_depths_behind(depth, pixels.depth);
   }
 }
 

@@ -19,10 +19,10 @@ namespace {
 
 using Kind = StealMessage::Kind;
 
-class Neighbour {
+class NeighbourThief {
  public:
-  Neighbour(comm::Communicator& communicator, const TaskGrid& tasks, const ScheduleOptions& options,
-            TaskFunction work)
+  NeighbourThief(comm::Communicator& communicator, const TaskGrid& tasks,
+                 const ScheduleOptions& options, TaskFunction work)
       : runner_(communicator, options, work),
         protocol_(communicator, runner_, tasks.count()),
         ahead_(options.ahead.value_or(2 * static_cast<std::uint32_t>(runner_.threads()))) {
@@ -39,7 +39,7 @@ class Neighbour {
       const bool worked = runner_.run_one();
       ask();
       if (worked) continue;
-      if (answers_to_come_ == 0) protocol_.quiet();
+      if (answers_to_come_ == 0) protocol_.hand_up_units();
       if (!protocol_.is_over()) protocol_.wait();
     }
     return protocol_.finish();
@@ -47,22 +47,23 @@ class Neighbour {
 
  private:
   enum class Asked { not_yet, with_few_left, with_none_left };
-  struct Other {
+  // A neighbour in the hypercube.
+  struct Peer {
     int rank = 0;
-    bool unserved = false;  // it asked and got nothing
-    std::uint64_t load = 0;
+    bool unserved = false;   // it asked and got nothing
+    std::uint64_t load = 0;  // as it said when it asked
   };
 
-  // Replies to messages that have come, up to tasks: of those some are begun before anybody can
-  // take them.
+  // Replies to messages that have come, up to the first with tasks, some of which are begun before
+  // another rank can take them.
   void serve() {
     bool any = false, has_tasks = false;
     while (!has_tasks) {
       const auto message = protocol_.next();
       if (!message) break;
       any = true;
-      if (message->kind == Kind::ask_tasks) {
-        answer(other(message->from), message->value);
+      if (message->kind == Kind::request_tasks) {
+        answer(peer(message->from), message->value);
       } else if (message->kind == Kind::tasks) {
         if (message->value == 1) --answers_to_come_;
         if (message->tasks.empty()) continue;
@@ -75,8 +76,8 @@ class Neighbour {
     if (any) runner_.served();
   }
 
-  // Half of what there is more here than there; one who has nothing gets the larger half.
-  void answer(Other& to, std::uint64_t load) {
+  // Releases half of the difference of loads; a peer that has nothing gets the larger half.
+  void answer(Peer& to, std::uint64_t load) {
     const std::uint64_t mine = runner_.waiting();
     const std::uint64_t more = mine > load ? mine - load : 0;
     const auto tasks = runner_.release(load == 0 ? (more + 1) / 2 : more / 2);
@@ -85,9 +86,9 @@ class Neighbour {
     protocol_.send(to.rank, Kind::tasks, 1, tasks);
   }
 
-  // Releases of what has just come to those who got nothing before; at least one task stays here.
+  // Releases tasks that have just come to peers that got nothing before; at least one stays here.
   void share_out() {
-    for (Other& to : neighbours_) {
+    for (Peer& to : neighbours_) {
       if (!to.unserved) continue;
       const std::uint64_t mine = runner_.waiting();
       if (mine < to.load + 2) continue;
@@ -98,28 +99,28 @@ class Neighbour {
     }
   }
 
-  // All neighbours, once when few tasks are left and once when none are.
+  // Asks all neighbours, once when few tasks are left and once when none are.
   void ask() {
     const std::uint64_t waiting = runner_.waiting();
     if (answers_to_come_ > 0 || waiting > ahead_) return;
     const Asked now = waiting > 0 ? Asked::with_few_left : Asked::with_none_left;
     if (asked_ >= now) return;
     asked_ = now;
-    for (const Other& to : neighbours_) {
-      protocol_.send(to.rank, Kind::ask_tasks, waiting);
+    for (const Peer& to : neighbours_) {
+      protocol_.send(to.rank, Kind::request_tasks, waiting);
       ++answers_to_come_;
     }
   }
 
-  Other& other(int rank) {
+  Peer& peer(int rank) {
     return *std::find_if(neighbours_.begin(), neighbours_.end(),
-                         [rank](const Other& candidate) { return candidate.rank == rank; });
+                         [rank](const Peer& candidate) { return candidate.rank == rank; });
   }
 
   TaskRunner runner_;
   StealProtocol protocol_;
   std::uint64_t ahead_;
-  std::vector<Other> neighbours_;
+  std::vector<Peer> neighbours_;
   Asked asked_ = Asked::not_yet;  // since tasks came last
   int answers_to_come_ = 0;
 };
@@ -128,7 +129,7 @@ class Neighbour {
 
 RankReport neighbour_stealing(comm::Communicator& communicator, const TaskGrid& tasks,
                               const ScheduleOptions& options, TaskFunction work) {
-  return Neighbour(communicator, tasks, options, work).run();
+  return NeighbourThief(communicator, tasks, options, work).run();
 }
 
 }  // namespace delray::loadbalance::internal

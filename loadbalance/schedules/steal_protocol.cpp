@@ -37,7 +37,7 @@ void StealProtocol::send(int to, StealMessage::Kind kind, std::uint64_t value,
     std::memcpy(message.data() + sizeof(header), tasks.data(), tasks.size_bytes());
   }
   using Kind = StealMessage::Kind;
-  if (kind == Kind::ask_load || kind == Kind::ask_tasks) {
+  if (kind == Kind::request_load || kind == Kind::request_tasks) {
     assert(holds_unit());
     ++runner_.report.requests;
   }
@@ -73,7 +73,7 @@ std::optional<StealMessage> StealProtocol::next() {
 
 void StealProtocol::wait() { runner_.wait(comm::kAnyRank, kTagSteal); }
 
-void StealProtocol::quiet() {
+void StealProtocol::hand_up_units() {
   const std::uint64_t begun = runner_.begun();
   units_ += begun - counted_;
   counted_ = begun;

@@ -12,12 +12,13 @@ namespace delray::loadbalance::internal {
 
 struct StealMessage {
   enum class Kind : std::uint64_t {
-    ask_load,   // the reply is load
-    load,       // value: tasks that wait
-    ask_tasks,  // value: how many, or the sender's load; the reply is tasks
-    tasks,      // value: 1 for a reply, 0 for tasks that come later
-    begun,      // value: for the count of all
-    over,
+    request_load,   // the reply is load
+    load,           // value: the sender's tasks that wait
+    request_tasks,  // value: how many (stealing.cpp) or the sender's load (neighbour_stealing.cpp);
+                    // the reply is tasks
+    tasks,          // value: 1 for a reply, 0 for tasks that nobody asked for any more
+    begun,          // value: units that the sender hands up
+    over,           // all tasks are begun
   };
   int from = 0;
   Kind kind = Kind::over;
@@ -43,7 +44,8 @@ class StealProtocol {
 
   // Whether this rank has begun a task, or anything at all, since it was quiet.
   bool holds_unit() const { return units_ > 0 || runner_.begun() > counted_; }
-  void quiet();
+  // Tells the count that this rank is quiet. REQUIRES: no task waits and no reply is to come.
+  void hand_up_units();
   bool is_over() const { return over_; }
   // Waits for all ranks, since one that has left must not ask another that has not, and ends the
   // run. The last call. REQUIRES: it is over.

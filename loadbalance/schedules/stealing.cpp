@@ -35,10 +35,10 @@ class Thief {
       serve();
       if (runner_.run_one()) continue;
       if (answers_to_come_ == 0) {
-        if (may_ask_ && communicator_.size() > 1) {
+        if (others_may_have_tasks_ && communicator_.size() > 1) {
           ask_for_loads();
         } else {
-          protocol_.quiet();
+          protocol_.hand_up_units();
         }
       }
       if (!protocol_.is_over()) protocol_.wait();
@@ -47,8 +47,8 @@ class Thief {
   }
 
  private:
-  // Replies to messages that have come, up to tasks: those are begun before anybody can take them
-  // away.
+  // Replies to messages that have come, up to the first with tasks, some of which are begun before
+  // another rank can take them.
   void serve() {
     bool any = false, has_tasks = false;
     while (!has_tasks) {
@@ -60,13 +60,13 @@ class Thief {
     if (any) runner_.served();
   }
 
-  // Whether there are tasks to begin.
+  // Replies to a message. Returns whether it brought tasks.
   bool handle(const StealMessage& message) {
     switch (message.kind) {
-      case Kind::ask_load:
+      case Kind::request_load:
         protocol_.send(message.from, Kind::load, runner_.waiting());
         break;
-      case Kind::ask_tasks:
+      case Kind::request_tasks:
         protocol_.send(message.from, Kind::tasks, 1, runner_.release(message.value));
         break;
       case Kind::load:
@@ -75,7 +75,7 @@ class Thief {
         break;
       case Kind::tasks:
         runner_.put(message.tasks);
-        if (--answers_to_come_ == 0) may_ask_ = true;
+        if (--answers_to_come_ == 0) others_may_have_tasks_ = true;
         return !message.tasks.empty();
       default:
         break;
@@ -84,15 +84,15 @@ class Thief {
   }
 
   void ask_for_loads() {
-    may_ask_ = false;
+    others_may_have_tasks_ = false;
     for (int rank = 0; rank < communicator_.size(); ++rank) {
       if (rank == communicator_.rank()) continue;
-      protocol_.send(rank, Kind::ask_load, 0);
+      protocol_.send(rank, Kind::request_load, 0);
       ++answers_to_come_;
     }
   }
 
-  // As many tasks as the mean, rounded up, from those above it.
+  // Asks ranks with more than the mean for as many tasks together as the mean, rounded up.
   void ask_for_tasks() {
     double total = 0, excess = 0;
     for (const std::uint64_t load : loads_) total += static_cast<double>(load);
@@ -111,7 +111,7 @@ class Thief {
           std::min(static_cast<double>(loads_[rank]), std::round(wanted * before / excess) - asked);
       if (amount < 1) continue;
       asked += amount;
-      protocol_.send(rank, Kind::ask_tasks, static_cast<std::uint64_t>(amount));
+      protocol_.send(rank, Kind::request_tasks, static_cast<std::uint64_t>(amount));
       ++answers_to_come_;
     }
   }
@@ -121,7 +121,7 @@ class Thief {
   StealProtocol protocol_;
   std::vector<std::uint64_t> loads_;  // by rank, as last told; its own 0
   int answers_to_come_ = 0;
-  bool may_ask_ = true;  // not once it has found that nobody has anything
+  bool others_may_have_tasks_ = true;  // false from asking for loads until tasks have come
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// How often the squares of a screen are covered: more often than is seen where surfaces lie behind
-// each other.
+// How many layers of triangles cover each square of the screen, to estimate how much of a group is
+// seen before anything is drawn.
 #pragma once
 
 #include <span>
@@ -11,12 +11,14 @@
 
 namespace delray::raster {
 
+// The samples that ranks' triangles cover, summed up by squares of the screen.
 class Coverage {
  public:
-  // Pixels are pixels of the frame, which has n x n samples in each.
+  // Of a screen of samples, n x n to a pixel of the frame. Boxes are in pixels.
   Coverage(const Screen& screen, int n);
 
-  // What covers: how much of what lies behind a sample of it is hidden, on average, in [0, 1].
+  // How a group's samples cover others. Opacity: the part of what lies behind that a sample hides,
+  // on average, in [0, 1].
   struct Surface {
     bool blended = false;
     double opacity = 1;
@@ -29,17 +31,19 @@ class Coverage {
   };
   const std::vector<Square>& squares() const { return squares_; }
 
-  // So many samples, anywhere in a box of pixels.
+  // Adds so many samples, spread evenly over the squares that the box touches.
   void add(const geometry::Rect& box, double samples, const Surface& surface);
-  // A triangle, square by square. Returns its samples. O(squares in its box).
+  // Adds a large triangle, square by square. Returns its samples. O(squares in its box).
   double add_large(const ScreenTriangle& triangle, const Surface& surface);
-  // Large triangles for rank 0 only.
+  // Collective. Rank 0 alone gets the sums of large triangles.
   void sum_over_ranks(comm::Communicator& communicator);
 
-  // The part of the samples that opaque, or blended, surfaces cover in a box that is shaded, if all
-  // lie at random: opaque ones hide both kinds, blended ones the blended behind them.
+  // The part of an opaque, or a blended, surface's samples in the box that is expected to be seen,
+  // if all samples of a square lie behind each other at random: opaque ones hide both kinds,
+  // blended ones the blended behind them. In [0, 1].
   double seen(const geometry::Rect& box, bool blended) const;
-  // What is seen and drawn of large triangles at these prices for a sample, square by square.
+  // The costs of large triangles, square by square, at a price for a sample that is expected to be
+  // seen and one for each that is drawn.
   std::vector<loadbalance::WeightedBox> costs_of_large(double seen_price, double drawn_price) const;
 
  private:

@@ -79,7 +79,7 @@ DrawList exchange_groups(RankContext& rank, const CostedGroups& costed,
 }  // namespace
 
 VisibleGroups find_visible_groups(const RankContext& rank, const CostedGroups& costed) {
-  const SeenSamples& seen = costed.seen;
+  const VisibleSamples& seen = costed.seen;
   const double per_pixel = 1.0 / rank.samples_per_pixel();
   VisibleGroups visible;
   for (std::size_t i = 0; i < costed.groups.size(); ++i) {

@@ -43,21 +43,21 @@ void RankContext::hide_behind_others(RegionDrawing& drawing) {
   counts.phases.redistribute += communicator.seconds() - before;
 }
 
-void RankContext::tell_work(const RegionCounts& done) const {
+void RankContext::report_work(const RegionCounts& done) const {
   communicator.work(comm::Work::primitives, done.triangles.in);
   communicator.work(comm::Work::fragments, done.fragments);
 }
 
 void RankContext::end(RegionDrawing& drawing, FinishTile finish_tile) {
   const RegionCounts done = drawing.finish(finish_tile);
-  if (!in_steps) tell_work(done);
+  if (!in_steps) report_work(done);
   counts += done;
 }
 
 void RankContext::end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
                            parallel::FunctionRef<void(int, int)> rows_finished) {
   drawing.finish_rows(first, rows, finish_tile, [&](int begin, int end, const RegionCounts& done) {
-    tell_work(done);
+    report_work(done);
     counts += done;
     rows_finished(begin, end);
   });

@@ -48,7 +48,7 @@ struct RankContext {
   geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
   int samples_per_pixel() const { return options.supersampling * options.supersampling; }
 
-  void tell_work(const RegionCounts& done) const;
+  void report_work(const RegionCounts& done) const;
 
   // A drawing of `list`, or of what it is given later, into regions (in pixels).
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);

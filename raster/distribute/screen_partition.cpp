@@ -29,8 +29,8 @@
 namespace delray::raster {
 namespace {
 
-// What a pixel costs that is drawn, beside one that is seen and shaded.
-constexpr double kDrawn = 0.05;
+// The price of a pixel that is drawn, where one that is seen, and shaded, costs 1.
+constexpr double kDrawnPixelPrice = 0.05;
 
 // On a grid fine enough for so many regions.
 loadbalance::Costs costs_of(const geometry::Rect& frame, int regions,
@@ -67,11 +67,11 @@ std::uint32_t ScreenPartition::group_triangles(std::uint64_t triangles, int part
   return static_cast<std::uint32_t>(loadbalance::primitives_per_box(triangles, parts));
 }
 
-bool ScreenPartition::Basis::operator==(const Basis& other) const {
-  const auto fields = [](const Basis& b) {
+bool ScreenPartition::CostInputs::operator==(const CostInputs& other) const {
+  const auto fields = [](const CostInputs& b) {
     const scenes::View& v = b.view;
     return std::tie(b.rank, b.ranks, b.supersampling, b.lighting, b.costs, b.cull_single_sided,
-                    b.tells_seen, v.eye, v.right, v.up, v.forward, v.scale, v.half_width,
+                    b.with_visible, v.eye, v.right, v.up, v.forward, v.scale, v.half_width,
                     v.half_height, v.near, v.width, v.height, v.orthographic, v.far, v.viewpoint);
   };
   return fields(*this) == fields(other);
@@ -106,14 +106,14 @@ void ScreenPartition::group(RankContext& rank, const Grouping& grouping) {
 }
 
 // Boxes, and costs of triangles; samples go into the coverage.
-ScreenPartition::Bounded ScreenPartition::bound(RankContext& rank,
-                                                const loadbalance::RasterCostModel& model,
-                                                Coverage& coverage) {
+ScreenPartition::GroupBounds ScreenPartition::bound(RankContext& rank,
+                                                    const loadbalance::RasterCostModel& model,
+                                                    Coverage& coverage) {
   const std::vector<Piece>& groups = costed_.groups;
   std::vector<loadbalance::WeightedBox>& boxes = costed_.boxes;
   boxes.assign(groups.size(), {});
-  Bounded bounded{std::vector<double>(groups.size()), std::vector<double>(groups.size()),
-                  std::vector<Coverage::Surface>(groups.size())};
+  GroupBounds bounds{std::vector<double>(groups.size()), std::vector<double>(groups.size()),
+                     std::vector<Coverage::Surface>(groups.size())};
   const std::vector<PreparedDraw> draws =
       prepare_draws(rank.screen, list_, rank.shader, rank.options.cull_single_sided);
   std::vector<Coverage::Surface> of_draw;
@@ -128,7 +128,7 @@ ScreenPartition::Bounded ScreenPartition::bound(RankContext& rank,
     std::vector<ScreenTriangle> large;
     seconds.measure([&] {
       for (std::size_t i = begin; i < end; ++i) {
-        bounded.surfaces[i] = of_draw[draw_of_[i]];
+        bounds.surfaces[i] = of_draw[draw_of_[i]];
         large.clear();
         const Extent e = extents.of(draws[draw_of_[i]], groups[i].first, groups[i].count, large);
         if (e.triangles == 0) continue;
@@ -137,64 +137,65 @@ ScreenPartition::Bounded ScreenPartition::bound(RankContext& rank,
         boxes[i].cost = model.setup(static_cast<double>(e.triangles));
         boxes[i].setup = model.setup(std::sqrt(static_cast<double>(e.triangles)));
         boxes[i].primitives = e.triangles;
-        bounded.samples[i] = static_cast<double>(e.pixels);
+        bounds.samples[i] = static_cast<double>(e.pixels);
         if (large.empty()) continue;
         const std::lock_guard lock(adds_large);
         for (const ScreenTriangle& triangle : large)
-          bounded.large_samples[i] += coverage.add_large(triangle, bounded.surfaces[i]);
+          bounds.large_samples[i] += coverage.add_large(triangle, bounds.surfaces[i]);
       }
     });
   });
   for (std::size_t i = 0; i < groups.size(); ++i)
-    coverage.add(boxes[i].box, bounded.samples[i], bounded.surfaces[i]);
+    coverage.add(boxes[i].box, bounds.samples[i], bounds.surfaces[i]);
   rank.counts.phases.bin += seconds.seconds();
-  return bounded;
+  return bounds;
 }
 
-// What of the groups is seen, by the coverage of all ranks, and what that costs.
+// Adds the cost of the samples that are expected to be seen, by the coverage of all ranks.
 void ScreenPartition::add_seen(const loadbalance::RasterCostModel& model, const Coverage& coverage,
-                               const Bounded& bounded, bool tells_seen) {
+                               const GroupBounds& bounds, bool with_visible) {
   std::vector<loadbalance::WeightedBox>& boxes = costed_.boxes;
   costed_.seen = {};
-  if (tells_seen)
+  if (with_visible)
     costed_.seen = {model.per_pixel, std::vector<double>(boxes.size()),
                     std::vector<double>(boxes.size())};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].box.empty()) continue;
-    const double seen = coverage.seen(boxes[i].box, bounded.surfaces[i].blended);
-    boxes[i].cost += model.per_pixel * bounded.samples[i] * (seen + kDrawn);
-    if (!tells_seen) continue;
-    costed_.seen.all[i] = seen * (bounded.samples[i] + bounded.large_samples[i]);
-    costed_.seen.large[i] = seen * bounded.large_samples[i];
+    const double seen = coverage.seen(boxes[i].box, bounds.surfaces[i].blended);
+    boxes[i].cost += model.per_pixel * bounds.samples[i] * (seen + kDrawnPixelPrice);
+    if (!with_visible) continue;
+    costed_.seen.all[i] = seen * (bounds.samples[i] + bounds.large_samples[i]);
+    costed_.seen.large[i] = seen * bounds.large_samples[i];
   }
 }
 
 const CostedGroups& ScreenPartition::groups(RankContext& rank, const Grouping& grouping,
-                                            bool tells_seen) {
-  const Basis basis{rank.number(),
-                    rank.ranks(),
-                    rank.screen.view,
-                    rank.options.supersampling,
-                    rank.options.lighting,
-                    rank.options.costs,
-                    rank.options.cull_single_sided,
-                    tells_seen};
-  unchanged_ = rank.options.costs == CostSource::model && basis_ == basis && grouping_ == grouping;
+                                            bool with_visible) {
+  const CostInputs inputs{rank.number(),
+                          rank.ranks(),
+                          rank.screen.view,
+                          rank.options.supersampling,
+                          rank.options.lighting,
+                          rank.options.costs,
+                          rank.options.cull_single_sided,
+                          with_visible};
+  unchanged_ =
+      rank.options.costs == CostSource::model && last_inputs_ == inputs && grouping_ == grouping;
   if (rank.ranks() > 1) unchanged_ = agreement_.holds(rank.communicator, unchanged_);
   if (unchanged_) return costed_;
   ++version_;
   cut_before_ = reported_ = false;
   statistics_.reset();
-  basis_ = basis;
+  last_inputs_ = inputs;
   const loadbalance::RasterCostModel model = model_of(rank);
   group(rank, grouping);
   Coverage coverage(rank.screen, rank.options.supersampling);
-  const Bounded bounded = bound(rank, model, coverage);
+  const GroupBounds bounds = bound(rank, model, coverage);
   if (rank.ranks() > 1) coverage.sum_over_ranks(rank.communicator);
-  add_seen(model, coverage, bounded, tells_seen);
+  add_seen(model, coverage, bounds, with_visible);
   large_.clear();
   if (rank.number() == 0)
-    large_ = coverage.costs_of_large(model.per_pixel, model.per_pixel * kDrawn);
+    large_ = coverage.costs_of_large(model.per_pixel, model.per_pixel * kDrawnPixelPrice);
   return costed_;
 }
 

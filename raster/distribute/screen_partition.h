@@ -28,21 +28,21 @@ struct Grouping {
   bool operator==(const Grouping&) const = default;
 };
 
-// What is expected to be seen of each group, in samples, and what one costs: where a group is drawn
-// by one rank as a whole, its large triangles belong to its cost.
-struct SeenSamples {
-  double price = 1;  // in the unit of the boxes' costs
+// How many samples of each group are expected to be seen: all, and those of its large triangles,
+// which belong to a group's cost where one rank draws the whole group.
+struct VisibleSamples {
+  double price = 1;  // of a sample, in the unit of the boxes' costs
   std::vector<double> all, large;
 };
 
-// This rank's groups. Element i of all is of group i.
+// This rank's groups; element i of each vector is of group i.
 struct CostedGroups {
   std::vector<Piece> groups;
   // The box on the screen, in pixels, and what the group may cost: its triangles, and the part of
   // its pixels that is seen if all groups lie behind each other at random. Without the pixels of
   // large triangles, of which cut() knows more exactly than by a box. Empty boxes cost nothing.
   std::vector<loadbalance::WeightedBox> boxes;
-  SeenSamples seen;  // if asked for
+  VisibleSamples seen;  // if asked for
 };
 
 // Cuts the screen frame after frame, by what the frames before have taught. One per rank.
@@ -55,7 +55,8 @@ class ScreenPartition {
   // frame (view, options, grouping), which is asked before anything is bounded, a grid of 16 x 16
   // pixels is summed over ranks and, where costs are measured, every rank says what it did. Valid
   // until the next call.
-  const CostedGroups& groups(RankContext& rank, const Grouping& grouping, bool tells_seen = false);
+  const CostedGroups& groups(RankContext& rank, const Grouping& grouping,
+                             bool with_visible = false);
 
   // A number for what groups() and cut() gave last: another one where it may not be what they gave
   // before. It changes on all ranks or on none.
@@ -84,31 +85,33 @@ class ScreenPartition {
     bool operator==(const Kind&) const = default;
   };
 
-  // What a rank's groups and their costs depend on, but for the scene.
-  struct Basis {
+  // All that a rank's groups and their costs depend on besides the scene.
+  struct CostInputs {
     int rank, ranks;
     scenes::View view;
     int supersampling;
     Lighting lighting;
     CostSource costs;
-    bool cull_single_sided, tells_seen;
-    bool operator==(const Basis& other) const;
+    bool cull_single_sided, with_visible;
+    bool operator==(const CostInputs& other) const;
   };
-  // What was found of the groups without looking at other ranks' ones, in samples.
-  struct Bounded {
+  // By group, before other ranks' groups are known: the samples that its triangles cover, how many
+  // of these large triangles cover, and what they hide.
+  struct GroupBounds {
     std::vector<double> samples, large_samples;
     std::vector<Coverage::Surface> surfaces;
   };
 
   loadbalance::RasterCostModel model_of(RankContext& rank);
   void group(RankContext& rank, const Grouping& grouping);
-  Bounded bound(RankContext& rank, const loadbalance::RasterCostModel& model, Coverage& coverage);
+  GroupBounds bound(RankContext& rank, const loadbalance::RasterCostModel& model,
+                    Coverage& coverage);
   void add_seen(const loadbalance::RasterCostModel& model, const Coverage& coverage,
-                const Bounded& bounded, bool tells_seen);
+                const GroupBounds& bounds, bool with_visible);
   void report(const loadbalance::Costs& costs, const loadbalance::Partition& partition, int parts);
 
   Agreement agreement_;
-  std::optional<Basis> basis_;
+  std::optional<CostInputs> last_inputs_;
   std::optional<Grouping> grouping_;
   CostedGroups costed_;
   DrawList list_;                       // of the groups

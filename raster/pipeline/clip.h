@@ -1,4 +1,5 @@
-// Clipping at the near plane and the guard band.
+// Clipping at the near plane and the guard band, for set_up() (set_up.h) where a vertex of a
+// triangle is outside.
 #pragma once
 
 #include <array>

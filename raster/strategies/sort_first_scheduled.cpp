@@ -137,7 +137,7 @@ Picture render(RankContext& rank) {
       });
     });
     hand.counts += done;
-    if (thread == 0) rank.tell_work(done);
+    if (thread == 0) rank.report_work(done);
     hand.done.push_back(block);
     if (rank.progress != nullptr) rank.progress->advance();
   };
@@ -145,7 +145,7 @@ Picture render(RankContext& rank) {
                       ->run(communicator, blocks.grid(), how, render_block);
   for (std::size_t i = 0; i < hands.size(); ++i) {
     rank.counts += hands[i]->counts;
-    if (i > 0) rank.tell_work(hands[i]->counts);
+    if (i > 0) rank.report_work(hands[i]->counts);
   }
 
   communicator.mark(comm::Phase::gather, 0);

@@ -63,8 +63,8 @@ Description parse_description(const Input& input, const LasHeader& header) {
   if (load<std::uint16_t>(record.data() + 2) != 0) fail(input, kPlace, "unknown entropy coder");
 
   const bool layered = description.compressor == layered_chunked;
-  PointwiseItems old;
-  LayeredItems now;
+  PointwiseItems pointwise_items;
+  LayeredItems layered_items;
   for (std::size_t i = 0; i < count; ++i) {
     const char* item = record.data() + kHead + i * kItem;
     const auto type = load<std::uint16_t>(item), size = load<std::uint16_t>(item + 2),
@@ -72,29 +72,31 @@ Description parse_description(const Input& input, const LasHeader& header) {
     const bool first = type == (layered ? point14 : point10);
     if (first != (i == 0)) fail(input, kPlace, "points do not begin with their coordinates");
     require_version(input, version, layered ? version == 3 || version == 4 : version == 2);
-    now.version = version;
+    layered_items.version = version;
     if (first) continue;
-    if (!layered && type == time11 && !old.time && !old.colour && old.extra_bytes == 0) {
-      old.time = true;
-    } else if (!layered && type == colour12 && !old.colour && old.extra_bytes == 0) {
-      old.colour = true;
-    } else if (layered && (type == colour14 || type == colour_and_infrared14) && !now.colour &&
-               now.extra_bytes == 0) {
-      now.colour = true;
-      now.near_infrared = type == colour_and_infrared14;
+    if (!layered && type == time11 && !pointwise_items.time && !pointwise_items.colour &&
+        pointwise_items.extra_bytes == 0) {
+      pointwise_items.time = true;
+    } else if (!layered && type == colour12 && !pointwise_items.colour &&
+               pointwise_items.extra_bytes == 0) {
+      pointwise_items.colour = true;
+    } else if (layered && (type == colour14 || type == colour_and_infrared14) &&
+               !layered_items.colour && layered_items.extra_bytes == 0) {
+      layered_items.colour = true;
+      layered_items.near_infrared = type == colour_and_infrared14;
     } else if (type == (layered ? extra_bytes14 : extra_bytes)) {
-      (layered ? now.extra_bytes : old.extra_bytes) += size;
+      (layered ? layered_items.extra_bytes : pointwise_items.extra_bytes) += size;
     } else {
       fail(input, kPlace, "items of type " + std::to_string(type) + " are not read there");
     }
   }
   if (count == 0) fail(input, kPlace, "has no items");
   if (layered) {
-    require_record_size(input, header, now);
-    description.items = now;
+    require_record_size(input, header, layered_items);
+    description.items = layered_items;
   } else {
-    require_record_size(input, header, old);
-    description.items = old;
+    require_record_size(input, header, pointwise_items);
+    description.items = pointwise_items;
   }
   return description;
 }

@@ -56,7 +56,7 @@ void TimeDecoder::begin_sequence(ArithmeticDecoder& decoder) {
   sequences_[current_] = {static_cast<std::int64_t>(time)};
 }
 
-void TimeDecoder::note_extreme(std::int32_t step) {
+void TimeDecoder::count_extreme(std::int32_t step) {
   constexpr int kInARow = 3;
   Sequence& sequence = sequences_[current_];
   if (++sequence.extremes <= kInARow) return;
@@ -107,7 +107,7 @@ bool TimeDecoder::decode_with_step(ArithmeticDecoder& decoder) {
                                                    static_cast<std::uint32_t>(sequence.step));
   const std::int32_t step = steps_.decode(decoder, predicted, context);
   if (context == once) sequence.extremes = 0;
-  if (context == none || context == most || context == fewest) note_extreme(step);
+  if (context == none || context == most || context == fewest) count_extreme(step);
   sequence.time = static_cast<std::int64_t>(static_cast<std::uint64_t>(sequence.time) +
                                             static_cast<std::uint64_t>(std::int64_t{step}));
   return false;
@@ -149,15 +149,15 @@ void PointwiseDecoder::reset(const char* first) {
   for (SymbolModel& model : extra_bytes_) model.reset(256);
 }
 
-void PointwiseDecoder::decode_point(ArithmeticDecoder& decoder, const char* last, char* now) {
+void PointwiseDecoder::decode_point(ArithmeticDecoder& decoder, const char* last, char* record) {
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(last[at]); };
-  std::memcpy(now, last, kPointwiseSize);
+  std::memcpy(record, last, kPointwiseSize);
 
   const unsigned changes = decoder.decode(changes_);
   if ((changes & 32) != 0) {
-    now[kLasReturns] = static_cast<char>(decode_byte(decoder, returns_[byte(kLasReturns)]));
+    record[kLasReturns] = static_cast<char>(decode_byte(decoder, returns_[byte(kLasReturns)]));
   }
-  const auto returns = static_cast<unsigned char>(now[kLasReturns]);
+  const auto returns = static_cast<unsigned char>(record[kLasReturns]);
   const unsigned number = returns & 7, count = returns >> 3 & 7;
   const unsigned map = kPointwiseReturnMap[count][number];
   const unsigned level = count > number ? count - number : number - count;
@@ -167,34 +167,34 @@ void PointwiseDecoder::decode_point(ArithmeticDecoder& decoder, const char* last
       last_intensity_[map] = static_cast<std::uint16_t>(
           intensities_.decode(decoder, last_intensity_[map], std::min(map, 3U)));
     }
-    store(now + kLasIntensity, last_intensity_[map]);
+    store(record + kLasIntensity, last_intensity_[map]);
   }
   if ((changes & 8) != 0) {
-    now[kPointwiseClass] =
+    record[kPointwiseClass] =
         static_cast<char>(decode_byte(decoder, classifications_[byte(kPointwiseClass)]));
   }
   if ((changes & 4) != 0) {
-    now[kScanAngle] =
+    record[kScanAngle] =
         static_cast<char>(byte(kScanAngle) + decoder.decode(scan_angles_[returns >> 6 & 1]));
   }
   if ((changes & 2) != 0) {
-    now[kUserData] = static_cast<char>(decode_byte(decoder, user_data_[byte(kUserData)]));
+    record[kUserData] = static_cast<char>(decode_byte(decoder, user_data_[byte(kUserData)]));
   }
   if ((changes & 1) != 0) {
-    store(now + kSource, static_cast<std::uint16_t>(
-                             sources_.decode(decoder, load<std::uint16_t>(last + kSource), 0)));
+    store(record + kSource, static_cast<std::uint16_t>(
+                                sources_.decode(decoder, load<std::uint16_t>(last + kSource), 0)));
   }
 
   const std::int32_t dx = x_.decode(decoder, x_steps_[map].get(), single);
   x_steps_[map].add(dx);
-  store(now + kLasX, add(load<std::int32_t>(last + kLasX), dx));
+  store(record + kLasX, add(load<std::int32_t>(last + kLasX), dx));
   const std::int32_t dy =
       y_.decode(decoder, y_steps_[map].get(), single + even_context(x_.magnitude(), 20));
   y_steps_[map].add(dy);
-  store(now + kLasY, add(load<std::int32_t>(last + kLasY), dy));
+  store(record + kLasY, add(load<std::int32_t>(last + kLasY), dy));
   const unsigned magnitude = (x_.magnitude() + y_.magnitude()) / 2;
   last_z_[level] = z_.decode(decoder, last_z_[level], single + even_context(magnitude, 18));
-  store(now + kLasZ, last_z_[level]);
+  store(record + kLasZ, last_z_[level]);
 }
 
 bool PointwiseDecoder::decode(std::string_view chunk, std::span<char> records) {
@@ -212,16 +212,16 @@ bool PointwiseDecoder::decode(std::string_view chunk, std::span<char> records) {
   std::memcpy(first.data(), records.data(), kPointwiseSize);
   store(first.data() + kLasIntensity, std::uint16_t{0});
   for (std::size_t at = size; at < records.size(); at += size) {
-    char* now = records.data() + at;
-    const char* last = now - size;
-    decode_point(decoder, at == size ? first.data() : last, now);
-    if (items_.time) store(now + time, times_.decode(decoder));
+    char* record = records.data() + at;
+    const char* last = record - size;
+    decode_point(decoder, at == size ? first.data() : last, record);
+    if (items_.time) store(record + time, times_.decode(decoder));
     if (items_.colour) {
-      store(now + colour, colours_.decode(decoder, load<Colour>(last + colour)));
+      store(record + colour, colours_.decode(decoder, load<Colour>(last + colour)));
     }
     for (std::size_t i = 0; i < items_.extra_bytes; ++i) {
-      now[extra + i] = static_cast<char>(static_cast<unsigned char>(last[extra + i]) +
-                                         decoder.decode(extra_bytes_[i]));
+      record[extra + i] = static_cast<char>(static_cast<unsigned char>(last[extra + i]) +
+                                            decoder.decode(extra_bytes_[i]));
     }
     if (decoder.overrun()) return false;
   }

@@ -38,13 +38,14 @@ class TimeDecoder {
   bool decode_without_step(ArithmeticDecoder& decoder);
   bool decode_with_step(ArithmeticDecoder& decoder);
   void begin_sequence(ArithmeticDecoder& decoder);
-  // A step out of the range of multiples becomes the sequence's after some of them in a row.
-  void note_extreme(std::int32_t step);
+  // Counts a step that is no multiple of the sequence's, or out of their range. After some of them
+  // in a row the last one becomes the sequence's step.
+  void count_extreme(std::int32_t step);
 
   struct Sequence {
     std::int64_t time = 0;
     std::int32_t step = 0;
-    int extremes = 0;
+    int extremes = 0;  // since a step was about the sequence's: see count_extreme
   };
   std::array<Sequence, 4> sequences_;
   unsigned current_ = 0, newest_ = 0;
@@ -64,7 +65,7 @@ class PointwiseDecoder {
 
  private:
   void reset(const char* first);
-  void decode_point(ArithmeticDecoder& decoder, const char* last, char* now);
+  void decode_point(ArithmeticDecoder& decoder, const char* last, char* record);
 
   PointwiseItems items_;
   SymbolModel changes_;
