@@ -50,23 +50,38 @@ std::uint64_t scattered(std::uint64_t x) {  // the finaliser of SplitMix64
   return x ^ (x >> 31);
 }
 
-// Every rank's clusters to the ranks that chance chooses. Collective.
-std::vector<ClusterData> assigned_at_random(comm::Communicator& communicator,
-                                            std::vector<ClusterData>&& mine, std::uint64_t seed) {
+// The rank that cluster i of n of a rank goes to, by chance.
+int random_owner(const comm::Communicator& communicator, std::size_t i, std::uint64_t seed) {
+  const std::uint64_t key =
+      scattered(seed ^ scattered(i * 65537 + static_cast<std::uint64_t>(communicator.rank())));
+  return static_cast<int>(key % static_cast<std::uint64_t>(communicator.size()));
+}
+
+// The same so that neighbours stay together, and each rank has clusters from both ends of the
+// scene: seldom are both what most of the picture shows.
+int neighbours_owner(const comm::Communicator& communicator, std::size_t i, std::size_t n) {
+  const int rank = communicator.rank();
+  return i < (n + 1) / 2 ? rank : communicator.size() - 1 - rank;
+}
+
+// Every rank's clusters to those who get them: owners[i] gets mine[i]. Collective.
+std::vector<ClusterData> assigned(comm::Communicator& communicator, std::vector<ClusterData>&& mine,
+                                  std::span<const int> owners) {
   std::vector<comm::Parcel> parcels;
+  std::vector<ClusterData> result;
   for (std::size_t i = 0; i < mine.size(); ++i) {
-    const std::uint64_t key =
-        scattered(seed ^ scattered(i * 65537 + static_cast<std::uint64_t>(communicator.rank())));
-    const auto to = static_cast<int>(key % static_cast<std::uint64_t>(communicator.size()));
-    parcels.push_back({to, pack(mine[i])});
-    mine[i] = {};
+    if (owners[i] == communicator.rank()) {
+      result.push_back(std::move(mine[i]));
+    } else {
+      parcels.push_back({owners[i], pack(mine[i])});
+      mine[i] = {};
+    }
   }
-  std::vector<ClusterData> assigned;
   for (comm::Parcel& parcel : comm::exchange(communicator, std::move(parcels))) {
-    assigned.push_back(unpack_cluster({parcel.message.data(), parcel.message.size()}));
+    result.push_back(unpack_cluster({parcel.message.data(), parcel.message.size()}));
     parcel.message = {};
   }
-  return assigned;
+  return result;
 }
 
 }  // namespace
@@ -126,8 +141,13 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
       build_(options.build),
       device_(build_) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.assignment == ShareOptions::Assignment::random)
-    mine = assigned_at_random(communicator, std::move(mine), options.seed);
+  std::vector<int> owners;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    owners.push_back(options.assignment == ShareOptions::Assignment::random
+                         ? random_owner(communicator, i, options.seed)
+                         : neighbours_owner(communicator, i, mine.size()));
+  }
+  mine = assigned(communicator, std::move(mine), owners);
 
   // What there is to know of this rank's clusters, then their boxes.
   std::vector<Known> known;
@@ -177,6 +197,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   }
   for (const ClusterBox& box : all_boxes) bounds_.include(box.box);
   boxes_ = std::move(all_boxes);
+  everywhere_ = ClusterTree(boxes_);
   is_resident_.assign(owners_.size(), 0);
 
   std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
@@ -202,7 +223,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
 }
 
 std::uint64_t SharedScene::bytes() const {
-  std::uint64_t sum = resident_->bytes() + elsewhere_.bytes() + given_bytes_;
+  std::uint64_t sum = resident_->bytes() + elsewhere_.bytes() + everywhere_.bytes() + given_bytes_;
   for (const auto& [number, cluster] : owned_) sum += cluster->bytes();
   for (const auto& [number, cached] : cached_) {
     sum += cached.cluster->bytes() + (cached.scene != nullptr ? cached.scene->bytes() : 0);

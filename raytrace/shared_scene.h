@@ -20,8 +20,9 @@ namespace delray::raytrace {
 
 // How a scene is distributed.
 struct ShareOptions {
-  // Which ranks clusters go to: neighbours to one, so that a ray changes rank seldom, or random
-  // ones, so that every rank has some of what the picture shows (Jevans 1989).
+  // Which ranks clusters go to: neighbours to one, two runs of them from both ends of the scene, so
+  // that a ray changes rank seldom, or random ones, so that every rank has some of what the picture
+  // shows (Jevans 1989).
   enum class Assignment : std::uint8_t { neighbours, random } assignment = Assignment::neighbours;
   std::uint64_t seed = 1;  // of random
   // Bytes that other ranks' clusters may take on this one, with their acceleration structures, but
@@ -66,6 +67,8 @@ class SharedScene {
   bool is_resident(std::uint32_t cluster) const { return is_resident_[cluster] != 0; }
   // The boxes of all that is not resident.
   const ClusterTree& elsewhere() const { return elsewhere_; }
+  // All boxes.
+  const ClusterTree& everywhere() const { return everywhere_; }
 
   // Parallel. A cluster that is at hand, but not resident; null where it is not. A use of what came
   // from another rank keeps it longest.
@@ -88,6 +91,8 @@ class SharedScene {
   std::uint64_t bytes() const;
   std::uint64_t most_bytes() const { return most_bytes_; }
   std::uint64_t cache_bytes() const { return cache_limit_; }
+  // Whether the cache is large enough for all clusters of other ranks.
+  bool has_room_for_all() const { return has_room_for_all_; }
   std::uint64_t evicted() const { return evicted_; }
   double build_seconds() const { return build_seconds_; }
   std::string embree_version() const { return device_.version(); }
@@ -116,7 +121,7 @@ class SharedScene {
   geometry::Box3 bounds_;
   std::unique_ptr<ClusterScene> resident_;
   std::vector<std::uint8_t> is_resident_;  // by cluster
-  ClusterTree elsewhere_;
+  ClusterTree elsewhere_, everywhere_;
   std::vector<int> owners_;                  // by cluster
   std::vector<std::uint64_t> packed_bytes_;  // by cluster
   std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>> owned_;
@@ -125,7 +130,7 @@ class SharedScene {
   std::uint64_t cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
   std::uint64_t given_bytes_ = 0;     // of clusters that are resident, but not owned any more
   bool has_resident_cached_ = false;  // whether clusters of the cache are resident
-  bool has_room_for_all_ = false;     // in the cache
+  bool has_room_for_all_ = false;
   // Rays against single clusters since the resident scene changed, how many triangles are worth
   // one, and what had been evicted when the last frame began.
   std::uint64_t tests_ = 0, triangles_per_test_ = 4, evicted_before_ = 0;

@@ -12,6 +12,7 @@
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
 #include "raytrace/distributed/distributions.h"
+#include "raytrace/distributed/tile_owners.h"
 #include "raytrace/scene/flush_to_zero.h"
 
 namespace delray::raytrace {
@@ -30,6 +31,9 @@ constexpr std::size_t kReadyAtOnce = 32;
 
 // A rank looks whether messages have come at least so often while it waits.
 constexpr auto kMoment = std::chrono::microseconds(100);
+
+// Tiles that are passed on in one message: few, as their rank may have nothing else to do.
+constexpr std::size_t kTilesAtOnce = 16;
 
 // Rays that threads intersect with resident clusters at a time.
 constexpr std::size_t kRaysAtOnce = 1024;
@@ -52,17 +56,43 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       frame_(frame),
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
       most_in_flight_(distribution.fetches ? kMostFetchingTasks : kMostPixelTasks),
+      passes_tiles_on_(!(distribution.fetches && scene.has_room_for_all())),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
       messenger_(communicator, termination_) {
   const auto ranks = static_cast<std::size_t>(communicator.size());
   waiting_.to_intersect.resize(ranks);
   waiting_.to_answer.resize(ranks);
+  tiles_to_send_.resize(ranks);
   router_ = make_router(distribution, {scene_, messenger_, waiting_, counts_});
   scene_.begin_frame();
 }
 
-void DistributedTracer::add(std::uint32_t number) {
+void DistributedTracer::add(std::uint32_t tile) {
+  const int rank = communicator_.rank();
+  const bool stays = !passes_tiles_on_ || scene_.elsewhere().empty();
+  const int owner = stays ? rank : owner_of_tile(frame_, scene_, rank, tile);
+  if (owner == rank)
+    start(tile);
+  else
+    tiles_to_send_[static_cast<std::size_t>(owner)].push_back(tile);
+  if (ready_.size() >= (scene_.elsewhere().empty() ? 1 : kReadyAtOnce)) serve();
+  while (in_flight_ > most_in_flight_) {
+    if (!serve()) wait_a_moment();
+  }
+}
+
+// As many as there is room for. Returns whether any.
+bool DistributedTracer::start_waiting_tiles() {
+  bool any = false;
+  for (; !waiting_tiles_.empty() && in_flight_ <= most_in_flight_; any = true) {
+    start(waiting_tiles_.back());
+    waiting_tiles_.pop_back();
+  }
+  return any;
+}
+
+void DistributedTracer::start(std::uint32_t number) {
   TilePixels pixels = start_tile(frame_, number);
   const std::vector<Task> tasks = tasks_of(frame_, pixels.rect);
   if (tasks.empty()) {
@@ -87,15 +117,12 @@ void DistributedTracer::add(std::uint32_t number) {
     ++in_flight_;
     ready_.push_back(index);
   }
-  if (ready_.size() >= (scene_.elsewhere().empty() ? 1 : kReadyAtOnce)) serve();
-  while (in_flight_ > most_in_flight_) {
-    if (!serve()) wait_a_moment();
-  }
 }
 
 bool DistributedTracer::serve() {
   receive_all();
-  bool any = advance_pixel_tasks();
+  bool any = start_waiting_tiles();
+  any = advance_pixel_tasks() || any;
   any = intersect_waiting() || any;
   const std::uint64_t before = messenger_.sent();
   router_->take_turn(!any);
@@ -146,6 +173,10 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
       for (const ShadowMessage& shadow : queue.shadows) end_ray(shadow);
       break;
     }
+    case MessageKind::tiles:
+      for (const std::uint32_t tile : unpack_tiles(message, frame_.tiles.grid().count()))
+        waiting_tiles_.push_back(tile);
+      break;
     default:
       router_->receive(
           envelope.source, header,
@@ -343,6 +374,11 @@ void DistributedTracer::intersect(ClusterBatch& batch) {
 
 void DistributedTracer::send_all(bool idle) {
   for (int rank = 0; rank < communicator_.size(); ++rank) {
+    std::vector<std::uint32_t>& tiles = tiles_to_send_[static_cast<std::size_t>(rank)];
+    if (tiles.size() >= kTilesAtOnce || (idle && !tiles.empty())) {
+      messenger_.send(rank, pack_tiles(tiles));
+      tiles.clear();
+    }
     const auto send_batch = [&](MessageKind kind, RayQueue& out) {
       const std::size_t count = out.size();
       if (count == 0 || (!idle && count < kBatchRays)) return;

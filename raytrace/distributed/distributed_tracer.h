@@ -25,7 +25,8 @@ class DistributedTracer {
   DistributedTracer(comm::Communicator& communicator, SharedScene& scene,
                     const Distribution& distribution, const TiledFrame& frame);
 
-  // Adds a tile, and works until there is room for another.
+  // Adds a tile, here or on the rank that has what it shows, and works until there is room for
+  // another.
   void add(std::uint32_t tile);
   // Works off what is there and came, without waiting. Whether there was anything.
   bool serve();
@@ -65,6 +66,8 @@ class DistributedTracer {
     double busy = 0.0;
   };
 
+  void start(std::uint32_t tile);
+  bool start_waiting_tiles();
   void receive_all();
   void receive(const comm::Envelope& envelope);
   bool advance_pixel_tasks();
@@ -89,6 +92,7 @@ class DistributedTracer {
   const TiledFrame& frame_;
   int last_sample_;             // one past it
   std::size_t most_in_flight_;  // tasks
+  bool passes_tiles_on_;        // to ranks that have what they show
   Kernels kernels_;
   comm::Termination termination_;
   RayMessenger messenger_;
@@ -97,6 +101,8 @@ class DistributedTracer {
   std::vector<std::uint32_t> free_, ready_;  // numbers of pixel_tasks
   std::size_t in_flight_ = 0;
   std::vector<std::unique_ptr<Tile>> open_tiles_;
+  std::vector<std::uint32_t> waiting_tiles_;               // that other ranks passed on to this one
+  std::vector<std::vector<std::uint32_t>> tiles_to_send_;  // by rank
   std::vector<TilePixels> done_;
 
   WaitingRays waiting_;

@@ -86,7 +86,7 @@ MessageHeader header_of(const comm::Buffer& message) {
   comm::check_message(message.size() >= sizeof(MessageHeader));
   MessageHeader header;
   std::memcpy(&header, message.data(), sizeof header);
-  comm::check_message(header.kind <= MessageKind::load);
+  comm::check_message(header.kind <= MessageKind::tiles);
   return header;
 }
 
@@ -113,6 +113,22 @@ RayQueue unpack_rays(const comm::Buffer& message, const MessageHeader& header) {
   }
   comm::check_message(rest == 0);
   return result;
+}
+
+comm::Buffer pack_tiles(std::span<const std::uint32_t> tiles) {
+  MessageHeader header;
+  header.kind = MessageKind::tiles;
+  return with_header(header, comm::Buffer::of(std::as_bytes(tiles)));
+}
+
+std::vector<std::uint32_t> unpack_tiles(const comm::Buffer& message, std::uint32_t all) {
+  comm::check_message(message.size() >= sizeof(MessageHeader));
+  const std::size_t bytes = message.size() - sizeof(MessageHeader);
+  comm::check_message(bytes % sizeof(std::uint32_t) == 0);
+  std::vector<std::uint32_t> tiles(bytes / sizeof(std::uint32_t));
+  if (bytes > 0) std::memcpy(tiles.data(), message.data() + sizeof(MessageHeader), bytes);
+  for (const std::uint32_t tile : tiles) comm::check_message(tile < all);
+  return tiles;
 }
 
 comm::Buffer with_header(const MessageHeader& header, const comm::Buffer& content) {

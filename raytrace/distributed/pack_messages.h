@@ -1,4 +1,4 @@
-// What ranks that share a scene out send each other: rays, answers, clusters and loads.
+// What ranks that share a scene out send each other: rays, answers, clusters, loads and tiles.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace delray::raytrace {
 
-enum class MessageKind : std::uint32_t { intersect, answer, fetch, cluster, move, load };
+enum class MessageKind : std::uint32_t { intersect, answer, fetch, cluster, move, load, tiles };
 
 // How every message begins.
 struct MessageHeader {
@@ -32,6 +32,10 @@ MessageHeader header_of(const comm::Buffer& message);
 // The rays and shadows of a message of pack(), which are all that follows the header. Throws
 // comm::BadMessage where they are not.
 RayQueue unpack_rays(const comm::Buffer& message, const MessageHeader& header);
+
+// Numbers of tiles, all of them less than `all`. Throws comm::BadMessage where they are not.
+comm::Buffer pack_tiles(std::span<const std::uint32_t> tiles);
+std::vector<std::uint32_t> unpack_tiles(const comm::Buffer& message, std::uint32_t all);
 
 comm::Buffer with_header(const MessageHeader& header, const comm::Buffer& content);
 

@@ -211,6 +211,29 @@ TEST(SharedScene, WithRoomForAllOfItLaterFramesAreThoseOfAWholeScene) {
   }
 }
 
+// Tiles are traced where most of what they show is at hand, whichever rank the schedule gave them.
+TEST(SharedScene, FewRaysTravelBetweenNeighbours) {
+  const scenes::Scene scene = completed("gen:terrain:40000");
+  RenderOptions options = small(192, 128);
+  options.tile = 16;
+  options.integrator = "direct";
+  for (const char* data : {"ray", "hybrid"}) {
+    for (const int ranks : {2, 4}) {
+      const Result result =
+          shared_out(scene, options, *find_distribution(data), ShareOptions{}, ranks, 1);
+      std::uint64_t sent = 0, rays = 0, tiles = 0;
+      for (const RankStatistics& rank : result.statistics.ranks) {
+        sent += rank.rays_sent;
+        rays += rank.rays.primary + rank.rays.shadow;
+        tiles += rank.tasks;
+      }
+      EXPECT_EQ(tiles, 96U) << data;
+      EXPECT_GT(sent, 0U) << data << ' ' << ranks;
+      EXPECT_LT(sent * 5, rays) << data << ' ' << ranks;
+    }
+  }
+}
+
 // A cache that is too small for what a frame needs stays within its limit, frame after frame.
 TEST(SharedScene, ASmallCacheGivesTheSamePictureFrameAfterFrame) {
   const scenes::Scene scene = completed("gen:terrain:40000");

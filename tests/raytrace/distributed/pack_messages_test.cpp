@@ -131,5 +131,17 @@ TEST(Progression, KnowsWhenThereIsNowhereElseToGo) {
   EXPECT_FALSE(way.has_been_everywhere(3));
 }
 
+TEST(PackMessages, TilesArriveAndThoseThatThereAreNotAreRefused) {
+  const std::vector<std::uint32_t> tiles = {0, 7, 99};
+  const comm::Buffer message = pack_tiles(tiles);
+  EXPECT_EQ(header_of(message).kind, MessageKind::tiles);
+  EXPECT_EQ(unpack_tiles(message, 100), tiles);
+  EXPECT_TRUE(unpack_tiles(pack_tiles({}), 0).empty());
+  EXPECT_THROW(unpack_tiles(message, 99), comm::BadMessage);
+  const std::span<const std::byte> bytes(message.data(), message.size());
+  EXPECT_THROW(unpack_tiles(comm::Buffer::of(bytes.first(bytes.size() - 1)), 100),
+               comm::BadMessage);
+}
+
 }  // namespace
 }  // namespace delray::raytrace
