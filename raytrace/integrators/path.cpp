@@ -10,15 +10,14 @@
 // through too many of them ends; a light without size counts in full, as no scattered ray finds it.
 #include "raytrace/integrators/path.h"
 
-#include <array>
 #include <bit>
 #include <span>
-#include <utility>
 
-#include "image/image.h"
 #include "raytrace/integrators/enqueue.h"
 #include "raytrace/integrators/hits_by_material.h"
 #include "raytrace/integrators/lane_sums.h"
+#include "raytrace/integrators/path_queue.h"
+#include "raytrace/integrators/path_samples.h"
 #include "raytrace/integrators/path_vertices.h"
 #include "raytrace/sampling/bsdf.h"
 #include "raytrace/sampling/light_table.h"
@@ -43,10 +42,6 @@ enum Dimension : std::uint32_t {
   kDimensions,
 };
 
-bool finite(const glm::vec3& v) {
-  return brightest(glm::abs(v)) < std::numeric_limits<float>::infinity();  // false for NaN
-}
-
 class Path final : public WavefrontIntegrator {
  public:
   explicit Path(const FrameContext& context)
@@ -55,42 +50,22 @@ class Path final : public WavefrontIntegrator {
         coloured_(context.shader.materials.size()) {}
 
  private:
-  void begin() override {
-    enqueued_.clear();
-    enqueued_lights_.clear();
-    filling_ = straight_ = {};
-    used_lights_ = kPacketRays;
-    for (std::uint32_t block = 0; block < next_.rays.size(); ++block) {
-      PathLanes& lanes = enqueued_.add();
-      lanes.whole = true;
-      lanes.block = block;
-    }
-  }
+  void begin() override { queue_.begin(); }
 
   void shade() override {
-    begin_generation();
+    queue_.begin_generation();
+    texture_sets_ = 0;
     for (std::size_t g = 0; g < batch_.shadows.size(); ++g) {
-      add_light(batch_.shadows[g], intersected_lights_[g]);
+      sums_.add_light(batch_.shadows[g], queue_.lights(g));
     }
     for (std::size_t g = 0; g < batch_.rays.size(); ++g) {
-      PathLanes& lanes = intersected_[g];
+      PathLanes& lanes = queue_.paths(g);
       if (lanes.whole && batch_.rays[g].hits != 0) spell_out(lanes);
       add_sky(batch_.rays[g], lanes);
       if (batch_.rays[g].hits != 0) find(static_cast<std::uint32_t>(g), lanes);
     }
     shade_gathered(plain_.take(), false);
     shade_gathered(coloured_.take(), true);
-  }
-
-  // What was enqueued has been intersected, and there is room for the rays that follow.
-  void begin_generation() {
-    std::swap(enqueued_, intersected_);
-    std::swap(enqueued_lights_, intersected_lights_);
-    enqueued_.clear();
-    enqueued_lights_.clear();
-    filling_ = straight_ = {};
-    used_lights_ = kPacketRays;
-    texture_sets_ = 0;
   }
 
   static void spell_out(PathLanes& lanes) {
@@ -103,50 +78,18 @@ class Path final : public WavefrontIntegrator {
     }
   }
 
-  void add(std::uint32_t pixel, const glm::vec3& radiance) {
-    if (!finite(radiance)) return;
-    SampleBlock& block = samples_[pixel / kPacketRays];
-    const int lane = static_cast<int>(pixel % kPacketRays);
-    block.colour.set(lane, block.colour.get(lane) + radiance);
-  }
-
-  void add_light(const ShadowGroup& group, const LightLanes& lanes) {
-    for (LaneMask rest = group.lit; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      const glm::vec3 reflected = lanes.reflected.get(i);
-      add(lanes.pixel[i],
-          (group.attenuated >> i & 1) != 0 ? reflected * group.transmittance.get(i) : reflected);
-    }
-  }
-
   void add_sky(const RayGroup& group, const PathLanes& lanes) {
     LaneMask missed = active_lanes(group.active) & ~group.hits;
     if (missed == 0) return;
     const bool transparent = context_.options.background == TraceOptions::Background::transparent;
-    if (lanes.whole && transparent) {
-      SampleBlock& block = samples_[lanes.block];
-      choose_lanes(block.alpha.lane, 0.0F, ~missed, block.alpha);
-      return;
-    }
-    if (transparent) {
-      for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
-        const int i = std::countr_zero(rest);
-        if (lanes.bounce[i] != 0) continue;
-        samples_[lanes.pixel[i] / kPacketRays]
-            .alpha[static_cast<int>(lanes.pixel[i] % kPacketRays)] = 0.0F;
-        missed &= ~(1U << i);
-      }
-    }
+    if (transparent) missed = sums_.make_transparent(lanes, missed);
     if (missed == 0 || context_.shader.shader->environment.black) return;
     negate_lanes(group.view, directions_);
     shading::environment_radiance(context_.shader, directions_, 0.0F, missed, colour_);
     if (lanes.whole) return add_lanes(colour_, missed, samples_[lanes.block].colour);
     context_.lights.pdf_of_sky(directions_, pdfs_);
     weigh_sky(lanes, pdfs_, colour_);
-    for (LaneMask rest = missed; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      add(lanes.pixel[i], colour_.get(i));
-    }
+    sums_.add(colour_, lanes, missed);
   }
 
   // The surfaces that a group's rays met: looks at them at once where they fill it.
@@ -172,7 +115,7 @@ class Path final : public WavefrontIntegrator {
   void shade_gathered(std::span<const std::uint32_t> hits, bool coloured) {
     while (!hits.empty()) {
       const std::size_t count = std::min<std::size_t>(hits.size(), kPacketRays);
-      gather_hits(batch_.rays, intersected_, hits.first(count), coloured, texture_sets_, group_,
+      gather_hits(batch_.rays, queue_.paths(), hits.first(count), coloured, texture_sets_, group_,
                   lanes_);
       std::copy_n(hits.begin(), count, sources_);
       shade_hits(group_, lanes_, shading::first_lanes(static_cast<int>(count)));
@@ -212,14 +155,14 @@ class Path final : public WavefrontIntegrator {
                            std::span(pairs_).subspan<kLight, LightTable::kPairs>(), lights_);
     evaluate(bsdfs_, lights_.direction, alive, values_);
     const LaneMask lit = rays_to_lights(vertices, lights_, values_, alive, light_rays_);
-    if (lit != 0) enqueue_lights(lit);
+    if (lit != 0) queue_.enqueue(light_rays_, lit, lights_);
   }
 
   // Enqueues the rays by which paths go on.
   void scatter(const Vertices& vertices, LaneMask alive) {
     sample(bsdfs_, pairs_[kLobe].x, pairs_[kDirection].x, pairs_[kDirection].y, alive, scattered_);
     scattered_rays(vertices, scattered_, pairs_[kLobe].y, kCertain, alive, next_rays_);
-    if (next_rays_.count != 0) enqueue_scattered();
+    if (next_rays_.count != 0) queue_.enqueue(next_rays_);
   }
 
   // Bodies of glass take from the light that comes out of them.
@@ -296,20 +239,12 @@ class Path final : public WavefrontIntegrator {
         drawn = true;
         if (pairs_[0].x[i] < alpha_[i]) continue;
       }
-      go_behind(group, lanes, i, hit);
+      const auto most =
+          static_cast<std::uint32_t>(context_.options.depth + context_.options.diffuse_depth);
+      if (lanes.vertex[i] < kMostLayers + most) queue_.go_behind(group, lanes, i, hit);
       seen &= ~(1U << i);
     }
-    if (lanes.whole) {
-      choose_lanes(group.packet.far, image::kEmptyDepth, seen, samples_[lanes.block].depth);
-      return seen;
-    }
-    for (LaneMask rest = seen; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      if (lanes.bounce[i] != 0) continue;
-      const std::uint32_t pixel = lanes.pixel[i];
-      samples_[pixel / kPacketRays].depth[static_cast<int>(pixel % kPacketRays)] =
-          group.packet.far[i];
-    }
+    sums_.set_depths(group, lanes, seen);
     return seen;
   }
 
@@ -323,108 +258,11 @@ class Path final : public WavefrontIntegrator {
           hit.instance, hit.triangle, origin_of(packet, lane), surfaces_.position.get(i));
       share = power_heuristic(lanes.pdf[i], pdf);
     }
-    add(lanes.pixel[i], lanes.throughput.get(i) * surfaces_.emission.get(i) * share);
+    sums_.add(lanes.pixel[i], lanes.throughput.get(i) * surfaces_.emission.get(i) * share);
   }
 
-  void go_behind(const RayGroup& group, const PathLanes& lanes, int i, const Hit& hit) {
-    const auto& limits = context_.options;
-    if (lanes.vertex[i] >=
-        kMostLayers + static_cast<std::uint32_t>(limits.depth + limits.diffuse_depth)) {
-      return;
-    }
-    // The camera's rays have not been turned aside.
-    Filling& filling = lanes.bounce[i] == 0 ? straight_ : filling_;
-    make_room(filling);
-    const int lane = filling.used++;
-    RayGroup& next = next_.rays[filling.group];
-    PathLanes& to = enqueued_[filling.group];
-    next.coherent = lanes.bounce[i] == 0;
-    set_ray(next, lane, origin_of(group.packet, i), direction_of(group.packet, i),
-            group.view.get(i), next_up(hit.distance));
-    next.width[lane] = group.width[i];
-    next.spread[lane] = group.spread[i];
-    to.throughput.set(lane, lanes.throughput.get(i));
-    to.pdf[lane] = lanes.pdf[i];
-    to.pixel[lane] = lanes.pixel[i];
-    to.bounce[lane] = lanes.bounce[i];
-    to.vertex[lane] = lanes.vertex[i] + 1;
-    to.instance[lane] = hit.instance;
-    to.triangle[lane] = hit.triangle;
-    ++(lanes.bounce[i] == 0 ? rays_.primary : rays_.secondary);
-  }
-
-  // A group of next_ whose lanes from `used` on are free.
-  struct Filling {
-    std::size_t group = 0;
-    int used = kPacketRays;
-  };
-
-  // Sees to it that some are.
-  void make_room(Filling& filling) {
-    if (filling.used < kPacketRays) return;
-    filling = {next_.rays.size(), 0};
-    clear_rays(next_.rays.add());
-    PathLanes& lanes = enqueued_.add();
-    lanes.whole = false;
-    std::fill_n(lanes.triangle, kPacketRays, kMiss);
-  }
-
-  void enqueue_scattered() {
-    make_room(filling_);
-    const int used = filling_.used, all = used + next_rays_.count;
-    const std::size_t first = filling_.group;
-    filling_.used = all;
-    std::array<float*, 18> second{};
-    if (all > kPacketRays) {
-      make_room(filling_);
-      filling_.used = all - kPacketRays;
-      second = path_fields(next_.rays.back(), enqueued_.back());
-      activate(next_.rays.back(), 0, filling_.used);
-    }
-    append_lanes(next_rays_, used, path_fields(next_.rays[first], enqueued_[first]),
-                 all > kPacketRays ? &second : nullptr);
-    activate(next_.rays[first], used, std::min(all, kPacketRays));
-    rays_.secondary += static_cast<std::uint64_t>(next_rays_.count);
-  }
-
-  void enqueue_lights(LaneMask lit) {
-    const auto add_group = [&] {
-      clear_rays(next_.shadows.add());
-      enqueued_lights_.add();
-    };
-    if (used_lights_ == kPacketRays) add_group(), used_lights_ = 0;
-    const int used = used_lights_, all = used + light_rays_.count;
-    const std::size_t first = next_.shadows.size() - 1;
-    used_lights_ = all;
-    std::array<float*, 11> second{};
-    if (all > kPacketRays) {
-      add_group();
-      used_lights_ = all - kPacketRays;
-      second = light_fields(next_.shadows.back(), enqueued_lights_.back());
-      activate(next_.shadows.back(), 0, used_lights_);
-    }
-    append_lanes(light_rays_, used, light_fields(next_.shadows[first], enqueued_lights_[first]),
-                 all > kPacketRays ? &second : nullptr);
-    activate(next_.shadows[first], used, std::min(all, kPacketRays));
-    // Scattered rays find other lights behind glass.
-    int lane = used;
-    for (LaneMask rest = lit; rest != 0; rest &= rest - 1, ++lane) {
-      if (lights_.pdf[std::countr_zero(rest)] > 0.0F) continue;
-      next_.shadows[first + static_cast<std::size_t>(lane / kPacketRays)].through_glass |=
-          1U << (lane % kPacketRays);
-    }
-    rays_.shadow += static_cast<std::uint64_t>(light_rays_.count);
-  }
-
-  template <class Group>
-  static void activate(Group& group, int from, int to) {
-    std::fill(group.active.ray + from, group.active.ray + to, -1);
-  }
-
-  Groups<PathLanes> enqueued_, intersected_;  // of next_.rays and batch_.rays
-  Groups<LightLanes> enqueued_lights_, intersected_lights_;
-  Filling filling_, straight_;       // groups of next_.rays, straight_ of camera rays
-  int used_lights_ = kPacketRays;    // lanes of the last group of next_.shadows
+  PathQueue queue_{next_, rays_};
+  PathSamples sums_{samples_};
   HitsByMaterial plain_, coloured_;  // colours of vertices: of none, of some of a group
   int texture_sets_ = 0;             // the most that one of their materials looks at
   // Of the surfaces that are looked at.
