@@ -104,9 +104,10 @@ Extent Extents::of(const PreparedDraw& draw, std::uint32_t first, std::uint32_t 
       if (sum.triangles > 0) include(sum.box, result.box);
       if (!boxes_.any_alone) continue;
     }
-    for (std::uint32_t p = place; p < last; ++p)
+    for (std::uint32_t p = place; p < last; ++p) {
       if (vertices_.any_outside || boxes_.pixels[p] == TriangleBoxes::kAlone)
         set_up({screen_, draw, block, cluster, vertices_}, p, 0, include_triangle);
+    }
   }
   if (result.triangles == 0) result.box = {};
   return result;

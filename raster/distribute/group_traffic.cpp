@@ -91,7 +91,7 @@ void GroupTraffic::need(const RankContext& rank, std::span<const Piece> groups, 
 }
 
 void GroupTraffic::park_or_forget(std::span<const Piece> groups) {
-  for (std::size_t i = 0; i < groups.size(); ++i)
+  for (std::size_t i = 0; i < groups.size(); ++i) {
     std::erase_if(holders_[i], [&](const Holder& holder) {
       if (holder.last_needed + 1 == frame_)
         outgoing_[holder.rank].parked.push_back(groups[i].primitive);
@@ -99,6 +99,7 @@ void GroupTraffic::park_or_forget(std::span<const Piece> groups) {
       outgoing_[holder.rank].forgotten.push_back(groups[i].primitive);
       return true;
     });
+  }
 }
 
 void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {

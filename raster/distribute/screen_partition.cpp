@@ -156,9 +156,10 @@ void ScreenPartition::add_seen(const loadbalance::RasterCostModel& model, const 
                                const GroupBounds& bounds, bool with_visible) {
   std::vector<loadbalance::WeightedBox>& boxes = costed_.boxes;
   costed_.seen = {};
-  if (with_visible)
+  if (with_visible) {
     costed_.seen = {model.per_pixel, std::vector<double>(boxes.size()),
                     std::vector<double>(boxes.size())};
+  }
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].box.empty()) continue;
     const double seen = coverage.seen(boxes[i].box, bounds.surfaces[i].blended);
@@ -216,9 +217,10 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts,
   ++version_;
   cut_before_ = true;
   reported_ = options.report_partition;
-  if (!kept_ || !(kind == kind_))
+  if (!kept_ || !(kind == kind_)) {
     kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
                   options.regions_per_rank);
+  }
   kind_ = kind;
 
   const geometry::Rect frame = rank.frame();

@@ -39,9 +39,10 @@ std::vector<BytesByPhase> sent(const scenes::Scene& scene, const RenderOptions& 
     }
   });
   std::vector<BytesByPhase> sums(static_cast<std::size_t>(frames));
-  for (const auto& rank : by_rank)
+  for (const auto& rank : by_rank) {
     for (std::size_t i = 0; i < sums.size(); ++i)
       for (const auto& [phase, bytes] : rank[i]) sums[i][phase] += bytes;
+  }
   return sums;
 }
 
@@ -53,7 +54,7 @@ TEST(UnchangedFrames, TellNothingButThatTheyAreUnchanged) {
   options.width = 320;
   options.height = 200;
   for (const std::string way :
-       {"sort-first", "sort-first/numbers", "sort-first/static", "sort-middle", "hybrid"})
+       {"sort-first", "sort-first/numbers", "sort-first/static", "sort-middle", "hybrid"}) {
     for (const unsigned ranks : {2U, 4U, 16U}) {
       options.strategy = way.substr(0, way.find('/'));
       options.travel = way == "sort-first/numbers" ? Travel::numbers : Travel::geometry;
@@ -73,6 +74,7 @@ TEST(UnchangedFrames, TellNothingButThatTheyAreUnchanged) {
           EXPECT_EQ(bytes, way == "hybrid" ? question + depths : question) << way << ", " << ranks;
       }
     }
+  }
 }
 
 // Whatever ranks remember of frames before, in whichever company, pictures are those of frames

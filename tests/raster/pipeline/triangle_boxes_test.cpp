@@ -31,7 +31,7 @@ scenes::Mesh random_mesh(unsigned seed, int triangles) {
 TEST(TriangleBoxes, AreThoseOfSetUp) {
   const scenes::Mesh mesh = random_mesh(5, 85);  // of one cluster
   tests::for_each_target([&] {
-    for (const int hidden_side : {0, 1, -1})
+    for (const int hidden_side : {0, 1, -1}) {
       for (const int width : {60, 700}) {
         const Screen screen = make_screen(plain_view(width, width * 3 / 5));
         PreparedMesh prepared(screen, mesh);
@@ -93,6 +93,7 @@ TEST(TriangleBoxes, AreThoseOfSetUp) {
           EXPECT_EQ(sum.box, expected.box);
         }
       }
+    }
   });
 }
 

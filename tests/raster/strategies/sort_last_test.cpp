@@ -181,9 +181,10 @@ TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
   scenes::Mesh& mesh = scene.meshes[0];
   mesh = {};
   for (std::uint32_t y = 0; y < kSide; ++y) {
-    for (std::uint32_t x = 0; x < kSide; ++x)
+    for (std::uint32_t x = 0; x < kSide; ++x) {
       mesh.positions.emplace_back(static_cast<float>(x) / 32 - 1, static_cast<float>(y) / 32 - 1,
                                   0);
+    }
   }
   for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
     for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
