@@ -18,7 +18,7 @@ struct Loaded {
   std::vector<std::string> warnings;
 };
 
-Loaded read(const std::string& content) {
+Loaded read_obj_text(const std::string& content) {
   Loaded result;
   result.scene = internal::load_content("/nowhere/a.obj", content, result.warnings);
   return result;
@@ -27,7 +27,8 @@ Loaded read(const std::string& content) {
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST(ReadObj, GroupsAndObjectsAreOneMesh) {
-  const Loaded l = read("o a\n" + kSquare + "g x\nf 1 2 3\ng y z\nf 1 3 4\no b\nf 1 2 4\n");
+  const Loaded l =
+      read_obj_text("o a\n" + kSquare + "g x\nf 1 2 3\ng y z\nf 1 3 4\no b\nf 1 2 4\n");
   ASSERT_EQ(l.scene.meshes.size(), 1U);
   EXPECT_EQ(l.scene.meshes[0].triangles,
             (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}, {0, 1, 3}}));
@@ -39,7 +40,7 @@ TEST(ReadObj, HalfAMillionGroups) {
   constexpr int kGroups = 500'000;
   std::string obj = kSquare;
   for (int i = 0; i < kGroups; ++i) obj += "g " + std::to_string(i) + "\nf 1 2 3\n";
-  EXPECT_EQ(triangle_count(read(obj).scene), std::uint64_t{kGroups});
+  EXPECT_EQ(triangle_count(read_obj_text(obj).scene), std::uint64_t{kGroups});
 }
 
 TEST(ReadObj, HalfAMillionMaterialsAndTextureCoordinatesOfOneVertex) {
@@ -48,11 +49,11 @@ TEST(ReadObj, HalfAMillionMaterialsAndTextureCoordinatesOfOneVertex) {
   for (int i = 0; i < kMany; ++i) {
     obj += "vt " + std::to_string(i) + " 0\nf 1/-1 2/-1 3/-1\n";
   }
-  const Loaded l = read(obj);
+  const Loaded l = read_obj_text(obj);
   EXPECT_EQ(l.scene.meshes.at(0).positions.size(), 3U * kMany);
   obj = kSquare;
   for (int i = 0; i < kMany / 10; ++i) obj += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
-  EXPECT_EQ(read(obj).scene.meshes.size(), std::size_t{kMany / 10});
+  EXPECT_EQ(read_obj_text(obj).scene.meshes.size(), std::size_t{kMany / 10});
 }
 
 TEST(ReadObj, APolygonOfAHundredThousandCorners) {
@@ -64,30 +65,30 @@ TEST(ReadObj, APolygonOfAHundredThousandCorners) {
            std::to_string(radius * std::sin(angle)) + " 0\n";
     face += " " + std::to_string(i + 1);
   }
-  EXPECT_EQ(triangle_count(read(obj + face + "\n").scene), kCorners - 2U);
+  EXPECT_EQ(triangle_count(read_obj_text(obj + face + "\n").scene), kCorners - 2U);
 }
 
 TEST(ReadObj, LinesPointsAndFreeFormsAreLeftOutWithAWarning) {
   const Loaded l =
-      read(kSquare + "l 1 2 3\np 1 2\nf 1 2\nf 1 2 3\ncurv 0 1 1 2 3\nsurf 0 1 0 1 1 2\n");
+      read_obj_text(kSquare + "l 1 2 3\np 1 2\nf 1 2\nf 1 2 3\ncurv 0 1 1 2 3\nsurf 0 1 0 1 1 2\n");
   EXPECT_EQ(triangle_count(l.scene), 1U);
   ASSERT_EQ(l.warnings.size(), 2U);
   EXPECT_NE(l.warnings[0].find("3 points and lines"), std::string::npos);
   EXPECT_NE(l.warnings[1].find("2 free-form"), std::string::npos);
-  EXPECT_THROW(read(kSquare + "l 1 2 3\np 1\n"), files::FileError);
+  EXPECT_THROW(read_obj_text(kSquare + "l 1 2 3\np 1\n"), files::FileError);
 }
 
 TEST(ReadObj, ColoursOfVerticesAndWeights) {
-  const Loaded l = read("v 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0 0 0 1\nv 5 5 5\nf 1 2 3\n");
+  const Loaded l = read_obj_text("v 0 0 0 1 0 0\nv 1 0 0 1\nv 0 1 0 0 0 1\nv 5 5 5\nf 1 2 3\n");
   const Mesh& mesh = l.scene.meshes.at(0);
   EXPECT_EQ(mesh.colours, (std::vector<glm::vec4>{{1, 0, 0, 1}, {1, 1, 1, 1}, {0, 0, 1, 1}}));
   EXPECT_EQ(mesh.positions[1], glm::vec3(1, 0, 0));
   EXPECT_EQ(l.scene.materials[mesh.material].base_colour, glm::vec4(1));
-  EXPECT_TRUE(read(kSquare + "f 1 2 3\n").scene.meshes.at(0).colours.empty());
+  EXPECT_TRUE(read_obj_text(kSquare + "f 1 2 3\n").scene.meshes.at(0).colours.empty());
 }
 
 TEST(ReadObj, FacesWithoutNormalsDoNotCostOthersTheirs) {
-  const Loaded l = read(kSquare + "vn 0 0 2\nf 1//1 2//1 3//1\nf 1 3 4\nf 1//1 2 4//1\n");
+  const Loaded l = read_obj_text(kSquare + "vn 0 0 2\nf 1//1 2//1 3//1\nf 1 3 4\nf 1//1 2 4//1\n");
   ASSERT_EQ(l.scene.meshes.size(), 2U);
   EXPECT_EQ(l.scene.meshes[0].normals, std::vector<glm::vec3>(3, glm::vec3(0, 0, 1)));
   EXPECT_TRUE(l.scene.meshes[1].normals.empty());
@@ -95,10 +96,10 @@ TEST(ReadObj, FacesWithoutNormalsDoNotCostOthersTheirs) {
 }
 
 TEST(ReadObj, IndicesBackFromTheLineAndForwardToLaterVertices) {
-  const Loaded l = read("f 1 2 3\n" + kSquare + "f -4 -2 -1 # a comment\n");
+  const Loaded l = read_obj_text("f 1 2 3\n" + kSquare + "f -4 -2 -1 # a comment\n");
   EXPECT_EQ(l.scene.meshes.at(0).positions[1], glm::vec3(1, 0, 0));
   EXPECT_EQ(triangle_count(l.scene), 2U);
-  EXPECT_THROW(read("f -1 -2 -3\n" + kSquare), files::FileError);
+  EXPECT_THROW(read_obj_text("f -1 -2 -3\n" + kSquare), files::FileError);
 }
 
 TEST(ReadMtl, NumbersColoursAndMapsWithOptions) {

@@ -13,7 +13,7 @@
 namespace delray::scenes {
 namespace {
 
-Mesh read(const std::string& content) {
+Mesh read_ply_text(const std::string& content) {
   std::vector<std::string> warnings;
   const Scene scene = internal::load_content("/nowhere/a.ply", content, warnings);
   for (const std::string& w : warnings) ADD_FAILURE() << "warning: " << w;
@@ -31,25 +31,25 @@ std::string strips(const std::string& strip, const char* type = "int") {
 }
 
 TEST(ReadPly, EverySecondTriangleOfAStripIsTurned) {
-  EXPECT_EQ(read(strips("6 0 1 2 3 4 5")).triangles,
+  EXPECT_EQ(read_ply_text(strips("6 0 1 2 3 4 5")).triangles,
             (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}}));
 }
 
 TEST(ReadPly, MinusOneBeginsTheNextStrip) {
   const std::vector<glm::uvec3> expected = {{0, 1, 2}, {2, 1, 3}, {3, 4, 5}};
-  EXPECT_EQ(read(strips("8 0 1 2 3 -1 3 4 5")).triangles, expected);
-  EXPECT_EQ(read(strips("11 0 1 -1 0 1 2 3 -1 3 4 5")).triangles, expected);
-  EXPECT_EQ(read(strips("8 0 1 2 3 4294967295 3 4 5", "uint")).triangles, expected);
+  EXPECT_EQ(read_ply_text(strips("8 0 1 2 3 -1 3 4 5")).triangles, expected);
+  EXPECT_EQ(read_ply_text(strips("11 0 1 -1 0 1 2 3 -1 3 4 5")).triangles, expected);
+  EXPECT_EQ(read_ply_text(strips("8 0 1 2 3 4294967295 3 4 5", "uint")).triangles, expected);
 }
 
 TEST(ReadPly, StripsJoinedByRepeatedVerticesKeepTheirSenseWithoutAWarning) {
-  EXPECT_EQ(read(strips("8 0 1 2 2 3 3 4 5")).triangles,
+  EXPECT_EQ(read_ply_text(strips("8 0 1 2 2 3 3 4 5")).triangles,
             (std::vector<glm::uvec3>{{0, 1, 2}, {4, 3, 5}}));
 }
 
 TEST(ReadPly, StripsOfVerticesThatAreNotThere) {
   for (const char* strip : {"3 0 1 6", "3 0 1 -2", "3 0 1 0.5", "4 0 1 2"}) {
-    EXPECT_THROW(read(strips(strip)), files::FileError) << strip;
+    EXPECT_THROW(read_ply_text(strips(strip)), files::FileError) << strip;
   }
 }
 
@@ -67,7 +67,7 @@ TEST(ReadPly, ABinaryBodyMayBeginWithTheByteOfANewline) {
       // A number that is almost 0, in either order of the bytes.
       ply[header.size()] = '\n';
       if (big) ply.replace(header.size(), 4, std::string("\x0A\0\0\0", 4));
-      const Mesh mesh = read(ply);
+      const Mesh mesh = read_ply_text(ply);
       EXPECT_EQ(mesh.triangles.size(), 3U);
       EXPECT_NEAR(mesh.positions[0].x, 0, 1e-30);
       EXPECT_NE(mesh.positions[0].x, 0);
@@ -78,19 +78,19 @@ TEST(ReadPly, ABinaryBodyMayBeginWithTheByteOfANewline) {
 
 TEST(ReadPly, TheFirstLineMayEndWithABlank) {
   for (const char* first : {"ply \n", "ply\t\r\n", "ply \t \n"}) {
-    EXPECT_EQ(read(first + sample_ply_text().substr(4)).triangles.size(), 3U);
+    EXPECT_EQ(read_ply_text(first + sample_ply_text().substr(4)).triangles.size(), 3U);
   }
 }
 
 TEST(ReadPly, NormalsColoursAndTextureCoordinatesOfAnyType) {
-  const Mesh mesh =
-      read("ply\nformat ascii 1.0\nelement vertex 3\n" + kXyz +
-           "property float nx\nproperty float ny\nproperty float nz\nproperty ushort red\n"
-           "property float green\nproperty uchar blue\nproperty uchar alpha\nproperty float s\n"
-           "property double t\nproperty list uchar int strange\nelement face 1\n"
-           "property uchar flags\nproperty list uchar int vertex_index\nend_header\n"
-           "0 0 0 0 0 2 65535 0 255 51 0.25 1 0\n1 0 0 0 0 2 0 1 0 255 0.5 0 2 7 8\n"
-           "0 1 0 0 0 2 0 0 0 255 0.75 0.5 0\n9 3 0 1 2\n");
+  const Mesh mesh = read_ply_text(
+      "ply\nformat ascii 1.0\nelement vertex 3\n" + kXyz +
+      "property float nx\nproperty float ny\nproperty float nz\nproperty ushort red\n"
+      "property float green\nproperty uchar blue\nproperty uchar alpha\nproperty float s\n"
+      "property double t\nproperty list uchar int strange\nelement face 1\n"
+      "property uchar flags\nproperty list uchar int vertex_index\nend_header\n"
+      "0 0 0 0 0 2 65535 0 255 51 0.25 1 0\n1 0 0 0 0 2 0 1 0 255 0.5 0 2 7 8\n"
+      "0 1 0 0 0 2 0 0 0 255 0.75 0.5 0\n9 3 0 1 2\n");
   EXPECT_EQ(mesh.normals[2], glm::vec3(0, 0, 1));
   EXPECT_EQ(mesh.colours[0], glm::vec4(1, 0, 1, 0.2F));
   EXPECT_EQ(mesh.colours[1], glm::vec4(0, 1, 0, 1));
@@ -98,9 +98,10 @@ TEST(ReadPly, NormalsColoursAndTextureCoordinatesOfAnyType) {
 }
 
 TEST(ReadPly, FacesMayComeBeforeTheirVertices) {
-  EXPECT_EQ(read("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
-                 "element vertex 4\n" +
-                 kXyz + "end_header\n4 0 1 2 3\n0 0 0\n2 0 0\n0.4 0.4 0\n0 2 0\n")
+  EXPECT_EQ(read_ply_text(
+                "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+                "element vertex 4\n" +
+                kXyz + "end_header\n4 0 1 2 3\n0 0 0\n2 0 0\n0.4 0.4 0\n0 2 0\n")
                 .triangles.size(),
             2U);
 }
