@@ -1,6 +1,7 @@
 // Intersects the groups of a batch in place, as over a scene that a rank has whole, then looks for
-// boxes of clusters elsewhere that a ray enters before its hit. A ray that enters one becomes a
-// message; what it has met at home stays in its lane, unless something nearer comes back.
+// boxes of clusters elsewhere that a ray enters before its hit, first for a group at once. A ray
+// that enters one becomes a message; what it has met at home stays in its lane, unless something
+// nearer comes back.
 //
 // Degenerate: shadow rays that end at home need not travel; those that travel take the layers along
 // that they have passed, as they are multiplied in one order.
@@ -21,6 +22,16 @@ Line line_of(const Packet& packet, int i) {
           glm::vec3(1.0F) / direction,
           packet.near[i],
           packet.far[i]};
+}
+
+template <class Packet>
+LinePacket lines_of(const Packet& packet, LaneMask active) {
+  static_assert(LinePacket::kLines == kPacketRays);
+  return {{packet.origin_x, packet.origin_y, packet.origin_z},
+          {packet.direction_x, packet.direction_y, packet.direction_z},
+          packet.near,
+          packet.far,
+          active};
 }
 
 template <class Packet>
@@ -51,7 +62,9 @@ void renumber(const LocalScene& scene, RayGroup& group) {
 
 void send_undecided(const HomeScene& home, const ReturnAddress& address, std::uint32_t number,
                     const RayGroup& group, RayQueue& travelling) {
-  for (LaneMask rest = active_lanes(group.active); rest != 0; rest &= rest - 1) {
+  const LaneMask active = active_lanes(group.active);
+  if (!home.elsewhere.may_hit(lines_of(group.packet, active))) return;
+  for (LaneMask rest = active; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     Progression way = home.router.start();
     home.router.choose_next(line_of(group.packet, i), way);
@@ -75,6 +88,7 @@ LaneMask send_undecided(const HomeScene& home, const ReturnAddress& address, std
                         const ShadowGroup& group, std::span<const SeeThrough, kPacketRays> passed,
                         RayQueue& travelling) {
   LaneMask sent = 0;
+  if (!home.elsewhere.may_hit(lines_of(group.packet, group.lit))) return sent;
   for (LaneMask rest = group.lit; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     Progression way = home.router.start();

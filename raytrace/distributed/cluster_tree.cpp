@@ -5,12 +5,17 @@
 // best hit so far or before the hit that it goes on from. Slabs are widened by what division rounds
 // off. O(n log n) to build, O(log n) to search where a line meets little.
 //
+// Lines that are close to each other are searched for at once, by intervals of what they start from
+// and of their inverse directions (Boulos et al. 2006): rounding is monotone, so an interval holds
+// what each line would have computed for itself.
+//
 // Degenerate: equal centres are ordered by number; a line in the plane of a side is decided by the
 // other axes; an empty tree is met by nothing.
 #include "raytrace/distributed/cluster_tree.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/distributed/cluster_tree.cpp"
@@ -23,12 +28,13 @@ namespace delray::raytrace {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// What dividing and multiplying may round off.
+constexpr float kLess = 1.0F - 0x1p-20F, kMore = 1.0F + 0x1p-20F;
+
 // Of each lane of a row where the line enters the box, at least line.near, and where it leaves it;
 // entries after exits: it misses. Lanes that are not used hold anything.
 HWY_INLINE void enter_row(const ClusterTree::Row& row, const Line& line, float* entries,
                           float* exits) {
-  // What dividing and multiplying may round off.
-  constexpr float kLess = 1.0F - 0x1p-20F, kMore = 1.0F + 0x1p-20F;
   const hn::CappedTag<float, ClusterTree::kWidth> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto zero = hn::Zero(d), less = hn::Set(d, kLess), more = hn::Set(d, kMore);
@@ -49,6 +55,100 @@ HWY_INLINE void enter_row(const ClusterTree::Row& row, const Line& line, float* 
     hn::StoreU(low, d, entries + i);
     hn::StoreU(high, d, exits + i);
   }
+}
+
+// Of lines that all go to the same side: along an axis the least and the largest.
+struct Interval {
+  float low, high;
+};
+
+struct Beam {
+  Interval origin[3], inverse[3];
+  float near, far;  // the least and the largest
+};
+
+// Over the active lanes.
+template <class Value>
+HWY_INLINE Interval interval_of(std::uint32_t active, const Value& value) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const hn::CappedTag<float, LinePacket::kLines> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  auto low = hn::Set(d, kInfinity), high = hn::Set(d, -kInfinity);
+  for (int i = 0; i < LinePacket::kLines; i += static_cast<int>(hn::Lanes(d))) {
+    const auto bits = hn::Shl(hn::Set(du, 1U), hn::Iota(du, static_cast<std::uint32_t>(i)));
+    const auto used = hn::RebindMask(d, hn::TestBit(hn::Set(du, active), bits));
+    const auto v = value(d, i);
+    low = hn::IfThenElse(used, hn::Min(low, v), low);
+    high = hn::IfThenElse(used, hn::Max(high, v), high);
+  }
+  return {hn::GetLane(hn::MinOfLanes(d, low)), hn::GetLane(hn::MaxOfLanes(d, high))};
+}
+
+// Returns whether the lines make a beam: go into the same octant from places that are numbers.
+bool make_beam(const LinePacket& lines, Beam& beam) {
+  for (int k = 0; k < 3; ++k) {
+    beam.origin[k] =
+        interval_of(lines.active, [&](auto d, int i) { return hn::LoadU(d, lines.origin[k] + i); });
+    beam.inverse[k] = interval_of(lines.active, [&](auto d, int i) {
+      return hn::Div(hn::Set(d, 1.0F), hn::LoadU(d, lines.direction[k] + i));
+    });
+    const Interval o = beam.origin[k], v = beam.inverse[k];
+    const bool one_side = v.low > 0.0F || v.high < 0.0F;
+    const bool finite = std::isfinite(o.low) && std::isfinite(o.high) && std::isfinite(v.low) &&
+                        std::isfinite(v.high);
+    if (!one_side || !finite) return false;
+  }
+  const auto near = [&](auto d, int i) { return hn::LoadU(d, lines.near + i); };
+  const auto far = [&](auto d, int i) { return hn::LoadU(d, lines.far + i); };
+  beam.near = interval_of(lines.active, near).low;
+  beam.far = interval_of(lines.active, far).high;
+  return true;
+}
+
+// The lanes of a row whose boxes some line of the beam may enter.
+HWY_INLINE std::uint32_t lanes_in_beam(const ClusterTree::Row& row, const Beam& beam) {
+  const hn::CappedTag<float, ClusterTree::kWidth> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto zero = hn::Zero(d), less = hn::Set(d, kLess), more = hn::Set(d, kMore);
+  std::uint32_t in_beam = 0;
+  for (int i = 0; i < ClusterTree::kWidth; i += lanes) {
+    auto low = hn::Set(d, beam.near), high = hn::Set(d, beam.far);
+    for (int k = 0; k < 3; ++k) {
+      const auto least = hn::Set(d, beam.inverse[k].low), most = hn::Set(d, beam.inverse[k].high);
+      const bool up = beam.inverse[k].low > 0.0F;
+      const auto first = hn::LoadU(d, (up ? row.low[k] : row.high[k]) + i);
+      const auto last = hn::LoadU(d, (up ? row.high[k] : row.low[k]) + i);
+      // The line that enters first starts closest to the side, the one that leaves last furthest.
+      const auto to_first =
+          hn::Sub(first, hn::Set(d, up ? beam.origin[k].high : beam.origin[k].low));
+      const auto to_last = hn::Sub(last, hn::Set(d, up ? beam.origin[k].low : beam.origin[k].high));
+      const auto in = hn::Mul(to_first, hn::IfThenElse(hn::Ge(to_first, zero), least, most));
+      const auto out = hn::Mul(to_last, hn::IfThenElse(hn::Ge(to_last, zero), most, least));
+      low = hn::Max(low, hn::Mul(in, hn::IfThenElse(hn::Gt(in, zero), less, more)));
+      high = hn::Min(high, hn::Mul(out, hn::IfThenElse(hn::Gt(out, zero), more, less)));
+    }
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Le(low, high), bits);
+    in_beam |= static_cast<std::uint32_t>(bits[0]) << i;
+  }
+  return in_beam & row.used;
+}
+
+bool may_hit(std::span<const ClusterTree::Row> rows, const LinePacket& lines) {
+  if (rows.empty() || lines.active == 0) return false;
+  Beam beam;
+  if (!make_beam(lines, beam)) return true;
+  std::uint32_t stack[ClusterTree::kWidth * 32];
+  int height = 0;
+  stack[height++] = 0;
+  while (height > 0) {
+    const ClusterTree::Row& row = rows[stack[--height]];
+    const std::uint32_t in_beam = lanes_in_beam(row, beam);
+    if ((in_beam & row.leaves) != 0) return true;
+    for (std::uint32_t rest = in_beam; rest != 0; rest &= rest - 1)
+      stack[height++] = row.child[std::countr_zero(rest)];
+  }
+  return false;
 }
 
 ClusterHit next_hit(std::span<const ClusterTree::Row> rows, const Line& line,
@@ -96,6 +196,7 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 
 HWY_EXPORT(next_hit);
+HWY_EXPORT(may_hit);
 
 ClusterTree::ClusterTree(std::vector<ClusterBox> boxes) {
   if (!boxes.empty()) build(boxes);
@@ -151,6 +252,10 @@ std::uint32_t ClusterTree::build(std::span<ClusterBox> boxes) {
 
 ClusterHit ClusterTree::next(const Line& line, const ClusterHit& after) const {
   return HWY_DYNAMIC_DISPATCH(next_hit)(rows_, line, after);
+}
+
+bool ClusterTree::may_hit(const LinePacket& lines) const {
+  return HWY_DYNAMIC_DISPATCH(may_hit)(rows_, lines);
 }
 
 }  // namespace delray::raytrace

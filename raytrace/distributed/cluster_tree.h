@@ -35,6 +35,16 @@ struct Line {
   float near, far;
 };
 
+// Lines side by side: element i of each array is of line i, of those in `active`.
+struct LinePacket {
+  static constexpr int kLines = 16;
+
+  const float* origin[3];
+  const float* direction[3];
+  const float *near, *far;
+  std::uint32_t active;  // a mask
+};
+
 // A bounding volume hierarchy over boxes.
 class ClusterTree {
  public:
@@ -49,6 +59,11 @@ class ClusterTree {
   // that all ranks agree on the order, whatever is in their trees. O(log n) for lines that meet
   // little.
   ClusterHit next(const Line& line, const ClusterHit& after) const;
+
+  // Whether any of the lines may have a hit: where it returns false, none has. Tells well of lines
+  // that are close to each other; lines of different octants may always have one. O(log n) where
+  // they meet little.
+  bool may_hit(const LinePacket& lines) const;
 
   std::uint64_t bytes() const { return rows_.capacity() * sizeof(Row); }
 

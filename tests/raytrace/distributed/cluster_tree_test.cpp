@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <random>
 #include <vector>
@@ -97,6 +98,7 @@ TEST(ClusterTree, WithoutBoxesIsMetByNothing) {
   const ClusterTree tree;
   EXPECT_TRUE(tree.empty());
   EXPECT_EQ(tree.next(line_from({}, {1, 1, 1}, 0, 1), kBegin).cluster, kNoCluster);
+  EXPECT_FALSE(tree.may_hit({{}, {}, nullptr, nullptr, 0}));
   EXPECT_TRUE(ClusterTree(std::vector<ClusterBox>{}).empty());
 }
 
@@ -123,6 +125,68 @@ TEST(ClusterTree, FindsTheSameHitsWhateverElseItHolds) {
     std::erase_if(expected, [](const ClusterHit& hit) { return hit.cluster % 2 == 0; });
     EXPECT_EQ(hits_one_by_one(some, line), expected);
   }
+}
+
+struct Lines {
+  float origin[3][LinePacket::kLines], direction[3][LinePacket::kLines];
+  float near[LinePacket::kLines], far[LinePacket::kLines];
+  std::uint32_t active = 0;
+
+  LinePacket packet() const {
+    return {{origin[0], origin[1], origin[2]},
+            {direction[0], direction[1], direction[2]},
+            near,
+            far,
+            active};
+  }
+  Line line(int i) const {
+    return line_from({origin[0][i], origin[1][i], origin[2][i]},
+                     {direction[0][i], direction[1][i], direction[2][i]}, near[i], far[i]);
+  }
+};
+
+// Lines side by side may have a hit wherever one of them has; and where none has, the tree says so
+// of most lines that are close to each other. Some lines go along axes, or start in sides.
+TEST_P(RandomBoxes, ArePassedByLinesOfWhichNoneHasAHit) {
+  std::mt19937 random(static_cast<unsigned>(GetParam()));
+  std::uniform_real_distribution<float> anywhere(-4.0F, 4.0F), little(0.0F, 1.0F);
+  std::vector<ClusterBox> boxes(GetParam());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const glm::vec3 corner(anywhere(random), anywhere(random), std::round(anywhere(random)));
+    boxes[i].box.include(corner);
+    boxes[i].box.include(corner + glm::vec3(little(random), little(random), 0.3F) * 0.4F);
+    boxes[i].cluster = i;
+  }
+  const ClusterTree tree(boxes);
+  int passing = 0, known = 0;
+  for (int round = 0; round < 2000; ++round) {
+    Lines lines{};
+    lines.active = round % 3 == 0 ? 0xFFFFU : static_cast<std::uint32_t>(random() & 0xFFFFU);
+    const float wide = round % 5 == 0 ? 1.0F : 0.001F;
+    for (int k = 0; k < 3; ++k) {
+      const float origin = round % 7 == 0 ? std::round(anywhere(random)) : anywhere(random);
+      const float direction = round % 11 == 0 && k == 1 ? 0.0F : anywhere(random);
+      for (int i = 0; i < LinePacket::kLines; ++i) {
+        const bool counts = (lines.active >> i & 1) != 0;
+        lines.origin[k][i] = counts ? origin + wide * little(random) : 100.0F * anywhere(random);
+        lines.direction[k][i] = direction + (direction != 0.0F ? wide * little(random) : 0.0F);
+        lines.near[i] = 0.0F;
+        lines.far[i] = round % 2 == 0 ? 0.5F + little(random) : 1e30F;
+      }
+    }
+    bool hit = false;
+    for (int i = 0; i < LinePacket::kLines; ++i) {
+      const bool counts = (lines.active >> i & 1) != 0;
+      hit = hit || (counts && tree.next(lines.line(i), kBegin).cluster != kNoCluster);
+    }
+    const bool may_hit = tree.may_hit(lines.packet());
+    EXPECT_TRUE(may_hit || !hit) << round;
+    if (hit || wide > 0.5F || round % 11 == 0) continue;
+    ++passing;
+    known += may_hit ? 0 : 1;
+  }
+  EXPECT_GT(passing, 0);
+  EXPECT_GE(known * 10, passing * 9);
 }
 
 }  // namespace
