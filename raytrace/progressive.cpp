@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 // Samples of features: as many as smooth their edges; more where a lens blurs them.
 constexpr int kFeatureSamples = 16, kLensSamples = 16;
 
-// What rank 0 tells the others to do next. No samples: stop.
+// A pass, which rank 0 decides on and broadcasts. No samples: stop.
 struct Pass {
   int first = 0, samples = 0;
   std::vector<std::uint8_t> cells;
@@ -88,7 +88,7 @@ double work_left(const Film& film, const Pass& pass, const ProgressiveOptions& o
 
 static_assert(kCellSide == kTaskSide);
 
-// What the tiles of a pass took, spread evenly over the cells that it was about.
+// Adds the costs of a pass's tiles, spread evenly over the cells that it was about.
 void add_costs(std::span<const TileCost> costs, const loadbalance::Blocks& tiles, const Pass& pass,
                Film& film) {
   std::vector<std::size_t> cells;
@@ -183,6 +183,29 @@ Features trace_features(comm::Communicator& communicator, Renderer& renderer,
   return features;
 }
 
+// How long the last pass took, by which others are foretold.
+struct PassTime {
+  double seconds = 0.0;
+  std::uint64_t work = 0;  // 0: there was none
+
+  double seconds_for(std::uint64_t more) const {
+    return work == 0 ? 0.0 : seconds * static_cast<double>(more) / static_cast<double>(work);
+  }
+  double work_in(double left) const {
+    return work == 0 ? std::numeric_limits<double>::infinity()
+                     : left / seconds * static_cast<double>(work);
+  }
+};
+
+// Shows how much of a rendering in several passes is done. `left`: the work from this pass on.
+void show_progress(const Film& film, bool first_pass, double left, parallel::Progress& whole) {
+  if (first_pass) {
+    whole.start(0);
+    whole.advance(film.total_samples());
+  }
+  whole.expect(film.total_samples() + static_cast<std::uint64_t>(left));
+}
+
 // Whether the picture of the first pass is that of its film, bit for bit: sums of powers of two are
 // exact.
 bool one_pass_does(const ProgressiveOptions& options) {
@@ -232,9 +255,9 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
   pass_options.scattered = options.noise > 0.0F || std::isfinite(options.seconds);
   if (one_pass_does(options)) {
     Result traced = renderer.render(communicator, camera, pass_options);
+    if (root) result.image = cut(std::move(traced.image), film_window, window);
     result.statistics = std::move(traced.statistics);
     result.passes = 1;
-    if (root) result.image = cut(std::move(traced.image), film_window, window);
     return result;
   }
   if (root) result.film = options.resume != nullptr ? *options.resume : Film(film_window);
@@ -246,17 +269,13 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
       result.features =
           trace_features(communicator, renderer, camera, pass_options, window, result.statistics);
     }
-    double last_seconds = 0.0;
-    std::uint64_t last_work = 0;
+    PassTime last;
     while (true) {
       Pass pass;
       if (root) {
         pass = next_pass(film, options);
-        const double expected = last_work == 0
-                                    ? 0.0
-                                    : last_seconds * static_cast<double>(work(film, pass)) /
-                                          static_cast<double>(last_work);
-        if (pass.samples > 0 && last_work > 0 && elapsed() + expected > options.seconds) {
+        if (pass.samples > 0 && last.work > 0 &&
+            elapsed() + last.seconds_for(work(film, pass)) > options.seconds) {
           pass.samples = 0;
           result.out_of_time = true;
         }
@@ -266,19 +285,12 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
         if (root && whole != nullptr) whole->expect(whole->done());
         break;
       }
-      // A single pass tells by itself how far it is.
+      // A single pass shows by itself how far it is.
       const bool several = whole != nullptr && pass.samples < options.frame.samples;
       if (several) pass_options.progress = &part;
-      if (several && root && result.passes == 0) {
-        whole->start(0);
-        whole->advance(film.total_samples());
-      }
       if (several && root) {
-        const double in_time = last_work == 0 ? std::numeric_limits<double>::infinity()
-                                              : (options.seconds - elapsed()) / last_seconds *
-                                                    static_cast<double>(last_work);
-        const double left = work_left(film, pass, options, in_time);
-        whole->expect(film.total_samples() + static_cast<std::uint64_t>(left));
+        const double in_time = last.work_in(options.seconds - elapsed());
+        show_progress(film, result.passes == 0, work_left(film, pass, options, in_time), *whole);
       }
       const double before = elapsed();
       pass_options.part.first_sample = pass.first;
@@ -287,13 +299,13 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
       Result traced = renderer.render(communicator, camera, pass_options);
       ++result.passes;
       if (root) {
-        last_work = work(film, pass);
+        last.work = work(film, pass);
         film.add(traced.image, pass.samples, pass.cells);
         renderer.recycle(std::move(traced.image));
         add_costs(traced.tile_costs, {film_window, side, side}, pass, film);
         if (options.after_pass) options.after_pass(film);
-        last_seconds = elapsed() - before;
-        if (several) whole->advance(last_work);
+        last.seconds = elapsed() - before;
+        if (several) whole->advance(last.work);
       }
       add_statistics(std::move(traced.statistics), result.statistics);
     }

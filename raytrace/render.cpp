@@ -105,7 +105,7 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
   return traced;
 }
 
-// The same where the scene is shared out: the rank's threads work together at several tiles.
+// As above, where the scene is shared out: the rank's threads work together at several tiles.
 Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedScene& scene,
              const Distribution& distribution, loadbalance::ScheduleOptions how) {
   parallel::Progress* const progress = frame.options.progress;
@@ -146,6 +146,27 @@ RankStatistics statistics_of(Traced& traced, const comm::Totals& totals) {
   mine.messages = totals.messages_sent;
   mine.timeline = std::move(traced.report.timeline);
   return mine;
+}
+
+// Adds what is known of the scene, which every rank has or which is shared out; of that one
+// `dropped` clusters had been dropped before the frame.
+void add_scene(const Tracer& tracer, RankStatistics& mine, Statistics& statistics) {
+  statistics.build_seconds = tracer.build_seconds;
+  statistics.degenerate = tracer.degenerate;
+  statistics.structure_bytes = tracer.embree.memory();
+  statistics.embree_version = tracer.embree.device().version();
+  statistics.embree_isa = tracer.embree.device().isa();
+  mine.geometry_bytes = tracer.bytes;
+}
+void add_scene(const SharedScene& scene, std::uint64_t dropped, RankStatistics& mine,
+               Statistics& statistics) {
+  statistics.build_seconds = scene.build_seconds();
+  statistics.degenerate = scene.degenerate();
+  statistics.structure_bytes = scene.bytes();
+  statistics.embree_version = scene.embree_version();
+  statistics.embree_isa = scene.embree_isa();
+  mine.clusters_dropped = scene.evicted() - dropped;
+  mine.geometry_bytes = scene.most_bytes();
 }
 
 void summarize(std::vector<RankStatistics>&& ranks, Statistics& statistics) {
@@ -190,9 +211,7 @@ struct Renderer::Memory {
   }
   const shading::Shader& shader() const { return tracer ? tracer->shader : scene->shader(); }
   const LightTable& lights() const { return tracer ? tracer->lights : scene->lights(); }
-  geometry::Box3 bounds() const {
-    return tracer ? tracer->embree.bounds() : scene->bounds();
-  }
+  geometry::Box3 bounds() const { return tracer ? tracer->embree.bounds() : scene->bounds(); }
 };
 
 Renderer::Renderer(const Tracer& tracer) : memory_(new Memory{&tracer, nullptr, nullptr}) {}
@@ -263,21 +282,9 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   const comm::Totals totals = comm::totals(events, communicator.world_rank(communicator.rank()));
   RankStatistics mine = statistics_of(traced, totals);
   if (tracer != nullptr) {
-    statistics.build_seconds = tracer->build_seconds;
-    statistics.degenerate = tracer->degenerate;
-    statistics.structure_bytes = tracer->embree.memory();
-    mine.geometry_bytes = tracer->bytes;
-    statistics.embree_version = tracer->embree.device().version();
-    statistics.embree_isa = tracer->embree.device().isa();
+    add_scene(*tracer, mine, statistics);
   } else {
-    const SharedScene& scene = *memory_->scene;
-    statistics.build_seconds = scene.build_seconds();
-    statistics.degenerate = scene.degenerate();
-    statistics.structure_bytes = scene.bytes();
-    statistics.embree_version = scene.embree_version();
-    statistics.embree_isa = scene.embree_isa();
-    mine.clusters_dropped = scene.evicted() - dropped;
-    mine.geometry_bytes = scene.most_bytes();
+    add_scene(*memory_->scene, dropped, mine, statistics);
   }
   summarize(gather_statistics(communicator, mine), statistics);
   return result;
