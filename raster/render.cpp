@@ -131,7 +131,7 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
   return report;
 }
 
-// Of all ranks' reports.
+// The frame's statistics, of all ranks' reports.
 Statistics summarize(std::span<const comm::Buffer> reports) {
   Statistics statistics;
   double busiest = 0, sum = 0;
@@ -154,11 +154,6 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
   }
   if (sum > 0) statistics.imbalance = busiest / (sum / static_cast<double>(reports.size()));
   return statistics;
-}
-
-bool any_blended(const shading::Shader& shader, const scenes::Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                     [&](const scenes::Mesh& mesh) { return is_blended(shader, mesh); });
 }
 
 }  // namespace
@@ -198,11 +193,7 @@ class ScratchPool {
 }  // namespace
 
 struct Renderer::Memory {
-  const scenes::Scene& scene;
-  std::shared_ptr<const shading::Shader> shader;
-  std::vector<std::uint64_t> first_primitives;
-  bool blended;
-  SceneClusters clusters;
+  PreparedScene scene;
   Scratch scratch = {};
   FrameMemory memory = {};
   ScratchPool pool = {};
@@ -216,10 +207,7 @@ struct Renderer::Frame {
         screen(make_screen(scenes::make_view(camera, options.width * options.supersampling,
                                              options.height * options.supersampling))),
         recording(communicator, events),
-        rank{recording,      memory.scene, memory.first_primitives,
-             *memory.shader, screen,       options,
-             memory.blended, progress,     memory.clusters,
-             scratch,        memory.memory} {}
+        rank{recording, memory.scene, screen, options, progress, scratch, memory.memory} {}
 
   const Strategy& strategy() const { return *find_strategy(options.strategy); }
 
@@ -291,12 +279,7 @@ class Renderer::Steps final : public FrameInSteps {
 };
 
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
-  if (shader == nullptr)
-    shader = std::make_shared<const shading::Shader>(shading::make_shader(scene));
-  const bool blended = any_blended(*shader, scene);
-  memory_ =
-      std::unique_ptr<Memory>(new Memory{scene, std::move(shader), scenes::first_primitives(scene),
-                                         blended, SceneClusters(scene.meshes)});
+  memory_ = std::unique_ptr<Memory>(new Memory{PreparedScene(scene, std::move(shader))});
 }
 void Renderer::recycle(Picture&& picture) {
   // Ranks that are not shown the picture keep memory of their own.

@@ -109,7 +109,8 @@ void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {
   for (const std::uint64_t primitive : lists.forgotten) held_.erase(primitive);
   Arrivals arrivals;
   if (travel_ == Travel::numbers) {
-    unpack_numbers(pieces_in(message), rank.scene, rank.first_primitives, arrivals);
+    unpack_numbers(pieces_in(message), rank.prepared.scene, rank.prepared.first_primitives,
+                   arrivals);
     for (const Piece& piece : arrivals.pieces)
       held_[piece.primitive] = {nullptr, nullptr, nullptr, piece};
     return;

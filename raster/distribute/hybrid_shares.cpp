@@ -45,7 +45,7 @@ std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, const Coste
 }
 
 const CostedGroups& cost_groups(RankContext& rank) {
-  const std::uint64_t all = rank.first_primitives.back();
+  const std::uint64_t all = rank.prepared.first_primitives.back();
   const std::uint64_t triangles =
       std::clamp(all / (kGroupsPerRank * static_cast<std::uint64_t>(rank.ranks())),
                  std::uint64_t{1}, kLargestGroup);
@@ -54,7 +54,8 @@ const CostedGroups& cost_groups(RankContext& rank) {
                                    true);
 }
 
-// What this rank draws: its own groups and those that are sent to it, now or before. Collective.
+// The list that this rank draws: its own groups and those that are sent to it, now or before.
+// Collective.
 DrawList exchange_groups(RankContext& rank, const CostedGroups& costed,
                          const VisibleGroups& visible, SharedOut& out) {
   const Shares& shares = out.shares;
@@ -73,7 +74,7 @@ DrawList exchange_groups(RankContext& rank, const CostedGroups& costed,
                              else if (owner != loadbalance::kNobody)
                                owners = {owner};
                            }),
-      &rank.clusters);
+      &rank.prepared.clusters);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What strategies share on a rank: its equal part of the primitives, drawings of regions with their
-// counts, tiles stored into an image, and the gather of regions on rank 0.
+// The code that strategies share on a rank: its equal part of the primitives, drawings of regions
+// with their counts, tiles stored into an image, and the gather of regions on rank 0.
 //
 // A single rank remembers which tiles it left clear in a picture's memory, and does not clear them
 // again. Degenerate: with fewer primitives than ranks some have none.
@@ -13,8 +13,20 @@
 
 namespace delray::raster {
 
+PreparedScene::PreparedScene(const scenes::Scene& source,
+                             std::shared_ptr<const shading::Shader> given)
+    : scene(source),
+      shader_of_scene(given != nullptr
+                          ? std::move(given)
+                          : std::make_shared<const shading::Shader>(shading::make_shader(scene))),
+      first_primitives(scenes::first_primitives(scene)),
+      transparent(std::any_of(
+          scene.meshes.begin(), scene.meshes.end(),
+          [&](const scenes::Mesh& mesh) { return is_blended(*shader_of_scene, mesh); })),
+      clusters(scene.meshes) {}
+
 std::pair<std::uint64_t, std::uint64_t> RankContext::own_primitives(int holders) const {
-  const std::uint64_t all = first_primitives.back();
+  const std::uint64_t all = prepared.first_primitives.back();
   const auto n = static_cast<std::uint64_t>(holders);
   const auto k = static_cast<std::uint64_t>(number());
   if (k >= n) return {all, all};
@@ -28,11 +40,12 @@ RegionDrawing RankContext::begin(const DrawList& list, std::span<const geometry:
   for (const geometry::Rect& r : regions)
     in_samples.push_back(samples_of(r, options.supersampling));
   return RegionDrawing(
-      {screen, list, shader, options, in_samples, depths_are_distances(), progress}, scratch);
+      {screen, list, prepared.shader(), options, in_samples, depths_are_distances(), progress},
+      scratch);
 }
 
 void RankContext::hide_behind_others(RegionDrawing& drawing) {
-  if (ranks() == 1 || transparent || in_steps || options.shade == Shade::immediate) return;
+  if (ranks() == 1 || prepared.transparent || in_steps || options.shade == Shade::immediate) return;
   const double before = communicator.seconds();
   communicator.mark(comm::Phase::redistribute, 0);
   std::vector<std::int32_t> farthest = drawing.farthest_of_blocks();

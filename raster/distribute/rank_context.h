@@ -1,6 +1,7 @@
-// What a strategy works with on one rank.
+// The context of a strategy on one rank: the scene, the frame, memory, and what it counts.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <variant>
@@ -16,16 +17,27 @@ namespace delray::raster {
 
 struct FrameMemory;
 
+// A scene with what is made of it once for all frames.
+struct PreparedScene {
+  // Without a shader one is made.
+  PreparedScene(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader);
+
+  const shading::Shader& shader() const { return *shader_of_scene; }
+
+  const scenes::Scene& scene;
+  std::shared_ptr<const shading::Shader> shader_of_scene;
+  std::vector<std::uint64_t> first_primitives;  // scenes::first_primitives(scene)
+  bool transparent;                             // some mesh of the scene is blended
+  SceneClusters clusters;
+};
+
+// A frame on one rank.
 struct RankContext {
   comm::Communicator& communicator;
-  const scenes::Scene& scene;
-  std::span<const std::uint64_t> first_primitives;
-  const shading::Shader& shader;
+  PreparedScene& prepared;
   const Screen& screen;  // in samples
   const RenderOptions& options;
-  bool transparent;  // some mesh of the scene is blended
   parallel::Progress* progress;
-  SceneClusters& clusters;
   Scratch& scratch;
   FrameMemory& memory;
   RegionCounts counts = {};
@@ -33,7 +45,7 @@ struct RankContext {
   loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
   // Which rank the owner k of the screen's partition is; empty: rank k.
   std::vector<int> rank_of_owner = {};
-  // In steps, of which only the last may use the communicator: work is told then.
+  // In steps, of which only the last may use the communicator: work is reported then.
   bool in_steps = false;
 
   int number() const { return communicator.rank(); }
@@ -41,9 +53,9 @@ struct RankContext {
 
   // The primitives that this rank has before anything travels: an equal part of all, in order.
   std::pair<std::uint64_t, std::uint64_t> own_primitives() const { return own_primitives(ranks()); }
-  // The same if the first `holders` ranks have them all.
+  // The primitives that this rank has if the first `holders` ranks have them all.
   std::pair<std::uint64_t, std::uint64_t> own_primitives(int holders) const;
-  // A single rank's depths need no compositing, which wants them as they are rasterized.
+  // Whether depths are distances at once: those of a single rank, which are not composited.
   bool depths_are_distances() const { return ranks() == 1; }
   geometry::Rect frame() const { return {0, 0, options.width, options.height}; }
   int samples_per_pixel() const { return options.supersampling * options.supersampling; }
@@ -52,22 +64,22 @@ struct RankContext {
 
   // A drawing of `list`, or of what it is given later, into regions (in pixels).
   RegionDrawing begin(const DrawList& list, std::span<const geometry::Rect> regions);
-  // Tells ranks whose drawings are composited how far each block of the screen is at most, so that
-  // none shades what another hides; unless that is not to be known, or too late. Collective.
+  // Finds how far each block of the screen is at most on any rank, so that none shades what another
+  // hides, where drawings are composited and that can be known in time. Collective.
   void hide_behind_others(RegionDrawing& drawing);
   // Finishes and counts it; `finish_tile` as in RegionDrawing, in samples.
   void end(RegionDrawing& drawing, FinishTile finish_tile);
-  // The same as RegionDrawing::finish_rows; work is told before rows_finished is called.
+  // As RegionDrawing::finish_rows, and counts; work is reported before rows_finished is called.
   void end_rows(RegionDrawing& drawing, int first, int rows, FinishTile finish_tile,
                 parallel::FunctionRef<void(int begin, int end)> rows_finished);
-  // The same as end into an image of the frame: pixels, with samples averaged.
+  // As end, into an image of the frame: pixels, with samples averaged.
   template <class Colour>
   void end_pixels(RegionDrawing& drawing, image::BasicImage<Colour>& image);
 
   // Renders `list` into regions (in pixels) and counts; `finish_tile` as in RegionDrawing, in
   // samples.
   void render(const DrawList& list, std::span<const geometry::Rect> regions, FinishTile finish);
-  // The same into an image of the frame: pixels, with samples averaged.
+  // As render, into an image of the frame: pixels, with samples averaged.
   template <class Colour>
   void render_pixels(const DrawList& list, std::span<const geometry::Rect> regions,
                      image::BasicImage<Colour>& image);
@@ -87,7 +99,8 @@ template <class Colour>
 void store_pixels(std::span<const geometry::Rect> rects, TileView& tile, int n,
                   const Window<Colour>& window);
 
-// The same into an image of the frame with the samples of a pixel together.
+// Parts of regions in a tile, rects in samples, into an image of the frame with the samples of a
+// pixel together.
 template <class Colour>
 void store_samples(std::span<const geometry::Rect> rects, TileView& tile, int n,
                    image::BasicImage<Colour>& image);
@@ -113,7 +126,8 @@ Picture sort_last(RankContext& rank);
 template <class Colour>
 composite::OwnedPixels hand_over_tiles(RankContext& rank, RegionDrawing& drawing);
 std::unique_ptr<FrameSteps> sort_last_steps(RankContext& rank);
-// What sort_last composites, of a rank that need not have others. REQUIRES: one sample per pixel.
+// The part that sort_last composites, of a rank that need not have others. REQUIRES: one sample per
+// pixel.
 PartialImage sort_last_share(RankContext& rank);
 Picture hybrid(RankContext& rank);
 

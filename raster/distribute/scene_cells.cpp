@@ -52,14 +52,14 @@ glm::vec3 moved_into(const geometry::Box3& box, glm::vec3 p) {
 
 void cut_scene(const RankContext& rank, SceneCells& known) {
   if (known.cells.cells.size() == static_cast<std::size_t>(rank.ranks())) return;
-  const scenes::Scene& scene = rank.scene;
+  const scenes::Scene& scene = rank.prepared.scene;
   std::vector<PlacedCluster> clusters;
   std::vector<geometry::Box3> boxes;
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scenes::Instance& instance = scene.instances[i];
     const scenes::Mesh& mesh = scene.meshes[instance.mesh];
-    MeshClusters& of_mesh = *rank.clusters.of(mesh);
+    MeshClusters& of_mesh = *rank.prepared.clusters.of(mesh);
     of_mesh.make(mesh, 0, static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const auto& block : of_mesh.blocks) {
       for (const MeshCluster& cluster : block->clusters) {
@@ -84,7 +84,7 @@ void cut_scene(const RankContext& rank, SceneCells& known) {
       }
     }
     known.pieces.push_back({&scene.meshes[instance.mesh], &instance.transform, first, triangles[i],
-                            rank.first_primitives[number] + first});
+                            rank.prepared.first_primitives[number] + first});
   }
 }
 

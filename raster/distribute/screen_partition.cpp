@@ -93,9 +93,10 @@ void ScreenPartition::group(RankContext& rank, const Grouping& grouping) {
   if (grouping_ == grouping) return;
   grouping_ = grouping;
   std::vector<Piece>& groups = costed_.groups;
-  groups = groups_of(pieces_of(rank.scene, rank.first_primitives, grouping.begin, grouping.end),
-                     grouping.triangles);
-  list_ = make_draw_list(groups, &rank.clusters);
+  groups = groups_of(
+      pieces_of(rank.prepared.scene, rank.prepared.first_primitives, grouping.begin, grouping.end),
+      grouping.triangles);
+  list_ = make_draw_list(groups, &rank.prepared.clusters);
   // Draws are numbered in the order in which groups first name them.
   draw_of_.resize(groups.size());
   std::uint32_t draw = 0;
@@ -115,10 +116,11 @@ ScreenPartition::GroupBounds ScreenPartition::bound(RankContext& rank,
   GroupBounds bounds{std::vector<double>(groups.size()), std::vector<double>(groups.size()),
                      std::vector<Coverage::Surface>(groups.size())};
   const std::vector<PreparedDraw> draws =
-      prepare_draws(rank.screen, list_, rank.shader, rank.options.cull_single_sided);
+      prepare_draws(rank.screen, list_, rank.prepared.shader(), rank.options.cull_single_sided);
   std::vector<Coverage::Surface> of_draw;
   for (const PreparedDraw& prepared : draws)
-    of_draw.push_back({prepared.blended, mean_opacity(rank.shader, *prepared.draw->mesh)});
+    of_draw.push_back(
+        {prepared.blended, mean_opacity(rank.prepared.shader(), *prepared.draw->mesh)});
   constexpr std::size_t kGrain = 1024;  // triangles
   const std::size_t grain = groups.empty() ? 1 : std::max<std::size_t>(1, kGrain / groups[0].count);
   std::mutex adds_large;
@@ -264,7 +266,8 @@ loadbalance::Costs ScreenPartition::costs(RankContext& rank, int regions) {
   assert(rank.ranks() == 1);
   const auto [begin, end] = rank.own_primitives();
   std::vector<loadbalance::WeightedBox> boxes =
-      groups(rank, {begin, end, group_triangles(rank.first_primitives.back(), regions)}).boxes;
+      groups(rank, {begin, end, group_triangles(rank.prepared.first_primitives.back(), regions)})
+          .boxes;
   boxes.insert(boxes.end(), large_.begin(), large_.end());
   return costs_of(rank.frame(), regions, boxes);
 }

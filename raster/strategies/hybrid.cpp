@@ -218,7 +218,7 @@ Picture render(RankContext& rank) {
 
 template <class Colour>
 Picture render(RankContext& rank) {
-  return rank.transparent ? render<Colour, true>(rank) : render<Colour, false>(rank);
+  return rank.prepared.transparent ? render<Colour, true>(rank) : render<Colour, false>(rank);
 }
 
 }  // namespace

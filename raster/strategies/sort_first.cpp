@@ -9,7 +9,7 @@
 namespace delray::raster {
 namespace {
 
-// What this rank draws. Collective: groups travel unless all is as in the last frame.
+// Finds what this rank draws. Collective: groups travel unless all is as in the last frame.
 const DrawList& draw_list(RankContext& rank, const CostedGroups& costed,
                           const loadbalance::Partition& partition) {
   SortedFirst& last = rank.memory.sorted_first;
@@ -23,7 +23,7 @@ const DrawList& draw_list(RankContext& rank, const CostedGroups& costed,
                                            [&](std::size_t group, std::vector<int>& owners) {
                                              index.owners_of(costed.boxes[group].box, owners);
                                            }),
-                     &rank.clusters);
+                     &rank.prepared.clusters);
   return last.list;
 }
 
@@ -35,7 +35,7 @@ Picture render(RankContext& rank) {
   ScreenPartition& screen = rank.memory.screen;
   const CostedGroups& costed = screen.groups(
       rank, {begin, end,
-             ScreenPartition::group_triangles(rank.first_primitives.back(),
+             ScreenPartition::group_triangles(rank.prepared.first_primitives.back(),
                                               rank.ranks() * rank.options.regions_per_rank)});
 
   communicator.mark(comm::Phase::redistribute, 0);

@@ -78,7 +78,7 @@ std::vector<loadbalance::TaskRange> blocks_of_regions(RankContext& rank,
   ScreenPartition& screen = rank.memory.screen;
   screen.groups(rank,
                 {begin, end,
-                 ScreenPartition::group_triangles(rank.first_primitives.back(),
+                 ScreenPartition::group_triangles(rank.prepared.first_primitives.back(),
                                                   rank.ranks() * rank.options.regions_per_rank)});
   return loadbalance::owned_blocks(screen.cut(rank, rank.ranks()), blocks, rank.number());
 }
@@ -106,11 +106,14 @@ Picture render(RankContext& rank) {
   const RenderOptions& options = rank.options;
   communicator.mark(comm::Phase::transform, 0);
   const DrawList list =
-      make_draw_list(pieces_of(rank.scene, rank.first_primitives, 0, rank.first_primitives.back()),
-                     &rank.clusters);
+      make_draw_list(pieces_of(rank.prepared.scene, rank.prepared.first_primitives, 0,
+                               rank.prepared.first_primitives.back()),
+                     &rank.prepared.clusters);
   const loadbalance::Blocks blocks{rank.frame(), options.block, options.block};
   const auto task_for = [&](std::span<const geometry::Rect> regions) -> RegionTask {
-    return {rank.screen, list, rank.shader, options, regions, rank.depths_are_distances(), nullptr};
+    return {rank.screen, list,    rank.prepared.shader(),
+            options,     regions, rank.depths_are_distances(),
+            nullptr};
   };
   const PreparedFrame frame(task_for({}));
   const Bins bins = bin_clusters(rank, list, frame, blocks);

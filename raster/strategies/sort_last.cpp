@@ -154,8 +154,8 @@ std::unique_ptr<composite::Layer> draw_points(RankContext& rank, const DrawList&
 template <class Colour, class Payload>
 composite::OwnedPixels shade_points(RankContext& rank, composite::OwnedPixels&& part) {
   const DrawList nothing;
-  const FrameShading frame =
-      make_frame_shading(rank.screen, rank.shader, nothing, rank.options.lighting, false);
+  const FrameShading frame = make_frame_shading(rank.screen, rank.prepared.shader(), nothing,
+                                                rank.options.lighting, false);
   std::atomic<std::uint64_t> shaded{0};
   composite::OwnedPixels result =
       flatten<Colour, Payload>(rank, std::move(part), [&](const Payload& point) {
@@ -174,7 +174,7 @@ class Steps final : public FrameSteps {
   explicit Steps(RankContext& rank) : rank_(rank) {}
 
   void transform() override {
-    list_ = make_draw_list(pieces(), &rank_.clusters);
+    list_ = make_draw_list(pieces(), &rank_.prepared.clusters);
     const geometry::Rect frame = rank_.frame();
     drawing_.reset(new RegionDrawing(rank_.begin(list_, {&frame, 1})));
     drawing_->draw_all();
@@ -189,7 +189,7 @@ class Steps final : public FrameSteps {
                           : draw_points<PlainSeenPoint>(rank_, list_, *drawing_);
     } else if (has_cells()) {
       layer_ = draw_cell(rank_, list_, *drawing_, cell_);
-    } else if (rank_.transparent) {
+    } else if (rank_.prepared.transparent) {
       layer_ = draw_surfaces(rank_, list_, *drawing_);
     } else {
       layer_ =
@@ -211,7 +211,7 @@ class Steps final : public FrameSteps {
                         : shade_points<Colour, PlainSeenPoint>(rank_, std::move(part));
     } else if (has_cells()) {
       part = stored<Colour>(std::move(part));
-    } else if (rank_.transparent) {
+    } else if (rank_.prepared.transparent) {
       part = blend_surfaces<Colour>(rank_, std::move(part));
     }
     return picture_of(std::move(part));
@@ -224,7 +224,7 @@ class Steps final : public FrameSteps {
 
   // Whether tiles can go to their owners before all are finished.
   bool has_tiles() const {
-    return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.transparent &&
+    return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.prepared.transparent &&
            !shades_last() && !has_cells();
   }
   // Instead of rasterize and compose. REQUIRES: has_tiles().
@@ -234,9 +234,9 @@ class Steps final : public FrameSteps {
   bool shades_last() const { return rank_.options.shade == Shade::composited; }
   // Whether any material looks at both sets of texture coordinates; all ranks say the same.
   bool two_sets() const {
-    const auto& materials = rank_.shader.materials;
+    const auto& materials = rank_.prepared.shader().materials;
     return std::any_of(materials.begin(), materials.end(), [&](const scenes::Material& material) {
-      return shading::texture_sets(rank_.shader, material) > 1;
+      return shading::texture_sets(rank_.prepared.shader(), material) > 1;
     });
   }
   bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }
@@ -250,7 +250,7 @@ class Steps final : public FrameSteps {
       return cells.pieces;
     }
     const auto [begin, end] = rank_.own_primitives();
-    return pieces_of(rank_.scene, rank_.first_primitives, begin, end);
+    return pieces_of(rank_.prepared.scene, rank_.prepared.first_primitives, begin, end);
   }
 
   Picture picture_of(composite::OwnedPixels&& part) {
@@ -293,11 +293,12 @@ std::unique_ptr<FrameSteps> sort_last_steps(RankContext& rank) {
 PartialImage sort_last_share(RankContext& rank) {
   const auto [begin, end] = rank.own_primitives();
   const DrawList list =
-      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
+      make_draw_list(pieces_of(rank.prepared.scene, rank.prepared.first_primitives, begin, end),
+                     &rank.prepared.clusters);
   const geometry::Rect frame = rank.frame();
   RegionDrawing drawing = rank.begin(list, {&frame, 1});
   drawing.draw_all();
-  if (rank.transparent) return surfaces_of(rank, list, drawing);
+  if (rank.prepared.transparent) return surfaces_of(rank, list, drawing);
   return rank.end_samples<image::Rgba8>(drawing);
 }
 

@@ -287,7 +287,7 @@ Picture render(RankContext& rank) {
   ScreenPartition& screen = rank.memory.screen;
   const CostedGroups& costed = screen.groups(
       rank, {begin, end,
-             ScreenPartition::group_triangles(rank.first_primitives.back(),
+             ScreenPartition::group_triangles(rank.prepared.first_primitives.back(),
                                               drawing_ranks * rank.options.regions_per_rank)});
 
   communicator.mark(comm::Phase::redistribute, 0);
@@ -309,14 +309,15 @@ Picture render(RankContext& rank) {
   for (const loadbalance::Region& region : partition.regions)
     if (region.owner == rank.number()) regions.push_back(region.rect);
   if (is_unchanged) {
-    // What arrived for the last frame is what would arrive for this one.
+    // The triangles that arrived for the last frame would arrive for this one, too.
     rank.counts.phases.redistribute += communicator.seconds() - before_cut;
     RegionDrawing drawing = rank.begin(sorted.list, regions);
     drawing.draw(sorted.drawn);
     return finish<Colour>(rank, partition, regions, drawing);
   }
   sorted.list =
-      make_draw_list(pieces_of(rank.scene, rank.first_primitives, begin, end), &rank.clusters);
+      make_draw_list(pieces_of(rank.prepared.scene, rank.prepared.first_primitives, begin, end),
+                     &rank.prepared.clusters);
   const std::vector<std::uint32_t> own = number_globally(rank, sorted.list);
   rank.counts.phases.redistribute += communicator.seconds() - before_cut;
   RegionDrawing drawing = rank.begin(sorted.list, regions);
