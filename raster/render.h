@@ -29,7 +29,7 @@ namespace delray::raster {
 // looked at.
 enum class Lighting : std::uint8_t { phong, gouraud };
 
-// What a group of primitives that changes rank consists of: its vertices and indices, as a scene
+// The content of a message with primitives for another rank: their vertices and indices, as a scene
 // that is shared out needs, or its number, which is enough where every rank has the whole scene.
 enum class Travel : std::uint8_t { geometry, numbers };
 
@@ -47,11 +47,11 @@ enum class Shade : std::uint8_t { deferred, immediate, composited };
 // float by some 2^-23 for each rank, 8-bit codes by 1 here and there.
 enum class Blend : std::uint8_t { by_owner, by_cell };
 
-// What a triangle set up and a sample shaded cost beside each other, as fitted to what a few scenes
-// took (bench/raster/balance.cpp): phong takes longer for a sample.
+// The prices of a triangle set up and of a sample shaded, relative to each other, as fitted to what
+// a few scenes took (bench/raster/balance.cpp): phong takes longer for a sample.
 loadbalance::RasterCostModel cost_model(Lighting lighting);
 
-// What partitions take for the cost of primitives and pixels. model: prices that are fixed.
+// How partitions estimate the cost of primitives and pixels. model: prices that are fixed.
 // measured: prices fitted to what ranks did and how long it took them in the last frame, regions
 // scaled to what they took.
 enum class CostSource : std::uint8_t { model, measured };
@@ -63,7 +63,7 @@ enum class Groups : std::uint8_t { one, two };
 // which are drawn as they come.
 enum class Redistribution : std::uint8_t { at_end, immediate };
 
-// What a frame shows, how well, and how it is shared out.
+// The size and quality of a frame, and how it is shared out.
 struct RenderOptions {
   int width = 1024, height = 768;
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
@@ -108,7 +108,7 @@ struct Phases {
   void operator+=(const Phases& other);
 };
 
-// What a rank did for a frame.
+// One rank's work for a frame.
 struct RankStatistics {
   int rank = 0;
   double busy = 0;                          // transform + bin + rasterize + shade
@@ -119,7 +119,7 @@ struct RankStatistics {
   double idle = 0;  // seconds that threads waited for tasks of a schedule
 };
 
-// What there is to say of the screen's partition: see loadbalance/balance.h.
+// Measures of the screen's partition: see loadbalance/balance.h.
 struct PartitionStatistics {
   double predicted = 1;   // imbalance that the costs foretell
   double over_share = 1;  // largest load over an equal share, what falls to several owners counted
@@ -131,7 +131,7 @@ struct PartitionStatistics {
   std::vector<double> loads;  // by owner, as the costs foretell
 };
 
-// What a frame took.
+// The cost of a frame, and the work that was done.
 struct Statistics {
   Phases phases;                      // summed over ranks
   std::vector<RankStatistics> ranks;  // ascending
@@ -207,9 +207,10 @@ class Renderer {
   // that render would not take from so many ranks.
   static bool has_steps(const RenderOptions& options, int ranks);
 
-  // What render would give, in steps, none of which is taken yet. The frame refers to this, to the
-  // communicator and to the progress, which it only looks at to stop, and has memory of its own
-  // until it is rasterized, which later frames use again. It and its steps throw as render does.
+  // The frame that render would give, in steps, none of which is taken yet. The frame refers to
+  // this, to the communicator and to the progress, which it only looks at to stop, and has memory
+  // of its own until it is rasterized, which later frames use again. It and its steps throw as
+  // render does.
   //
   // REQUIRES: has_steps. No two frames are in `transform` at the same time, nor two in
   // `compose`, which all ranks take in the same order; nobody else uses the communicator meanwhile.
@@ -217,9 +218,9 @@ class Renderer {
                                       const scenes::Camera& camera, const RenderOptions& options,
                                       const parallel::Progress* progress = nullptr);
 
-  // What rank `rank` of `ranks` contributes to sort-last before anything travels: an equal,
-  // ascending share of the primitives, drawn over the whole frame. Not collective. `options` as
-  // above; only what concerns drawing counts, and supersampling is not allowed.
+  // The part that rank `rank` of `ranks` contributes to sort-last before anything travels: an
+  // equal, ascending share of the primitives, drawn over the whole frame. Not collective. `options`
+  // as above; only what concerns drawing counts, and supersampling is not allowed.
   PartialImage draw_share(int rank, int ranks, const scenes::Camera& camera,
                           const RenderOptions& options, parallel::Progress* progress = nullptr);
 

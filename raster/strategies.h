@@ -11,7 +11,7 @@ namespace delray::raster {
 
 struct RankContext;
 
-// What one rank does for a frame, in steps that follow each other. Frames may be in different steps
+// One rank's part of a frame, in steps that follow each other. Frames may be in different steps
 // at the same time; only `compose` uses the communicator.
 class FrameSteps {
  public:
@@ -28,8 +28,8 @@ struct Strategy {
   const char* description;
   // Collective. The picture on rank 0, with depths as -near / distance; of size 0 elsewhere.
   Picture (*render)(RankContext& rank);
-  // The same in steps; null where ranks exchange messages before they draw, or where what one frame
-  // took decides how the next is shared out.
+  // As `render`, in steps; null where ranks exchange messages before they draw, or where what one
+  // frame took decides how the next is shared out.
   std::unique_ptr<FrameSteps> (*steps)(RankContext& rank) = nullptr;
   // Which of RenderOptions it looks at:
   bool composites = false;  // scheme, codec, blend; Shade::composited

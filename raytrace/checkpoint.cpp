@@ -135,7 +135,7 @@ bool is_possible(const PixelSum& sum) {
   return sum.squares >= 0.0F && c.a >= 0.0F;
 }
 
-// What is wrong with a cell of the film and its pixels; null: nothing.
+// The error in a cell of the film and its pixels; null if there is none.
 const char* fault_of_cell(const Film& film, std::size_t cell, int most) {
   const std::uint32_t samples = film.samples()[cell];
   if (!is_whole(samples, most)) return "the number of samples is impossible";

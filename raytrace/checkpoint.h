@@ -23,7 +23,7 @@ struct NamedValue {
   bool operator==(const NamedValue&) const = default;
 };
 
-// What a film is of.
+// The rendering that a film is of: its scene and options.
 struct Rendering {
   std::string scene;               // fingerprint
   std::vector<NamedValue> values;  // all else that samples depend on

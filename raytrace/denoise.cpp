@@ -45,7 +45,7 @@ struct Light {
   float own = 1.0F;        // the part of it that the pixel itself had in the beginning
 };
 
-// What the weights look at, gathered in one place for each pixel.
+// The features that weights look at, gathered in one place for each pixel.
 struct Guide {
   glm::vec3 normal{0.0F}, albedo{0.0F};
   float depth = image::kEmptyDepth;

@@ -1,4 +1,4 @@
-// What a picture shows besides colour: of the first surface that each pixel sees.
+// Properties of a picture's surfaces besides colour: of the first surface that each pixel sees.
 #pragma once
 
 #include <cstdint>

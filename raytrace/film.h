@@ -40,7 +40,7 @@ inline float luminance(const image::RgbaF& c) {
 // Adds the next chunk of a pixel, of so many samples, by its mean.
 void add_chunk(const image::RgbaF& mean, float depth, int samples, PixelSum& sum);
 
-// What the samples of a cell have cost so far, per pixel of it.
+// The cost of a cell's samples so far, per pixel of it.
 struct CellCost {
   float rays = 0.0F, seconds = 0.0F;
 };

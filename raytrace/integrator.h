@@ -1,4 +1,4 @@
-// What is done with the rays of a pixel: the table of integrators.
+// How light along the rays of a pixel is computed: the table of integrators.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ namespace delray::raytrace {
 // same whoever traced them, or the processor time that they took.
 enum class CostSource : std::uint8_t { rays, seconds };
 
-// What a call renders of a picture; all of it unless told otherwise.
+// The part of a picture that a call renders; all of it unless told otherwise.
 struct Part {
   geometry::Rect window;  // of the frame, its sides on multiples of kTaskSide or on the frame's;
                           // empty: the frame
@@ -36,7 +36,7 @@ struct Part {
   std::span<const std::uint8_t> squares;
 };
 
-// What a frame shows, how well, and how it is shared out.
+// The size and quality of a frame, and how it is shared out.
 struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 1;  // per pixel; 1: in its centre
@@ -81,19 +81,19 @@ struct RankCounts {
                 geometry_bytes = 0;
 };
 
-// What a rank did for a frame.
+// One rank's work for a frame.
 struct RankStatistics : RankCounts {
   std::vector<loadbalance::Interval> timeline;  // by thread, then time, on the rank's clock
 };
 
-// What rank 0 has cut the frame into.
+// The partition that rank 0 has cut the frame into.
 struct PartitionStatistics {
   double predicted = 1;   // imbalance that the last frame's costs foretell
   bool measured = false;  // whether there was a last frame; equal costs otherwise
   bool kept = false;      // from the last frame
 };
 
-// What a frame took.
+// The cost of a frame, and the work that was done.
 struct Statistics {
   double build_seconds = 0.0, frame_seconds = 0.0;
   double trace_seconds = 0.0, gather_seconds = 0.0;  // of rank 0; shading is part of trace
@@ -106,7 +106,7 @@ struct Statistics {
   std::string embree_version, embree_isa;
 };
 
-// What a tile took, whoever traced it.
+// The cost of a tile, whichever rank traced it.
 struct TileCost {
   std::uint32_t tile = 0;
   std::uint32_t pixels = 0;  // that were rendered; 0: none of its squares were

@@ -14,7 +14,7 @@ namespace delray::raster {
 // The samples that ranks' triangles cover, summed up by squares of the screen.
 class Coverage {
  public:
-  // Of a screen of samples, n x n to a pixel of the frame. Boxes are in pixels.
+  // For a screen of samples, n x n to a pixel of the frame. Boxes are in pixels.
   Coverage(const Screen& screen, int n);
 
   // How a group's samples cover others. Opacity: the part of what lies behind that a sample hides,

@@ -11,7 +11,7 @@ namespace delray::raster {
 struct Extent {
   geometry::Rect box;
   std::uint64_t triangles = 0;
-  // Of the areas of triangles that are not large, rounded up to one each.
+  // The sum of the areas of triangles that are not large, rounded up to one each.
   std::uint64_t pixels = 0;
 };
 

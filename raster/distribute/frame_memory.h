@@ -1,4 +1,4 @@
-// What strategies remember from frame to frame, on one rank.
+// The memory of strategies from frame to frame, on one rank.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace delray::raster {
 
-// What a rank of sort-first drew.
+// The last frame of a rank of sort-first.
 struct SortedFirst {
   std::optional<Travel> travel;  // none: there was no frame
   std::uint64_t version = 0;     // of the screen's partition
@@ -22,7 +22,7 @@ struct SortedFirst {
   DrawList list;
 };
 
-// What a rank of sort-middle drew.
+// The last frame of a rank of sort-middle.
 struct SortedMiddle {
   std::uint64_t version = 0;         // of the screen's partition; 0: there was no frame
   DrawList list;                     // numbered over all ranks

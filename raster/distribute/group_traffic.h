@@ -51,7 +51,7 @@ class GroupTraffic {
     Piece piece;
     bool needed = true;  // in this frame
   };
-  // What one rank is sent in a frame.
+  // The groups that one rank is sent in a frame.
   struct Outgoing {
     std::vector<Piece> pieces;
     // First primitives of groups that it holds: no longer, for now not needed, needed again.

@@ -28,7 +28,7 @@ struct VisibleGroups {
 };
 VisibleGroups find_visible_groups(const RankContext& rank, const CostedGroups& costed);
 
-// The same on all ranks.
+// How screen and primitives are shared out; equal on all ranks but for `first`.
 struct Shares {
   std::vector<loadbalance::WeightedBox> boxes;  // of all groups that are seen, by rank
   std::size_t first = 0;                        // this rank's among them

@@ -26,7 +26,7 @@ struct Scratch {
   image::Plane<image::RgbaF> shaded;  // of a frame that is shaded as it is drawn
 };
 
-// What rendering took, summed over threads, and what it did.
+// Times of rendering, summed over threads, and counts of the work.
 struct RegionCounts {
   Phases phases;
   TriangleCounts triangles;
@@ -35,7 +35,7 @@ struct RegionCounts {
   void operator+=(const RegionCounts& other);
 };
 
-// What is to be rendered. The regions, in pixels of the screen, are disjoint.
+// A task: a list to be rendered into regions. These, in pixels of the screen, are disjoint.
 struct RegionTask {
   const Screen& screen;
   const DrawList& list;
@@ -50,7 +50,7 @@ struct RegionTask {
 class PreparedFrame {
  public:
   explicit PreparedFrame(const RegionTask& task);
-  // Those that the list has got since. The others may have moved.
+  // Prepares the draws that the list has got since. The others may have moved.
   void add_draws(const RegionTask& task);
 
   const FrameShading& shading() const { return shading_; }
@@ -70,12 +70,12 @@ using RowsFinished = parallel::FunctionRef<void(int begin, int end, const Region
 class RegionDrawing {
  public:
   RegionDrawing(const RegionTask& task, Scratch& scratch);
-  // Of a list to which nothing is added, with what others have prepared; the frame stays theirs.
+  // A drawing of a list to which nothing is added, prepared by the caller, who keeps the frame.
   RegionDrawing(const RegionTask& task, const PreparedFrame& frame, Scratch& scratch);
   RegionDrawing(const RegionDrawing&) = delete;
   RegionDrawing& operator=(const RegionDrawing&) = delete;
 
-  // Of the list's draws as they were when anything was drawn last, or at first.
+  // The frame of the list's draws as they were when anything was drawn last, or at first.
   const FrameShading& frame() const { return frame_->shading(); }
   std::span<const PreparedDraw> draws() const { return frame_->draws(); }
   // Numbers of clusters, those of near draws first.
@@ -95,7 +95,7 @@ class RegionDrawing {
   // Hands every tile that the regions touch to finish_tile(rects, view), where `rects` are the
   // parts of regions in it. Parallel. To be called once, in the end.
   RegionCounts finish(FinishTile finish_tile);
-  // The same, `rows` rows of tiles at a time, from row `first` on and from the top to it again.
+  // As finish, `rows` rows of tiles at a time, from row `first` on and from the top to it again.
   // After each time rows_finished is called, in the caller's thread.
   //
   // REQUIRES: 0 <= first < the screen's rows of tiles; rows >= 1.

@@ -70,14 +70,14 @@ class ScreenPartition {
   // The costs of all primitives, to be cut into so many regions. REQUIRES: a single rank.
   loadbalance::Costs costs(RankContext& rank, int regions);
 
-  // Of the last cut, on rank 0 where options.report_partition asked for it.
+  // Statistics of the last cut, on rank 0 where options.report_partition asked for it.
   const std::optional<PartitionStatistics>& statistics() const { return statistics_; }
 
   // Remembers what the rank did in this frame, for the costs of the next.
   void measure(const RankContext& rank);
 
  private:
-  // What decides whether a partition may be kept at all.
+  // A partition may be kept only while these stay.
   struct Kind {
     std::string partition;
     int ranks, parts, regions_per_rank;

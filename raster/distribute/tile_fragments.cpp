@@ -102,7 +102,7 @@ void append_opaque(TileView& tile, const geometry::Rect& rect,
   const DrawList& list = tile.frame().list;
   if (tile.empty()) return;
   if (shows_any(tile, rect, passed_over)) {
-    // What is passed over need not be shaded.
+    // Surfaces that are passed over need not be shaded.
     tile.for_each_pixel(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
       const std::uint64_t primitive = list.primitive_of(number_of(keys.front()));
       if (is_in(passed_over, primitive)) return;

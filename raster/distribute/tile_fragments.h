@@ -21,7 +21,7 @@ struct TileFragments {
   std::vector<composite::DeepFragment<Payload>> fragments;
 };
 
-// The same where it lies, in a message or in TileFragments.
+// The fragments of a tile where they lie, in a message or in TileFragments.
 template <class Payload>
 struct TileSpan {
   int tile = 0;

@@ -147,7 +147,7 @@ void unpack(const Section& section) {
       box_around(std::span(mesh.positions).subspan(cluster.first_vertex, cluster.vertices));
 }
 
-// What follows each other and may be of one mesh becomes one mesh.
+// Sections that follow each other and may be of one mesh become one mesh.
 std::vector<Section> find_sections(std::span<const std::byte> bytes,
                                    std::deque<ArrivedMesh>& meshes, DrawList& list) {
   static const glm::mat4x3 kIdentity(1.0F);

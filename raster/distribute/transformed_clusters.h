@@ -54,12 +54,12 @@ class ClusterPacker {
   GouraudTile gouraud_;
   GouraudTile::LitCorners lit_;
 
-  // Of the section at hand.
+  // State of the section at hand.
   std::vector<Vertex> vertices_;
   std::vector<std::uint8_t> corners_[3];
 };
 
-// What arrived in a message. Others refer to it: its address must stay.
+// A mesh that arrived in a message. Others refer to it: its address must stay.
 struct ArrivedMesh {
   scenes::Mesh mesh;
   TransformedVertices vertices;

@@ -12,7 +12,7 @@
 
 namespace delray::raster {
 
-// What becomes of a few clusters.
+// A few clusters, sorted by the ranks that their triangles go to.
 struct SortedClusters {
   struct Parcel {
     int to;

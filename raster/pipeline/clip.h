@@ -15,11 +15,11 @@ struct ScreenPolygon {
   int size = 0;  // 0 where nothing is left
 };
 
-// What is left of a triangle of which at least one vertex is kOutside (Sutherland & Hodgman 1974).
-// `view` are the vertices in view coordinates, `screen_vertex` what transform made of them.
-// Vertices that were inside keep their position, and the point where an edge is cut depends on
-// nothing but the edge, so that neighbours still meet without a gap. Empty when a coordinate is not
-// finite.
+// The part that is left of a triangle of which at least one vertex is kOutside (Sutherland &
+// Hodgman 1974). `view` are the vertices in view coordinates, `screen_vertex` what transform made
+// of them. Vertices that were inside keep their position, and the point where an edge is cut
+// depends on nothing but the edge, so that neighbours still meet without a gap. Empty when a
+// coordinate is not finite.
 ScreenPolygon clip(const Screen& screen, const std::array<glm::vec3, 3>& view,
                    const std::array<ScreenVertex, 3>& screen_vertex);
 

@@ -9,7 +9,7 @@
 
 namespace delray::raster {
 
-// What triangles of a cluster are set up or bounded from.
+// Everything that triangles of a cluster are set up or bounded from.
 struct ClusterOnScreen {
   const Screen& screen;
   const PreparedDraw& draw;

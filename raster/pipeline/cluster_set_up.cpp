@@ -39,8 +39,8 @@ inline constexpr int kTinyBox = 9;
 inline constexpr int kCompact = 30000;
 static_assert(std::int64_t{2} * kCompact * (kCompact + 16 * kSubpixels) < INT32_MAX);
 
-// What a cluster's triangles have in common. Each is set up as seen from an origin of its own, a
-// pixel's corner in the frame; that of a compact cluster's triangles is one and the same.
+// Values that a cluster's triangles have in common. Each is set up as seen from an origin of its
+// own, a pixel's corner in the frame; that of a compact cluster's triangles is one and the same.
 struct ClusterInSetUp {
   explicit ClusterInSetUp(const ClusterToSetUp& cluster)
       : wanted(cluster),
@@ -77,7 +77,7 @@ namespace delray::raster {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What is computed of a vector of small triangles; lanes without a triangle have no rows.
+// A vector of small triangles, set up; lanes without a triangle have no rows.
 struct SmallSetUp {
   Origins origin;
   Boxes box;
@@ -296,7 +296,8 @@ HWY_INLINE std::size_t set_up_alone(const ClusterInSetUp& cluster, I places, Mas
   return count;
 }
 
-// Of `keep`, those that are hidden: the pixels of their boxes, in the frame, show what is nearer.
+// The lanes of `keep` that are hidden: the pixels of their boxes, in the frame, show what is
+// nearer.
 HWY_INLINE Mask hidden_of(const ClusterInSetUp& cluster, Mask keep, const Corners& corners,
                           const Boxes& pixels) {
   static_assert(VisibilityTile::kBlockWidth == 16 && VisibilityTile::kBlockHeight == 8);
@@ -422,7 +423,7 @@ void set_up_vectors(const ClusterInSetUp& cluster, SetUpResult& result) {
   const I zero = hn::Zero(d);
   std::size_t kept = 0, alone = 0;
   for (std::size_t place = wanted.begin / lanes * lanes; place < wanted.end; place += lanes) {
-    // Of a constant; counted from a variable, lanes are filled one by one.
+    // Iota of a constant: of a variable, lanes would be filled one by one.
     const I places = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(place)));
     const Corners corners = load_corners(all_corners, stride, place);
     Mask in_range = hn::And(hn::Gt(places, hn::Set(d, begin - 1)), hn::Lt(places, hn::Set(d, end)));

@@ -10,7 +10,7 @@
 
 namespace delray::raster {
 
-// What a thread has set up of a few clusters, for the tiles.
+// Fragments and triangles that a thread has set up of a few clusters, for the tiles.
 struct SetUpResult {
   // Pixels of small triangles: fragment i is at pixel address[i] & (kTilePixels - 1) of tile
   // address[i] / kTilePixels, and its key is code[i] << 32 | number[i].

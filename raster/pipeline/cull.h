@@ -1,4 +1,4 @@
-// What can be said of a whole cluster before its vertices are transformed.
+// Bounds and culling of a whole cluster before its vertices are transformed.
 #pragma once
 
 #include "raster/pipeline/prepared_draw.h"

@@ -47,8 +47,8 @@ struct BinnedTriangles {
   }
 };
 
-// What is left for when everything else is drawn: triangles that touch many tiles, and those of
-// blended draws.
+// Triangles that are left for when everything else is drawn: those that touch many tiles, and those
+// of blended draws.
 struct DeferredTriangles {
   BinnedTriangles large, blended;
 };

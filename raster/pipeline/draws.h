@@ -1,4 +1,4 @@
-// What a rank renders: runs of triangles of meshes placed in the world.
+// The geometry that a rank renders: runs of triangles of meshes placed in the world.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,9 @@ std::vector<Piece> pieces_of(const scenes::Scene& scene,
                              std::span<const std::uint64_t> first_primitives, std::uint64_t begin,
                              std::uint64_t end);
 
-// What another rank has done for the vertices of a mesh that came from it: positions are in view
-// coordinates, normals and tangents in the world; a normal of 0 stands for the triangle's.
+// Attributes that another rank has computed for the vertices of a mesh that came from it: positions
+// are in view coordinates, normals and tangents in the world; a normal of 0 stands for the
+// triangle's.
 struct TransformedVertices {
   std::vector<glm::vec3> world;      // positions in the world, for phong
   std::vector<glm::vec3> radiances;  // for gouraud

@@ -39,7 +39,7 @@ class StageClock {
  public:
   StageClock() : begin_(parallel::processor_nanoseconds()), last_(passed()) {}
 
-  // What was done since the last call, or since the beginning, belonged to `stage`.
+  // Counts the time since the last call, or since the beginning, for `stage`.
   void finish(std::size_t stage) {
     const std::int64_t now = passed();
     passed_[stage] += now - last_;

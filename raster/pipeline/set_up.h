@@ -28,7 +28,7 @@ struct TriangleCounts {
   }
 };
 
-// What setting up a triangle has made of it. Culled: nothing is left.
+// How much setting up has left of a triangle. Culled: nothing is left.
 enum class SetUpOutcome : std::uint8_t { whole, clipped, culled };
 
 // Hands `emit(triangle, pixels)` every part of the cluster's triangle at `place` that has area and

@@ -23,7 +23,7 @@ struct ToView {
   }
 };
 
-// Of what is in view coordinates already.
+// For positions that are in view coordinates already.
 inline constexpr ToView kInView = {
     {glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)}};
 

@@ -42,7 +42,7 @@ struct SumOfBoxes {
 // REQUIRES: !vertices.any_outside.
 void find_boxes(const ClusterOnScreen& cluster, TriangleBoxes& boxes);
 
-// Of places [begin, end). REQUIRES: begin <= end <= the cluster's triangles.
+// The sum over places [begin, end). REQUIRES: begin <= end <= the cluster's triangles.
 SumOfBoxes sum_of(const TriangleBoxes& boxes, std::uint32_t begin, std::uint32_t end);
 
 }  // namespace delray::raster

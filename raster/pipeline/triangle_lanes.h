@@ -75,7 +75,8 @@ HWY_INLINE Boxes boxes_of(const geometry::Rect& clip, const Origins& origin, I a
 struct Corners {
   I a, b, c;
 };
-// Those at places [place, place + lanes), in arrays of which the next corner's is `stride` farther.
+// The corners at places [place, place + lanes), from arrays of which the next corner's is `stride`
+// farther.
 HWY_INLINE Corners load_corners(const std::uint8_t* corners, std::size_t stride,
                                 std::size_t place) {
   const Ints d;

@@ -74,7 +74,7 @@ void draw(const TileTriangle& t, std::uint32_t number, int i0, int i1, int j0, i
   const auto numbers = hn::Set(dk, std::int64_t{number});
   const auto behind_all = hn::Set(du, 0x7FFFFFFFU);
   for (int i = i0; i < i1; i += lanes) {
-    // Of a constant; counted from a variable, lanes are filled one by one.
+    // Iota of a constant: of a variable, lanes would be filled one by one.
     const auto column = hn::Add(hn::Iota(di, 0), hn::Set(di, i));
     const auto x = hn::Mul(slope_x, hn::Add(hn::Set(d, t.x), hn::ConvertTo(d, column)));
     const auto edge0 = hn::Mul(hn::Set(di, t.a[0]), column);
@@ -166,7 +166,7 @@ void rasterize(const Screen& screen, const geometry::Rect& rect,
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   const int lanes = static_cast<int>(hn::Lanes(Floats()));
-  // Of the whole tile, an upper bound: depths only come nearer.
+  // The farthest of the whole tile, an upper bound: depths only come nearer.
   const auto farthest_of_all = [&] {
     return *std::max_element(tile.farthest, tile.farthest + VisibilityTile::kBlocks);
   };

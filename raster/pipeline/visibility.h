@@ -22,8 +22,8 @@ inline std::int32_t code_of_depth(float depth) {
   return static_cast<std::int32_t>(~std::bit_cast<std::uint32_t>(depth));
 }
 
-// What is seen at a pixel: depth and number in one word, of which the least wins. kEmptyKey is
-// farther than all triangles, and has the upper half kEmptyCode.
+// The surface that is seen at a pixel: depth and number in one word, of which the least wins.
+// kEmptyKey is farther than all triangles, and has the upper half kEmptyCode.
 inline constexpr std::int32_t kEmptyCode = 0x7F800000;
 inline constexpr std::int64_t kEmptyKey = (std::int64_t{kEmptyCode} << 32) | kNothing;
 inline std::int64_t key_of(float depth, std::uint32_t number) {

@@ -40,7 +40,7 @@ inline bool are_proper(float nearest, float farthest, float reach, float area) {
   return nearest * (reach * reach) < farthest * area * kMostStretched;
 }
 
-// What shares of a vertex are weighted with: all alike in an orthographic view.
+// The weight of a vertex's shares: all alike in an orthographic view.
 inline float weighted_depth(const Screen& screen, const ScreenVertex& vertex) {
   return screen.view.orthographic ? -1.0F : vertex.depth;
 }

@@ -67,7 +67,7 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Ints> mask) {
   return bytes[0] | static_cast<std::uint64_t>(bytes[1]) << 8;
 }
 
-// Of a vector's worth of triangles.
+// Facing of a vector of triangles, by lane: see ClusterFacing.
 struct LaneFacing {
   std::uint64_t counter_clockwise, proper, outside;
   std::uint64_t far;  // too far from the origin for floats

@@ -42,7 +42,7 @@ struct TrianglePlanes {
   void set(std::size_t i, const Barycentrics& barycentrics);
 };
 
-// What can be said of triangles besides.
+// Facing of a cluster's triangles.
 struct ClusterFacing {
   ClusterMask counter_clockwise, proper;  // as in Barycentrics
   ClusterMask outside;                    // a vertex is kOutside: nothing else is set

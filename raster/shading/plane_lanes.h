@@ -36,7 +36,7 @@ HWY_INLINE void store_planes(const TrianglePlanes& barycentrics, std::size_t fir
   store_rows(d, weighted(barycentrics.c), [&](std::size_t m) HWY_ATTR { return to[m].c; });
 }
 
-// The same, and the pixel that they are relative to.
+// Stores planes with the pixel that they are relative to.
 template <class F>
 HWY_INLINE void store_triangles(const TrianglePlanes& barycentrics, std::size_t first,
                                 const FourVectors<F> (&values)[3], PixelTriangle* to) {

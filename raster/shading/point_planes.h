@@ -41,7 +41,7 @@ inline glm::vec4 uv_row(const scenes::Mesh& mesh, std::uint32_t vertex) {
 void set_up_points(const WorldVertices& vertices, std::size_t vertex_count,
                    const CornerNumbers& corners, std::size_t count, float handedness,
                    const TrianglePlanes& barycentrics, std::size_t first, PointPlanes& planes);
-// The same of any four values.
+// As above, for any four values.
 void set_up_values(const VertexRows& vertices, const CornerNumbers& corners, std::size_t count,
                    const TrianglePlanes& barycentrics, std::size_t first, ValuePlanes* planes);
 
@@ -58,7 +58,7 @@ struct UvPlanes {
   std::span<const ValuePlanes> planes;
   int sets = 0;
 };
-// The same of any three values beside 1, and of the points' uvs.
+// As above, for any three values beside 1 and the points' uvs.
 void set_values(std::span<const PixelTriangle> values, const UvPlanes& uvs, const PixelBlock& block,
                 shading::Vectors16& results, shading::Points& points);
 

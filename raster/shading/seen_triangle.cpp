@@ -47,7 +47,7 @@ void set_first(const shading::TexturePoint& at, shading::Point& point) {
   point.footprint = at.footprint;
 }
 
-// Of a triangle whose shares have to be bounded.
+// The weights of a triangle whose shares have to be bounded.
 shading::Point bounded_point_at(const SeenTriangle& triangle, int x, int y) {
   const Weights w = weights_at(triangle.barycentrics, x, y);
   shading::Point point;

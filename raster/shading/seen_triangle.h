@@ -11,7 +11,7 @@
 
 namespace delray::raster {
 
-// What of a draw shading needs.
+// The values of a draw that shading needs.
 struct ShadedDraw {
   ToView to_view;
   glm::mat3 normal_to_world{1.0F};
@@ -20,7 +20,7 @@ struct ShadedDraw {
 };
 ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
 
-// Of a vertex that is not transformed yet. The normal is 0 where it has no direction.
+// Attributes of a vertex that is not transformed yet. The normal is 0 where it has no direction.
 glm::vec3 position_in_world(const Draw& draw, std::uint32_t vertex);
 glm::vec3 normal_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex);
 glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex);
@@ -43,7 +43,7 @@ struct SeenTriangle {
   ValuePlanes radiance_planes;
 };
 
-// Of a triangle of a mesh, from its vertices on the screen if all of them are inside.
+// Barycentrics of a triangle of a mesh, from its vertices on the screen if all of them are inside.
 Barycentrics make_screen_barycentrics(const Screen& screen, const ToView& to_view,
                                       std::span<const glm::vec3> positions,
                                       const glm::uvec3& corners);
@@ -60,7 +60,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
 // Where a pixel lies in the textures of a set. `ones` are planes with a fourth value of 1.
 shading::TexturePoint texture_point(const ValuePlanes& uvs, int set, const ValuePlanes& ones,
                                     const PixelShare& at);
-// The same of a triangle whose shares have to be bounded.
+// As texture_point, of a triangle whose shares have to be bounded.
 shading::TexturePoint bounded_texture_point(const SeenTriangle& triangle, int set,
                                             const Weights& weights);
 

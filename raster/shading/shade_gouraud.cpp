@@ -95,7 +95,7 @@ std::uint32_t GouraudTile::turned(std::uint32_t used, std::size_t used_count) {
   return static_cast<std::uint32_t>(used_count) + number;
 }
 
-// Of a triangle of the draw's mesh: its corners whose normals are on the side that is not seen.
+// The corners of a triangle of the draw's mesh whose normals are on the side that is not seen.
 void GouraudTile::turn_normals(const Draw& draw, const ClusterMembers& members, std::size_t member,
                                std::uint32_t triangle, bool front, std::uint32_t first_vertex) {
   const glm::uvec3& corners = draw.mesh->triangles[triangle];

@@ -44,7 +44,7 @@ class GouraudTile {
     std::uint32_t vertices[kBlockSize];
   };
 
-  // What a pixel's colour depends on besides the light.
+  // Values that a pixel's colour depends on besides the light.
   struct Surface {
     std::uint32_t material = 0, texture = scenes::kNone;
     bool blended = false;
@@ -66,7 +66,7 @@ class GouraudTile {
 
   TileTriangles triangles_;             // their corners: into radiances_
   std::vector<PixelTriangle> colours_;  // of the triangles
-  // Of the triangles, if any draw has a texture; if any has one or is blended.
+  // By triangle: uvs_ if any draw has a texture, surfaces_ if any has one or is blended.
   std::vector<ValuePlanes> uvs_;
   std::vector<Surface> surfaces_;
   bool any_special_ = false;  // in the tile
@@ -76,7 +76,7 @@ class GouraudTile {
   shading::Floats16 block_alpha_;
   shading::Points points_;
   shading::Shaded texels_;
-  // Of the group at hand: used vertices whose normals are turned, a sparse set (Briggs & Torczon
+  // For the group at hand: used vertices whose normals are turned, a sparse set (Briggs & Torczon
   // 1993): v is in it if turned_[turned_number_[v]] == v, so that it needs no clearing.
   std::uint8_t turned_number_[kClusterVertices];
   std::uint32_t turned_[kClusterVertices + 1];

@@ -14,7 +14,7 @@
 
 namespace delray::raster {
 
-// What all tiles of a frame look up.
+// Values of a frame that all its tiles look up.
 struct FrameShading {
   const Screen& screen;
   const shading::Shader& shader;
@@ -67,7 +67,7 @@ class SeenTriangles {
 // Whether alpha leaves anything of the triangle at a pixel.
 bool alpha_test(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x, int y);
 
-// What shading needs to know of a triangle at a pixel. It may travel.
+// The point of a triangle at a pixel that is shaded, here or on another rank.
 struct SeenPoint {
   std::uint32_t material = 0;  // of the shader's
   std::uint32_t blended = 0;   // whether what is behind may be seen
@@ -96,7 +96,7 @@ template <class Colour>
 std::uint64_t shade_tile(const FrameShading& frame, SeenTriangles& seen, const VisibilityTile& tile,
                          const geometry::Rect& rect, const Window<Colour>& window);
 
-// The same for pixels that show nothing.
+// Writes pixels that show nothing.
 template <class Colour>
 void clear_pixels(const geometry::Rect& rect, const Window<Colour>& window);
 

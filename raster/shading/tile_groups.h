@@ -40,7 +40,7 @@ class TileGroups {
   void number_triangles();
 
   std::span<const Group> groups() const { return groups_; }
-  // Of triangles that were added, until others are.
+  // Where each triangle that was added is; valid until others are.
   TriangleIndices indices() const { return {group_of_cluster_.data(), indices_.data()}; }
   // In the cluster, of all triangles.
   std::span<const std::uint8_t> places() const { return places_; }

@@ -18,12 +18,12 @@ struct TileRuns {
   std::uint64_t changes_along[kTileSize], changes_down[kTileSize];
   std::uint64_t shown[kTileSize];  // bit i of element j: pixel (i, j) shows something
 
-  // That each pixel shows.
+  // The triangle that each pixel shows.
   std::uint32_t* numbers() { return padded + kPadding; }
   const std::uint32_t* numbers() const { return padded + kPadding; }
 };
 
-// Of rows [j0, j1) of the tile; row j0 counts as the border.
+// Finds the runs of rows [j0, j1) of the tile; row j0 counts as the border.
 void find_runs(const VisibilityTile& tile, int j0, int j1, TileRuns& runs);
 
 // Pixels [first, first + 64) of a row of a tile, or as many as there are: bit i is pixel first + i.

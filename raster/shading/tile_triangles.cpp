@@ -121,7 +121,7 @@ void TileTriangles::set_up_planes(const FrameShading& frame, const ClusterMember
     if (!is_in(facing.proper, i)) leave_to_shade_pixel(group.first + i);
 }
 
-// What the groups refer to is scattered in memory.
+// The data that groups refer to are scattered in memory.
 void TileTriangles::ask_for(const FrameShading& frame) {
   for (const Group& group : groups_.groups()) hwy::Prefetch(&part_of(frame, group.cluster));
   for (const Group& group : groups_.groups()) {

@@ -70,7 +70,7 @@ void TileView::shade_surfaces(const geometry::Rect& rect, bool blended_only) {
   surfaces.clear();
   pixels.clear();
   for_each_list(rect, [&](int x, int y, std::span<const std::int64_t> keys) {
-    // What is opaque comes last.
+    // An opaque surface comes last.
     if (blended_only && keys.front() == opaque_key(pixel_of(x, y))) return;
     pixels.push_back({x, y, static_cast<std::uint32_t>(surfaces.size()),
                       static_cast<std::uint32_t>(keys.size())});

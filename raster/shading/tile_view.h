@@ -11,7 +11,7 @@
 
 namespace delray::raster {
 
-// What is seen at a pixel: a key and, premultiplied, a colour.
+// A surface that is seen at a pixel: a key and, premultiplied, a colour.
 struct SurfaceSeen {
   std::int64_t key;
   image::RgbaF colour;
@@ -31,7 +31,7 @@ struct TileMemory {
   std::vector<BlendedFragment> blended;
   std::vector<composite::Fragment> fragments;
   std::vector<std::int64_t> keys;
-  // Of for_each_surface.
+  // For for_each_surface.
   std::vector<SurfaceSeen> surfaces;
   std::vector<PixelSurfaces> pixels;
   std::vector<std::uint32_t> open_pixels;
@@ -58,7 +58,7 @@ class TileView {
   // Colour and depth of the pixels of `rect`, within the tile, into the window.
   template <class Colour>
   void shade(const geometry::Rect& rect, const Window<Colour>& window);
-  // The same averaged over pixels of n x n samples, for a window of pixels; `rect` is in samples.
+  // As shade, averaged over pixels of n x n samples, for a window of pixels; `rect` is in samples.
   //
   // REQUIRES: rect is of whole pixels.
   template <class Colour>

@@ -97,7 +97,7 @@ class DirectLighting : public WavefrontIntegrator {
   }
 
  private:
-  // What shadow rays will add to samples if all of the light arrives.
+  // A group of shadow rays, which add to samples what arrives of the light.
   struct Light {
     std::size_t source = 0;  // the group whose hits they start from
     bool whole = true;

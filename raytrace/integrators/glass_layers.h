@@ -1,4 +1,4 @@
-// What panes of glass leave of the light of shadow rays, many at a time.
+// The part that panes of glass leave of the light of shadow rays, many at a time.
 #pragma once
 
 #include <glm/glm.hpp>

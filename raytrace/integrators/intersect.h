@@ -45,7 +45,7 @@ struct Layer {
 Layer layer_of(std::span<const GeometryInstance> instances, const shading::Shader& shader,
                const Hit& hit, const glm::vec3& direction, bool through_glass);
 
-// The same of a hit in `scene`, with what it is in the whole scene.
+// As above, of a hit in `scene`, with what it is in the whole scene.
 Layer layer_in_whole_scene(const LocalScene& scene, const Hit& hit, const glm::vec3& direction,
                            bool through_glass);
 

@@ -5,7 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/integrators/lane_sums.cpp"
 #include <hwy/foreach_target.h>
-// What is compiled per target comes after it.
+// Code that is compiled per target comes after it.
 #include <hwy/highway.h>
 
 #include "shading/lanes.h"

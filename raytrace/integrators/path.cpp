@@ -33,7 +33,7 @@ using shading::LaneMask;
 // Scatterings after which a path may end by chance.
 constexpr int kCertain = 2;
 
-// What is drawn at each surface: dimensions of the sampler, pairs first.
+// Random numbers drawn at each surface: dimensions of the sampler, pairs first.
 enum Dimension : std::uint32_t {
   kLight,
   kLobe = kLight + LightTable::kPairs,  // and whether the path goes on
@@ -265,7 +265,7 @@ class Path final : public WavefrontIntegrator {
   PathSamples sums_{samples_};
   HitsByMaterial plain_, coloured_;  // colours of vertices: of none, of some of a group
   int texture_sets_ = 0;             // the most that one of their materials looks at
-  // Of the surfaces that are looked at.
+  // The surfaces that are shaded.
   RayGroup group_;
   PathLanes lanes_;
   std::uint32_t sources_[kPacketRays] = {};

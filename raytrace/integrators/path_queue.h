@@ -20,10 +20,10 @@ class PathQueue {
 
   // Begins a task: next.rays are its primary rays, group g those of block g.
   void begin();
-  // What was enqueued has been intersected, and next is empty.
+  // Begins to shade what was enqueued. REQUIRES: that is intersected, and next is empty.
   void begin_generation();
 
-  // Of the groups that have been intersected, in their order.
+  // The lanes of groups that have been intersected, in their order.
   PathLanes& paths(std::size_t group) { return intersected_[group]; }
   Groups<PathLanes>& paths() { return intersected_; }
   const LightLanes& lights(std::size_t group) const { return intersected_lights_[group]; }

@@ -29,7 +29,7 @@ struct PathLanes {
   alignas(64) std::uint32_t instance[kPacketRays], triangle[kPacketRays];  // left behind
 };
 
-// Of shadow rays.
+// State of shadow rays beside their geometry.
 struct LightLanes {
   shading::Vectors16 reflected;  // what is added if all of the light arrives
   alignas(64) std::uint32_t pixel[kPacketRays];

@@ -36,7 +36,7 @@ std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile,
 // How many samples a task gets, one after the other.
 int samples_of(const RenderOptions& options);
 
-// What an integrator that is done has found. Samples of a pixel have to be added in ascending
+// The samples of an integrator that is done. Samples of a pixel have to be added in ascending
 // order.
 void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
                  TilePixels& pixels);

@@ -1,4 +1,4 @@
-// What all tiles of a frame have in common.
+// Values that all tiles of a frame have in common.
 #pragma once
 
 #include "loadbalance/task_grid.h"

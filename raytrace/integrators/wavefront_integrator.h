@@ -117,7 +117,7 @@ class WavefrontIntegrator {
 
   // Random numbers of lane `pixel % 16` of samples_[pixel / 16], none of them used before.
   Sampler sampler(std::uint32_t pixel);
-  // The same for sixteen lanes, of which those in `lanes` are set.
+  // As sampler, for sixteen lanes, of which those in `lanes` are set.
   void draw(const std::uint32_t* pixels, shading::LaneMask lanes, SampleLanes& samples);
 
   FrameContext context_;
@@ -131,7 +131,7 @@ class WavefrontIntegrator {
   const PixelKeys& keys(std::uint32_t block);
 
   Positions positions_;
-  // Of the task's blocks, where they were asked for.
+  // Keys of the task's blocks, where they were asked for.
   std::vector<PixelKeys> keys_;
   std::vector<bool> has_keys_;
 };

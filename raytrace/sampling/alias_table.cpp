@@ -41,7 +41,8 @@ AliasTable::AliasTable(std::span<const float> weights)
     large.pop_back();
     small.push_back(from);
   }
-  // What is left differs from 1 by roundings, unless its weight is 0 and nothing was left for it.
+  // The probabilities that are left differ from 1 by roundings, unless its weight is 0 and nothing
+  // was left for it.
   for (const std::uint32_t i : small) {
     if (probabilities_[i] > 0.0F) continue;
     own_[i] = 0.0F;

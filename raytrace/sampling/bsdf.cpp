@@ -14,7 +14,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/sampling/bsdf.cpp"
 #include <hwy/foreach_target.h>
-// What is compiled per target comes after it.
+// Code that is compiled per target comes after it.
 #include <hwy/highway.h>
 
 #include "raytrace/sampling/warp_lanes.h"
@@ -96,7 +96,7 @@ HWY_INLINE BsdfLanes loaded(const Bsdfs& b, int i, M active) {
           !none(hn::And(active, hn::Gt(glass, set(0.0F))))};
 }
 
-// What the interface does to light that meets it at a microscopic normal.
+// The interface's effect on light that meets it at a microscopic normal.
 struct InterfaceLanes {
   F3 reflected, transmitted;
   F reflection_share;  // with which a ray is drawn that is reflected

@@ -1,4 +1,4 @@
-// What rough glass leaves of light that meets it once.
+// The part that rough glass leaves of light that meets it once.
 #pragma once
 
 namespace delray::raytrace {

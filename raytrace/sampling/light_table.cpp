@@ -16,7 +16,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/sampling/light_table.cpp"
 #include <hwy/foreach_target.h>
-// What is compiled per target comes after it.
+// Code that is compiled per target comes after it.
 #include <hwy/highway.h>
 
 #include "raytrace/sampling/alias_lanes.h"

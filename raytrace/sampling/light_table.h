@@ -34,7 +34,7 @@ struct LightSample {
   float pdf = 0.0F;        // per steradian; 0: scattered rays never find it, it counts in full
 };
 
-// Of sixteen lanes.
+// Lights drawn for sixteen lanes.
 struct LightSamples {
   shading::Vectors16 direction;
   shading::Floats16 distance;
@@ -79,7 +79,8 @@ class LightTable {
   // triangle, or the environment. 0 for what does not glow.
   float pdf_of_hit(std::uint32_t instance, std::uint32_t triangle, const glm::vec3& from,
                    const glm::vec3& position) const;
-  // The same of lanes that look along unit vectors.
+  // The density with which `sample` would have drawn the sky, for lanes that look along unit
+  // vectors.
   void pdf_of_sky(const shading::Vectors16& directions, shading::Floats16& pdfs) const;
 
   std::uint64_t emissive_triangles() const;  // that can be drawn, of all instances

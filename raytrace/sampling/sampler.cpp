@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/sampling/sampler.cpp"
 #include <hwy/foreach_target.h>
-// What is compiled per target comes after it.
+// Code that is compiled per target comes after it.
 #include <hwy/highway.h>
 
 #include "shading/lanes.h"

@@ -35,7 +35,7 @@ void pixel_keys(std::uint64_t seed, int x, int y, PixelKeys& keys);
 float sobol(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
 glm::vec2 sobol_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
 
-// The same without any order among samples: independent numbers, to compare with.
+// A sampler without any order among samples: independent numbers, to compare with.
 glm::vec2 independent_pair(std::uint64_t pixel, std::uint32_t sample, std::uint32_t dimension);
 
 // Sixteen samples, of any pixels, and a dimension of each. The key is in two halves.

@@ -1,4 +1,4 @@
-// What Embree calls back at hits, and what such a query carries.
+// Functions that Embree calls back at hits, and the data that such a query carries.
 #pragma once
 
 #include "raytrace/scene/embree_objects.h"
@@ -22,7 +22,7 @@ struct Nearest {
   bool instanced;
 };
 
-// What filters find of the query that they belong to; element i is of the ray with id i.
+// The query that filters belong to; element i is of the ray with id i.
 struct Query {
   Context context;
   SeeThrough* passed = nullptr;

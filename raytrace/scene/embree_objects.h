@@ -45,7 +45,7 @@ struct EmbreeScene::State {
   std::span<const GeometryNumbers> numbers;
   std::uint64_t memory = 0;
 
-  // What Embree refers to of triangles beside the mesh.
+  // Data of triangles that Embree refers to beside the mesh.
   struct Triangles {
     std::vector<glm::vec3> copy = {};  // of positions that were unreadable
     std::shared_ptr<const std::vector<std::uint64_t>> opaque = {};

@@ -61,7 +61,7 @@ RTCOccludedArguments occluded_arguments(Query& query, bool coherent) {
 }
 #endif
 
-// What Embree 4 takes as arguments of a query, and Embree 3 as its context.
+// A query's parameters: Embree 4 takes them as arguments, and Embree 3 as its context.
 #if RTC_VERSION_MAJOR >= 4
 template <typename Rays, typename Argument>
 void call(void (*function)(const int*, RTCScene, Rays*, Argument*), const int* active,

@@ -44,7 +44,7 @@ struct Gathered {
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/scene/hit_points.cpp"
 #include <hwy/foreach_target.h>
-// What is compiled per target comes after it.
+// Code that is compiled per target comes after it.
 #include <hwy/highway.h>
 
 #include "shading/lanes.h"
@@ -90,7 +90,7 @@ HWY_INLINE F3 unit(const F3& v, const F3& otherwise) {
   return choose(hn::Gt(squared, set(0.0F)), v * (set(1.0F) / hn::Sqrt(squared)), otherwise);
 }
 
-// What only materials with textures of the set look at.
+// Computes the texture points that only materials with textures of the set look at.
 HWY_INLINE void find_texture_points(const Gathered& g, int number, const Weights& w,
                                     const F3& geometric_normal, F area, int i, RayGroup& group) {
   const FloatTag d;
@@ -252,7 +252,8 @@ void for_lanes(shading::LaneMask lanes, F&& f) {
   for (; lanes != 0; lanes &= lanes - 1) f(std::countr_zero(lanes));
 }
 
-// Of lanes that hit the same mesh; element i of corners belongs to lane i.
+// Loads the texture coordinates of lanes that hit the same mesh; element i of corners belongs to
+// lane i.
 void gather_uvs(const scenes::Mesh& mesh, int set, const glm::uvec3* corners,
                 shading::LaneMask lanes, Gathered& to) {
   to.textured[set] |= lanes;
@@ -288,7 +289,7 @@ void gather_transforms(const GeometryInstance& instance, shading::LaneMask lanes
   });
 }
 
-// What the lanes' triangles of one instance need.
+// Loads what the lanes' triangles of one instance need.
 void gather(const GeometryInstance& instance, const std::uint32_t* triangles,
             shading::LaneMask lanes, Gathered& to) {
   const scenes::Mesh& mesh = *instance.mesh;

@@ -60,7 +60,7 @@ std::span<const int> find_tiles(float low, float high, int size, Wrap wrap, Tile
 
 bool is_opaque(const scenes::Material& material, int least) {
   const float alpha = material.base_colour.w * (static_cast<float>(least) / 255.0F);
-  // What interpolation rounds off.
+  // Interpolation rounds off less.
   constexpr float kMargin = 1.0F - 1e-5F;
   return material.alpha == Alpha::mask ? alpha * kMargin >= material.alpha_cutoff : alpha >= 1.0F;
 }

@@ -95,7 +95,7 @@ inline Hit hit_of(const RayPacket& packet, int i) {
           packet.triangle[i], packet.u[i], packet.v[i]};
 }
 
-// What a shadow ray passed on its way that does not stop it altogether, in no particular order.
+// Surfaces on the way of a shadow ray that do not stop it altogether, in no particular order.
 struct SeeThrough {
   static constexpr int kMost = 12;  // beyond that many layers nothing is seen
   SeeThrough() {}                   // thousands a second: hits are left as they are
