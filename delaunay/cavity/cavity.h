@@ -16,6 +16,7 @@
 
 #include "delaunay/cavity/four_spheres.h"
 #include "delaunay/cavity/regions.h"
+#include "delaunay/insertion/facet_walk.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/mesh/slot_pool.h"
 #include "delaunay/order/curve_order_3d.h"
@@ -189,13 +190,14 @@ constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers = {
 template <class Region>
 Insertion Cavity<Region>::locate(VertexNumber vertex, SimplexNumber& place) {
   const glm::dvec3 q = at(vertex);
-  SimplexNumber simplex = last_simplex_;
-  unsigned entered = 4;
-  while (true) {
+  bool stuck = false;
+  const auto exit_of = [&](SimplexNumber here, unsigned entered) -> unsigned {
+    // The walk ends at the first ghost.
+    if (entered != kNoFacet && mesh_.vertex(corner_of(here, 3)) == kInfiniteVertex) return kNoFacet;
     std::array<const glm::dvec3*, 4> p;
     std::array<glm::dvec3, 4> r;
     for (unsigned k = 0; k < 4; ++k) {
-      p[k] = &at(mesh_.vertex(corner_of(simplex, k)));
+      p[k] = &at(mesh_.vertex(corner_of(here, k)));
       r[k] = *p[k] - q;
     }
     // Whether the point is beyond the facet: with the corner replaced by it the simplex is turned.
@@ -215,21 +217,18 @@ Insertion Cavity<Region>::locate(VertexNumber vertex, SimplexNumber& place) {
           return sign(0, 2, 1) < 0;
       }
     };
-    // Any facet that the point is beyond leads to it (Devillers, Pion and Teillaud 2002).
-    unsigned out = 0;
-    bool stuck = false;
-    for (; out < 4; ++out) {
-      if (out == entered || !beyond(out)) continue;
-      if (owns_across(mesh_.neighbour(corner_of(simplex, out)))) break;
-      stuck = true;
-    }
-    if (out == 4 && stuck) return Insertion::kElsewhere;
-    if (out == 4) break;
-    const CornerNumber next = mesh_.neighbour(corner_of(simplex, out));
-    simplex = simplex_of(next);
-    entered = next & 3U;
-    if (mesh_.vertex(corner_of(simplex, 3)) == kInfiniteVertex) break;
-  }
+    bool left_region = false;
+    const unsigned exit = exit_facet(0, entered, [&](unsigned k) {
+      if (!beyond(k)) return false;
+      const bool owned = owns_across(mesh_.neighbour(corner_of(here, k)));
+      left_region |= !owned;
+      return owned;
+    });
+    stuck = exit == kNoFacet && left_region;
+    return exit;
+  };
+  const SimplexNumber simplex = walk_over_facets(mesh_, last_simplex_, exit_of);
+  if (stuck) return Insertion::kElsewhere;
   place = simplex;
   for (unsigned k = 0; k < 4; ++k) {
     const VertexNumber other = mesh_.vertex(corner_of(simplex, k));

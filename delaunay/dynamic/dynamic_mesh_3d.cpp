@@ -11,6 +11,7 @@
 #include <cassert>
 
 #include "delaunay/dynamic/dynamic_mesh.h"
+#include "delaunay/insertion/facet_walk.h"
 #include "delaunay/insertion/first_tetrahedron.h"
 #include "delaunay/mesh/edge_pairs.h"
 #include "delaunay/mesh/start_mesh.h"
@@ -76,32 +77,25 @@ bool DynamicMesh<3>::visit(SimplexNumber simplex) {
   return true;
 }
 
-// A finite simplex that contains q, or a ghost whose facet q is strictly beyond. Walks over facets
-// that have q beyond them; no such walk goes round in circles (Edelsbrunner 1990).
+// A finite simplex that contains q, or a ghost whose facet q is strictly beyond.
 SimplexNumber DynamicMesh<3>::locate(std::span<const glm::dvec3> points, const glm::dvec3& q,
                                      SimplexNumber near) const {
-  SimplexNumber here = near;
-  unsigned entered = 4;
+  SimplexNumber start = near;
   for (unsigned k = 0; k < 4; ++k) {
     const CornerNumber corner = corner_of(near, k);
-    if (mesh().vertex(corner) == kInfiniteVertex) here = simplex_of(mesh().neighbour(corner));
+    if (mesh().vertex(corner) == kInfiniteVertex) start = simplex_of(mesh().neighbour(corner));
   }
-  while (true) {
+  return walk_over_facets(mesh(), start, [&](SimplexNumber here, unsigned entered) {
+    if (entered != kNoFacet && mesh().vertex(corner_of(here, entered)) == kInfiniteVertex)
+      return kNoFacet;
     std::array<glm::dvec3, 4> p;
     for (unsigned k = 0; k < 4; ++k) p[k] = points[mesh().vertex(corner_of(here, k))];
-    unsigned out = 0;
-    for (; out < 4; ++out) {
-      if (out == entered) continue;
+    return exit_facet(0, entered, [&](unsigned k) {
       std::array<glm::dvec3, 4> turned = p;
-      turned[out] = q;
-      if (orient3d(turned[0], turned[1], turned[2], turned[3]) < 0) break;
-    }
-    if (out == 4) return here;
-    const CornerNumber next = mesh().neighbour(corner_of(here, out));
-    here = simplex_of(next);
-    entered = next & 3U;
-    if (mesh().vertex(next) == kInfiniteVertex) return here;
-  }
+      turned[k] = q;
+      return orient3d(turned[0], turned[1], turned[2], turned[3]) < 0;
+    });
+  });
 }
 
 // Links the sides with each other over the edges that they have in common.

@@ -4,6 +4,7 @@
 // simplex, one at a vertex is reported as equal.
 #include <array>
 
+#include "delaunay/insertion/facet_walk.h"
 #include "delaunay/insertion/orientation_3d.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/mesh/xorshift.h"
@@ -12,27 +13,18 @@ namespace delray::delaunay {
 
 Place walk(const Mesh<3>& mesh, const Orientation<3>& orientation, SimplexNumber start,
            const glm::dvec3& q, std::uint32_t& random) {
-  SimplexNumber here = start;
-  unsigned entered = 4;
-  for (;;) {
-    std::array<VertexNumber, 4> vertices;
-    for (unsigned k = 0; k < 4; ++k) vertices[k] = mesh.vertex(corner_of(here, k));
-    const std::uint32_t first = internal::next_random(random);
-    unsigned exit = 4;
-    for (unsigned i = 0; i < 4 && exit == 4; ++i) {
-      const unsigned k = (first + i) & 3;
-      if (k != entered && orientation.with(q, k, vertices) < 0) exit = k;
-    }
-    if (exit == 4) {
-      for (const VertexNumber vertex : vertices) {
-        if (vertex != kInfiniteVertex && orientation.point(vertex) == q) return {here, vertex};
-      }
-      return {here, kInfiniteVertex};
-    }
-    const CornerNumber next = mesh.neighbour(corner_of(here, exit));
-    here = simplex_of(next);
-    entered = next & 3;
+  std::array<VertexNumber, 4> vertices;
+  const SimplexNumber here =
+      internal::walk_over_facets(mesh, start, [&](SimplexNumber simplex, unsigned entered) {
+        for (unsigned k = 0; k < 4; ++k) vertices[k] = mesh.vertex(corner_of(simplex, k));
+        return internal::exit_facet(internal::next_random(random), entered, [&](unsigned k) {
+          return orientation.with(q, k, vertices) < 0;
+        });
+      });
+  for (const VertexNumber vertex : vertices) {
+    if (vertex != kInfiniteVertex && orientation.point(vertex) == q) return {here, vertex};
   }
+  return {here, kInfiniteVertex};
 }
 
 }  // namespace delray::delaunay
