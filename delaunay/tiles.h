@@ -34,7 +34,7 @@ struct TileStatistics {
   std::uint64_t points = 0;         // its own, equal ones included
   std::uint64_t halo = 0;           // those of other tiles that it was told of
   std::uint64_t sent = 0;           // its own that it told others of, once for each
-  std::uint64_t simplices = 0;      // that its last triangulation has
+  std::uint64_t simplices = 0;      // that its triangulations have, all rounds together
   std::uint64_t own_simplices = 0;  // of which it is the one that counts them
 };
 

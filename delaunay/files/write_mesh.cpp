@@ -28,12 +28,6 @@ constexpr std::array kMeshWriters = {
                ".node .ele", true, &write_node},
 };
 
-// The vertices of the facet opposite to vertex i, so that a positively oriented simplex lies to
-// their left (2D) or below them, seen counterclockwise from outside (3D).
-constexpr std::array<std::array<int, 2>, 3> kEdges = {{{1, 2}, {2, 0}, {0, 1}}};
-constexpr std::array<std::array<int, 3>, 4> kTriangles = {
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
 }  // namespace
 
 std::span<const MeshWriter> mesh_writers() { return kMeshWriters; }
@@ -74,8 +68,7 @@ std::vector<std::uint32_t> hull_facets(const Triangulation& triangulation) {
   for (std::size_t facet = 0; facet < simplices.size(); ++facet) {
     if (facets.mates[facet] != FacetMates::kNone) continue;
     const std::size_t opposite = facet % corners;
-    for (std::size_t k = 0; k + 1 < corners; ++k) {
-      const int i = triangulation.dim == 2 ? kEdges[opposite][k] : kTriangles[opposite][k];
+    for (const int i : facet_corners(triangulation.dim, opposite)) {
       result.push_back(simplices[facet - opposite + static_cast<std::size_t>(i)]);
     }
   }

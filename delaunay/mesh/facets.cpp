@@ -141,4 +141,12 @@ FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::
   return dim == 2 ? match<2>(simplices, points) : match<3>(simplices, points);
 }
 
+std::span<const int> facet_corners(int dim, std::size_t opposite) {
+  static constexpr std::array<std::array<int, 2>, 3> kEdges = {{{1, 2}, {2, 0}, {0, 1}}};
+  static constexpr std::array<std::array<int, 3>, 4> kTriangles = {
+      {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  return dim == 2 ? std::span<const int>(kEdges[opposite])
+                  : std::span<const int>(kTriangles[opposite]);
+}
+
 }  // namespace delray::delaunay

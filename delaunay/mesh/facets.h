@@ -23,4 +23,9 @@ struct FacetMates {
 // are below `points`.
 FacetMates match_facets(int dim, std::span<const std::uint32_t> simplices, std::size_t points);
 
+// The corners of the facet opposite to corner `opposite` of a positively oriented simplex, so that
+// the simplex lies to their left (2D) or they are seen counterclockwise from outside (3D).
+// REQUIRES: dim is 2 or 3; opposite <= dim.
+std::span<const int> facet_corners(int dim, std::size_t opposite);
+
 }  // namespace delray::delaunay

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "delaunay/mesh/facets.h"
 #include "delaunay/tiles/circumball.h"
-#include "delaunay/write_mesh.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -46,13 +46,14 @@ TileBoxes::TileBoxes(std::span<const TileSummary> summaries)
     : plane(boxes_of<glm::dvec2>(summaries)), space(boxes_of<glm::dvec3>(summaries)) {}
 
 HaloTile::HaloTile(int tile, int dim, std::vector<RowPoint> own)
-    : tile_(tile), dim_(dim), known_(std::move(own)) {
+    : tile_(tile), dim_(dim), known_(std::move(own)), walls_(dim) {
   if (known_.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw std::invalid_argument("tile " + std::to_string(tile) + " has " +
                                 std::to_string(known_.size()) +
                                 " points, more than a tile can have");
   }
   own_ = static_cast<std::uint32_t>(known_.size());
+  statistics_.points = own_;
 }
 
 TileSummary HaloTile::summary() const {
@@ -78,6 +79,7 @@ void HaloTile::add_halo(std::span<const RowPoint> points) {
   for (const RowPoint& point : points) {
     if (!halo_rows_.insert(point.row).second) continue;
     known_.push_back(point);
+    ++statistics_.halo;
     changed_ = true;
   }
 }
@@ -89,29 +91,38 @@ void HaloTile::triangulate(const Options& options) {
   const PointView<double> view{reinterpret_cast<const std::byte*>(known_.data()), known_.size(),
                                sizeof(RowPoint)};
   triangulation_ = delaunay::triangulate(view, options).triangulation;
+  statistics_.simplices += triangulation_.size();
+  mates_ = match_facets(dim_, triangulation_.vertices, known_.size()).mates;
+  outside_ = walls_.find_outside(triangulation_, mates_);
 }
 
 template <int D>
 std::vector<TileMessage> HaloTile::messages_of_simplices(
-    const BoxTree<glm::vec<D, double>>& boxes) const {
+    const BoxTree<glm::vec<D, double>>& boxes) {
   using Point = glm::vec<D, double>;
   using Box = geometry::Box<Point>;
   std::vector<TileMessage> all;
   std::mutex mutex;
-  // For so many corners a simplex or facet: tells all tiles that `shape` touches of its own ones.
-  const auto scan = [&]<std::size_t Corners>(std::span<const std::uint32_t> vertices,
-                                             const auto& touches_of) {
+  // For simplices or facets of so many corners: marks those that are no own ones or touch other
+  // tiles, and tells these of their own vertices.
+  const auto scan = [&]<std::size_t Corners>(
+                        std::span<const std::uint32_t> vertices, const std::uint8_t* are_outside,
+                        std::vector<std::uint8_t>& concerns, const auto& touches_of) {
+    concerns.assign(vertices.size() / Corners, 1);
     parallel::parallel_blocks(
-        0, vertices.size() / Corners, kSimplicesGrain, [&](std::size_t first, std::size_t last) {
+        0, concerns.size(), kSimplicesGrain, [&](std::size_t first, std::size_t last) {
           std::vector<TileMessage> messages;
           for (std::size_t s = first; s < last; ++s) {
+            if (are_outside != nullptr && are_outside[s] == 0) continue;
             const auto rows = vertices.subspan(s * Corners, Corners);
             if (std::ranges::none_of(rows, [&](std::uint32_t row) { return is_own(row); }))
               continue;
             std::array<Point, Corners> corners;
             for (std::size_t i = 0; i < Corners; ++i) corners[i] = Point(known_[rows[i]].position);
+            concerns[s] = 0;
             boxes.find(touches_of(corners), [&](std::uint32_t tile) {
               if (static_cast<int>(tile) == tile_) return;
+              concerns[s] = 1;
               for (const std::uint32_t row : rows) {
                 if (is_own(row)) messages.push_back({tile, row});
               }
@@ -123,10 +134,13 @@ std::vector<TileMessage> HaloTile::messages_of_simplices(
           all.insert(all.end(), messages.begin(), messages.end());
         });
   };
-  scan.template operator()<D + 1>(triangulation_.vertices, [](const auto& corners) {
-    return [ball = Circumball<D>(corners)](const Box& box) { return ball.touches(box); };
-  });
-  scan.template operator()<D>(hull_facets(triangulation_), [](const auto& corners) {
+  scan.template operator()<D + 1>(triangulation_.vertices, outside_.simplices.data(),
+                                  simplex_concerns_, [](const auto& corners) {
+                                    return [ball = Circumball<D>(corners)](const Box& box) {
+                                      return ball.touches(box);
+                                    };
+                                  });
+  scan.template operator()<D>(outside_.hull, nullptr, facet_concerns_, [](const auto& corners) {
     return [corners](const Box& box) { return reaches_beyond(corners, box); };
   });
   return all;
@@ -149,7 +163,7 @@ std::vector<std::uint32_t> HaloTile::distinct_own() const {
 std::vector<TileMessage> HaloTile::find_messages(const TileBoxes& boxes,
                                                  std::span<const TileSummary> tiles) {
   std::vector<TileMessage> messages;
-  if (own_ > 0 && triangulation_.size() == 0) {
+  if (own_ > 0 && triangulation_.size() == 0 && !settled_) {
     // All in one line or plane: anything may be a neighbour.
     const std::vector<std::uint32_t> distinct = distinct_own();
     for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
@@ -163,34 +177,103 @@ std::vector<TileMessage> HaloTile::find_messages(const TileBoxes& boxes,
   std::erase_if(messages, [&](const TileMessage& message) {
     return !told_.insert(message.tile << 32 | message.point).second;
   });
+  statistics_.sent += messages.size();
   std::ranges::sort(messages);
   return messages;
 }
 
-void HaloTile::collect(TiledTriangulation& result) const {
-  const auto corners = static_cast<std::size_t>(dim_) + 1;
-  const auto lowest_is_own = [&](std::span<const std::uint32_t> rows) {
-    return is_own(
-        *std::ranges::min_element(rows, {}, [&](std::uint32_t row) { return known_[row].row; }));
-  };
-  TileStatistics statistics;
-  statistics.points = own_;
-  statistics.halo = known_.size() - own_;
-  statistics.sent = told_.size();
-  statistics.simplices = triangulation_.size();
+bool HaloTile::lowest_is_own(std::span<const std::uint32_t> rows) const {
+  return is_own(
+      *std::ranges::min_element(rows, {}, [&](std::uint32_t row) { return known_[row].row; }));
+}
+
+void HaloTile::give(std::span<const std::uint32_t> rows, TiledTriangulation& result) {
+  for (const std::uint32_t row : rows) result.vertices.push_back(known_[row].row);
+  ++statistics_.own_simplices;
+}
+
+void HaloTile::settle(TiledTriangulation& result) {
+  const auto corners = static_cast<std::size_t>(dim_) + 1, sides = corners - 1;
+  if (settled_ || std::ranges::count(simplex_concerns_, 0) == 0) return;
+  settled_ = true;
+  result.distinct += triangulation_.distinct - statistics_.halo;
+
+  std::vector<std::uint8_t> keep(known_.size());
+  std::ranges::fill(keep.begin() + own_, keep.end(), std::uint8_t{1});
+  const std::span<const std::uint32_t> vertices = triangulation_.vertices;
+  std::array<std::uint32_t, 3> facet{};
   for (std::size_t s = 0; s < triangulation_.size(); ++s) {
-    const auto rows = std::span(triangulation_.vertices).subspan(s * corners, corners);
-    if (!lowest_is_own(rows)) continue;
-    ++statistics.own_simplices;
-    for (const std::uint32_t row : rows) result.vertices.push_back(known_[row].row);
+    const auto rows = vertices.subspan(s * corners, corners);
+    if (simplex_concerns_[s] != 0) {
+      for (const std::uint32_t row : rows) keep[row] = 1;
+      continue;
+    }
+    give(rows, result);
+    for (std::size_t i = 0; i < corners; ++i) {
+      const std::uint32_t mate = mates_[s * corners + i];
+      if (mate == FacetMates::kNone || simplex_concerns_[mate / corners] == 0) continue;
+      const std::span<const int> order = facet_corners(dim_, i);
+      for (std::size_t k = 0; k < sides; ++k) facet[k] = rows[static_cast<std::size_t>(order[k])];
+      walls_.add(std::span(facet).first(sides));
+    }
   }
-  const std::vector<std::uint32_t> facets = hull_facets(triangulation_);
-  for (std::size_t f = 0; f < facets.size(); f += corners - 1) {
-    result.hull_facets += lowest_is_own(std::span(facets).subspan(f, corners - 1)) ? 1 : 0;
+  // Without walls the hull lists facets by their simplices; a simplex may have several.
+  std::size_t next = 0;
+  for (std::size_t corner = 0; corner < mates_.size(); ++corner) {
+    if (mates_[corner] != FacetMates::kNone) continue;
+    const std::size_t f = next++;
+    if (simplex_concerns_[corner / corners] != 0) continue;
+    const auto rows = std::span<const std::uint32_t>(outside_.hull).subspan(f * sides, sides);
+    if (facet_concerns_[f] == 0) {
+      ++result.hull_facets;
+    } else {
+      walls_.add(rows);
+    }
+  }
+  walls_.mark_vertices(keep);
+
+  std::vector<std::uint32_t> numbers(known_.size());
+  std::uint32_t kept = 0, own = 0;
+  for (std::uint32_t i = 0; i < known_.size(); ++i) {
+    numbers[i] = kept;
+    if (keep[i] == 0) continue;
+    if (is_own(i)) ++own;
+    known_[kept++] = known_[i];
+  }
+  known_.resize(kept);
+  known_.shrink_to_fit();
+  walls_.renumber(numbers);
+  std::unordered_set<std::uint64_t> told;
+  for (const std::uint64_t message : told_) {
+    const auto point = static_cast<std::uint32_t>(message);
+    if (keep[point] != 0) told.insert(message >> 32 << 32 | numbers[point]);
+  }
+  told_ = std::move(told);
+  own_ = own;
+  triangulation_ = {};
+  mates_ = {};
+  outside_ = {};
+  changed_ = true;
+}
+
+void HaloTile::collect(const Options& options, TiledTriangulation& result) {
+  triangulate(options);
+  const auto corners = static_cast<std::size_t>(dim_) + 1, sides = corners - 1;
+  for (std::size_t s = 0; s < triangulation_.size(); ++s) {
+    if (outside_.simplices[s] == 0) continue;
+    const auto rows =
+        std::span<const std::uint32_t>(triangulation_.vertices).subspan(s * corners, corners);
+    if (lowest_is_own(rows)) give(rows, result);
+  }
+  for (std::size_t f = 0; f < outside_.hull.size(); f += sides) {
+    const auto rows = std::span<const std::uint32_t>(outside_.hull).subspan(f, sides);
+    result.hull_facets += lowest_is_own(rows) ? 1 : 0;
   }
   // Points of halos are distinct, and equal to none of the tile's own.
-  if (own_ > 0) result.distinct += triangulation_.distinct - statistics.halo;
-  result.tiles.push_back(statistics);
+  if (!settled_ && statistics_.points > 0) {
+    result.distinct += triangulation_.distinct - statistics_.halo;
+  }
+  result.tiles.push_back(statistics_);
 }
 
 }  // namespace delray::delaunay

@@ -8,6 +8,7 @@
 
 #include "delaunay/tiles.h"
 #include "delaunay/tiles/box_tree.h"
+#include "delaunay/tiles/walls.h"
 #include "geometry/box.h"
 
 namespace delray::delaunay {
@@ -44,6 +45,10 @@ struct TileMessage {
 // point q of all is left on it. The owner of q was told of v, as the ball touches its box; the ball
 // through v and q is empty, so the owner has the edge vq, in a simplex whose ball holds v and so
 // touches this tile's box: it has told this tile of q.
+//
+// Simplices that touch no other tile's box are settled from the start, most of them as a rule: they
+// are given away after the first look, with their vertices inside, and what the halo changes is the
+// rest (walls.h).
 class HaloTile {
  public:
   // `own` by ascending rows.
@@ -58,23 +63,34 @@ class HaloTile {
   std::vector<TileMessage> find_messages(const TileBoxes& boxes,
                                          std::span<const TileSummary> tiles);
   const RowPoint& point(std::uint32_t known) const { return known_[known]; }
-  // Appends the simplices that are this tile's, and counts.
-  void collect(TiledTriangulation& result) const;
+  // Gives the simplices away that can change no more, and forgets the points that only they need.
+  // What find_messages() gave numbers other points then. For after find_messages().
+  void settle(TiledTriangulation& result);
+  // Appends the simplices that are this tile's and were not given away, and its statistics.
+  void collect(const Options& options, TiledTriangulation& result);
 
  private:
   template <int D>
-  std::vector<TileMessage> messages_of_simplices(const BoxTree<glm::vec<D, double>>& boxes) const;
+  std::vector<TileMessage> messages_of_simplices(const BoxTree<glm::vec<D, double>>& boxes);
   // Of equal own points the one with the lowest row, which represents them.
   std::vector<std::uint32_t> distinct_own() const;
   bool is_own(std::uint32_t known) const { return known < own_; }
+  bool lowest_is_own(std::span<const std::uint32_t> rows) const;
+  void give(std::span<const std::uint32_t> rows, TiledTriangulation& result);
 
   int tile_, dim_;
   std::vector<RowPoint> known_;  // own points first
   std::uint32_t own_;
   std::unordered_set<std::uint64_t> halo_rows_;
-  bool changed_ = true;
+  bool changed_ = true, settled_ = false;
   Triangulation triangulation_;
+  std::vector<std::uint32_t> mates_;  // of its facets
+  Walls walls_;
+  Walls::Outside outside_;
+  // Which simplices, and which facets of outside_.hull, other tiles must know of.
+  std::vector<std::uint8_t> simplex_concerns_, facet_concerns_;
   std::unordered_set<std::uint64_t> told_;  // tile << 32 | point
+  TileStatistics statistics_;
 };
 
 }  // namespace delray::delaunay

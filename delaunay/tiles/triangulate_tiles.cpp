@@ -109,8 +109,8 @@ class RankTiles {
     }
   }
 
-  // Returns how many exchanges of halos it took.
-  int complete_stars() {
+  // Gives away what is settled. Returns how many exchanges of halos it took.
+  int complete_stars(TiledTriangulation& result) {
     const TileBoxes boxes(summaries_);
     for (int round = 0;; ++round) {
       std::uint64_t told = 0;
@@ -123,6 +123,7 @@ class RankTiles {
             parcels[rank_of(to)].add(to, tile.point(message.point));
             ++told;
           }
+          tile.settle(result);
         }
       });
       if (comm::all_reduce_value(communicator_, told, std::plus<>()) == 0) return round;
@@ -132,11 +133,10 @@ class RankTiles {
     }
   }
 
-  TiledTriangulation collect() const {
-    TiledTriangulation result;
-    result.dim = options_.triangulate.dim;
-    for (const HaloTile& tile : mine_) tile.collect(result);
-    return result;
+  void collect(TiledTriangulation& result) {
+    comm::all_or_none(communicator_, comm::Phase::other, [&] {
+      for (HaloTile& tile : mine_) tile.collect(options_.triangulate, result);
+    });
   }
 
  private:
@@ -187,9 +187,10 @@ TiledTriangulation triangulate_tiles(comm::Communicator& communicator,
   communicator.mark(comm::Phase::redistribute, 0);
   mine.distribute(points);
   mine.share_summaries();
-  const int rounds = mine.complete_stars();
-  TiledTriangulation result = mine.collect();
-  result.rounds = rounds;
+  TiledTriangulation result;
+  result.dim = options.triangulate.dim;
+  result.rounds = mine.complete_stars(result);
+  mine.collect(result);
   return result;
 }
 
