@@ -9,13 +9,16 @@
 #include "apps/commands.h"
 #include "apps/families.h"
 #include "apps/input/point_input.h"
+#include "apps/launch.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
+#include "apps/triangulate_tiles.h"
 #include "apps/triangulation_json.h"
+#include "comm/agree_on_failure.h"
 #include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
 #include "delaunay/triangulate.h"
@@ -30,7 +33,8 @@ struct TriangulateOptions {
   std::string output, statistics;
   delaunay::Options how;
   std::optional<double> max_error;
-  int threads = 0;
+  Launch launch;
+  int tiles = 0;        // 0: one for each rank
   bool makers = false;  // go to the mesh
   bool list = false;
 };
@@ -47,7 +51,7 @@ void require_plain(const TriangulateOptions& options) {
   if (how.method != defaults.method || how.location != defaults.location ||
       how.split != defaults.split || how.order != defaults.order ||
       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.threads != 0 || options.makers) {
+      how.seed != defaults.seed || options.launch.threads != 0 || options.makers) {
     throw UsageError(
         "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed, "
         "threads and makers");
@@ -64,16 +68,11 @@ void keep_rows(const std::vector<std::uint32_t>& kept, delaunay::PointCloud& poi
   }
 }
 
+// What statistics say however a triangulation was made.
 Json statistics_of(const TriangulateOptions& options, std::size_t points,
-                   const delaunay::Result& made, const Seconds& seconds) {
+                   const delaunay::Triangulation& result, std::uint64_t simplices,
+                   const delaunay::Hash128& hash, const Seconds& seconds) {
   const delaunay::Options& how = options.how;
-  const delaunay::Triangulation& result = made.triangulation;
-  const delaunay::Statistics& phases = made.statistics;
-  Json seconds_json = {
-      {"read", seconds.read}, {"triangulate", seconds.triangulate}, {"write", 0.0}};  // not yet
-  seconds_json.update(phases_json(phases));
-  Json sync = synchronization_json(phases.synchronization);
-  sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
   return {
       {"schema", "delray.triangulate/1"},
       {"input",
@@ -91,13 +90,17 @@ Json statistics_of(const TriangulateOptions& options, std::size_t points,
         {"seed", how.seed},
         {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
       {"result",
-       {{"simplices", result.size()},
-        {"hull_facets", result.hull_facets},
-        {"hash", to_string(hash(result))}}},
-      {"seconds", seconds_json},
+       {{"simplices", simplices}, {"hull_facets", result.hull_facets}, {"hash", to_string(hash)}}},
+      {"seconds",
+       {{"read", seconds.read}, {"triangulate", seconds.triangulate}, {"write", 0.0}}},  // not yet
       {"memory", {{"peak_rss", peak_memory()}}},
-      {"sync", sync},
   };
+}
+
+void add_phases(const delaunay::Statistics& phases, Json& statistics) {
+  statistics["seconds"].update(phases_json(phases));
+  Json& sync = statistics["sync"] = synchronization_json(phases.synchronization);
+  sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
 }
 
 // Names in a table, or that which leaves the choice to the program.
@@ -117,8 +120,12 @@ void add_choices(CLI::App& command) {
   choose(command, "--deadlocks", delaunay::deadlock_strategies());
 }
 
+bool is_tiled(const Session& session, const TriangulateOptions& options) {
+  return options.tiles > 0 || options.launch.ranks > 1 || session.processes > 1;
+}
+
 // Refuses what does not go together, and resolves every "auto".
-void check(TriangulateOptions& options) {
+void check(const Session& session, TriangulateOptions& options) {
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
   if (options.output.empty() && options.statistics.empty()) {
     throw UsageError("triangulate: -o MESH is missing");
@@ -129,8 +136,15 @@ void check(TriangulateOptions& options) {
   if (options.makers && !options.output.ends_with(".vtu")) {
     throw UsageError("--makers: only a mesh in a .vtu file can tell them");
   }
+  if (is_tiled(session, options) && (options.max_error || options.makers)) {
+    throw UsageError((options.max_error ? std::string("--max-error") : std::string("--makers")) +
+                     ": not with several ranks or tiles");
+  }
+  check(session, options.launch);
   delaunay::Options& how = options.how;
-  how.threads = options.threads > 0 ? options.threads : parallel::arena_threads();
+  how.threads = session.under_mpi
+                    ? threads_per_rank(options.launch, processes_here())
+                    : threads_per_rank(options.launch, std::max(1, options.launch.ranks));
   if (options.max_error) {
     require_plain(options);
     how.threads = 1;
@@ -143,13 +157,61 @@ void check(TriangulateOptions& options) {
   check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {options.input.path});
 }
 
+void warn_of_no_simplices(const TriangulateOptions& options, std::uint64_t simplices) {
+  if (simplices > 0) return;
+  spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
+               options.how.dim == 2 ? "line" : "plane");
+}
+
+void tell_result(int dim, std::size_t rows, std::uint64_t distinct, std::uint64_t simplices,
+                 double seconds) {
+  spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", rows, distinct, simplices,
+               dim == 2 ? "triangles" : "tetrahedra", seconds);
+}
+
+int run_tiled(Session& session, const TriangulateOptions& options) {
+  Stopwatch watch;
+  Seconds seconds;
+  const delaunay::PointCloud points = load_points(options.input, options.how.dim);
+  require_memory_to_triangulate(options.input, points.size(), options.how.dim);
+  seconds.read = watch.lap();
+  delaunay::TileOptions how;
+  how.tiles = options.tiles;
+  how.triangulate = options.how;
+  how.triangulate.progress = &session.progress;
+  const ProgressBar bar(session, "triangulate");
+  const parallel::AllowThreads allowed(std::max(1, options.launch.ranks) * options.how.threads);
+  run_ranks(session, options.launch, {options.input.path}, [&](comm::Communicator& communicator) {
+    Stopwatch own_watch;
+    const TiledRun made = triangulate_by_ranks(communicator, points, how, !options.output.empty());
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() != 0) return;
+      seconds.triangulate = own_watch.lap();
+      const delaunay::Triangulation& result = made.triangulation;
+      warn_of_no_simplices(options, made.simplices);
+      Json statistics =
+          statistics_of(options, points.size(), result, made.simplices, made.hash, seconds);
+      statistics["options"].update({{"ranks", communicator.size()}, {"tiles", made.tiles.size()}});
+      statistics["rounds"] = made.rounds;
+      statistics["tiles"] = tiles_json(made);
+      own_watch.lap();
+      if (!options.output.empty()) write_mesh(options.output, points, result);
+      statistics["seconds"]["write"] = own_watch.lap();
+      write_statistics(options.statistics, statistics);
+      tell_result(result.dim, points.size(), result.distinct, made.simplices, seconds.triangulate);
+    });
+  });
+  return kDone;
+}
+
 int run(Session& session, TriangulateOptions options) {
   if (options.list) {
     list_methods();
     list_method_options();
     return kDone;
   }
-  check(options);
+  check(session, options);
+  if (is_tiled(session, options)) return run_tiled(session, options);
   delaunay::Options& how = options.how;
 
   Stopwatch watch;
@@ -181,11 +243,9 @@ int run(Session& session, TriangulateOptions options) {
     }
     seconds.triangulate = watch.lap();
   }
-  if (result.size() == 0) {
-    spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
-                 how.dim == 2 ? "line" : "plane");
-  }
-  Json statistics = statistics_of(options, rows, made, seconds);
+  warn_of_no_simplices(options, result.size());
+  Json statistics = statistics_of(options, rows, result, result.size(), hash(result), seconds);
+  add_phases(made.statistics, statistics);
   if (simplified) {
     statistics["options"].update({{"method", "simplify"}, {"max_error", *options.max_error}});
     statistics["result"].update(
@@ -196,8 +256,7 @@ int run(Session& session, TriangulateOptions options) {
   if (!options.output.empty()) write_mesh(options.output, points, result, made.created_by);
   statistics["seconds"]["write"] = watch.lap();
   write_statistics(options.statistics, statistics);
-  spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", rows, result.distinct, result.size(),
-               how.dim == 2 ? "triangles" : "tetrahedra", seconds.triangulate);
+  tell_result(how.dim, rows, result.distinct, result.size(), seconds.triangulate);
   if (simplified) {
     spdlog::info("{} points kept, largest error {:.6g}", simplified->kept.size(),
                  simplified->largest_error);
@@ -249,8 +308,14 @@ void add_triangulate(CLI::App& program, Session& session) {
                    "Simplify a terrain: keep just enough points for all others to be within this "
                    "above or below the mesh, in units of z")
       ->check(non_negative_number());
-  command->add_option("--threads", options->threads, "Threads (default: one per core)")
-      ->transform(count_between(1, 4096));
+  add_launch_options(*command, options->launch);
+  command
+      ->add_option(
+          "--tiles", options->tiles,
+          "Tiles that points are cut into, each triangulated with what it must know of its "
+          "neighbours (default: one per rank)")
+      ->group(group::kParallel)
+      ->transform(count_between(1, 65536));
   command->add_option("--seed", options->how.seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
   command

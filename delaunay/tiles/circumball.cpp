@@ -105,8 +105,24 @@ bool Circumball<D>::touches(const geometry::Box<Point>& box) const {
     reach = std::max({reach, std::abs(low), std::abs(high)});
   }
   // The other way round for numbers that are none.
-  const double slack = 2 * uncertain_ + kFactor * (radius_ + reach) + kUnderflow;
-  return !(std::sqrt(squares) > radius_ + slack);
+  return !(std::sqrt(squares) > radius_ + slack(reach));
+}
+
+template <int D>
+bool Circumball<D>::is_within(const geometry::Box<Point>& box) const {
+  double margin = std::numeric_limits<double>::infinity(), reach = 0;
+  for (int k = 0; k < D; ++k) {
+    const double low = box.low[k] - corner_[k], high = box.high[k] - corner_[k];
+    margin = std::min({margin, centre_[k] - low, high - centre_[k]});
+    reach = std::max({reach, std::abs(low), std::abs(high)});
+  }
+  return margin > radius_ + slack(reach);
+}
+
+// By how much rounding may have moved the ball's surface or a box no farther than `reach` away.
+template <int D>
+double Circumball<D>::slack(double reach) const {
+  return 2 * uncertain_ + kFactor * (radius_ + reach) + kUnderflow;
 }
 
 bool reaches_beyond(const std::array<glm::dvec2, 2>& facet, const geometry::Box<glm::dvec2>& box) {

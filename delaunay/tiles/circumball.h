@@ -20,8 +20,13 @@ class Circumball {
   // roundings; for simplices so flat that rounding hides the ball, for all boxes. Never false where
   // they have one.
   bool touches(const geometry::Box<Point>& box) const;
+  // Whether the ball lies in a box, its border included: then it touches nothing beyond. May be
+  // false where it does, by a few roundings; never true where it does not.
+  bool is_within(const geometry::Box<Point>& box) const;
 
  private:
+  double slack(double reach) const;
+
   Point corner_;          // the first one
   Point centre_;          // beside it
   double radius_ = 0;     // to the centre as computed

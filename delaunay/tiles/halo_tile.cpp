@@ -40,6 +40,22 @@ bool comes_before(const RowPoint& a, const RowPoint& b, int axis, int dim, bool 
   return a.row < b.row;
 }
 
+// Which boxes a simplex's ball or the half-space beyond a facet touches.
+template <int D>
+struct BallTouches {
+  using Box = geometry::Box<glm::vec<D, double>>;
+  Circumball<D> ball;
+  bool operator()(const Box& box) const { return ball.touches(box); }
+  bool is_within(const Box& box) const { return ball.is_within(box); }
+};
+template <int D>
+struct FacetReaches {
+  using Box = geometry::Box<glm::vec<D, double>>;
+  std::array<glm::vec<D, double>, D> facet;
+  bool operator()(const Box& box) const { return reaches_beyond(facet, box); }
+  bool is_within(const Box&) const { return false; }
+};
+
 }  // namespace
 
 TileBoxes::TileBoxes(std::span<const TileSummary> summaries)
@@ -54,15 +70,14 @@ HaloTile::HaloTile(int tile, int dim, std::vector<RowPoint> own)
   }
   own_ = static_cast<std::uint32_t>(known_.size());
   statistics_.points = own_;
+  for (const RowPoint& point : known_) {
+    box_.include(dim == 2 ? glm::dvec3(glm::dvec2(point.position), 0) : point.position);
+  }
 }
 
 TileSummary HaloTile::summary() const {
   TileSummary summary;
-  for (const RowPoint& point : known_) {
-    glm::dvec3 position = point.position;
-    if (dim_ == 2) position.z = 0;
-    summary.box.include(position);
-  }
+  summary.box = box_;
   if (own_ == 0) return summary;
   for (int axis = 0; axis < dim_; ++axis) {
     for (const bool descending : {false, true}) {
@@ -103,6 +118,16 @@ std::vector<TileMessage> HaloTile::messages_of_simplices(
   using Box = geometry::Box<Point>;
   std::vector<TileMessage> all;
   std::mutex mutex;
+  // What lies in the tile's own box touches no other box, unless boxes overlap.
+  Box own_box{Point(box_.low), Point(box_.high)};
+  bool overlaps = false;
+  boxes.find(
+      [&](const Box& box) {
+        return glm::all(glm::lessThanEqual(own_box.low, box.high)) &&
+               glm::all(glm::lessThanEqual(box.low, own_box.high));
+      },
+      [&](std::uint32_t tile) { overlaps |= static_cast<int>(tile) != tile_; });
+  if (overlaps) own_box = {};
   // For simplices or facets of so many corners: marks those that are no own ones or touch other
   // tiles, and tells these of their own vertices.
   const auto scan = [&]<std::size_t Corners>(
@@ -192,6 +217,20 @@ void HaloTile::give(std::span<const std::uint32_t> rows, TiledTriangulation& res
   ++statistics_.own_simplices;
 }
 
+void HaloTile::give_settled(TiledTriangulation& result) {
+  const auto corners = static_cast<std::size_t>(dim_) + 1;
+  const auto settled = static_cast<std::size_t>(std::ranges::count(simplex_concerns_, 0));
+  statistics_.own_simplices += settled;
+  std::size_t to = result.vertices.size();
+  result.vertices.resize(to + settled * corners);
+  for (std::size_t s = 0; s < triangulation_.size(); ++s) {
+    if (simplex_concerns_[s] != 0) continue;
+    for (std::size_t corner = s * corners; corner < (s + 1) * corners; ++corner) {
+      result.vertices[to++] = known_[triangulation_.vertices[corner]].row;
+    }
+  }
+}
+
 void HaloTile::settle(TiledTriangulation& result) {
   const auto corners = static_cast<std::size_t>(dim_) + 1, sides = corners - 1;
   if (settled_ || std::ranges::count(simplex_concerns_, 0) == 0) return;
@@ -203,20 +242,18 @@ void HaloTile::settle(TiledTriangulation& result) {
   const std::span<const std::uint32_t> vertices = triangulation_.vertices;
   std::array<std::uint32_t, 3> facet{};
   for (std::size_t s = 0; s < triangulation_.size(); ++s) {
-    const auto rows = vertices.subspan(s * corners, corners);
-    if (simplex_concerns_[s] != 0) {
-      for (const std::uint32_t row : rows) keep[row] = 1;
-      continue;
-    }
-    give(rows, result);
-    for (std::size_t i = 0; i < corners; ++i) {
-      const std::uint32_t mate = mates_[s * corners + i];
-      if (mate == FacetMates::kNone || simplex_concerns_[mate / corners] == 0) continue;
-      const std::span<const int> order = facet_corners(dim_, i);
+    if (simplex_concerns_[s] == 0) continue;
+    for (std::size_t corner = s * corners; corner < (s + 1) * corners; ++corner) {
+      keep[vertices[corner]] = 1;
+      const std::uint32_t mate = mates_[corner];
+      if (mate == FacetMates::kNone || simplex_concerns_[mate / corners] != 0) continue;
+      const auto rows = vertices.subspan(mate / corners * corners, corners);
+      const std::span<const int> order = facet_corners(dim_, mate % corners);
       for (std::size_t k = 0; k < sides; ++k) facet[k] = rows[static_cast<std::size_t>(order[k])];
       walls_.add(std::span(facet).first(sides));
     }
   }
+  give_settled(result);
   // Without walls the hull lists facets by their simplices; a simplex may have several.
   std::size_t next = 0;
   for (std::size_t corner = 0; corner < mates_.size(); ++corner) {

@@ -77,10 +77,12 @@ class HaloTile {
   bool is_own(std::uint32_t known) const { return known < own_; }
   bool lowest_is_own(std::span<const std::uint32_t> rows) const;
   void give(std::span<const std::uint32_t> rows, TiledTriangulation& result);
+  void give_settled(TiledTriangulation& result);
 
   int tile_, dim_;
   std::vector<RowPoint> known_;  // own points first
   std::uint32_t own_;
+  geometry::Box3d box_;  // of its own points; z is 0 in 2D
   std::unordered_set<std::uint64_t> halo_rows_;
   bool changed_ = true, settled_ = false;
   Triangulation triangulation_;

@@ -16,6 +16,7 @@
 #include "delaunay/mesh/arguments.h"
 #include "delaunay/tiles/halo_tile.h"
 #include "delaunay/tiles/tile_cut.h"
+#include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
 namespace {
@@ -26,29 +27,39 @@ class TilePoints {
  public:
   void add(int tile, const RowPoint& point) { points_[tile].push_back(point); }
 
+  // Of so many points of a tile; nothing is sent for a tile without.
+  static std::size_t bytes(std::uint64_t points) {
+    return points == 0 ? 0 : kHead + points * sizeof(RowPoint);
+  }
+  // Returns where the points go.
+  static std::byte* put_head(std::byte* at, int tile, std::uint64_t points) {
+    const std::uint64_t head[2] = {static_cast<std::uint64_t>(tile), points};
+    std::memcpy(at, head, kHead);
+    return at + kHead;
+  }
+
   comm::Buffer pack() const {
-    std::size_t bytes = 0;
-    for (const auto& [tile, points] : points_) bytes += kHead + points.size() * sizeof(RowPoint);
-    comm::Buffer buffer(bytes);
+    std::size_t size = 0;
+    for (const auto& [tile, points] : points_) size += bytes(points.size());
+    comm::Buffer buffer(size);
     std::byte* at = buffer.data();
     for (const auto& [tile, points] : points_) {
-      const std::uint64_t head[2] = {static_cast<std::uint64_t>(tile), points.size()};
-      std::memcpy(at, head, kHead);
-      std::memcpy(at + kHead, points.data(), points.size() * sizeof(RowPoint));
-      at += kHead + points.size() * sizeof(RowPoint);
+      at = put_head(at, tile, points.size());
+      std::memcpy(at, points.data(), points.size() * sizeof(RowPoint));
+      at += points.size() * sizeof(RowPoint);
     }
     return buffer;
   }
 
+  // Calls take(tile, points) for each tile. REQUIRES: pack() or pack_by_tile() made it.
   template <class Take>
   static void unpack(const comm::Buffer& buffer, const Take& take) {
     for (std::size_t at = 0; at < buffer.size();) {
       std::uint64_t head[2];
       std::memcpy(head, buffer.data() + at, kHead);
-      std::vector<RowPoint> points(head[1]);
-      std::memcpy(points.data(), buffer.data() + at + kHead, points.size() * sizeof(RowPoint));
-      take(static_cast<int>(head[0]), points);
-      at += kHead + points.size() * sizeof(RowPoint);
+      const auto* points = reinterpret_cast<const RowPoint*>(buffer.data() + at + kHead);
+      take(static_cast<int>(head[0]), std::span(points, head[1]));
+      at += bytes(head[1]);
     }
   }
 
@@ -66,18 +77,15 @@ class RankTiles {
   void distribute(std::span<const RowPoint> points) {
     const auto& partitioner = *loadbalance::find_partitioner(options_.partition);
     const TileCut cut(communicator_, points, options_.triangulate.dim, tiles_, partitioner);
-    std::map<int, TilePoints> parcels;
-    for (const RowPoint& point : points) {
-      const int tile = cut.tile_of(point.position);
-      parcels[rank_of(tile)].add(tile, point);
-    }
     const int first = first_tile(communicator_.rank(), communicator_.size(), tiles_);
     const int last = first_tile(communicator_.rank() + 1, communicator_.size(), tiles_);
     std::vector<std::vector<RowPoint>> own(static_cast<std::size_t>(last - first));
-    exchange(parcels, [&](int tile, const std::vector<RowPoint>& received) {
-      auto& all = own[tile - first];
-      all.insert(all.end(), received.begin(), received.end());
-    });
+    for (const comm::Parcel& parcel : comm::exchange(communicator_, pack_by_tile(points, cut))) {
+      TilePoints::unpack(parcel.message, [&](int tile, std::span<const RowPoint> received) {
+        auto& all = own[tile - first];
+        all.insert(all.end(), received.begin(), received.end());
+      });
+    }
     for (auto& each : own) {
       if (!std::ranges::is_sorted(each, {}, &RowPoint::row)) {
         std::ranges::sort(each, {}, &RowPoint::row);
@@ -127,7 +135,7 @@ class RankTiles {
         }
       });
       if (comm::all_reduce_value(communicator_, told, std::plus<>()) == 0) return round;
-      exchange(parcels, [&](int tile, const std::vector<RowPoint>& received) {
+      exchange(parcels, [&](int tile, std::span<const RowPoint> received) {
         mine_[static_cast<std::size_t>(tile) - first_].add_halo(received);
       });
     }
@@ -140,6 +148,40 @@ class RankTiles {
   }
 
  private:
+  // A message for each rank that some of the points go to, sorted by tiles.
+  std::vector<comm::Parcel> pack_by_tile(std::span<const RowPoint> points,
+                                         const TileCut& cut) const {
+    std::vector<std::int32_t> tile_of(points.size());
+    constexpr std::size_t kGrain = 16384;  // points: some tenths of a millisecond
+    parallel::parallel_for(0, points.size(), kGrain,
+                           [&](std::size_t i) { tile_of[i] = cut.tile_of(points[i].position); });
+    std::vector<std::uint64_t> counts(static_cast<std::size_t>(tiles_));
+    for (const std::int32_t tile : tile_of) ++counts[static_cast<std::size_t>(tile)];
+
+    std::vector<comm::Parcel> parcels;
+    std::vector<std::byte*> next(counts.size());
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+      const int first = first_tile(rank, communicator_.size(), tiles_);
+      const int last = first_tile(rank + 1, communicator_.size(), tiles_);
+      std::size_t bytes = 0;
+      for (int tile = first; tile < last; ++tile) bytes += TilePoints::bytes(counts[tile]);
+      if (bytes == 0) continue;
+      parcels.push_back({rank, comm::Buffer(bytes)});
+      std::byte* at = parcels.back().message.data();
+      for (int tile = first; tile < last; ++tile) {
+        if (counts[tile] == 0) continue;
+        next[tile] = TilePoints::put_head(at, tile, counts[tile]);
+        at += TilePoints::bytes(counts[tile]);
+      }
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      std::byte*& to = next[static_cast<std::size_t>(tile_of[i])];
+      std::memcpy(to, &points[i], sizeof points[i]);
+      to += sizeof points[i];
+    }
+    return parcels;
+  }
+
   int rank_of(int tile) const { return rank_of_tile(tile, communicator_.size(), tiles_); }
 
   template <class Take>

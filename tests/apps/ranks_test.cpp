@@ -106,11 +106,11 @@ TEST(Ranks, CommandsWithoutThemSaySo) {
   const Folder folder;
   folder.write("p.xyz", "0 0\n1 0\n0 1\n");
   const std::string note = "each of the 2 processes has done all of this";
-  const Ran ran = run(mpirun(2) + "delray triangulate p.xyz -o m.ply", folder.path());
+  const Ran ran = run(mpirun(2) + "delray info p.xyz", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_EQ(count(ran.err, note), 1U) << ran.err;
   for (const std::string& alone : {std::string(), mpirun(1)}) {
-    const Ran one = run(alone + "delray triangulate p.xyz -o m.ply", folder.path());
+    const Ran one = run(alone + "delray info p.xyz", folder.path());
     EXPECT_EQ(count(one.err, "processes"), 0U) << one.err;
   }
   // Each may have a file of its own: none fails in silence.

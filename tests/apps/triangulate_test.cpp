@@ -262,5 +262,57 @@ TEST(InfoCommand, CountsPointsMeshesAndScenes) {
   EXPECT_EQ(scene["instances"], generated["instances"]);
 }
 
+json result_of(const std::string& command, const Folder& folder) {
+  const Ran ran = run(command, folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << command << ": " << ran.err;
+  return ran.exit_code == 0 ? json::parse(ran.out) : json();
+}
+
+TEST(TriangulateCommand, RanksAndTilesGiveTheMeshOfOne) {
+  const Folder folder;
+  ASSERT_EQ(run("delray generate points cluster -n 3000 --dim 3 --seed 4 -o p.ply", folder.path())
+                .exit_code,
+            0);
+  const std::string triangulate = "delray triangulate p.ply -o m.vtu --stats - ";
+  for (const std::string& dim : {std::string("--dim 2 "), std::string("--dim 3 ")}) {
+    const json alone = result_of(triangulate + dim, folder);
+    for (const std::string& how : {std::string("--tiles 7"), std::string("--ranks 3 --threads 1"),
+                                   std::string("--ranks 2 --tiles 5 --threads 2")}) {
+      const json shared = result_of(triangulate + dim + how, folder);
+      EXPECT_EQ(shared["result"], alone["result"]) << dim << how;
+      EXPECT_EQ(shared["input"], alone["input"]) << dim << how;
+      std::uint64_t points = 0;
+      for (const json& tile : shared["tiles"]) points += tile["points"].get<std::uint64_t>();
+      EXPECT_EQ(points, 3000U) << dim << how;
+      EXPECT_EQ(
+          run("delray verify m.vtu --points p.ply --canonical " + dim, folder.path()).exit_code, 0)
+          << dim << how;
+    }
+    const json processes = result_of(mpirun(2) + triangulate + dim, folder);
+    EXPECT_EQ(processes["result"], alone["result"]) << dim;
+    EXPECT_EQ(processes["options"]["ranks"], 2);
+    EXPECT_EQ(processes["tiles"].size(), 2U);
+  }
+}
+
+TEST(TriangulateCommand, RefusesWhatTilesCannotDo) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0 1\n1 0 2\n0 1 3\n");
+  for (const char* more : {"--tiles 2 --makers -o m.vtu", "--ranks 2 --max-error 1 -o m.ply",
+                           "--tiles 0 -o m.ply", "--timeout 5 -o m.ply"}) {
+    EXPECT_EQ(run(std::string("delray triangulate p.xyz ") + more, folder.path()).exit_code, 2)
+        << more;
+  }
+  // A line has no simplices, however many tiles it is cut into.
+  folder.write("line.xyz", "0 0\n1 1\n2 2\n3 3\n4 4\n");
+  const Ran line =
+      run("delray triangulate line.xyz -o m.ply --ranks 3 --tiles 4 --stats -", folder.path());
+  ASSERT_EQ(line.exit_code, 0) << line.err;
+  EXPECT_EQ(json::parse(line.out)["result"]["simplices"], 0);
+  EXPECT_NE(line.err.find("no simplices"), std::string::npos) << line.err;
+  // What one rank finds wrong ends all.
+  EXPECT_EQ(run(mpirun(2) + "delray triangulate none.xyz -o m.ply", folder.path()).exit_code, 3);
+}
+
 }  // namespace
 }  // namespace delray::tests

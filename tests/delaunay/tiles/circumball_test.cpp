@@ -52,6 +52,31 @@ TEST(Circumball, NeverMissesAPointOfTheBall) {
   }
 }
 
+// A ball within a box holds no point outside, exactly.
+TEST(Circumball, IsWithinBoxesThatHoldAllOfIt) {
+  std::mt19937_64 random(2);
+  int within = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double away = (i % 3) * 1000;
+    const auto c = random_corners<2>(random, 1, away, 1);
+    const Circumball<2> ball(c);
+    const double side = std::pow(2, static_cast<int>(random() % 8) - 3);
+    const geometry::Box<glm::dvec2> box{glm::dvec2(away - side), glm::dvec2(away + side)};
+    if (!ball.is_within(box)) continue;
+    ++within;
+    const glm::dvec2 p = random_corners<2>(random, 2 * side, away, 1)[0];
+    if (glm::any(glm::lessThan(p, box.low)) || glm::any(glm::greaterThan(p, box.high))) {
+      ASSERT_LT(incircle(c[0], c[1], c[2], p) * orient2d(c[0], c[1], c[2]), 0) << i;
+    }
+  }
+  EXPECT_GT(within, 1000);
+  const Circumball<2> disc({glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(-1, 0)});
+  EXPECT_TRUE(disc.is_within({{-1.001, -1.001}, {1.001, 1.001}}));
+  EXPECT_FALSE(disc.is_within({{-0.999, -1.001}, {1.001, 1.001}}));
+  const Circumball<2> line({glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(3, 3)});
+  EXPECT_FALSE(line.is_within({glm::dvec2(-1e300), glm::dvec2(1e300)}));
+}
+
 TEST(Circumball, LeavesOutBoxesThatAreClearlyAway) {
   const Circumball<2> disc({glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(-1, 0)});
   EXPECT_TRUE(disc.touches({{0.8, -0.1}, {3, 0.1}}));
