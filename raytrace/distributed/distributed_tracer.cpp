@@ -109,7 +109,6 @@ void DistributedTracer::start(std::uint32_t number) {
     const std::uint32_t index = free_.back();
     free_.pop_back();
     PixelTask& pixel_task = pixel_tasks_[index];
-    pixel_task.integrator = frame_.integrators.take();
     pixel_task.tile = &tile;
     pixel_task.task = task;
     pixel_task.started = false;
@@ -211,9 +210,10 @@ bool DistributedTracer::advance_pixel_tasks() {
     tests += advanced[i].tests;
     busy_ += advanced[i].busy;
     pixel_task.tile->pixels.busy += advanced[i].busy;
+    pixel_task.tile->pixels.rays += advanced[i].rays;
     pixel_task.open = advanced[i].travelling.size();
-    if (pixel_task.integrator->done()) {
-      end_sample(ready[i]);
+    if (advanced[i].done) {
+      end_task(ready[i]);
     } else {
       route_all(std::move(advanced[i].travelling));
     }
@@ -223,11 +223,14 @@ bool DistributedTracer::advance_pixel_tasks() {
   return true;
 }
 
-// Until its sample is done or some rays have to travel.
+// Until it is done or some rays have to travel. It takes an integrator when it begins and gives it
+// back when it is done, so that tasks of which no ray travels have one after the other the same,
+// which is in the caches.
 DistributedTracer::Advanced DistributedTracer::advance(std::uint32_t index) {
   const FlushToZero flush;
   const double start = thread_seconds();
   PixelTask& pixel_task = pixel_tasks_[index];
+  if (pixel_task.integrator == nullptr) pixel_task.integrator = frame_.integrators.take();
   WavefrontIntegrator& integrator = *pixel_task.integrator;
   const HomeScene home{scene_.resident().local(scene_.shader()), frame_.context.shader, kernels_,
                        scene_.elsewhere(), *router_};
@@ -235,31 +238,29 @@ DistributedTracer::Advanced DistributedTracer::advance(std::uint32_t index) {
   address.rank = communicator_.rank();
   address.pixel_task = index;
   Advanced advanced;
-  do {
-    if (pixel_task.started)
+  while (!advanced.done && advanced.travelling.empty()) {
+    if (std::exchange(pixel_task.started, true))
       integrator.advance();
     else
       integrator.start(pixel_task.task);
-    pixel_task.started = true;
-    if (integrator.done()) break;
-    advanced.tests += intersect_at_home(home, address, integrator.batch(), advanced.travelling);
-  } while (advanced.travelling.empty());
+    if (!integrator.done()) {
+      advanced.tests += intersect_at_home(home, address, integrator.batch(), advanced.travelling);
+      continue;
+    }
+    add_samples(frame_, integrator, pixel_task.task, pixel_task.tile->pixels);
+    advanced.rays += integrator.rays();
+    pixel_task.started = false;
+    advanced.done = ++pixel_task.task.first_sample == last_sample_;
+  }
+  if (advanced.done) frame_.integrators.give(std::move(pixel_task.integrator));
   advanced.busy = thread_seconds() - start;
   return advanced;
 }
 
-void DistributedTracer::end_sample(std::uint32_t index) {
-  PixelTask& pixel_task = pixel_tasks_[index];
-  add_samples(frame_, *pixel_task.integrator, pixel_task.task, pixel_task.tile->pixels);
-  pixel_task.started = false;
-  if (++pixel_task.task.first_sample < last_sample_) {
-    ready_.push_back(index);
-    return;
-  }
-  frame_.integrators.give(std::move(pixel_task.integrator));
+void DistributedTracer::end_task(std::uint32_t index) {
   free_.push_back(index);
   --in_flight_;
-  Tile* const tile = std::exchange(pixel_task.tile, nullptr);
+  Tile* const tile = std::exchange(pixel_tasks_[index].tile, nullptr);
   if (--tile->pixel_tasks > 0) return;
   done_.push_back(std::move(tile->pixels));
   std::erase_if(open_tiles_, [tile](const auto& open) { return open.get() == tile; });

@@ -46,15 +46,17 @@ class DistributedTracer {
   };
   // A task of a tile, sample after sample.
   struct PixelTask {
-    std::unique_ptr<WavefrontIntegrator> integrator;
+    std::unique_ptr<WavefrontIntegrator> integrator;  // from its beginning to its end
     Tile* tile = nullptr;
     Task task;
     std::size_t open = 0;  // rays that are not answered yet
-    bool started = false;
+    bool started = false;  // its present sample
   };
-  // What became of a pixel task until it had to wait.
+  // What became of a pixel task until it was done or had to wait.
   struct Advanced {
+    bool done = false;
     RayQueue travelling;
+    RayCounts rays;
     std::uint64_t tests = 0;
     double busy = 0.0;
   };
@@ -72,7 +74,7 @@ class DistributedTracer {
   void receive(const comm::Envelope& envelope);
   bool advance_pixel_tasks();
   Advanced advance(std::uint32_t pixel_task);
-  void end_sample(std::uint32_t pixel_task);
+  void end_task(std::uint32_t pixel_task);
   bool intersect_waiting();
   void intersect(ClusterBatch& batch);
   void send_all(bool idle);

@@ -136,7 +136,7 @@ void finish_writes() {}
 }  // namespace
 
 void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
-                 TilePixels& pixels) {
+                 const TilePixels& pixels) {
   const float weight = 1.0F / static_cast<float>(samples_of(frame.options));
   const bool first = task.first_sample == frame.options.part.first_sample;
   const Rect& tile = pixels.rect;
@@ -157,7 +157,6 @@ void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator,
     }
   }
   if (past_caches) finish_writes();
-  pixels.rays += integrator.rays();
 }
 
 TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
@@ -172,6 +171,7 @@ TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
         intersect(*frame.tracer, frame.context.shader, integrator.batch());
       }
       add_samples(frame, integrator, task, pixels);
+      pixels.rays += integrator.rays();
     }
   }
   pixels.busy = thread_seconds() - start;

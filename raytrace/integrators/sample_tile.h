@@ -36,10 +36,10 @@ std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile,
 // How many samples a task gets, one after the other.
 int samples_of(const RenderOptions& options);
 
-// The samples of an integrator that is done. Samples of a pixel have to be added in ascending
-// order.
+// Adds what an integrator that is done has found to the pixels, but not its rays: tasks of a tile
+// may do so at the same time. Samples of a pixel have to be added in ascending order.
 void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator, const Task& task,
-                 TilePixels& pixels);
+                 const TilePixels& pixels);
 
 // All samples, on the calling thread. `integrator` is of frame.integrators and at rest.
 TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
