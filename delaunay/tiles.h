@@ -2,7 +2,8 @@
 //
 // Space is cut into tiles of about as many points. Each tile triangulates its points and those of
 // other tiles that may share a simplex with them, its halo; then the star of every one of its
-// points is as in the whole triangulation (Funke and Sanders 2017; Caraffa et al. 2019).
+// points, the simplices around it, is as in the whole triangulation (Funke and Sanders 2017;
+// Caraffa et al. 2019).
 #pragma once
 
 #include <cstdint>

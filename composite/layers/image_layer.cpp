@@ -1,8 +1,9 @@
 // Merges, replaces and prunes pixels of an image by either operator: the nearest by depth, or
 // blending in front or behind. One function for pixels that all travel, one for those of a mask.
 //
-// Degenerate: of equal depths the lower rank wins; pruning keeps what is nearer than what arrives,
-// or lies behind something that can be seen through.
+// Degenerate: of equal depths the lower rank wins, which has the lower primitive numbers where
+// ranks have ascending primitives (sort-last); pruning keeps what is nearer than what arrives, or
+// lies behind something that can be seen through.
 #include "composite/image_layer.h"
 
 #include <algorithm>
