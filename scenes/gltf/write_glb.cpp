@@ -15,11 +15,14 @@
 #include "geometry/box.h"
 #include "image/io.h"
 #include "scenes/gltf/gltf_extras.h"
+#include "scenes/gltf/write_material.h"
 
 namespace delray::scenes {
 namespace {
 
 using internal::Json;
+using internal::json_of;
+using internal::power_of_two_above;
 
 constexpr std::uint64_t kLargestFile = 0xFFFFFFFFU;  // sizes in the header have 32 bits
 enum : int { kFloat = 5126, kUnsigned = 5125, kVertexBuffer = 34962, kIndexBuffer = 34963 };
@@ -38,14 +41,8 @@ std::uint64_t least_size(const Scene& scene) {
   return size;
 }
 
-// The least power of two that is not less: dividing by it keeps all bits of a colour.
-float power_of_two_above(float x) { return std::exp2(std::ceil(std::log2(x))); }
-
 // glTF is y up: z becomes y, y becomes -z.
 glm::vec3 upright(const glm::vec3& v, bool z_up) { return z_up ? glm::vec3(v.x, v.z, -v.y) : v; }
-
-Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-Json json_of(const glm::vec4& v) { return {v.x, v.y, v.z, v.w}; }
 
 // The document while it grows: JSON and, at 4-byte boundaries, the binary chunk.
 class Writer {
@@ -57,7 +54,9 @@ class Writer {
 
   std::string write() {
     add_textures();
-    for (const Material& material : scene_.materials) add_material(material);
+    for (const Material& material : scene_.materials) {
+      document_["materials"].push_back(internal::write_material(material, scene_, document_));
+    }
     for (const Mesh& mesh : scene_.meshes) add_mesh(mesh);
     for (const Instance& instance : scene_.instances) add_instance(instance);
     for (const Light& light : scene_.lights) add_light(light);
@@ -138,99 +137,6 @@ class Writer {
     }
   }
 
-  void use_extension(const char* name) {
-    Json& used = document_["extensionsUsed"];
-    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
-  }
-
-  void refer(Json& json, const char* key, std::uint32_t texture) const {
-    if (texture == kNone) return;
-    json[key] = {{"index", texture}};
-    if (texture < scene_.textures.size() && scene_.textures[texture].set != 0)
-      json[key]["texCoord"] = 1;
-  }
-
-  void add_material(const Material& material) {
-    Json base = {{"baseColorFactor", json_of(material.base_colour)},
-                 {"metallicFactor", material.metallic},
-                 {"roughnessFactor", material.roughness}};
-    refer(base, "baseColorTexture", material.base_colour_texture);
-    refer(base, "metallicRoughnessTexture", material.metallic_roughness_texture);
-    Json json = {{"pbrMetallicRoughness", std::move(base)}, {"doubleSided", material.double_sided}};
-    if (!material.name.empty()) json["name"] = material.name;
-    refer(json, "normalTexture", material.normal_texture);
-    if (material.normal_texture != kNone) json["normalTexture"]["scale"] = material.normal_scale;
-    refer(json, "emissiveTexture", material.emission_texture);
-    add_emission(material, json);
-    if (material.alpha == Material::Alpha::blend) json["alphaMode"] = "BLEND";
-    if (material.alpha == Material::Alpha::mask) {
-      json["alphaMode"] = "MASK";
-      json["alphaCutoff"] = material.alpha_cutoff;
-    }
-    add_transmission(material, json);
-    add_reflection(material, json);
-    if (material.unlit) extend(json, "KHR_materials_unlit", Json::object());
-    document_["materials"].push_back(std::move(json));
-  }
-
-  void extend(Json& json, const char* name, Json&& extension) {
-    use_extension(name);
-    json["extensions"][name] = std::move(extension);
-  }
-
-  void add_transmission(const Material& material, Json& json) {
-    if (!(material.transmission > 0)) return;
-    Json transmission = {{"transmissionFactor", material.transmission}};
-    refer(transmission, "transmissionTexture", material.transmission_texture);
-    extend(json, "KHR_materials_transmission", std::move(transmission));
-    if (!(material.thickness > 0)) return;
-    Json volume = {{"thicknessFactor", material.thickness}};
-    if (std::isfinite(material.attenuation_distance)) {
-      volume["attenuationDistance"] = material.attenuation_distance;
-      volume["attenuationColor"] = json_of(material.attenuation_colour);
-    }
-    extend(json, "KHR_materials_volume", std::move(volume));
-  }
-
-  // Reflection besides the colours of the base.
-  void add_reflection(const Material& material, Json& json) {
-    const Material plain;
-    if (material.ior != plain.ior) extend(json, "KHR_materials_ior", {{"ior", material.ior}});
-    if (material.specular != plain.specular || material.specular_colour != plain.specular_colour ||
-        material.specular_texture != kNone || material.specular_colour_texture != kNone) {
-      Json specular = {{"specularFactor", material.specular},
-                       {"specularColorFactor", json_of(material.specular_colour)}};
-      refer(specular, "specularTexture", material.specular_texture);
-      refer(specular, "specularColorTexture", material.specular_colour_texture);
-      extend(json, "KHR_materials_specular", std::move(specular));
-    }
-    if (material.clearcoat > 0) {
-      Json coat = {{"clearcoatFactor", material.clearcoat},
-                   {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
-      refer(coat, "clearcoatTexture", material.clearcoat_texture);
-      refer(coat, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture);
-      extend(json, "KHR_materials_clearcoat", std::move(coat));
-    }
-    if (material.sheen_colour != plain.sheen_colour) {
-      Json sheen = {{"sheenColorFactor", json_of(material.sheen_colour)},
-                    {"sheenRoughnessFactor", material.sheen_roughness}};
-      refer(sheen, "sheenColorTexture", material.sheen_colour_texture);
-      refer(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture);
-      extend(json, "KHR_materials_sheen", std::move(sheen));
-    }
-  }
-
-  // The factor may be at most 1; what is brighter needs a strength beside it.
-  void add_emission(const Material& material, Json& json) {
-    const glm::vec3& emission = material.emission;
-    const float brightest = std::max({emission.x, emission.y, emission.z});
-    if (!(brightest > 0)) return;
-    const float strength = brightest > 1 ? power_of_two_above(brightest) : 1.0F;
-    json["emissiveFactor"] = json_of(emission / strength);
-    if (strength == 1.0F) return;
-    extend(json, "KHR_materials_emissive_strength", {{"emissiveStrength", strength}});
-  }
-
   void add_node(Json&& node, const glm::mat4x3& transform) {
     if (transform != glm::mat4x3(1.0F)) {
       Json& matrix = node["matrix"];
@@ -259,7 +165,7 @@ class Writer {
 
   void add_light(const Light& light) {
     if (light.kind == Light::Kind::area) return;  // among the extras
-    use_extension("KHR_lights_punctual");
+    internal::use_extension("KHR_lights_punctual", document_);
     const bool is_point = light.kind == Light::Kind::point;
     const float brightest = std::max({light.colour.x, light.colour.y, light.colour.z});
     const float intensity = brightest > 0 ? power_of_two_above(brightest) : 1.0F;
