@@ -357,9 +357,10 @@ Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
                      const std::function<void(Picture&&)>& preview) {
   FrameRenderer renderer(communicator, prepared, request, progress);
   renderer.set_preview(preview);
-  if (request.frames > 1) renderer.render(communicator, prepared.camera);
   Frames frames;
+  if (request.frames > 1) frames.picture = renderer.render(communicator, prepared.camera).picture;
   for (int i = 0; i < request.frames; ++i) {
+    renderer.recycle(std::move(frames.picture));
     barrier(communicator);
     Stopwatch watch;
     Frame frame = renderer.render(communicator, prepared.camera);

@@ -76,6 +76,11 @@ class FrameRenderer {
   void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
   // Collective.
   Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
+  // Gives the memory of a picture, as render returned it, to the next frame where that takes less
+  // time so.
+  void recycle(Picture&& picture) {
+    if (raster_) raster_->recycle(std::move(picture));
+  }
   // Renders a frame in steps (raster::Renderer::begin), where engine and strategy have them.
   bool has_steps(int ranks) const;
   std::unique_ptr<raster::FrameInSteps> begin(comm::Communicator& communicator,

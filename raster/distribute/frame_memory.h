@@ -8,6 +8,7 @@
 
 #include "raster/distribute/group_traffic.h"
 #include "raster/distribute/hybrid_shares.h"
+#include "raster/distribute/primitive_shares.h"
 #include "raster/distribute/scene_cells.h"
 #include "raster/distribute/screen_partition.h"
 #include "raster/distribute/transformed_clusters.h"
@@ -35,8 +36,9 @@ struct FrameMemory {
   ScreenPartition screen;
   SortedFirst sorted_first;
   SortedMiddle sorted_middle;
-  SharedOut shared_out;  // of hybrid
-  SceneCells cells;      // of sort-last, blended in order
+  SharedOut shared_out;              // of hybrid
+  SceneCells cells;                  // of sort-last, blended in order
+  PrimitiveShares primitive_shares;  // of sort-last otherwise
 };
 
 }  // namespace delray::raster

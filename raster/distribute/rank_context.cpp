@@ -9,6 +9,7 @@
 
 #include "comm/collectives.h"
 #include "raster/distribute/gather_regions.h"
+#include "raster/distribute/primitive_shares.h"
 #include "raster/pipeline/samples.h"
 
 namespace delray::raster {
@@ -27,12 +28,9 @@ PreparedScene::PreparedScene(const scenes::Scene& source,
 
 std::pair<std::uint64_t, std::uint64_t> RankContext::own_primitives(int holders) const {
   const std::uint64_t all = prepared.first_primitives.back();
-  const auto n = static_cast<std::uint64_t>(holders);
-  const auto k = static_cast<std::uint64_t>(number());
-  if (k >= n) return {all, all};
-  // The first `all % n` ranks have one more.
-  const auto begin = [&](std::uint64_t i) { return all / n * i + std::min(i, all % n); };
-  return {begin(k), begin(k + 1)};
+  const int k = number();
+  if (k >= holders) return {all, all};
+  return {begin_of_equal_share(all, holders, k), begin_of_equal_share(all, holders, k + 1)};
 }
 
 RegionDrawing RankContext::begin(const DrawList& list, std::span<const geometry::Rect> regions) {

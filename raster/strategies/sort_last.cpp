@@ -1,6 +1,6 @@
-// Sort-last: every rank draws an equal, ascending part of the primitives over the whole frame, and
-// a compositing scheme merges the images. On equal depths the lower rank wins, which has the lower
-// primitive numbers.
+// Sort-last: every rank draws an ascending part of the primitives over the whole frame, and a
+// compositing scheme merges the images. On equal depths the lower rank wins, which has the lower
+// primitive numbers. Parts are of equal size in the first frame and of about equal work after it.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -249,7 +249,11 @@ class Steps final : public FrameSteps {
       order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.viewpoint);
       return cells.pieces;
     }
-    const auto [begin, end] = rank_.own_primitives();
+    // Frames in steps overlap, and none knows what the one before took.
+    const auto [begin, end] = rank_.in_steps
+                                  ? rank_.own_primitives()
+                                  : rank_.memory.primitive_shares.next(
+                                        rank_.communicator, rank_.prepared.first_primitives.back());
     return pieces_of(rank_.prepared.scene, rank_.prepared.first_primitives, begin, end);
   }
 
@@ -272,14 +276,31 @@ class Steps final : public FrameSteps {
   std::vector<int> order_;
 };
 
+// What the rank drew: counted, so that frames share out the same primitives in each run, or
+// measured.
+double work_of(const RankContext& rank) {
+  constexpr double kPrimitivePrice = 0.3;  // of a pixel that is shaded
+  if (rank.options.costs == CostSource::model) {
+    return kPrimitivePrice * static_cast<double>(rank.counts.triangles.in) +
+           static_cast<double>(rank.counts.shaded);
+  }
+  const Phases& phases = rank.counts.phases;
+  return phases.transform + phases.bin + phases.rasterize + phases.shade;
+}
+
 template <class Colour>
 Picture render(RankContext& rank) {
   rank.communicator.mark(comm::Phase::rasterize, 0);
   Steps<Colour> steps(rank);
   steps.transform();
   steps.hide_behind_others();
-  if (steps.has_tiles()) return steps.rasterize_and_compose();
+  if (steps.has_tiles()) {
+    Picture picture = steps.rasterize_and_compose();
+    rank.memory.primitive_shares.measure(work_of(rank));
+    return picture;
+  }
   steps.rasterize();
+  rank.memory.primitive_shares.measure(work_of(rank));
   return steps.compose();
 }
 

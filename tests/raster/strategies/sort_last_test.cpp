@@ -174,8 +174,8 @@ TEST(SortLast, BlendsByCellMoreRanksThanTriangles) {
             1);
 }
 
-// Two walls, one for each rank: the farther one is hidden, and all but its rim is not shaded.
-TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
+// A square wall from (-1, -1, 0) to (1, 1, 0), once, looked at from z = 3.
+scenes::Scene wall() {
   constexpr std::uint32_t kSide = 65;  // vertices
   scenes::Scene scene = scenes::generate("gen:terrain:2000");
   scenes::Mesh& mesh = scene.meshes[0];
@@ -193,14 +193,33 @@ TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
       mesh.triangles.emplace_back(i + 1, i + kSide + 1, i + kSide);
     }
   }
-  glm::mat4x3 behind(1.0F);
-  behind[3].z = -0.1F;
-  scenes::Camera camera = scene.cameras[0];
+  return scene;
+}
+
+scenes::Camera camera_before_wall() {
+  scenes::Camera camera = scenes::generate("gen:terrain:2000").cameras[0];
   camera.eye = {0, 0, 3};
   camera.at = {0, 0, 0};
   camera.up = {0, 1, 0};
   camera.vertical_fov = 40;
   camera.near = 0.01F;
+  return camera;
+}
+
+scenes::Scene scene_with_all_in_one_half() {
+  scenes::Scene scene = wall();
+  glm::mat4x3 behind_the_camera(1.0F);
+  behind_the_camera[3].z = 10;
+  scene.instances = {{0, glm::mat4x3(1.0F)}, {0, behind_the_camera}};
+  return scene;
+}
+
+// Two walls, one for each rank: the farther one is hidden, and all but its rim is not shaded.
+TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
+  scenes::Scene scene = wall();
+  glm::mat4x3 behind(1.0F);
+  behind[3].z = -0.1F;
+  const scenes::Camera camera = camera_before_wall();
   RenderOptions options;
   options.width = options.height = 256;
   for (const bool front_first : {true, false}) {
@@ -219,6 +238,44 @@ TEST(SortLast, ShadesLittleOfWhatAnotherRankHides) {
     EXPECT_TRUE(same_bytes(pictures[0], pictures[1]));
     EXPECT_GT(statistics[0].shaded, 30000U);
     EXPECT_LT(statistics[1].shaded, statistics[0].shaded * 6 / 5) << front_first;
+  }
+}
+
+// Of a scene with a wall of many triangles before the camera and as many behind its back the first
+// rank has all to shade in the first frame, and half in later ones.
+TEST(SortLast, SharesOutWorkByTheFramesBefore) {
+  const scenes::Scene scene = scene_with_all_in_one_half();
+  const scenes::Camera camera = camera_before_wall();
+  RenderOptions options;
+  options.width = options.height = 256;
+  Picture expected;
+  comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+    expected = render(communicator, scene, camera, options).picture;
+  });
+  for (const char* scheme : {"tiles", "binary-swap"}) {
+    options.scheme = scheme;
+    for (const int ranks : {2, 3}) {
+      comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+        Renderer renderer(scene);
+        for (int frame = 0; frame < 12; ++frame) {
+          Result result = renderer.render(communicator, camera, options);
+          if (communicator.rank() != 0) continue;
+          EXPECT_TRUE(same_bytes(result.picture, expected)) << scheme << ranks;
+          std::uint64_t most = 0, all = 0;
+          for (const RankStatistics& rank : result.statistics.ranks) {
+            most = std::max(most, rank.shaded);
+            all += rank.shaded;
+          }
+          const auto share = static_cast<double>(most) * ranks / static_cast<double>(all);
+          if (frame == 0) {
+            EXPECT_GT(share, 1.4) << scheme << ranks;
+          } else if (frame == 11) {
+            EXPECT_LT(share, 1.25) << scheme << ranks;
+          }
+          renderer.recycle(std::move(result.picture));
+        }
+      });
+    }
   }
 }
 

@@ -1,0 +1,100 @@
+// Intervals of primitives that follow the work that ranks had with them.
+#include "raster/distribute/primitive_shares.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "comm/collectives.h"
+#include "comm/threads.h"
+
+namespace delray::raster {
+namespace {
+
+using Intervals = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
+
+// The intervals of all ranks after so many frames, where primitive i is work(i). At the frame
+// `forgets` the last rank begins anew.
+Intervals after(int frames, int ranks, std::uint64_t primitives,
+                const std::function<double(std::uint64_t)>& work, int forgets = -1) {
+  Intervals intervals(static_cast<std::size_t>(ranks));
+  comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+    std::optional<PrimitiveShares> shares(std::in_place);
+    auto& mine = intervals[static_cast<std::size_t>(communicator.rank())];
+    for (int frame = 0; frame < frames; ++frame) {
+      if (frame == forgets && communicator.rank() == ranks - 1) shares.emplace();
+      mine = shares->next(communicator, primitives);
+      double sum = 0;
+      for (std::uint64_t i = mine.first; i < mine.second; ++i) sum += work(i);
+      shares->measure(sum);
+    }
+  });
+  return intervals;
+}
+
+void expect_cover(const Intervals& intervals, std::uint64_t primitives) {
+  std::uint64_t end = 0;
+  for (const auto& interval : intervals) {
+    EXPECT_EQ(interval.first, end);
+    EXPECT_LE(interval.first, interval.second);
+    end = interval.second;
+  }
+  EXPECT_EQ(end, primitives);
+}
+
+TEST(PrimitiveShares, AreEqualInTheFirstFrame) {
+  for (const int ranks : {1, 2, 3, 9}) {
+    for (const std::uint64_t primitives : {0U, 1U, 5U, 1000U}) {
+      const Intervals intervals = after(1, ranks, primitives, [](std::uint64_t) { return 1.0; });
+      expect_cover(intervals, primitives);
+      for (const auto& [begin, end] : intervals)
+        EXPECT_LE(end - begin, primitives / static_cast<std::uint64_t>(ranks) + 1);
+    }
+  }
+}
+
+TEST(PrimitiveShares, ComeToHaveEqualWork) {
+  constexpr std::uint64_t kPrimitives = 20000;
+  // All work but a little lies in a twentieth of the primitives, on one side of the middle.
+  const auto work = [](std::uint64_t i) { return i >= 8000 && i < 9000 ? 100.0 : 0.1; };
+  for (const int ranks : {2, 3, 5}) {
+    const Intervals intervals = after(40, ranks, kPrimitives, work);
+    expect_cover(intervals, kPrimitives);
+    double most = 0, all = 0;
+    for (const auto& [begin, end] : intervals) {
+      double sum = 0;
+      for (std::uint64_t i = begin; i < end; ++i) sum += work(i);
+      most = std::max(most, sum);
+      all += sum;
+    }
+    EXPECT_LT(most * ranks, 1.15 * all) << ranks;
+  }
+}
+
+TEST(PrimitiveShares, StayWhereWorkIsEqualOrNone) {
+  for (const double work : {0.0, 1.0}) {
+    const Intervals intervals = after(5, 4, 1000, [&](std::uint64_t) { return work; });
+    expect_cover(intervals, 1000);
+    for (const auto& [begin, end] : intervals) EXPECT_EQ(end - begin, 250U);
+  }
+}
+
+TEST(PrimitiveShares, BeginAnewWhereARankWasElsewhere) {
+  const auto work = [](std::uint64_t i) { return i < 100 ? 1.0 : 0.0; };
+  const Intervals kept = after(6, 2, 1000, work);
+  EXPECT_LT(kept[0].second, 250U);
+  const Intervals anew = after(6, 2, 1000, work, 5);
+  expect_cover(anew, 1000);
+  EXPECT_EQ(anew[0].second, 500U);
+}
+
+TEST(PrimitiveShares, CoverFewPrimitivesForManyRanks) {
+  const auto work = [](std::uint64_t i) { return i == 0 ? 10.0 : 1.0; };
+  expect_cover(after(10, 7, 3, work), 3);
+  expect_cover(after(10, 7, 0, work), 0);
+}
+
+}  // namespace
+}  // namespace delray::raster
