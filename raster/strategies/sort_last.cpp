@@ -262,8 +262,11 @@ class Steps final : public FrameSteps {
                            rank_.options.height);
     part = timed(rank_.communicator, rank_.counts.phases.gather,
                  [&] { return composite::gather(rank_.communicator, std::move(part), 0); });
-    if (rank_.number() != 0) return image::BasicImage<Colour>();
-    return composite::take_image<Colour>(std::move(part));
+    image::BasicImage<Colour> image = composite::take_image<Colour>(std::move(part));
+    if (rank_.number() == 0) return image;
+    // For the next frame. In steps the scratch memory is another frame's by now.
+    if (!rank_.in_steps) rank_.scratch.spare = std::move(image);
+    return image::BasicImage<Colour>();
   }
 
   RankContext& rank_;
