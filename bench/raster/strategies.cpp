@@ -36,6 +36,7 @@ struct Request {
   std::string strategy;  // empty: all
   int turns = 5, frames = 4;
   raster::Lighting lighting = raster::Lighting::phong;
+  raster::Travel travel = raster::Travel::geometry;
   bool phases = false;
 };
 
@@ -68,12 +69,13 @@ struct Times {
 class Configuration {
  public:
   Configuration(const View& view, std::string strategy, int ranks, int threads,
-                raster::Lighting lighting)
+                const Request& request)
       : view_(view), strategy_(std::move(strategy)), ranks_(ranks), threads_(threads) {
     options_.width = 1920;
     options_.height = 1080;
     options_.strategy = strategy_;
-    options_.lighting = lighting;
+    options_.lighting = request.lighting;
+    options_.travel = request.travel;
     ranks_memory_.resize(static_cast<std::size_t>(ranks));
   }
 
@@ -157,7 +159,7 @@ void compare(const std::string& name, std::size_t kind, const Request& request) 
   std::vector<std::unique_ptr<Configuration>> configurations;
   const auto add = [&](const char* strategy, int ranks, int threads) -> Configuration& {
     return *configurations.emplace_back(
-        std::make_unique<Configuration>(view, strategy, ranks, threads, request.lighting));
+        std::make_unique<Configuration>(view, strategy, ranks, threads, request));
   };
   const Configuration& alone = add("sort-last", 1, 2);
   struct Row {
@@ -203,7 +205,7 @@ void measure_mpi(comm::Communicator& world, const Request& request) {
     const View view = load(name);
     for (const Bars& bars : kBars) {
       if (!request.strategy.empty() && request.strategy != bars.strategy) continue;
-      Configuration configuration(view, bars.strategy, world.size(), 1, request.lighting);
+      Configuration configuration(view, bars.strategy, world.size(), 1, request);
       for (int turn = 0; turn < request.turns; ++turn)
         arena.execute([&] { configuration.run_rank(world, request.frames); });
       if (world.rank() != 0) continue;
@@ -216,8 +218,9 @@ void measure_mpi(comm::Communicator& world, const Request& request) {
 
 }  // namespace
 
-// [--turns N] [--frames N] [--gouraud] [--phases] [--strategy NAME] [SCENE ...]: scenes as delray
-// render takes them. Bars are by kind: terrain, city, any other.
+// [--turns N] [--frames N] [--gouraud] [--numbers] [--phases] [--strategy NAME] [SCENE ...]: with
+// --numbers primitives travel as their numbers; scenes as delray render takes them. Bars are by
+// kind: terrain, city, any other.
 int main(int argc, char** argv) {
   Request request;
   for (int i = 1; i < argc; ++i) {
@@ -231,6 +234,8 @@ int main(int argc, char** argv) {
       request.strategy = argv[++i];
     } else if (is("--phases")) {
       request.phases = true;
+    } else if (is("--numbers")) {
+      request.travel = raster::Travel::numbers;
     } else if (is("--gouraud")) {
       request.lighting = raster::Lighting::gouraud;
     } else {
