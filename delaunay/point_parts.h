@@ -1,0 +1,25 @@
+// Points in parts that any thread may read in any order: inputs that memory need not hold.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "delaunay/points.h"
+
+namespace delray::delaunay {
+
+// Parts are byte ranges of text, chunks of LAZ, runs of rows of binary files. Rows are those of
+// read_points() over the whole input: the points of part i follow those of part i - 1. How many
+// points a part has is known once it has been read, as filters and empty lines leave some out.
+class PointParts {
+ public:
+  virtual ~PointParts() = default;
+  virtual std::size_t parts() const = 0;
+  // At least as many as read() gives: a bound for memory, not far off. REQUIRES: part < parts().
+  virtual std::uint64_t most_rows(std::size_t part) const = 0;
+  // Replaces `points` by those of the part, in the order of the input. Any thread, again and again,
+  // with equal results. Throws files::FileError, naming file and place. REQUIRES: part < parts().
+  virtual void read(std::size_t part, PointCloud& points) const = 0;
+};
+
+}  // namespace delray::delaunay
