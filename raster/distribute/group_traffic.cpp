@@ -14,7 +14,6 @@
 #include <cstring>
 
 #include "comm/collectives.h"
-#include "raster/distribute/travel.h"
 
 namespace delray::raster {
 namespace {
@@ -30,13 +29,15 @@ struct Lists {
   static constexpr std::size_t kLists = 3;
 };
 
-comm::Buffer join(const Lists& lists, const comm::Buffer& pieces) {
-  comm::Buffer message(lists.bytes() + pieces.size());
+// `write_pieces(to)` writes so many bytes.
+template <class F>
+comm::Buffer join(const Lists& lists, std::size_t pieces_bytes, F&& write_pieces) {
+  comm::Buffer message(lists.bytes() + pieces_bytes);
   auto* to = reinterpret_cast<std::uint64_t*>(message.data());
   for (const auto& list : {lists.forgotten, lists.parked, lists.resumed}) *to++ = list.size();
   for (const auto& list : {lists.forgotten, lists.parked, lists.resumed})
     to = std::copy(list.begin(), list.end(), to);
-  if (!pieces.empty()) std::memcpy(to, pieces.data(), pieces.size());
+  if (pieces_bytes > 0) write_pieces(reinterpret_cast<std::byte*>(to));
   return message;
 }
 
@@ -48,10 +49,8 @@ Lists lists_in(const comm::Buffer& message) {
           {first + counts[0] + counts[1], counts[2]}};
 }
 
-comm::Buffer pieces_in(const comm::Buffer& message) {
-  const std::size_t begin = lists_in(message).bytes();
-  return comm::Buffer::of(
-      std::span<const std::byte>(message.data() + begin, message.size() - begin));
+std::span<const std::byte> pieces_in(const comm::Buffer& message) {
+  return message.as<std::byte>().subspan(lists_in(message).bytes());
 }
 
 }  // namespace
@@ -107,25 +106,28 @@ void GroupTraffic::keep(RankContext& rank, const comm::Buffer& message) {
   for (const std::uint64_t primitive : lists.parked) held_.at(primitive).needed = false;
   for (const std::uint64_t primitive : lists.resumed) held_.at(primitive).needed = true;
   for (const std::uint64_t primitive : lists.forgotten) held_.erase(primitive);
-  Arrivals arrivals;
+  std::vector<Arrival> arrivals;
   if (travel_ == Travel::numbers) {
     unpack_numbers(pieces_in(message), rank.prepared.scene, rank.prepared.first_primitives,
                    arrivals);
-    for (const Piece& piece : arrivals.pieces)
-      held_[piece.primitive] = {nullptr, nullptr, nullptr, piece};
-    return;
+  } else {
+    unpack_geometry(pieces_in(message), arrivals);
   }
-  unpack_geometry(pieces_in(message), arrivals);
-  for (std::size_t i = 0; i < arrivals.pieces.size(); ++i) {
-    Held held{std::make_unique<scenes::Mesh>(std::move(arrivals.meshes[i])),
-              std::make_unique<glm::mat4x3>(arrivals.transforms[i]),
-              std::make_unique<MeshClusters>(), arrivals.pieces[i]};
-    held.piece.mesh = held.mesh.get();
-    held.piece.transform = held.transform.get();
-    held.piece.clusters = held.clusters.get();
-    const std::uint64_t primitive = held.piece.primitive;
-    held_[primitive] = std::move(held);
+  for (Arrival& arrival : arrivals) {
+    const std::uint64_t primitive = arrival.piece.primitive;
+    held_[primitive] = {std::move(arrival)};
   }
+}
+
+comm::Buffer GroupTraffic::pack(RankContext& rank, const Outgoing& outgoing) const {
+  const Lists lists{outgoing.forgotten, outgoing.parked, outgoing.resumed};
+  if (travel_ == Travel::numbers) {
+    const std::vector<std::uint64_t> numbers = pack_numbers(outgoing.pieces);
+    const std::size_t bytes = numbers.size() * sizeof(numbers[0]);
+    return join(lists, bytes, [&](std::byte* to) { std::memcpy(to, numbers.data(), bytes); });
+  }
+  const GeometryPacker packer(outgoing.pieces, rank.prepared.clusters);
+  return join(lists, packer.bytes(), [&](std::byte* to) { packer.write(to); });
 }
 
 std::vector<Piece> GroupTraffic::finish_frame(RankContext& rank, std::span<const Piece> groups) {
@@ -133,9 +135,7 @@ std::vector<Piece> GroupTraffic::finish_frame(RankContext& rank, std::span<const
   std::vector<comm::Parcel> parcels;
   for (auto& [to, outgoing] : outgoing_) {
     for (const Piece& piece : outgoing.pieces) rank.triangles_travelled += piece.count;
-    parcels.push_back({to, join({outgoing.forgotten, outgoing.parked, outgoing.resumed},
-                                travel_ == Travel::geometry ? pack_geometry(outgoing.pieces)
-                                                            : pack_numbers(outgoing.pieces))});
+    parcels.push_back({to, pack(rank, outgoing)});
   }
   std::sort(parcels.begin(), parcels.end(),
             [](const comm::Parcel& a, const comm::Parcel& b) { return a.rank < b.rank; });
@@ -143,7 +143,7 @@ std::vector<Piece> GroupTraffic::finish_frame(RankContext& rank, std::span<const
     keep(rank, parcel.message);
   std::vector<Piece> pieces = std::move(staying_);
   for (const auto& [primitive, held] : held_)
-    if (held.needed) pieces.push_back(held.piece);
+    if (held.needed) pieces.push_back(held.arrival.piece);
   return pieces;
 }
 

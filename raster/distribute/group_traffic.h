@@ -9,6 +9,7 @@
 
 #include "raster/distribute/agreement.h"
 #include "raster/distribute/rank_context.h"
+#include "raster/distribute/travel.h"
 #include "raster/pipeline/draws.h"
 
 namespace delray::raster {
@@ -45,10 +46,7 @@ class GroupTraffic {
   };
   // A group that came from another rank.
   struct Held {
-    std::unique_ptr<scenes::Mesh> mesh;  // null where numbers travel
-    std::unique_ptr<glm::mat4x3> transform;
-    std::unique_ptr<MeshClusters> clusters;
-    Piece piece;
+    Arrival arrival;
     bool needed = true;  // in this frame
   };
   // The groups that one rank is sent in a frame.
@@ -62,6 +60,7 @@ class GroupTraffic {
   void need(const RankContext& rank, std::span<const Piece> groups, std::size_t group, int owner);
   std::vector<Piece> finish_frame(RankContext& rank, std::span<const Piece> groups);
   void park_or_forget(std::span<const Piece> groups);
+  comm::Buffer pack(RankContext& rank, const Outgoing& outgoing) const;
   void keep(RankContext& rank, const comm::Buffer& message);
 
   Agreement agreement_;

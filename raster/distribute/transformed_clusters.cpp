@@ -178,7 +178,7 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
       mesh.vertices.handedness = header.mirrored != 0 ? -1.0F : 1.0F;
       mesh.vertices.hidden_side = header.hidden_side;
       mesh.clusters.blocks.push_back(std::make_unique<ClusterBlock>());
-      list.draws.push_back({&mesh.mesh, &kIdentity, &mesh.clusters, 0, &mesh.vertices});
+      list.draws.push_back({&mesh.mesh, &kIdentity, &mesh.clusters, &mesh.vertices});
     }
     section.mesh = &meshes.back();
     section.draw = static_cast<std::uint32_t>(list.draws.size()) - 1;

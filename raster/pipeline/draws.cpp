@@ -27,7 +27,8 @@ void append_clusters(const Piece& piece, std::uint32_t draw, DrawList& list) {
           before->first == cluster.first && before->end == place)
         before->end = place_end;
       else
-        list.clusters.push_back({draw, cluster.first, part, place, place_end});
+        list.clusters.push_back({draw, cluster.first, part, place, place_end,
+                                 piece.primitive - piece.first + cluster.first});
       t = last;
     }
   }
@@ -67,7 +68,7 @@ DrawList make_draw_list(std::vector<Piece> pieces, SceneClusters* known) {
       MeshClusters* clusters = piece.clusters;
       if (clusters == nullptr && known != nullptr) clusters = known->of(*piece.mesh);
       if (clusters == nullptr) clusters = &list.own.emplace_back();
-      list.draws.push_back({piece.mesh, piece.transform, clusters, piece.primitive - piece.first});
+      list.draws.push_back({piece.mesh, piece.transform, clusters});
     }
     const std::uint32_t draw = found->second;
     list.draws[draw].clusters->make(*piece.mesh, piece.first, piece.count);

@@ -44,7 +44,6 @@ struct Draw {
   const scenes::Mesh* mesh = nullptr;
   const glm::mat4x3* transform = nullptr;
   MeshClusters* clusters = nullptr;
-  std::uint64_t first_primitive = 0;  // global number of the mesh's triangle 0
   const TransformedVertices* transformed =
       nullptr;  // if they came so: `transform` is identity then
 };
@@ -55,6 +54,7 @@ struct Cluster {
   std::uint32_t first = 0;  // triangle of the mesh at place 0
   std::uint32_t part = 0;   // number of the cluster in its block
   std::uint16_t begin = 0, end = 0;
+  std::uint64_t primitive = 0;  // global number of the triangle at place 0
 };
 
 // Draws and clusters in ascending order of primitives. A triangle's number within the list is
@@ -71,7 +71,7 @@ struct DrawList {
     return cluster_of(number).first + (number & (kClusterTriangles - 1));
   }
   std::uint64_t primitive_of(std::uint32_t number) const {
-    return draws[cluster_of(number).draw].first_primitive + triangle_of(number);
+    return cluster_of(number).primitive + (number & (kClusterTriangles - 1));
   }
   const ClusterBlock& block_of(const Cluster& cluster) const {
     return *draws[cluster.draw].clusters->blocks[cluster.first >> kBlockBits];
