@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "raster/distribute/cluster_messages.h"
 #include "raster/distribute/group_traffic.h"
 #include "raster/distribute/hybrid_shares.h"
 #include "raster/distribute/primitive_shares.h"
 #include "raster/distribute/scene_cells.h"
 #include "raster/distribute/screen_partition.h"
-#include "raster/distribute/transformed_clusters.h"
 
 namespace delray::raster {
 

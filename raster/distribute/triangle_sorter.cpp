@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "raster/distribute/transformed_clusters.h"
+#include "raster/distribute/cluster_messages.h"
 #include "raster/pipeline/cull.h"
 #include "raster/pipeline/samples.h"
 #include "raster/pipeline/set_up.h"
@@ -34,12 +34,34 @@ void TriangleSorter::find_owners(const geometry::Rect& samples) {
   regions_.owners_of(pixels_of(samples, rank_.options.supersampling), owners_);
 }
 
+// The triangle is for owners_. Returns whether this rank is one of them.
+bool TriangleSorter::add_receivers(std::uint32_t place) {
+  bool stays = false, travels = false;
+  for (const int owner : owners_) {
+    if (owner == rank_.number()) {
+      stays = true;
+      continue;
+    }
+    travels = true;
+    std::size_t i = 0;
+    while (i < receivers_used_ && receivers_[i].rank != owner) ++i;
+    if (i == receivers_used_) {
+      if (receivers_used_++ == receivers_.size()) receivers_.emplace_back();
+      receivers_[i].rank = owner;
+      receivers_[i].which.clear();
+    }
+    receivers_[i].which.push_back(static_cast<std::uint8_t>(places_.size()));
+  }
+  if (travels) places_.push_back(static_cast<std::uint8_t>(place));
+  return stays;
+}
+
 // Whether anything is for this rank itself. What others get is in places_ and receivers_.
 bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock& block,
                                     const Cluster& cluster) {
   bool stays = false;
   places_.clear();
-  receivers_.clear();
+  receivers_used_ = 0;
   const bool one_owner = owners_.size() == 1;
   const MeshCluster& mesh_cluster = block.clusters[cluster.part];
   const ScreenVertices& vertices = memory().vertices;
@@ -49,7 +71,7 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
   for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
     const bool alone = vertices.any_outside || boxes.pixels[place] == TriangleBoxes::kAlone;
     if (!alone && boxes.pixels[place] == TriangleBoxes::kCulled) continue;
-    geometry::Rect box = boxes.box(place);
+    geometry::Rect box;
     if (alone) {
       box = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
       const SetUpOutcome outcome =
@@ -59,17 +81,8 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
           });
       if (outcome == SetUpOutcome::culled) continue;
     }
-    if (!one_owner) find_owners(box);
-    bool travels = false;
-    for (const int owner : owners_) {
-      if (owner == rank_.number()) {
-        stays = true;
-        continue;
-      }
-      travels = true;
-      receivers_.emplace_back(owner, static_cast<std::uint8_t>(places_.size()));
-    }
-    if (travels) places_.push_back(static_cast<std::uint8_t>(place));
+    if (!one_owner) find_owners(alone ? box : boxes.box(place));
+    stays |= add_receivers(place);
   }
   return stays;
 }
@@ -77,16 +90,8 @@ bool TriangleSorter::find_receivers(const PreparedDraw& draw, const ClusterBlock
 void TriangleSorter::pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted) {
   if (places_.empty()) return;
   memory().packer.set(drawing_.frame(), draw, number, places_);
-  std::sort(receivers_.begin(), receivers_.end());
-  for (std::size_t first = 0, last; first < receivers_.size(); first = last) {
-    which_.clear();
-    for (last = first;
-         last < receivers_.size() && receivers_[last].first == receivers_[first].first; ++last)
-      which_.push_back(receivers_[last].second);
-    SortedClusters::Parcel& parcel = sorted.parcel_to(receivers_[first].first);
-    parcel.triangles += which_.size();
-    memory().packer.pack(which_, parcel.bytes);
-  }
+  for (const Receiver& receiver : std::span(receivers_).first(receivers_used_))
+    memory().packer.pack(receiver.which, sorted.for_rank(receiver.rank));
 }
 
 void TriangleSorter::sort(std::uint32_t number, SortedClusters& sorted) {

@@ -3,10 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "loadbalance/region_index.h"
+#include "raster/distribute/cluster_messages.h"
 #include "raster/distribute/rank_context.h"
 #include "raster/pipeline/set_up.h"
 
@@ -16,17 +16,20 @@ namespace delray::raster {
 struct SortedClusters {
   struct Parcel {
     int to;
-    std::uint64_t triangles = 0;
-    std::vector<std::byte> bytes = {};
+    PackedClusters clusters = {};
   };
   std::vector<Parcel> parcels;
   std::vector<std::uint32_t> staying;  // clusters that touch the rank's own regions
   std::uint64_t culled = 0;            // triangles of clusters that do not stay
 
-  Parcel& parcel_to(int rank) {
+  static constexpr std::size_t kTypicalBytes = std::size_t{1} << 14;
+
+  PackedClusters& for_rank(int rank) {
     for (Parcel& parcel : parcels)
-      if (parcel.to == rank) return parcel;
-    return parcels.emplace_back(Parcel{rank});
+      if (parcel.to == rank) return parcel.clusters;
+    PackedClusters& clusters = parcels.emplace_back(Parcel{rank}).clusters;
+    clusters.bytes.reserve(kTypicalBytes);
+    return clusters;
   }
 };
 
@@ -43,16 +46,24 @@ class TriangleSorter {
   void sort(std::uint32_t number, SortedClusters& sorted);
 
  private:
+  // A rank other than this, and which of places_ are for it.
+  struct Receiver {
+    int rank;
+    std::vector<std::uint8_t> which;
+  };
+
   void find_owners(const geometry::Rect& samples);
   bool find_receivers(const PreparedDraw& draw, const ClusterBlock& block, const Cluster& cluster);
+  bool add_receivers(std::uint32_t place);
   void pack(const PreparedDraw& draw, std::uint32_t number, SortedClusters& sorted);
 
   const RankContext& rank_;
   const RegionDrawing& drawing_;
   const loadbalance::RegionIndex& regions_;
   std::vector<int> owners_;
-  std::vector<std::uint8_t> places_, which_;
-  std::vector<std::pair<int, std::uint8_t>> receivers_;  // and index into places_
+  std::vector<std::uint8_t> places_;
+  std::vector<Receiver> receivers_;  // the first receivers_used_; others are spare
+  std::size_t receivers_used_ = 0;
 };
 
 }  // namespace delray::raster

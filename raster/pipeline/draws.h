@@ -29,23 +29,13 @@ std::vector<Piece> pieces_of(const scenes::Scene& scene,
                              std::span<const std::uint64_t> first_primitives, std::uint64_t begin,
                              std::uint64_t end);
 
-// Attributes that another rank has computed for the vertices of a mesh that came from it: positions
-// are in view coordinates, normals and tangents in the world; a normal of 0 stands for the
-// triangle's.
-struct TransformedVertices {
-  std::vector<glm::vec3> world;      // positions in the world, for phong
-  std::vector<glm::vec3> radiances;  // for gouraud
-  float handedness = 1;              // -1 where the transform mirrors
-  int hidden_side = 0;               // sign of the area that is not drawn; 0: both are
-};
-
 // A mesh at a place.
 struct Draw {
   const scenes::Mesh* mesh = nullptr;
   const glm::mat4x3* transform = nullptr;
   MeshClusters* clusters = nullptr;
-  const TransformedVertices* transformed =
-      nullptr;  // if they came so: `transform` is identity then
+  // Of the mesh's vertices, where another rank has lit them for gouraud.
+  const std::vector<glm::vec3>* radiances = nullptr;
 };
 
 // Places [begin, end) of a cluster of a draw's mesh.

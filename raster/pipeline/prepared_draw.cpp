@@ -66,11 +66,6 @@ PreparedDraw prepare_draw(const Screen& screen, const Draw& draw, const shading:
   prepared.draw = &draw;
   prepared.masked = may_have_holes(shader, material, *draw.mesh);
   prepared.blended = is_blended(shader, *draw.mesh);
-  if (draw.transformed != nullptr) {
-    prepared.to_view = kInView;
-    prepared.hidden_side = draw.transformed->hidden_side;
-    return prepared;
-  }
   prepared.to_view = to_view(screen.view, *draw.transform);
   if (!cull_single_sided || material.double_sided) return prepared;
   // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,

@@ -23,10 +23,6 @@ struct ToView {
   }
 };
 
-// For positions that are in view coordinates already.
-inline constexpr ToView kInView = {
-    {glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)}};
-
 // Composed in double: eye and origin of a mesh may be far from the world's origin.
 ToView to_view(const scenes::View& view, const glm::mat4x3& transform);
 

@@ -79,17 +79,18 @@ shading::Point plain_point_at(const SeenTriangle& triangle, int x, int y) {
   return point;
 }
 
-}  // namespace
-
 glm::vec3 position_in_world(const Draw& draw, std::uint32_t vertex) {
   const glm::mat4x3& m = *draw.transform;
   const glm::vec3& p = draw.mesh->positions[vertex];
   return ((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3];
 }
 
+// 0 where it has no direction.
 glm::vec3 normal_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex) {
   return unit(shaded.normal_to_world * draw.mesh->normals[vertex], glm::vec3(0.0F));
 }
+
+}  // namespace
 
 glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex) {
   const glm::mat4x3& m = *draw.transform;
@@ -100,11 +101,6 @@ glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint
 
 ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw) {
   ShadedDraw result;
-  if (draw.transformed != nullptr) {
-    result.to_view = kInView;
-    result.handedness = draw.transformed->handedness;
-    return result;
-  }
   const glm::mat4x3& m = *draw.transform;
   result.to_view = to_view(view, m);
   // Normals go with the inverse transpose, which is the cofactors up to a factor.
@@ -135,7 +131,6 @@ Barycentrics make_screen_barycentrics(const Screen& screen, const ToView& to_vie
 SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& shader,
                                 const Draw& draw, const ShadedDraw& shaded, std::uint32_t t) {
   const scenes::Mesh& mesh = *draw.mesh;
-  const TransformedVertices* const transformed = draw.transformed;
   const glm::uvec3& corners = mesh.triangles[t];
   SeenTriangle result;
   result.material = &shading::material(shader, mesh.material);
@@ -146,10 +141,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
   result.has_colour = !mesh.colours.empty();
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t i = corners[k];
-    if (transformed == nullptr)
-      result.position[k] = position_in_world(draw, i);
-    else
-      result.position[k] = transformed->world.empty() ? glm::vec3(0.0F) : transformed->world[i];
+    result.position[k] = position_in_world(draw, i);
   }
   result.barycentrics = make_screen_barycentrics(screen, shaded.to_view, mesh.positions, corners);
   result.front = result.barycentrics.counter_clockwise == (shaded.handedness > 0);
@@ -161,8 +153,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
     const std::uint32_t i = corners[k];
     result.normal[k] = result.geometric_normal;
     if (!mesh.normals.empty()) {
-      const glm::vec3 normal =
-          transformed == nullptr ? normal_in_world(draw, shaded, i) : mesh.normals[i];
+      const glm::vec3 normal = normal_in_world(draw, shaded, i);
       result.own_normal[k] = normal != glm::vec3(0.0F);
       if (result.own_normal[k]) result.normal[k] = normal;
       result.agrees[k] = normal_agrees(mesh, i, edges);
@@ -172,8 +163,7 @@ SeenTriangle make_seen_triangle(const Screen& screen, const shading::Shader& sha
     result.colour[k] = mesh.colours.empty() ? glm::vec4(1.0F) : mesh.colours[i];
     result.tangent[k] = glm::vec4(0.0F);
     if (result.has_tangent) {
-      result.tangent[k] =
-          transformed == nullptr ? tangent_in_world(draw, shaded, i) : mesh.tangents[i];
+      result.tangent[k] = tangent_in_world(draw, shaded, i);
     }
   }
   if (result.barycentrics.proper) make_planes(result);

@@ -20,9 +20,7 @@ struct ShadedDraw {
 };
 ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
 
-// Attributes of a vertex that is not transformed yet. The normal is 0 where it has no direction.
-glm::vec3 position_in_world(const Draw& draw, std::uint32_t vertex);
-glm::vec3 normal_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex);
+// A vertex's tangent in the world, with the handedness there.
 glm::vec4 tangent_in_world(const Draw& draw, const ShadedDraw& shaded, std::uint32_t vertex);
 
 // A triangle with its vertices' attributes in the world.

@@ -115,9 +115,9 @@ void GouraudTile::set_up_group(const FrameShading& frame, const ClusterMembers& 
   ClusterFacing facing;
   triangles_.set_up_planes(frame, members, first_vertex, facing);
   set_up_textures(frame, members);
-  if (draw.transformed != nullptr) {
+  if (draw.radiances != nullptr) {
     for (const std::uint32_t vertex : members.vertices)
-      radiances_.emplace_back(draw.transformed->radiances[vertex], 1.0F);
+      radiances_.emplace_back((*draw.radiances)[vertex], 1.0F);
     return;
   }
 
@@ -200,7 +200,7 @@ void GouraudTile::set_up_triangles(const FrameShading& frame) {
       frame,
       [&](std::uint32_t number) {
         const Draw& draw = frame.list.draws[number];
-        return !draw.mesh->normals.empty() || draw.transformed != nullptr;
+        return !draw.mesh->normals.empty() || draw.radiances != nullptr;
       },
       [&](const ClusterMembers& members) { set_up_group(frame, members); });
   for (const std::size_t block : open_blocks_)

@@ -32,28 +32,6 @@ void PhongTile::make_room(const FrameShading& frame) {
   make(planes_.tangent, frame.any_normal_maps);
 }
 
-void PhongTile::set_up_world(const FrameShading& frame, const ClusterMembers& members) {
-  const std::uint32_t number = frame.list.clusters[members.group->cluster].draw;
-  const Draw& draw = frame.list.draws[number];
-  if (draw.transformed == nullptr) {
-    to_world(draw, frame.draws[number], members.vertices, world_vertices_);
-    return;
-  }
-  WorldVertices& to = world_vertices_;
-  for (std::size_t i = 0; i < members.vertices.size(); ++i) {
-    const std::uint32_t vertex = members.vertices[i];
-    const auto& world = draw.transformed->world;
-    const glm::vec3 position = world.empty() ? glm::vec3(0.0F) : world[vertex];
-    const glm::vec3 normal =
-        draw.mesh->normals.empty() ? glm::vec3(0.0F) : draw.mesh->normals[vertex];
-    for (int k = 0; k < 3; ++k) {
-      to.position[k][i] = position[k];
-      to.normal[k][i] = normal[k];
-    }
-    to.has_normal[i] = normal != glm::vec3(0.0F);
-  }
-}
-
 template <class Row>
 void PhongTile::set_up_values(const ClusterMembers& members, std::vector<ValuePlanes>& planes,
                               const Row& row) {
@@ -73,7 +51,7 @@ void PhongTile::set_up_group(const FrameShading& frame, const ClusterMembers& me
   const scenes::Mesh& mesh = *draw.mesh;
   ClusterFacing facing;
   triangles_.set_up_planes(frame, members, 0, facing);
-  set_up_world(frame, members);
+  to_world(draw, shaded, members.vertices, world_vertices_);
   set_up_points(world_vertices_, members.vertices.size(), members.corners, group.count,
                 shaded.handedness, triangles_.planes(), group.first, planes_);
 
@@ -83,8 +61,7 @@ void PhongTile::set_up_group(const FrameShading& frame, const ClusterMembers& me
     set_up_values(members, planes_.uv, [&](std::uint32_t v) { return uv_row(mesh, v); });
   if (!planes_.tangent.empty()) {
     const auto tangent_of = [&](std::uint32_t v) {
-      if (mesh.tangents.empty()) return glm::vec4(0.0F);
-      return draw.transformed == nullptr ? tangent_in_world(draw, shaded, v) : mesh.tangents[v];
+      return mesh.tangents.empty() ? glm::vec4(0.0F) : tangent_in_world(draw, shaded, v);
     };
     set_up_values(members, planes_.tangent,
                   [&](std::uint32_t v) { return glm::vec4(glm::vec3(tangent_of(v)), 0); });

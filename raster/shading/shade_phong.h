@@ -26,7 +26,6 @@ class PhongTile {
  private:
   void make_room(const FrameShading& frame);
   void set_up_group(const FrameShading& frame, const ClusterMembers& members);
-  void set_up_world(const FrameShading& frame, const ClusterMembers& members);
   template <class Row>
   void set_up_values(const ClusterMembers& members, std::vector<ValuePlanes>& planes,
                      const Row& row);

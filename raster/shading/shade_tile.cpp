@@ -121,8 +121,8 @@ const SeenTriangle& SeenTriangles::get(const FrameShading& frame, std::uint32_t 
 
 void SeenTriangles::light_vertices(const FrameShading& frame, std::uint32_t draw,
                                    const glm::uvec3& corners, SeenTriangle& triangle) {
-  if (const auto* const transformed = frame.list.draws[draw].transformed) {
-    for (int k = 0; k < 3; ++k) triangle.radiance[k] = transformed->radiances[corners[k]];
+  if (const auto* const radiances = frame.list.draws[draw].radiances) {
+    for (int k = 0; k < 3; ++k) triangle.radiance[k] = (*radiances)[corners[k]];
     return;
   }
   const auto number = triangle.material - frame.shader.materials.data();

@@ -1,5 +1,6 @@
 // Sort-middle: ranks transform, cull and, with gouraud, light the primitives that they have; the
-// triangles that are left go to the ranks whose regions they touch, which draw them.
+// triangles that are left go to the ranks whose regions they touch, which draw them. Vertices
+// travel as the mesh has them, since their places on the screen follow from these in fewer bytes.
 //
 // Each cluster of the whole scene has a number that ascends with its primitives, known from a sum
 // over the ranks before. So what arrives may be drawn in any order, and equal depths still go to
@@ -15,8 +16,8 @@
 
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
+#include "raster/distribute/cluster_messages.h"
 #include "raster/distribute/frame_memory.h"
-#include "raster/distribute/transformed_clusters.h"
 #include "raster/distribute/triangle_sorter.h"
 #include "raster/pipeline/processor_seconds.h"
 
@@ -148,9 +149,9 @@ class Redistributor {
       culled_ += part.culled;
       for (SortedClusters::Parcel& parcel : part.parcels) {
         Bucket& bucket = buckets_.at(parcel.to);
-        bucket.bytes += parcel.bytes.size();
-        bucket.parts.push_back(std::move(parcel.bytes));
-        rank_.triangles_travelled += parcel.triangles;
+        bucket.bytes += parcel.clusters.bytes.size();
+        bucket.parts.push_back(std::move(parcel.clusters.bytes));
+        rank_.triangles_travelled += parcel.clusters.triangles;
       }
     }
   }

@@ -8,7 +8,7 @@
 #include "comm/recording.h"
 #include "comm/simulated.h"
 #include "comm/threads.h"
-#include "raster/distribute/transformed_clusters.h"
+#include "raster/distribute/cluster_messages.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
 #include "tests/raster/allow_threads.h"
@@ -128,25 +128,26 @@ TEST(SortMiddle, ClustersWithMoreLitVerticesThanABytesNumbersAreCutInTwo) {
   ASSERT_GT(places.size(), 86U);
   ClusterPacker packer;
   packer.set(frame, draws[0], 0, places);
-  std::vector<std::byte> bytes;
-  packer.pack(places, bytes);
+  PackedClusters packed;
+  packer.pack(places, packed);
+  EXPECT_EQ(packed.triangles, places.size());
   std::deque<ArrivedMesh> meshes;
   DrawList arrived;
   arrived.clusters.resize(2);
   std::vector<std::uint32_t> numbers;
-  unpack_clusters(bytes, meshes, arrived, numbers);
+  unpack_clusters(packed.bytes, meshes, arrived, numbers);
   EXPECT_EQ(numbers, (std::vector<std::uint32_t>{0, 1}));
   ASSERT_EQ(meshes.size(), 1U);
-  // In the order in which they were, at the very same view coordinates.
+  EXPECT_EQ(meshes[0].transform, scene.instances[0].transform);
+  // In the order in which they were, at the very same places.
   for (std::uint32_t i = 0; i < places.size(); ++i) {
     const glm::uvec3& was = scene.meshes[0].triangles[i];
     const glm::uvec3& is = meshes[0].mesh.triangles[i];
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(meshes[0].mesh.positions[is[k]],
-                draws[0].to_view(scene.meshes[0].positions[was[k]]));
+      EXPECT_EQ(meshes[0].mesh.positions[is[k]], scene.meshes[0].positions[was[k]]);
     }
   }
-  EXPECT_EQ(meshes[0].vertices.radiances.size(), 3 * places.size());
+  EXPECT_EQ(meshes[0].radiances.size(), 3 * places.size());
   EXPECT_EQ(arrived.clusters[0].end + arrived.clusters[1].end, static_cast<int>(places.size()));
 }
 

@@ -1,7 +1,7 @@
-// Clusters of triangles that are transformed, and lit with gouraud, as messages: what sort-middle
-// sends.
+// Some of clusters' triangles, with gouraud lit, as messages: what sort-middle sends.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -18,6 +18,13 @@ namespace delray::raster {
 // that are lit on both sides count twice: they take the cluster's number and the next.
 inline constexpr std::uint32_t kNumbersPerCluster = 2;
 
+// Some triangles of one cluster after the other, for one rank.
+struct PackedClusters {
+  std::uint64_t triangles = 0;
+  std::vector<std::byte> bytes = {};
+  const glm::mat4x3* last_transform = nullptr;  // that bytes have
+};
+
 // Packs some triangles of one cluster after the other. Memory of a thread.
 class ClusterPacker {
  public:
@@ -25,26 +32,27 @@ class ClusterPacker {
   // frame's list; with gouraud their vertices are lit.
   void set(const FrameShading& frame, const PreparedDraw& draw, std::uint32_t cluster,
            std::span<const std::uint8_t> places);
-  // Appends the triangles at places[i] for the i of `which`, ascending: 16 bytes, 3 per triangle
-  // and 12 per vertex (view coordinates), and per vertex
+  // Appends the triangles at places[i] for the i of `which`, ascending: 40 bytes, 48 where the
+  // transform is another one, 3 per triangle and 12 per vertex (mesh coordinates), and per vertex
   // - gouraud: 12 (radiance), 8 with a base colour texture (uv), 16 where alpha counts (colour);
-  // - phong: 12 (position), and what the mesh has of 12 (normal), 8 with a texture (uv), 8 with one
-  //   of the second set, 16 with a normal texture (tangent), 16 (colour).
+  // - phong: what the mesh has of 12 (normal), 8 with a texture (uv), 8 with one of the second set,
+  //   16 with a normal texture (tangent), 16 (colour).
   // A closed mesh has about 0.65 vertices per triangle in a cluster: 19 bytes per triangle with
-  // gouraud, 27 with phong and normals. Where no two triangles share a vertex, since most are not
-  // seen, it is 75 and 111.
-  void pack(std::span<const std::uint8_t> which, std::vector<std::byte>& bytes);
+  // either and normals. Where no two triangles share a vertex, since most are not seen, it is 75.
+  void pack(std::span<const std::uint8_t> which, PackedClusters& to);
 
  private:
-  struct Vertex {
-    std::uint32_t of_mesh, radiance;
+  // What becomes one cluster on the rank that gets it.
+  struct Section {
+    std::uint32_t vertices = 0, triangles = 0;
+    std::array<std::uint32_t, kClusterVertices> vertex;    // of the mesh
+    std::array<std::uint32_t, kClusterVertices> radiance;  // of lit_, with gouraud
+    std::array<std::array<std::uint8_t, kClusterTriangles>, 3> corners;
   };
 
-  void append_section(std::uint32_t number, std::vector<std::byte>& bytes);
+  void append_section(std::uint32_t number, PackedClusters& to);
 
   const Draw* draw_ = nullptr;
-  const PreparedDraw* prepared_ = nullptr;
-  const ShadedDraw* shaded_ = nullptr;
   const Cluster* places_in_ = nullptr;
   const ClusterBlock* block_ = nullptr;
   std::uint32_t cluster_ = 0;
@@ -54,15 +62,14 @@ class ClusterPacker {
   GouraudTile gouraud_;
   GouraudTile::LitCorners lit_;
 
-  // State of the section at hand.
-  std::vector<Vertex> vertices_;
-  std::vector<std::uint8_t> corners_[3];
+  Section section_;  // at hand
 };
 
 // A mesh that arrived in a message. Others refer to it: its address must stay.
 struct ArrivedMesh {
   scenes::Mesh mesh;
-  TransformedVertices vertices;
+  glm::mat4x3 transform{1.0F};
+  std::vector<glm::vec3> radiances;  // of the vertices, with gouraud
   MeshClusters clusters;
 };
 

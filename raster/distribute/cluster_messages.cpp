@@ -1,13 +1,14 @@
-// Packs triangles of a cluster with the vertices that they use, transformed and with gouraud lit,
-// and makes meshes and clusters of them again on the rank that gets them.
+// Packs triangles of a cluster with the vertices that they use, with gouraud lit, and makes meshes
+// and clusters of them again on the rank that gets them.
 //
-// Vertices are renumbered within a section, whose header tells attributes and material. Sections
-// that follow each other with the same header become one mesh; copying is parallel over sections.
+// Vertices travel in the mesh's coordinates with its transform: all that the sender computed of
+// them follows from that to the last bit, and takes three times as many bytes. Vertices are
+// renumbered within a section, whose header tells attributes and material. Sections that follow
+// each other with the same header and transform become one mesh; copying is parallel over sections.
 // O(triangles + vertices).
 //
-// Degenerate: triangles whose lit vertices are more than a cluster may have go into two sections;
-// positions that are not finite give an infinite box.
-#include "raster/distribute/transformed_clusters.h"
+// Degenerate: triangles whose lit vertices are more than a cluster may have go into two sections.
+#include "raster/distribute/cluster_messages.h"
 
 #include <algorithm>
 #include <array>
@@ -27,25 +28,24 @@ enum Attribute : std::uint8_t {
   kUvs = 2,
   kTangents = 4,
   kColours = 8,
-  kWorld = 16,
-  kRadiances = 32,
-  kUvs2 = 64,
+  kRadiances = 16,
+  kUvs2 = 32,
 };
 
-// Followed by first corners, second corners and third corners, a byte each and all filled up to
-// four bytes, positions, and the attributes in ascending order.
+// Followed by the transform where it is another one than before, first corners, second corners and
+// third corners, a byte each and all filled up to four bytes, positions, and the attributes in
+// ascending order.
 struct ClusterHeader {
   std::uint32_t cluster, material;
   std::uint16_t vertices, triangles;
-  std::uint8_t attributes, mirrored;
-  std::int16_t hidden_side;
+  std::uint8_t attributes, has_transform, normals_agree, unused;
+  geometry::Box3 box;
 
   bool same_mesh(const ClusterHeader& other) const {
-    return material == other.material && attributes == other.attributes &&
-           mirrored == other.mirrored && hidden_side == other.hidden_side;
+    return material == other.material && attributes == other.attributes;
   }
 };
-static_assert(sizeof(ClusterHeader) == 16);
+static_assert(sizeof(ClusterHeader) == 40);
 
 std::size_t corner_bytes(std::size_t triangles) { return (3 * triangles + 3) / 4 * 4; }
 
@@ -57,14 +57,13 @@ void for_each_attribute(ArrivedMesh& arrived, std::uint8_t attributes, F&& f) {
   if ((attributes & kUvs) != 0) f(arrived.mesh.uvs);
   if ((attributes & kTangents) != 0) f(arrived.mesh.tangents);
   if ((attributes & kColours) != 0) f(arrived.mesh.colours);
-  if ((attributes & kWorld) != 0) f(arrived.vertices.world);
-  if ((attributes & kRadiances) != 0) f(arrived.vertices.radiances);
+  if ((attributes & kRadiances) != 0) f(arrived.radiances);
   if ((attributes & kUvs2) != 0) f(arrived.mesh.uvs2);
 }
 
 std::size_t vertex_bytes(std::uint8_t attributes) {
   std::size_t bytes = sizeof(glm::vec3);
-  for (const std::uint8_t bit : {kNormals, kWorld, kRadiances})
+  for (const std::uint8_t bit : {kNormals, kRadiances})
     if ((attributes & bit) != 0) bytes += sizeof(glm::vec3);
   for (const std::uint8_t bit : {kTangents, kColours})
     if ((attributes & bit) != 0) bytes += sizeof(glm::vec4);
@@ -89,21 +88,9 @@ std::uint8_t attributes_of(const FrameShading& frame, const PreparedDraw& prepar
   const bool normal_texture = material.normal_texture != scenes::kNone;
   const int sets = shading::texture_sets(frame.shader, material);
   return static_cast<std::uint8_t>(
-      kWorld | bits(!mesh.normals.empty(), kNormals) | bits(sets > 0 && !mesh.uvs.empty(), kUvs) |
+      bits(!mesh.normals.empty(), kNormals) | bits(sets > 0 && !mesh.uvs.empty(), kUvs) |
       bits(sets > 1 && !mesh.uvs2.empty(), kUvs2) |
       bits(normal_texture && !mesh.tangents.empty(), kTangents) | bits(coloured, kColours));
-}
-
-geometry::Box3 box_around(std::span<const glm::vec3> positions) {
-  geometry::Box3 box;
-  for (const glm::vec3& p : positions) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      constexpr float kInfinity = std::numeric_limits<float>::infinity();
-      return {glm::vec3(-kInfinity), glm::vec3(kInfinity)};
-    }
-    box.include(p);
-  }
-  return box;
 }
 
 // A packed cluster, and where it goes.
@@ -141,17 +128,14 @@ void unpack(const Section& section) {
     std::memcpy(attribute.data() + cluster.first_vertex, from, bytes);
     from += bytes;
   });
-  MeshCluster& result = block.clusters[section.part];
-  result = cluster;
-  result.box =
-      box_around(std::span(mesh.positions).subspan(cluster.first_vertex, cluster.vertices));
+  block.clusters[section.part] = cluster;
 }
 
 // Sections that follow each other and may be of one mesh become one mesh.
 std::vector<Section> find_sections(std::span<const std::byte> bytes,
                                    std::deque<ArrivedMesh>& meshes, DrawList& list) {
-  static const glm::mat4x3 kIdentity(1.0F);
   std::vector<Section> sections;
+  glm::mat4x3 transform(1.0F);
   std::uint32_t triangles = 0, vertices = 0, corners = 0, part = 0;
   const auto close_mesh = [&] {
     if (sections.empty()) return;
@@ -168,17 +152,23 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
   while (!bytes.empty()) {
     Section section;
     std::memcpy(&section.header, bytes.data(), sizeof(ClusterHeader));
+    bytes = bytes.subspan(sizeof(ClusterHeader));
     const ClusterHeader& header = section.header;
-    section.content = bytes.data() + sizeof(ClusterHeader);
+    if (header.has_transform != 0) {
+      std::memcpy(&transform, bytes.data(), sizeof transform);
+      bytes = bytes.subspan(sizeof transform);
+    }
+    section.content = bytes.data();
     if (sections.empty() || !header.same_mesh(sections.back().header) ||
-        triangles + header.triangles > kBlockTriangles) {
+        transform != meshes.back().transform || triangles + header.triangles > kBlockTriangles) {
       close_mesh();
       ArrivedMesh& mesh = meshes.emplace_back();
       mesh.mesh.material = header.material;
-      mesh.vertices.handedness = header.mirrored != 0 ? -1.0F : 1.0F;
-      mesh.vertices.hidden_side = header.hidden_side;
+      mesh.transform = transform;
       mesh.clusters.blocks.push_back(std::make_unique<ClusterBlock>());
-      list.draws.push_back({&mesh.mesh, &kIdentity, &mesh.clusters, &mesh.vertices});
+      const bool lit = (header.attributes & kRadiances) != 0;
+      list.draws.push_back(
+          {&mesh.mesh, &mesh.transform, &mesh.clusters, lit ? &mesh.radiances : nullptr});
     }
     section.mesh = &meshes.back();
     section.draw = static_cast<std::uint32_t>(list.draws.size()) - 1;
@@ -188,11 +178,13 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
     section.cluster.first_vertex = vertices;
     section.cluster.vertices = header.vertices;
     section.cluster.first_corner = corners;
+    section.cluster.box = header.box;
+    section.cluster.normals_agree = header.normals_agree != 0;
     triangles += header.triangles;
     vertices += header.vertices;
     corners += 3 * section.cluster.corner_stride();
     sections.push_back(section);
-    bytes = bytes.subspan(sizeof(ClusterHeader) + corner_bytes(header.triangles) +
+    bytes = bytes.subspan(corner_bytes(header.triangles) +
                           header.vertices * vertex_bytes(header.attributes));
   }
   close_mesh();
@@ -207,9 +199,7 @@ void ClusterPacker::set(const FrameShading& frame, const PreparedDraw& draw, std
   cluster_ = cluster;
   places_in_ = &list.clusters[cluster];
   block_ = &list.block_of(*places_in_);
-  prepared_ = &draw;
   draw_ = draw.draw;
-  shaded_ = &frame.draws[places_in_->draw];
   attributes_ = attributes_of(frame, draw);
   places_ = places;
   if (frame.lighting != Lighting::gouraud) return;
@@ -218,79 +208,81 @@ void ClusterPacker::set(const FrameShading& frame, const PreparedDraw& draw, std
   lit_ = gouraud_.light_corners(frame, numbers_);
 }
 
-void ClusterPacker::pack(std::span<const std::uint8_t> which, std::vector<std::byte>& bytes) {
+void ClusterPacker::pack(std::span<const std::uint8_t> which, PackedClusters& to) {
   // By radiance, which belongs to one vertex, or by vertex of the cluster.
   constexpr std::uint16_t kNone = 0xFFFFU;
   std::array<std::uint16_t, std::size_t{3} * kClusterTriangles> number;
   const auto begin_section = [&] {
     number.fill(kNone);
-    vertices_.clear();
-    for (auto& corners : corners_) corners.clear();
+    section_.vertices = section_.triangles = 0;
   };
   begin_section();
-  std::uint32_t section = cluster_;
+  std::uint32_t section_number = cluster_;
+  const bool lit = (attributes_ & kRadiances) != 0;
   const MeshCluster& mesh_cluster = block_->clusters[places_in_->part];
+  const std::span<const std::uint32_t> of_mesh = block_->vertices_of(mesh_cluster);
   for (const std::uint8_t i : which) {
-    if (vertices_.size() + 3 > kClusterVertices) {
-      append_section(section++, bytes);
+    if (section_.vertices + 3 > kClusterVertices) {
+      append_section(section_number++, to);
       begin_section();
     }
-    const std::uint8_t place = places_[i];
-    const LocalCorners local = corners_at(*block_, mesh_cluster, place);
+    const LocalCorners local = corners_at(*block_, mesh_cluster, places_[i]);
     const std::uint32_t in_cluster[3] = {local.a, local.b, local.c};
-    const glm::uvec3& in_mesh = draw_->mesh->triangles[places_in_->first + place];
     for (int k = 0; k < 3; ++k) {
-      const bool lit = (attributes_ & kRadiances) != 0;
       const std::uint32_t radiance = lit ? lit_.corners[i][k] : 0;
       std::uint16_t& vertex = number[lit ? radiance : in_cluster[k]];
       if (vertex == kNone) {
-        vertex = static_cast<std::uint16_t>(vertices_.size());
-        vertices_.push_back({in_mesh[k], radiance});
+        vertex = static_cast<std::uint16_t>(section_.vertices);
+        section_.vertex[section_.vertices] = of_mesh[in_cluster[k]];
+        section_.radiance[section_.vertices++] = radiance;
       }
-      corners_[k].push_back(static_cast<std::uint8_t>(vertex));
+      section_.corners[static_cast<std::size_t>(k)][section_.triangles] =
+          static_cast<std::uint8_t>(vertex);
     }
+    ++section_.triangles;
   }
-  if (!vertices_.empty()) append_section(section, bytes);
+  if (section_.vertices > 0) append_section(section_number, to);
 }
 
-void ClusterPacker::append_section(std::uint32_t number, std::vector<std::byte>& bytes) {
+void ClusterPacker::append_section(std::uint32_t number, PackedClusters& to) {
   const scenes::Mesh& mesh = *draw_->mesh;
-  const std::size_t triangles = corners_[0].size();
-  const ClusterHeader header{number,
-                             mesh.material,
-                             static_cast<std::uint16_t>(vertices_.size()),
-                             static_cast<std::uint16_t>(triangles),
-                             attributes_,
-                             static_cast<std::uint8_t>(shaded_->handedness < 0),
-                             static_cast<std::int16_t>(prepared_->hidden_side)};
-  const std::size_t before = bytes.size();
-  bytes.resize(before + sizeof(header) + corner_bytes(triangles) +
-               vertices_.size() * vertex_bytes(attributes_));
-  std::byte* end = bytes.data() + before;
+  const MeshCluster& cluster = block_->clusters[places_in_->part];
+  const std::size_t triangles = section_.triangles;
+  const auto vertices = std::span<const std::uint32_t>(section_.vertex).first(section_.vertices);
+  const bool with_transform = to.last_transform != draw_->transform;
+  to.last_transform = draw_->transform;
+  to.triangles += triangles;
+  const std::size_t before = to.bytes.size();
+  to.bytes.resize(before + sizeof(ClusterHeader) +
+                  (with_transform ? sizeof(glm::mat4x3) : std::size_t{0}) +
+                  corner_bytes(triangles) + vertices.size() * vertex_bytes(attributes_));
+  std::byte* end = to.bytes.data() + before;
   const auto append = [&](const auto* values, std::size_t count) {
     std::memcpy(end, values, count * sizeof(*values));
     end += count * sizeof(*values);
   };
-  append(&header, 1);
-  for (const auto& corners : corners_) append(corners.data(), triangles);
+  const auto append_value = [&](const auto& value) { append(&value, 1); };
+  append_value(ClusterHeader{number, mesh.material, static_cast<std::uint16_t>(vertices.size()),
+                             static_cast<std::uint16_t>(triangles), attributes_,
+                             static_cast<std::uint8_t>(with_transform),
+                             static_cast<std::uint8_t>(cluster.normals_agree), 0, cluster.box});
+  if (with_transform) append_value(*draw_->transform);
+  for (const auto& corners : section_.corners) append(corners.data(), triangles);
   end += corner_bytes(triangles) - 3 * triangles;
-  const auto append_each = [&](std::uint8_t attribute, auto&& value_of) {
+  const auto append_used = [&](std::uint8_t attribute, const auto& values) {
     if ((attributes_ & attribute) != attribute) return;
-    for (const Vertex& vertex : vertices_) {
-      const auto value = value_of(vertex);
-      append(&value, 1);
-    }
+    for (const std::uint32_t vertex : vertices) append_value(values[vertex]);
   };
-  append_each(0, [&](const Vertex& v) { return prepared_->to_view(mesh.positions[v.of_mesh]); });
-  append_each(kNormals,
-              [&](const Vertex& v) { return normal_in_world(*draw_, *shaded_, v.of_mesh); });
-  append_each(kUvs, [&](const Vertex& v) { return mesh.uvs[v.of_mesh]; });
-  append_each(kTangents,
-              [&](const Vertex& v) { return tangent_in_world(*draw_, *shaded_, v.of_mesh); });
-  append_each(kColours, [&](const Vertex& v) { return mesh.colours[v.of_mesh]; });
-  append_each(kWorld, [&](const Vertex& v) { return position_in_world(*draw_, v.of_mesh); });
-  append_each(kRadiances, [&](const Vertex& v) { return lit_.radiances[v.radiance]; });
-  append_each(kUvs2, [&](const Vertex& v) { return mesh.uvs2[v.of_mesh]; });
+  append_used(0, mesh.positions);
+  append_used(kNormals, mesh.normals);
+  append_used(kUvs, mesh.uvs);
+  append_used(kTangents, mesh.tangents);
+  append_used(kColours, mesh.colours);
+  if ((attributes_ & kRadiances) != 0) {
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      append_value(lit_.radiances[section_.radiance[i]]);
+  }
+  append_used(kUvs2, mesh.uvs2);
 }
 
 void unpack_clusters(std::span<const std::byte> bytes, std::deque<ArrivedMesh>& meshes,
