@@ -116,6 +116,10 @@ void look_at_this_machine(Engine& engine) {
 }
 
 void Backoff::pause(bool on_their_way, std::optional<std::uint32_t> rings_seen) {
+  if (looks_after_sleep_ > 0) {
+    --looks_after_sleep_;
+    return;
+  }
   ++looks_;
   if (looks_ <= kSpins) {
     constexpr int kLooksBetween = 64;
@@ -130,6 +134,7 @@ void Backoff::pause(bool on_their_way, std::optional<std::uint32_t> rings_seen) 
   } else if (can_be_woken) {
     sleep_until_rung(*rings_seen, engine_.all_are_local ? long_sleep_ : kShortSleep);
     long_sleep_ = std::min(2 * long_sleep_, kLongestSleep);
+    looks_after_sleep_ = kLooksAfterSleep;
   } else {
     std::this_thread::sleep_for(short_sleep_);
     short_sleep_ = std::min(short_sleep_ + kShortestSleep, kLongShortSleep);

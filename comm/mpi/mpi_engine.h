@@ -121,6 +121,8 @@ class Backoff {
   // intervals.
   static constexpr int kYieldsBeforeSleep = 4;
   static constexpr Microseconds kLongestSleep{8000}, kShortSleep{50};
+  // MPI_Improbe takes in what has come after it has looked, and finds it when it is called again.
+  static constexpr int kLooksAfterSleep = 4;
   // Where no sender rings.
   static constexpr Microseconds kShortestSleep{20}, kLongShortSleep{200};
 
@@ -128,6 +130,7 @@ class Backoff {
   Clock::time_point last_look_;
   bool is_crowded_;
   int looks_;
+  int looks_after_sleep_ = 0;
   Microseconds long_sleep_{1000}, short_sleep_ = kShortestSleep;
 };
 
