@@ -29,7 +29,7 @@ class Extents {
 
  private:
   // One in so many neighbours is looked at.
-  static constexpr std::uint32_t kMeasured = 4;
+  static constexpr std::uint32_t kMeasured = 8;
 
   void look_at(const PreparedDraw& draw, const ClusterBlock& block, const MeshCluster& cluster);
   bool estimate(const PreparedDraw& draw, const ClusterBlock& block, std::uint32_t part,
