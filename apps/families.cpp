@@ -6,6 +6,7 @@
 #include "comm/network.h"
 #include "composite/codec.h"
 #include "composite/scheme.h"
+#include "delaunay/distributed.h"
 #include "delaunay/methods.h"
 #include "image/tone.h"
 #include "loadbalance/partition.h"
@@ -55,6 +56,11 @@ void list_method_options() {
 }
 
 void list_methods() { print_table("Methods of triangulation (--method)", delaunay::methods()); }
+
+void list_distributed_methods() {
+  print_table("Distributed methods: how ranks share one triangulation (--distributed)",
+              delaunay::distributed_methods());
+}
 
 void list_colours() {
   print_table("Colours: what they show (--color-by)", colour_bys());

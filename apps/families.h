@@ -13,6 +13,8 @@ void list_schedules();
 void list_methods();
 // The choices that methods leave: location, split, order, deadlock strategy.
 void list_method_options();
+// How ranks share one triangulation.
+void list_distributed_methods();
 void list_networks();
 // The meanings of colours (--color-by), and tone curves.
 void list_colours();

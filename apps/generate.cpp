@@ -10,6 +10,7 @@
 #include "apps/options/outputs.h"
 #include "delaunay/generate.h"
 #include "delaunay/write_points.h"
+#include "files/memory_budget.h"
 #include "scenes/generate.h"
 #include "scenes/write_glb.h"
 

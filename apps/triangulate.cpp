@@ -16,9 +16,11 @@
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
+#include "apps/triangulate_distributed.h"
 #include "apps/triangulate_tiles.h"
 #include "apps/triangulation_json.h"
 #include "comm/agree_on_failure.h"
+#include "delaunay/distributed.h"
 #include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
 #include "delaunay/triangulate.h"
@@ -34,8 +36,9 @@ struct TriangulateOptions {
   delaunay::Options how;
   std::optional<double> max_error;
   Launch launch;
-  int tiles = 0;        // 0: one for each rank
-  bool makers = false;  // go to the mesh
+  int tiles = 0;            // 0: one for each rank
+  std::string distributed;  // a method of delaunay/distributed.h; empty: tiles
+  bool makers = false;      // go to the mesh
   bool list = false;
 };
 
@@ -121,7 +124,29 @@ void add_choices(CLI::App& command) {
 }
 
 bool is_tiled(const Session& session, const TriangulateOptions& options) {
-  return options.tiles > 0 || options.launch.ranks > 1 || session.processes > 1;
+  return options.tiles > 0 || !options.distributed.empty() || options.launch.ranks > 1 ||
+         session.processes > 1;
+}
+
+// Throws UsageError for options that mean nothing to the distributed method.
+void require_distributed(const TriangulateOptions& options) {
+  const auto& method =
+      find_entry(delaunay::distributed_methods(), options.distributed, "--distributed");
+  if (options.tiles > 0)
+    throw UsageError("--tiles: not with --distributed, which has an area a rank");
+  const delaunay::Options defaults;
+  const delaunay::Options& how = options.how;
+  if (!method.triangulates_parts &&
+      (how.method != defaults.method || how.location != defaults.location ||
+       how.split != defaults.split || how.order != defaults.order ||
+       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue)) {
+    throw UsageError("--distributed " + options.distributed +
+                     " leaves no choice of method, location, split, order, deadlocks and queue");
+  }
+  if (std::ranges::find(method.dims, how.dim) == method.dims.end()) {
+    throw UsageError("--distributed " + options.distributed + ": not in " +
+                     std::to_string(how.dim) + "D");
+  }
 }
 
 // Refuses what does not go together, and resolves every "auto".
@@ -140,6 +165,7 @@ void check(const Session& session, TriangulateOptions& options) {
     throw UsageError((options.max_error ? std::string("--max-error") : std::string("--makers")) +
                      ": not with several ranks or tiles");
   }
+  if (!options.distributed.empty()) require_distributed(options);
   check(session, options.launch);
   delaunay::Options& how = options.how;
   how.threads = session.under_mpi
@@ -169,6 +195,21 @@ void tell_result(int dim, std::size_t rows, std::uint64_t distinct, std::uint64_
                dim == 2 ? "triangles" : "tetrahedra", seconds);
 }
 
+// Collective. What a distributed method took goes to `statistics`.
+TiledRun triangulate_with_ranks(comm::Communicator& communicator, const TriangulateOptions& options,
+                                const delaunay::PointCloud& points,
+                                const delaunay::TileOptions& how, Json& statistics) {
+  const bool with_vertices = !options.output.empty();
+  if (options.distributed.empty()) {
+    return triangulate_by_ranks(communicator, points, how, with_vertices);
+  }
+  delaunay::DistributedOptions distributed{options.distributed, how.partition, how.triangulate};
+  distributed.triangulate.statistics = !options.statistics.empty();
+  DistributedRun run = triangulate_by_method(communicator, points, distributed, with_vertices);
+  statistics["distributed"] = distributed_json(distributed, run);
+  return std::move(run.made);
+}
+
 int run_tiled(Session& session, const TriangulateOptions& options) {
   Stopwatch watch;
   Seconds seconds;
@@ -183,7 +224,8 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
   const parallel::AllowThreads allowed(std::max(1, options.launch.ranks) * options.how.threads);
   run_ranks(session, options.launch, {options.input.path}, [&](comm::Communicator& communicator) {
     Stopwatch own_watch;
-    const TiledRun made = triangulate_by_ranks(communicator, points, how, !options.output.empty());
+    Json distributed;
+    const TiledRun made = triangulate_with_ranks(communicator, options, points, how, distributed);
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() != 0) return;
       seconds.triangulate = own_watch.lap();
@@ -192,6 +234,7 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
       Json statistics =
           statistics_of(options, points.size(), result, made.simplices, made.hash, seconds);
       statistics["options"].update({{"ranks", communicator.size()}, {"tiles", made.tiles.size()}});
+      if (!distributed.is_null()) statistics.update(distributed);
       statistics["rounds"] = made.rounds;
       statistics["tiles"] = tiles_json(made);
       own_watch.lap();
@@ -208,6 +251,7 @@ int run(Session& session, TriangulateOptions options) {
   if (options.list) {
     list_methods();
     list_method_options();
+    list_distributed_methods();
     return kDone;
   }
   check(session, options);
@@ -316,6 +360,12 @@ void add_triangulate(CLI::App& program, Session& session) {
           "neighbours (default: one per rank)")
       ->group(group::kParallel)
       ->transform(count_between(1, 65536));
+  command
+      ->add_option("--distributed", options->distributed,
+                   "How ranks share one triangulation (--list describes the methods; default: "
+                   "tiles)")
+      ->group(group::kParallel);
+  choose_from(*command, "--distributed", names_in(delaunay::distributed_methods()));
   command->add_option("--seed", options->how.seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
   command

@@ -8,17 +8,19 @@
 
 namespace delray::apps {
 
-TiledRun triangulate_by_ranks(comm::Communicator& communicator, const delaunay::PointCloud& points,
-                              const delaunay::TileOptions& options, bool with_vertices) {
+std::vector<delaunay::RowPoint> own_rows(const comm::Communicator& communicator,
+                                         const delaunay::PointCloud& points) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t first = points.size() * rank / ranks, last = points.size() * (rank + 1) / ranks;
   std::vector<delaunay::RowPoint> mine;
   mine.reserve(last - first);
   for (std::size_t row = first; row < last; ++row) mine.push_back({points.positions[row], row});
+  return mine;
+}
 
-  const delaunay::TiledTriangulation part =
-      delaunay::triangulate_tiles(communicator, mine, options);
+TiledRun gather_parts(comm::Communicator& communicator, const delaunay::TiledTriangulation& part,
+                      bool with_vertices) {
   TiledRun run;
   run.rounds = part.rounds;
   run.hash =
@@ -47,6 +49,14 @@ TiledRun triangulate_by_ranks(comm::Communicator& communicator, const delaunay::
     }
   }
   return run;
+}
+
+TiledRun triangulate_by_ranks(comm::Communicator& communicator, const delaunay::PointCloud& points,
+                              const delaunay::TileOptions& options, bool with_vertices) {
+  return gather_parts(
+      communicator,
+      delaunay::triangulate_tiles(communicator, own_rows(communicator, points), options),
+      with_vertices);
 }
 
 Json tiles_json(const TiledRun& run) {

@@ -21,6 +21,14 @@ struct TiledRun {
   int rounds = 0;
 };
 
+// The points of this rank: a run of their rows.
+std::vector<delaunay::RowPoint> own_rows(const comm::Communicator& communicator,
+                                         const delaunay::PointCloud& points);
+
+// Collective: brings what ranks have made together on rank 0.
+TiledRun gather_parts(comm::Communicator& communicator, const delaunay::TiledTriangulation& part,
+                      bool with_vertices);
+
 // Collective: triangulates the points, which every rank has, each rank beginning with a run of
 // their rows. The result is rank 0's. Throws what triangulate_tiles() throws.
 TiledRun triangulate_by_ranks(comm::Communicator& communicator, const delaunay::PointCloud& points,

@@ -66,6 +66,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/natural_neighbours", {"insertion", "mesh", "predicates"}},
     {"delaunay/files", {"mesh"}},
     {"delaunay/tiles", {"mesh"}},
+    {"delaunay/distributed", {"insertion", "mesh", "predicates", "tiles"}},
     {"delaunay/verify", {"mesh"}},
     {"raster/shading", {"pipeline"}},
     {"raster/distribute", {"pipeline", "shading"}},

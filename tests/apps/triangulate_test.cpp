@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "delaunay/distributed.h"
 #include "tests/support/run_program.h"
 
 namespace delray::tests {
@@ -292,6 +293,41 @@ TEST(TriangulateCommand, RanksAndTilesGiveTheMeshOfOne) {
     EXPECT_EQ(processes["result"], alone["result"]) << dim;
     EXPECT_EQ(processes["options"]["ranks"], 2);
     EXPECT_EQ(processes["tiles"].size(), 2U);
+  }
+}
+
+TEST(TriangulateCommand, DistributedMethodsGiveTheMeshOfOne) {
+  const Folder folder;
+  ASSERT_EQ(run("delray generate points cluster -n 400 --dim 3 --seed 4 -o p.ply", folder.path())
+                .exit_code,
+            0);
+  const std::string triangulate = "delray triangulate p.ply -o m.vtu --stats - ";
+  for (const int dim : {2, 3}) {
+    const std::string of_dim = "--dim " + std::to_string(dim) + " ";
+    const json alone = result_of(triangulate + of_dim, folder);
+    for (const std::string_view name : delaunay::distributed_methods_for(dim)) {
+      const json shared = result_of(
+          triangulate + of_dim + "--ranks 3 --threads 1 --distributed " + std::string(name),
+          folder);
+      EXPECT_EQ(shared["result"], alone["result"]) << name << ", " << dim << "D";
+      EXPECT_EQ(shared["input"], alone["input"]) << name << ", " << dim << "D";
+      EXPECT_EQ(shared["distributed"]["method"], name);
+      EXPECT_EQ(shared["distributed"]["ranks"].size(), 3U);
+      EXPECT_GT(shared["distributed"]["messages"], 0);
+      EXPECT_GT(shared["distributed"]["shared_simplices"], 0) << name << ", " << dim << "D";
+    }
+  }
+  // Few points: processes that share a core take turns with every message.
+  ASSERT_EQ(run("delray generate points cluster -n 40 -o few.ply", folder.path()).exit_code, 0);
+  const json processes = result_of(
+      mpirun(2) + "delray triangulate few.ply --stats - --distributed administrators", folder);
+  EXPECT_EQ(processes["distributed"]["ranks"].size(), 2U);
+  for (const char* more :
+       {"--distributed tile", "--dim 3 --distributed chen", "--distributed tiles --tiles 3",
+        "--distributed administrators --method insertion"}) {
+    EXPECT_EQ(
+        run(std::string("delray triangulate p.ply -o m.ply ") + more, folder.path()).exit_code, 2)
+        << more;
   }
 }
 

@@ -1,0 +1,20 @@
+// The distributed methods of the table in distributed.cpp, one source each.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "comm/communicator.h"
+#include "delaunay/distributed.h"
+
+namespace delray::delaunay {
+
+// Tiles of tiles.h, one for each rank.
+DistributedTriangulation triangulate_by_tiles(comm::Communicator& communicator,
+                                              std::span<const RowPoint> points,
+                                              const DistributedOptions& options);
+// Collective: how many of the rank's simplices have corners in the areas of several ranks.
+std::uint64_t count_shared_rows(comm::Communicator& communicator, std::span<const RowPoint> points,
+                                const DistributedOptions& options, const TiledTriangulation& part);
+
+}  // namespace delray::delaunay
