@@ -103,6 +103,18 @@ std::span<const DistributedMethod> distributed_methods() {
        .triangulates_parts = true,
        .triangulate = triangulate_by_tiles,
        .count_shared = count_shared_rows},
+      {.name = "hardwick",
+       .description =
+           "halves the points along paths of Delaunay edges, found as lower hulls, until "
+           "each rank has a part to triangulate",
+       .dims = {2},
+       .triangulates_parts = true,
+       .triangulate = hardwick},
+      {.name = "lee-2001",
+       .description = "as hardwick, but cuts into as many slabs as ranks in one step",
+       .dims = {2},
+       .triangulates_parts = true,
+       .triangulate = lee_2001},
   };
   return table;
 }

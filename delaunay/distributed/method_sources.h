@@ -16,5 +16,11 @@ DistributedTriangulation triangulate_by_tiles(comm::Communicator& communicator,
 // Collective: how many of the rank's simplices have corners in the areas of several ranks.
 std::uint64_t count_shared_rows(comm::Communicator& communicator, std::span<const RowPoint> points,
                                 const DistributedOptions& options, const TiledTriangulation& part);
+DistributedTriangulation hardwick(comm::Communicator& communicator,
+                                  std::span<const RowPoint> points,
+                                  const DistributedOptions& options);
+DistributedTriangulation lee_2001(comm::Communicator& communicator,
+                                  std::span<const RowPoint> points,
+                                  const DistributedOptions& options);
 
 }  // namespace delray::delaunay
