@@ -103,6 +103,13 @@ std::span<const DistributedMethod> distributed_methods() {
        .triangulates_parts = true,
        .triangulate = triangulate_by_tiles,
        .count_shared = count_shared_rows},
+      {.name = "chen",
+       .description =
+           "each rank triangulates its area and builds on at its border, with the points "
+           "of the areas beside it",
+       .dims = {2},
+       .triangulates_parts = true,
+       .triangulate = chen},
       {.name = "hardwick",
        .description =
            "halves the points along paths of Delaunay edges, found as lower hulls, until "

@@ -16,6 +16,10 @@ DistributedTriangulation triangulate_by_tiles(comm::Communicator& communicator,
 // Collective: how many of the rank's simplices have corners in the areas of several ranks.
 std::uint64_t count_shared_rows(comm::Communicator& communicator, std::span<const RowPoint> points,
                                 const DistributedOptions& options, const TiledTriangulation& part);
+
+// Kohout (2004), 5.3: methods that others had published. In the plane only.
+DistributedTriangulation chen(comm::Communicator& communicator, std::span<const RowPoint> points,
+                              const DistributedOptions& options);
 DistributedTriangulation hardwick(comm::Communicator& communicator,
                                   std::span<const RowPoint> points,
                                   const DistributedOptions& options);
