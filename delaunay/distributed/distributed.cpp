@@ -103,6 +103,12 @@ std::span<const DistributedMethod> distributed_methods() {
        .triangulates_parts = true,
        .triangulate = triangulate_by_tiles,
        .count_shared = count_shared_rows},
+      {.name = "virtual-shared-memory",
+       .description = "the optimistic method over nodes that ranks read through a cache and lock "
+                      "at the rank that has them",
+       .dims = {2, 3},
+       .triangulate = virtual_shared_memory,
+       .on_line = virtual_shared_memory_on_line},
       {.name = "chen",
        .description =
            "each rank triangulates its area and builds on at its border, with the points "

@@ -17,6 +17,14 @@ DistributedTriangulation triangulate_by_tiles(comm::Communicator& communicator,
 std::uint64_t count_shared_rows(comm::Communicator& communicator, std::span<const RowPoint> points,
                                 const DistributedOptions& options, const TiledTriangulation& part);
 
+// Kohout (2004), chapter 8.
+DistributedTriangulation virtual_shared_memory(comm::Communicator& communicator,
+                                               std::span<const RowPoint> points,
+                                               const DistributedOptions& options);
+
+std::unique_ptr<OnlineTriangulation> virtual_shared_memory_on_line(
+    comm::Communicator& communicator, const DistributedOptions& options);
+
 // Kohout (2004), 5.3: methods that others had published. In the plane only.
 DistributedTriangulation chen(comm::Communicator& communicator, std::span<const RowPoint> points,
                               const DistributedOptions& options);
