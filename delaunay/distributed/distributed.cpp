@@ -109,6 +109,13 @@ std::span<const DistributedMethod> distributed_methods() {
        .dims = {2, 3},
        .triangulate = virtual_shared_memory,
        .on_line = virtual_shared_memory_on_line},
+      {.name = "interface-workers",
+       .description = "one rank keeps the simplices that areas share and changes them for the "
+                      "others, which go on meanwhile",
+       .dims = {2, 3},
+       .ranks_without_area = 1,
+       .triangulate = interface_workers,
+       .on_line = interface_workers_on_line},
       {.name = "chen",
        .description =
            "each rank triangulates its area and builds on at its border, with the points "

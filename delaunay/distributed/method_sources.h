@@ -24,6 +24,11 @@ DistributedTriangulation virtual_shared_memory(comm::Communicator& communicator,
 
 std::unique_ptr<OnlineTriangulation> virtual_shared_memory_on_line(
     comm::Communicator& communicator, const DistributedOptions& options);
+DistributedTriangulation interface_workers(comm::Communicator& communicator,
+                                           std::span<const RowPoint> points,
+                                           const DistributedOptions& options);
+std::unique_ptr<OnlineTriangulation> interface_workers_on_line(comm::Communicator& communicator,
+                                                               const DistributedOptions& options);
 
 // Kohout (2004), 5.3: methods that others had published. In the plane only.
 DistributedTriangulation chen(comm::Communicator& communicator, std::span<const RowPoint> points,
