@@ -116,6 +116,12 @@ std::span<const DistributedMethod> distributed_methods() {
        .ranks_without_area = 1,
        .triangulate = interface_workers,
        .on_line = interface_workers_on_line},
+      {.name = "administrators",
+       .description = "each simplex has one rank that changes it; points are sent on, and changes "
+                      "are told to those that share it",
+       .dims = {2, 3},
+       .triangulate = administrators,
+       .on_line = administrators_on_line},
       {.name = "chen",
        .description =
            "each rank triangulates its area and builds on at its border, with the points "

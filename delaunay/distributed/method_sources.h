@@ -29,6 +29,11 @@ DistributedTriangulation interface_workers(comm::Communicator& communicator,
                                            const DistributedOptions& options);
 std::unique_ptr<OnlineTriangulation> interface_workers_on_line(comm::Communicator& communicator,
                                                                const DistributedOptions& options);
+DistributedTriangulation administrators(comm::Communicator& communicator,
+                                        std::span<const RowPoint> points,
+                                        const DistributedOptions& options);
+std::unique_ptr<OnlineTriangulation> administrators_on_line(comm::Communicator& communicator,
+                                                            const DistributedOptions& options);
 
 // Kohout (2004), 5.3: methods that others had published. In the plane only.
 DistributedTriangulation chen(comm::Communicator& communicator, std::span<const RowPoint> points,
