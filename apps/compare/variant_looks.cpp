@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "composite/scheme.h"
+#include "delaunay/distributed.h"
 #include "delaunay/methods.h"
 #include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
@@ -74,6 +75,8 @@ report::Look look_of(Family family, std::string_view name) {
       look.dash = dash_of_way(name);
       return look;
     }
+    case Family::distributed:
+      return look_in(delaunay::distributed_methods(), name);
   }
   return {};
 }

@@ -7,7 +7,7 @@
 
 namespace delray::apps {
 
-enum class Family { scheme, partition, schedule, strategy, method };
+enum class Family { scheme, partition, schedule, strategy, method, distributed };
 
 // The look of a variant by its name, which may go on with parameters behind a colon or a comma:
 // "radix-k:4" looks like "radix-k" but for its dashes. A name that is not in the table has a look

@@ -17,6 +17,7 @@ REPORTS = [
     ("compose", "compare compose gen:city:3000 --size 160x90 --ranks 2,4,80 --quick"
                 " --compose tree radix-k:2 radix-k binary-swap centralized direct-send mesh"),
     ("triangulate", "compare triangulate {points} --threads 1,3 --quick"),
+    ("distributed", "compare triangulate {points} --ranks 1,3 --quick"),
     ("partition", "compare partition gen:city:2000 --size 160x90 --ranks 2,4,80 --regions 1,2"
                   " --quick --partition mahd,kd-split,graph,whitman,whelan,interlaced"),
     ("schedule", "compare schedule gen:spheres:500 --size 160x90 --ranks 2,4,80 --tile 16 --quick"

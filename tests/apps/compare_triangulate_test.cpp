@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "delaunay/distributed.h"
 #include "delaunay/methods.h"
 #include "tests/support/run_program.h"
 
@@ -97,6 +98,45 @@ TEST(CompareTriangulate, TellsOfEveryMethodWhatTheInterfaceSays) {
                            "(counted; hash ", "Speed-up", "Phases", "MA/N",
                            "data:image/png;base64,", "fragments (counted)", "thread 2"}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(CompareTriangulate, WithRanksComparesDistributedMethods) {
+  const Folder folder;
+  generate(folder, "uniform -n 400 --dim 2 -o plane.xyz");
+  const Ran ran =
+      run("delray compare triangulate --quick --stats - -o report.html --ranks 3,1,2 plane.xyz",
+          folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  EXPECT_EQ(json["schema"], "delray.compare.distributed/1");
+  EXPECT_EQ(json["options"]["ranks"], Json({1, 2, 3}));
+  std::map<std::string, std::set<int>> ranks;
+  const std::string hash = hash_of(folder, "plane.xyz --dim 2");
+  for (const Json& row : json["rows"]) {
+    SCOPED_TRACE(row.dump());
+    if (row["points"] != 400) continue;
+    ranks[row["method"]].insert(row["ranks"].get<int>());
+    EXPECT_EQ(row["hash"], hash);
+    EXPECT_EQ(row["predicted"].size(), 4U);
+    for (const Json& one : row["predicted"]) EXPECT_GT(one["seconds"], 0);
+    EXPECT_EQ(row["messages"] > 0, row["ranks"] > 1);
+    EXPECT_EQ(row["bytes"] > 0, row["ranks"] > 1);
+  }
+  for (const std::string_view name : delaunay::distributed_methods_for(2)) {
+    EXPECT_EQ(ranks[std::string(name)], (std::set<int>{1, 2, 3})) << name;
+  }
+  const std::string page = folder.read("report.html");
+  for (const char* part : {"Messages of all ranks", "square root of the points", "(predicted)",
+                           "All methods give the same simplices"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  for (const char* more : {"--ranks 2 --threads 1", "--distributed tiles",
+                           "--ranks 2 --method cavity", "--dim 3 --ranks 2 --distributed chen"}) {
+    EXPECT_EQ(
+        run(std::string("delray compare triangulate plane.xyz ") + more, folder.path()).exit_code,
+        2)
+        << more;
   }
 }
 

@@ -17,10 +17,12 @@ namespace delray::apps {
 
 struct TriangulateRequest : ComparisonOptions {
   PointInput input;
-  int dim = 0;                       // 0: as the input is
-  std::vector<std::string> methods;  // empty: all of the dimension
-  std::vector<int> threads;          // ascending; empty: see usual_threads()
-  std::uint64_t seed = 1;            // of the random subsets and of the methods
+  int dim = 0;                           // 0: as the input is
+  std::vector<std::string> methods;      // empty: all of the dimension
+  std::vector<int> threads;              // ascending; empty: see usual_threads()
+  std::vector<int> ranks;                // ascending; with any, distributed methods are compared
+  std::vector<std::string> distributed;  // those; empty: all of the dimension
+  std::uint64_t seed = 1;                // of the random subsets and of the methods
 };
 
 // 1, 2, 4 and 8 as far as there are cores, the cores, and with fewer than 8 of them twice as many.

@@ -3,7 +3,10 @@
 #include <algorithm>
 
 #include "apps/compare/compare_commands.h"
+#include "apps/compare/triangulate/compare_distributed.h"
 #include "apps/compare/triangulate/compare_triangulate.h"
+#include "apps/compare/triangulate/distributed_figures.h"
+#include "apps/compare/triangulate/distributed_report.h"
 #include "apps/compare/triangulate/triangulate_figures.h"
 #include "apps/compare/triangulate/triangulate_report.h"
 #include "apps/families.h"
@@ -11,6 +14,7 @@
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
 #include "apps/terminal/progress_bar.h"
+#include "delaunay/distributed.h"
 #include "delaunay/methods.h"
 #include "delaunay/read_points.h"
 #include "files/format.h"
@@ -43,14 +47,46 @@ void check_methods(const TriangulateRequest& request, int dim) {
   }
 }
 
+// Throws UsageError for options that mean nothing to the methods that are compared.
+void check_ranks(TriangulateRequest& request) {
+  if (request.ranks.empty() && !request.distributed.empty())
+    throw UsageError("compare triangulate: --distributed goes with --ranks");
+  if (request.ranks.empty()) return;
+  if (!request.threads.empty() || !request.methods.empty())
+    throw UsageError(
+        "compare triangulate: --ranks compares distributed methods, not --method and --threads");
+  std::ranges::sort(request.ranks);
+  request.ranks.erase(std::unique(request.ranks.begin(), request.ranks.end()), request.ranks.end());
+}
+
+// The distributed methods, of the dimension at least one of those that were asked for.
+int run_distributed(Session& session, const TriangulateRequest& request,
+                    const delaunay::PointCloud& points, int dim) {
+  const auto names = delaunay::distributed_methods_for(dim);
+  for (const std::string& name : request.distributed) {
+    if (std::ranges::find(names, name) == names.end())
+      throw UsageError("--distributed " + name + ": not in " + std::to_string(dim) + "D");
+  }
+  ProgressBar bar(session, "compare");
+  const auto comparison = std::make_shared<const DistributedComparison>(
+      compare_distributed(request, points, dim, session.progress));
+  bar.end();
+  return report_results(
+      request,
+      {distributed_table(*comparison), distributed_statistics(request, *comparison),
+       comparison->unfinished, [&] { return distributed_report(session, request, *comparison); }});
+}
+
 int run(Session& session, TriangulateRequest request) {
   if (request.list) {
     list_methods();
+    list_distributed_methods();
     return kDone;
   }
   if (request.input.path.empty()) throw UsageError("compare triangulate: POINTS is missing");
   if (session.under_mpi)
     throw UsageError("compare triangulate: threads are compared, there is nothing for mpirun");
+  check_ranks(request);
   check(session, request, request.input.path);
   std::sort(request.threads.begin(), request.threads.end());
   request.threads.erase(std::unique(request.threads.begin(), request.threads.end()),
@@ -58,6 +94,7 @@ int run(Session& session, TriangulateRequest request) {
   if (request.dim > 0) check_methods(request, request.dim);
   int dim = request.dim;
   const delaunay::PointCloud points = load(request.input, dim);
+  if (!request.ranks.empty()) return run_distributed(session, request, points, dim);
   check_methods(request, dim);
   ProgressBar bar(session, "compare");
   const auto comparison = std::make_shared<const TriangulateComparison>(
@@ -97,6 +134,19 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
                    "Methods to compare, separated by commas (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  command
+      ->add_option("--ranks", request->ranks,
+                   "Compare the distributed methods instead, by these numbers of ranks, separated "
+                   "by commas, on the simulated machine")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->transform(count_between(1, 4096));
+  command
+      ->add_option("--distributed", request->distributed,
+                   "Distributed methods to compare, separated by commas (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  choose_from(*command, "--distributed", names_in(delaunay::distributed_methods()));
   command->add_option("--seed", request->seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
   choose_from(*command, "--method", names_in(delaunay::methods()));
@@ -105,6 +155,7 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
                          "methods");
   add_common_options(*command, session,
                      "compare triangulate points.las -o report.html\n"
+                     "compare triangulate points.las --ranks 1,4,16,64 -o ranks.html\n"
                      "compare triangulate model.obj --dim 3 --threads 1,2,4,8 --quick --stats -");
   command->callback([&session, request] {
     session.run = [&session, request] { return run(session, *request); };
