@@ -28,7 +28,8 @@ constexpr Distribution kDistributions[] = {
     {.name = "hybrid",
      .description = "rays or parts of the scene are sent, whichever the queues favour (Nebel)",
      .decide = distribute_hybrid,
-     .fetches = true},
+     .fetches = true,
+     .chooses = true},
 };
 
 }  // namespace

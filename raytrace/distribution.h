@@ -17,7 +17,12 @@ struct WaitingList {
   std::uint32_t cluster = 0;
   std::uint64_t rays = 0, ray_bytes = 0;  // that wait
   std::uint64_t cluster_bytes = 0;        // that would travel instead
-  bool idle = false;                      // the rank has nothing else to do
+  // Rays that wait for it or were sent to its owner, in this frame and, by halves, in those before,
+  // and what it took lately, in seconds, to send a ray and have its answer, and to fetch so large a
+  // cluster and build its acceleration structure.
+  double wanted = 0.0, ray_seconds = 0.0, cluster_seconds = 0.0;
+  bool has_room = false;  // in the cache, without a cluster having to go
+  bool idle = false;      // the rank has nothing else to do
 };
 
 // An entry of the table of distributions of a scene.
@@ -29,6 +34,9 @@ struct Distribution {
   // Whether every rank has the whole scene, and nothing of this takes place.
   bool replicated = false;
   bool fetches = false;  // clusters of other ranks, into ShareOptions::cache_bytes
+  // Whether rays may travel instead, so that clusters are only fetched which are worth it, and make
+  // room between frames for others that are worth more.
+  bool chooses = false;
 };
 
 // The table: command line, tests and benchmarks iterate over it.

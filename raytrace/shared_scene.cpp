@@ -19,6 +19,7 @@
 
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
+#include "parallel/processor_time.h"
 
 namespace delray::raytrace {
 namespace {
@@ -30,6 +31,26 @@ constexpr std::uint64_t kClusters = 64, kFewestTriangles = 64, kMostTriangles = 
 // Bytes that a cluster takes with its acceleration structure, for each byte of its geometry, at
 // most.
 constexpr std::uint64_t kBytesWithStructure = 4;
+
+// Seconds that a byte takes in a message, beside the processor's.
+constexpr double kSecondsPerByte = 1e-9;
+
+// A ray there and back, about.
+constexpr double kRayBytes = 200;
+
+// A new measurement counts so much.
+constexpr double kNew = 0.25;
+
+// What became of rays that wanted a cluster from one frame to the next. Clusters at hand are
+// forgotten slowly, as rays that meet them in the resident scene are not counted.
+constexpr double kStillWanted = 0.5, kStillWantedAtHand = 0.9;
+
+// A cluster takes another one's place if it is so many times as much wanted.
+constexpr double kMuchMoreWanted = 2.0;
+
+double processor_seconds() {
+  return 1e-9 * static_cast<double>(parallel::quick_processor_nanoseconds());
+}
 
 std::uint32_t triangles_of_cluster(std::uint64_t all, int ranks) {
   const std::uint64_t share = all / (kClusters * static_cast<std::uint64_t>(ranks));
@@ -199,6 +220,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   boxes_ = std::move(all_boxes);
   everywhere_ = ClusterTree(boxes_);
   is_resident_.assign(owners_.size(), 0);
+  wanted_.assign(owners_.size(), 0.0);
 
   std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
   std::vector<std::uint64_t> degenerate(mine.size());
@@ -258,8 +280,8 @@ void SharedScene::make_resident(bool with_cached) {
   if (build_.changing) {
     resident_->change(std::move(resident));
   } else {
-    // What has changed once will do so again.
-    build_.changing = has_room_for_all_ || resident_ != nullptr;
+    // What has changed twice will do so again. Rays take a little longer in such a scene.
+    build_.changing = ++builds_ > 2;
     resident_ = nullptr;  // before there is another one: memory
     resident_ = std::make_unique<ClusterScene>(std::move(resident), build_, device_);
   }
@@ -281,8 +303,59 @@ std::uint64_t SharedScene::missing_triangles() const {
   return triangles;
 }
 
-void SharedScene::begin_frame() {
+// Where rays may travel instead: of clusters of the cache those which take more room than they are
+// worth, beside others that are worth fetching. Returns whether one of them was resident.
+bool SharedScene::drop_least_wanted() {
+  struct Candidate {
+    double wanted_per_byte;
+    std::uint32_t cluster;
+    std::uint64_t bytes;
+    bool operator<(const Candidate& b) const {
+      return wanted_per_byte != b.wanted_per_byte ? wanted_per_byte < b.wanted_per_byte
+                                                  : cluster < b.cluster;
+    }
+  };
+  std::vector<Candidate> here, elsewhere;
+  for (std::uint32_t i = 0; i < wanted_.size(); ++i) {
+    if (owned_.contains(i)) continue;
+    const auto at = cached_.find(i);
+    const bool is_here = at != cached_.end();
+    const std::uint64_t bytes = is_here ? at->second.bytes : bytes_in_cache(i);
+    const double cost = costs_.cluster_byte * static_cast<double>(packed_bytes_[i]);
+    if (!is_here && wanted_[i] * costs_.ray < cost) continue;
+    (is_here ? here : elsewhere).push_back({wanted_[i] / static_cast<double>(bytes), i, bytes});
+  }
+  std::sort(here.begin(), here.end());
+  std::sort(elsewhere.rbegin(), elsewhere.rend());
+  std::uint64_t room = cache_limit_ - std::min(cache_limit_, cached_bytes_);
+  auto least = here.begin();
+  bool any_resident = false;
+  for (const Candidate& wanted : elsewhere) {
+    for (; room < wanted.bytes && least != here.end() &&
+           wanted.wanted_per_byte > kMuchMoreWanted * least->wanted_per_byte;
+         ++least) {
+      any_resident = any_resident || is_resident(least->cluster);
+      drop(least->cluster);
+      room += least->bytes;
+    }
+    if (room < wanted.bytes) break;
+    room -= wanted.bytes;
+  }
+  evicted_before_ = evicted_;
+  return any_resident;
+}
+
+void SharedScene::note_travel(std::uint64_t rays, double seconds) {
+  if (rays == 0) return;
+  const double per_ray = seconds / static_cast<double>(rays) + kRayBytes * kSecondsPerByte;
+  costs_.ray += kNew * (per_ray - costs_.ray);
+}
+
+void SharedScene::begin_frame(bool chooses) {
   const bool settled = evicted_ == std::exchange(evicted_before_, evicted_);
+  for (std::uint32_t i = 0; i < wanted_.size(); ++i)
+    wanted_[i] *= cached_.contains(i) ? kStillWantedAtHand : kStillWanted;
+  const bool dropped = chooses && drop_least_wanted();
   std::uint64_t owned_triangles = 0;
   bool took_over = false;
   for (const auto& [number, cluster] : owned_) {
@@ -291,9 +364,12 @@ void SharedScene::begin_frame() {
   }
   const std::uint64_t missing = settled ? missing_triangles() : 0;
   const std::uint64_t cost = missing + (build_.changing ? 0 : owned_triangles);
-  const bool gathers = missing > 0 && (has_room_for_all_ || tests_ * triangles_per_test_ >= cost);
+  // Most of what is seen comes in the first frame.
+  const bool at_once = has_room_for_all_ && (build_.changing || 4 * missing >= owned_triangles);
+  const bool gathers = missing > 0 && (at_once || tests_ * triangles_per_test_ >= cost);
   const bool holds_too_much = given_bytes_ > (build_.changing ? 0 : bytes() / 8);
-  if (took_over || gathers || holds_too_much) make_resident(gathers || has_resident_cached_);
+  if (took_over || gathers || holds_too_much || dropped)
+    make_resident(gathers || has_resident_cached_);
 }
 
 std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
@@ -306,9 +382,15 @@ std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
 }
 
 std::shared_ptr<const ClusterScene> SharedScene::put(std::uint32_t cluster, ClusterData&& data) {
+  const double begin = processor_seconds();
   auto ready = std::make_shared<const Cluster>(std::move(data), shader_, alphas_);
   auto scene = alone(ready);
   const std::uint64_t bytes = ready->bytes() + scene->bytes();
+  expected_bytes_ -= std::min(expected_bytes_, bytes_in_cache(cluster));
+  const auto packed = static_cast<double>(packed_bytes_[cluster]);
+  costs_.cluster_byte +=
+      kNew * ((processor_seconds() - begin) / packed + kSecondsPerByte - costs_.cluster_byte);
+  bytes_with_structure_ = std::max(bytes_with_structure_, static_cast<double>(bytes) / packed);
   cached_bytes_ += bytes;
   uses_.push_front(cluster);
   cached_.emplace(cluster, Cached{std::move(ready), scene, bytes, uses_.begin()});
@@ -335,13 +417,15 @@ void SharedScene::drop_old() {
     triangles_per_test_ = std::max<std::uint64_t>(1, triangles_per_test_ / 2);
     make_resident(false);
   }
-  while (cached_bytes_ > cache_limit_ && uses_.size() > 1) {
-    const auto at = cached_.find(uses_.back());
-    cached_bytes_ -= at->second.bytes;
-    uses_.erase(at->second.use);
-    cached_.erase(at);
-    ++evicted_;
-  }
+  while (cached_bytes_ > cache_limit_ && uses_.size() > 1) drop(uses_.back());
+}
+
+void SharedScene::drop(std::uint32_t cluster) {
+  const auto at = cached_.find(cluster);
+  cached_bytes_ -= at->second.bytes;
+  uses_.erase(at->second.use);
+  cached_.erase(at);
+  ++evicted_;
 }
 
 void SharedScene::note_bytes() { most_bytes_ = std::max(most_bytes_, bytes()); }

@@ -32,6 +32,13 @@ struct ShareOptions {
   BuildOptions build;
 };
 
+// What it takes to bring rays and clusters together, in seconds of processor time and of messages:
+// for a ray to another rank and back, and for each byte of a cluster that is fetched, with building
+// its acceleration structure. Measured from frame to frame; first as on a usual machine.
+struct TravelCosts {
+  double ray = 4e-7, cluster_byte = 4e-9;
+};
+
 // What a rank has of the geometry, all ranks know of each other, and clusters that came from
 // others. One per rank; parallel only where it says so.
 class SharedScene {
@@ -61,7 +68,9 @@ class SharedScene {
   // resident scene, and those of the cache while it has room for all that is used: at once where it
   // has room for the whole scene, else when rays have spent as much on them one by one as building
   // will take.
-  void begin_frame();
+  // `chooses`: clusters that are worth less than others, which rays were sent for lately, leave the
+  // cache before.
+  void begin_frame(bool chooses = false);
   // Most of what is at hand, as one scene.
   const ClusterScene& resident() const { return *resident_; }
   bool is_resident(std::uint32_t cluster) const { return is_resident_[cluster] != 0; }
@@ -78,6 +87,22 @@ class SharedScene {
   // Parallel. Makes what came from another rank ready for rays, and drops what was not used for
   // longest while there is too much.
   std::shared_ptr<const ClusterScene> put(std::uint32_t cluster, ClusterData&& data);
+  // Rays have been sent to the owner of a cluster instead of fetching it.
+  void note_wanted(std::uint32_t cluster, std::uint64_t rays) {
+    wanted_[cluster] += static_cast<double>(rays);
+  }
+  // Such rays, those of each frame counted half as much in the next one.
+  double wanted(std::uint32_t cluster) const { return wanted_[cluster]; }
+  // Whether the cluster will fit into the cache beside those that are there or expected.
+  bool has_room_for(std::uint32_t cluster) const {
+    return cached_bytes_ + expected_bytes_ + bytes_in_cache(cluster) <= cache_limit_;
+  }
+  // It has been asked for; `put` follows.
+  void expect(std::uint32_t cluster) { expected_bytes_ += bytes_in_cache(cluster); }
+  const TravelCosts& travel_costs() const { return costs_; }
+  // So many rays took so long to be sent and answered, here and elsewhere.
+  void note_travel(std::uint64_t rays, double seconds);
+
   // Owned clusters that change rank for good. One that was resident stays so until the next frame,
   // when one that was taken over becomes resident.
   void give_away(std::uint32_t cluster);
@@ -104,6 +129,13 @@ class SharedScene {
   void drop_old();
   void make_resident(bool with_cached);
   std::uint64_t missing_triangles() const;
+  bool drop_least_wanted();
+  void drop(std::uint32_t cluster);
+  // An estimate, before it is there.
+  std::uint64_t bytes_in_cache(std::uint32_t cluster) const {
+    return static_cast<std::uint64_t>(bytes_with_structure_ *
+                                      static_cast<double>(packed_bytes_[cluster]));
+  }
   std::shared_ptr<const ClusterScene> alone(const std::shared_ptr<const Cluster>& cluster) const;
 
   struct Cached {
@@ -131,9 +163,16 @@ class SharedScene {
   std::uint64_t given_bytes_ = 0;     // of clusters that are resident, but not owned any more
   bool has_resident_cached_ = false;  // whether clusters of the cache are resident
   bool has_room_for_all_ = false;
+  int builds_ = 0;  // of a resident scene as a whole
   // Rays against single clusters since the resident scene changed, how many triangles are worth
   // one, and what had been evicted when the last frame began.
   std::uint64_t tests_ = 0, triangles_per_test_ = 4, evicted_before_ = 0;
+  // By cluster: see wanted(); of those in the cache what they were worth when they came, and rays
+  // that have been intersected with them alone since.
+  std::vector<double> wanted_;
+  std::uint64_t expected_bytes_ = 0;
+  double bytes_with_structure_ = 3.0;  // of clusters in the cache, for each byte of their geometry
+  TravelCosts costs_;
   bool has_instances_ = false;
   double build_seconds_ = 0.0;
   std::uint64_t degenerate_ = 0;

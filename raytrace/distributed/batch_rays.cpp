@@ -62,9 +62,9 @@ void renumber(const LocalScene& scene, RayGroup& group) {
 
 void send_undecided(const HomeScene& home, const ReturnAddress& address, std::uint32_t number,
                     const RayGroup& group, RayQueue& travelling) {
-  const LaneMask active = active_lanes(group.active);
-  if (!home.elsewhere.may_hit(lines_of(group.packet, active))) return;
-  for (LaneMask rest = active; rest != 0; rest &= rest - 1) {
+  const LaneMask undecided =
+      home.elsewhere.hit_lines(lines_of(group.packet, active_lanes(group.active)));
+  for (LaneMask rest = undecided; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     Progression way = home.router.start();
     home.router.choose_next(line_of(group.packet, i), way);
@@ -87,9 +87,9 @@ void send_undecided(const HomeScene& home, const ReturnAddress& address, std::ui
 LaneMask send_undecided(const HomeScene& home, const ReturnAddress& address, std::uint32_t number,
                         const ShadowGroup& group, std::span<const SeeThrough, kPacketRays> passed,
                         RayQueue& travelling) {
+  const LaneMask undecided = home.elsewhere.hit_lines(lines_of(group.packet, group.lit));
   LaneMask sent = 0;
-  if (!home.elsewhere.may_hit(lines_of(group.packet, group.lit))) return sent;
-  for (LaneMask rest = group.lit; rest != 0; rest &= rest - 1) {
+  for (LaneMask rest = undecided; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     Progression way = home.router.start();
     home.router.choose_next(line_of(group.packet, i), way);

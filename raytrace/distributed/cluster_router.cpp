@@ -48,11 +48,11 @@ class ClusterRouter final : public RayRouter {
           from, with_header(answer, pack(context_.scene.owned().at(header.cluster)->data())));
       return;
     }
+    fetching_.erase(header.cluster);
     ++context_.counts.clusters_fetched;
     context_.counts.cluster_bytes += content.size();
     context_.waiting.arrived.emplace_back(
         header.cluster, context_.scene.put(header.cluster, unpack_cluster(content)));
-    fetching_.erase(header.cluster);
   }
 
   void take_turn(bool idle) override {
@@ -73,6 +73,7 @@ class ClusterRouter final : public RayRouter {
           ++at;
           break;
         case RoutingDecision::send_rays: {
+          context_.scene.note_wanted(cluster, at->second.size());
           const auto owner = static_cast<std::size_t>(context_.scene.owner(cluster));
           context_.waiting.to_intersect[owner].append(std::move(at->second));
           at = by_cluster.erase(at);
@@ -89,7 +90,13 @@ class ClusterRouter final : public RayRouter {
     list.rays = waiting.size();
     list.ray_bytes = waiting.rays.size() * sizeof(RayMessage) +
                      waiting.shadows.size() * offsetof(ShadowMessage, layers);
-    list.cluster_bytes = context_.scene.packed_bytes(cluster);
+    const SharedScene& scene = context_.scene;
+    list.cluster_bytes = scene.packed_bytes(cluster);
+    list.wanted = scene.wanted(cluster) + static_cast<double>(waiting.size());
+    list.ray_seconds = scene.travel_costs().ray;
+    list.cluster_seconds =
+        scene.travel_costs().cluster_byte * static_cast<double>(list.cluster_bytes);
+    list.has_room = scene.has_room_for(cluster);
     list.idle = idle;
     return list;
   }
@@ -99,6 +106,7 @@ class ClusterRouter final : public RayRouter {
     header.kind = MessageKind::fetch;
     header.cluster = cluster;
     context_.messenger.send(context_.scene.owner(cluster), with_header(header, {}));
+    context_.scene.expect(cluster);
     fetching_.insert(cluster);
   }
 

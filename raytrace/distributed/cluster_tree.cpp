@@ -5,9 +5,10 @@
 // best hit so far or before the hit that it goes on from. Slabs are widened by what division rounds
 // off. O(n log n) to build, O(log n) to search where a line meets little.
 //
-// Lines that are close to each other are searched for at once, by intervals of what they start from
-// and of their inverse directions (Boulos et al. 2006): rounding is monotone, so an interval holds
-// what each line would have computed for itself.
+// Sixteen lines are searched for at once: first by intervals of what they start from and of their
+// inverse directions, where they are close to each other (Boulos et al. 2006; rounding is monotone,
+// so an interval holds what each line would have computed for itself), then side by side, those of
+// them that enter a box (packets: Wald et al. 2001).
 //
 // Degenerate: equal centres are ordered by number; a line in the plane of a side is decided by the
 // other axes; an empty tree is met by nothing.
@@ -134,10 +135,8 @@ HWY_INLINE std::uint32_t lanes_in_beam(const ClusterTree::Row& row, const Beam& 
   return in_beam & row.used;
 }
 
-bool may_hit(std::span<const ClusterTree::Row> rows, const LinePacket& lines) {
-  if (rows.empty() || lines.active == 0) return false;
-  Beam beam;
-  if (!make_beam(lines, beam)) return true;
+// Whether some line of the beam may have a hit.
+bool may_hit(std::span<const ClusterTree::Row> rows, const Beam& beam) {
   std::uint32_t stack[ClusterTree::kWidth * 32];
   int height = 0;
   stack[height++] = 0;
@@ -149,6 +148,75 @@ bool may_hit(std::span<const ClusterTree::Row> rows, const LinePacket& lines) {
       stack[height++] = row.child[std::countr_zero(rest)];
   }
   return false;
+}
+
+struct alignas(64) Inverses {
+  float of[3][LinePacket::kLines];
+};
+
+// The lines that enter box `i` of a row, by the arithmetic of enter_row.
+HWY_INLINE std::uint32_t lines_in_box(const ClusterTree::Row& row, int box, const LinePacket& lines,
+                                      const Inverses& inverses) {
+  const hn::CappedTag<float, LinePacket::kLines> d;
+  const auto zero = hn::Zero(d), less = hn::Set(d, kLess), more = hn::Set(d, kMore);
+  std::uint32_t in_box = 0;
+  for (int i = 0; i < LinePacket::kLines; i += static_cast<int>(hn::Lanes(d))) {
+    auto enter = hn::LoadU(d, lines.near + i), leave = hn::LoadU(d, lines.far + i);
+    for (int k = 0; k < 3; ++k) {
+      const auto origin = hn::LoadU(d, lines.origin[k] + i);
+      const auto inverse = hn::Load(d, inverses.of[k] + i);
+      const auto a = hn::Mul(hn::Sub(hn::Set(d, row.low[k][box]), origin), inverse);
+      const auto b = hn::Mul(hn::Sub(hn::Set(d, row.high[k][box]), origin), inverse);
+      const auto first = hn::Min(a, b), last = hn::Max(a, b);
+      const auto in = hn::Mul(first, hn::IfThenElse(hn::Gt(first, zero), less, more));
+      const auto out = hn::Mul(last, hn::IfThenElse(hn::Gt(last, zero), more, less));
+      const auto decides = hn::And(hn::Eq(a, a), hn::Eq(b, b));
+      enter = hn::IfThenElse(decides, hn::Max(enter, in), enter);
+      leave = hn::IfThenElse(decides, hn::Min(leave, out), leave);
+    }
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Le(enter, leave), bits);
+    in_box |= (static_cast<std::uint32_t>(bits[0]) | static_cast<std::uint32_t>(bits[1]) << 8) << i;
+  }
+  return in_box;
+}
+
+std::uint32_t hit_lines(std::span<const ClusterTree::Row> rows, const LinePacket& lines) {
+  if (rows.empty() || lines.active == 0) return 0;
+  Beam beam;
+  if (make_beam(lines, beam) && !may_hit(rows, beam)) return 0;
+  const hn::CappedTag<float, LinePacket::kLines> d;
+  Inverses inverses;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < LinePacket::kLines; i += static_cast<int>(hn::Lanes(d))) {
+      hn::Store(hn::Div(hn::Set(d, 1.0F), hn::LoadU(d, lines.direction[k] + i)), d,
+                inverses.of[k] + i);
+    }
+  }
+  struct Open {
+    std::uint32_t row, lines;
+  };
+  Open stack[ClusterTree::kWidth * 32];
+  int height = 0;
+  stack[height++] = {0, lines.active};
+  std::uint32_t hits = 0;
+  while (height > 0 && hits != lines.active) {
+    const Open open = stack[--height];
+    const std::uint32_t searching = open.lines & ~hits;
+    if (searching == 0) continue;
+    const ClusterTree::Row& row = rows[open.row];
+    for (std::uint32_t rest = row.used; rest != 0; rest &= rest - 1) {
+      const int box = std::countr_zero(rest);
+      const std::uint32_t in_box = lines_in_box(row, box, lines, inverses) & searching;
+      if (in_box == 0) continue;
+      if ((row.leaves >> box & 1) != 0) {
+        hits |= in_box;
+      } else {
+        stack[height++] = {row.child[box], in_box};
+      }
+    }
+  }
+  return hits;
 }
 
 ClusterHit next_hit(std::span<const ClusterTree::Row> rows, const Line& line,
@@ -196,7 +264,7 @@ HWY_AFTER_NAMESPACE();
 namespace delray::raytrace {
 
 HWY_EXPORT(next_hit);
-HWY_EXPORT(may_hit);
+HWY_EXPORT(hit_lines);
 
 ClusterTree::ClusterTree(std::vector<ClusterBox> boxes) {
   if (!boxes.empty()) build(boxes);
@@ -254,8 +322,8 @@ ClusterHit ClusterTree::next(const Line& line, const ClusterHit& after) const {
   return HWY_DYNAMIC_DISPATCH(next_hit)(rows_, line, after);
 }
 
-bool ClusterTree::may_hit(const LinePacket& lines) const {
-  return HWY_DYNAMIC_DISPATCH(may_hit)(rows_, lines);
+std::uint32_t ClusterTree::hit_lines(const LinePacket& lines) const {
+  return HWY_DYNAMIC_DISPATCH(hit_lines)(rows_, lines);
 }
 
 }  // namespace delray::raytrace

@@ -60,10 +60,8 @@ class ClusterTree {
   // little.
   ClusterHit next(const Line& line, const ClusterHit& after) const;
 
-  // Whether any of the lines may have a hit: where it returns false, none has. Tells well of lines
-  // that are close to each other; lines of different octants may always have one. O(log n) where
-  // they meet little.
-  bool may_hit(const LinePacket& lines) const;
+  // Which of the active lines have a hit. Fastest where none has and they are close to each other.
+  std::uint32_t hit_lines(const LinePacket& lines) const;
 
   std::uint64_t bytes() const { return rows_.capacity() * sizeof(Row); }
 

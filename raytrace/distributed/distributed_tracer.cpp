@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "comm/collectives.h"
+#include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 #include "raytrace/distributed/distributions.h"
 #include "raytrace/distributed/tile_owners.h"
@@ -28,6 +29,8 @@ constexpr std::size_t kMostFetchingTasks = 384;
 // Tasks that are advanced at a time where rays travel: enough that those that wait for one cluster
 // fill packets.
 constexpr std::size_t kReadyAtOnce = 32;
+// Where none does, for each of several threads: enough that all are busy most of the time.
+constexpr std::size_t kReadyForThread = 8;
 
 // A rank looks whether messages have come at least so often while it waits.
 constexpr auto kMoment = std::chrono::microseconds(100);
@@ -55,17 +58,20 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       scene_(scene),
       frame_(frame),
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
+      ready_at_once_(kReadyAtOnce),
       most_in_flight_(distribution.fetches ? kMostFetchingTasks : kMostPixelTasks),
       passes_tiles_on_(!(distribution.fetches && scene.has_room_for_all())),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
       messenger_(communicator, termination_) {
   const auto ranks = static_cast<std::size_t>(communicator.size());
+  const std::size_t threads = static_cast<std::size_t>(parallel::arena_threads());
+  scene_.begin_frame(distribution.chooses);
+  if (scene_.elsewhere().empty()) ready_at_once_ = threads == 1 ? 1 : kReadyForThread * threads;
   waiting_.to_intersect.resize(ranks);
   waiting_.to_answer.resize(ranks);
   tiles_to_send_.resize(ranks);
   router_ = make_router(distribution, {scene_, messenger_, waiting_, counts_});
-  scene_.begin_frame();
 }
 
 void DistributedTracer::add(std::uint32_t tile) {
@@ -76,7 +82,7 @@ void DistributedTracer::add(std::uint32_t tile) {
     start(tile);
   else
     tiles_to_send_[static_cast<std::size_t>(owner)].push_back(tile);
-  if (ready_.size() >= (scene_.elsewhere().empty() ? 1 : kReadyAtOnce)) serve();
+  if (ready_.size() >= ready_at_once_) serve();
   while (in_flight_ > most_in_flight_) {
     if (!serve()) wait_a_moment();
   }
@@ -94,7 +100,7 @@ bool DistributedTracer::start_waiting_tiles() {
 
 void DistributedTracer::start(std::uint32_t number) {
   TilePixels pixels = start_tile(frame_, number);
-  const std::vector<Task> tasks = tasks_of(frame_, pixels.rect);
+  const std::vector<Task> tasks = tasks_of(frame_, pixels.rect, frame_.integrators.side());
   if (tasks.empty()) {
     done_.push_back(std::move(pixels));
     return;
@@ -144,6 +150,7 @@ void DistributedTracer::finish() {
     else
       wait_a_moment();
   }
+  scene_.note_travel(travelled_ / 2, travel_seconds_);
   // Who begins something else must not be heard by those who are not done.
   comm::barrier(communicator_);
 }
@@ -154,22 +161,31 @@ void DistributedTracer::receive_all() {
     receive(*envelope);
 }
 
+// Rays that came from others, and answers: each ray counts here and there.
+void DistributedTracer::note_travel(std::uint64_t rays, double start) {
+  travelled_ += rays;
+  travel_seconds_ += thread_seconds() - start;
+}
+
 void DistributedTracer::receive(const comm::Envelope& envelope) {
   const comm::Buffer message = communicator_.receive(envelope.source, RayMessenger::kTag);
   termination_.count_received();
   const MessageHeader header = header_of(message);
+  const double start = thread_seconds();
   switch (header.kind) {
     case MessageKind::intersect: {
       RayQueue queue = unpack_rays(message, header);
       take_known(queue.rays);
       take_known(queue.shadows);
       if (!queue.empty()) waiting_.at_resident.push_back(std::move(queue));
+      note_travel(header.rays + header.shadows, start);
       break;
     }
     case MessageKind::answer: {
       const RayQueue queue = unpack_rays(message, header);
       for (const RayMessage& ray : queue.rays) end_ray(ray);
       for (const ShadowMessage& shadow : queue.shadows) end_ray(shadow);
+      note_travel(header.rays + header.shadows, start);
       break;
     }
     case MessageKind::tiles:
@@ -307,6 +323,7 @@ void DistributedTracer::end_ray(const Message& message) {
 bool DistributedTracer::intersect_waiting() {
   std::vector<RayQueue> queues;
   std::vector<std::shared_ptr<const ClusterScene>> held;  // null: the resident scene
+  std::vector<std::uint32_t> numbers;                     // of clusters that are not resident
   const auto take = [&](std::shared_ptr<const ClusterScene> clusters, RayQueue&& queue) {
     held.push_back(std::move(clusters));
     queues.push_back(std::move(queue));
@@ -315,6 +332,7 @@ bool DistributedTracer::intersect_waiting() {
   for (auto& [number, clusters] : std::exchange(waiting_.arrived, {})) {
     const auto at = by_cluster.find(number);
     if (at == by_cluster.end()) continue;
+    numbers.push_back(number);
     take(clusters, std::move(at->second));
     by_cluster.erase(at);
   }
@@ -324,11 +342,15 @@ bool DistributedTracer::intersect_waiting() {
       ++at;
       continue;
     }
+    numbers.push_back(at->first);
     take(std::move(clusters), std::move(at->second));
     at = by_cluster.erase(at);
   }
   std::uint64_t tests = 0;
-  for (const RayQueue& queue : queues) tests += queue.size();
+  for (std::size_t i = 0; i < queues.size(); ++i) {
+    tests += queues[i].size();
+    scene_.note_wanted(numbers[i], queues[i].size());
+  }
   scene_.note_tests(tests);
   for (RayQueue& queue : std::exchange(waiting_.at_resident, {})) {
     tests += queue.size();
@@ -348,7 +370,10 @@ bool DistributedTracer::intersect_waiting() {
           {clusters, {}, shadows.subspan(k, std::min(kRaysAtOnce, shadows.size() - k))});
   }
   parallel::parallel_for(0, batches.size(), 1, [&](std::size_t i) { intersect(batches[i]); });
-  for (const ClusterBatch& batch : batches) busy_ += batch.busy;
+  for (const ClusterBatch& batch : batches) {
+    busy_ += batch.busy;
+    if (batch.clusters == &scene_.resident()) travel_seconds_ += batch.busy;
+  }
   for (RayQueue& queue : queues) route_all(std::move(queue));
   counts_.tests += tests;
   communicator_.work(comm::Work::rays, tests);
@@ -384,7 +409,9 @@ void DistributedTracer::send_all(bool idle) {
       const std::size_t count = out.size();
       if (count == 0 || (!idle && count < kBatchRays)) return;
       (kind == MessageKind::intersect ? counts_.rays_sent : counts_.answers_sent) += count;
+      const double start = thread_seconds();
       messenger_.send(rank, pack(kind, out.rays, out.shadows));
+      note_travel(0, start);
       out.clear();
     };
     send_batch(MessageKind::intersect, waiting_.to_intersect[static_cast<std::size_t>(rank)]);

@@ -72,6 +72,7 @@ class DistributedTracer {
   bool start_waiting_tiles();
   void receive_all();
   void receive(const comm::Envelope& envelope);
+  void note_travel(std::uint64_t rays, double start);
   bool advance_pixel_tasks();
   Advanced advance(std::uint32_t pixel_task);
   void end_task(std::uint32_t pixel_task);
@@ -93,6 +94,7 @@ class DistributedTracer {
   SharedScene& scene_;
   const TiledFrame& frame_;
   int last_sample_;             // one past it
+  std::size_t ready_at_once_;   // tasks that are advanced together
   std::size_t most_in_flight_;  // tasks
   bool passes_tiles_on_;        // to ranks that have what they show
   Kernels kernels_;
@@ -110,6 +112,8 @@ class DistributedTracer {
   WaitingRays waiting_;
   RoutingCounts counts_;
   double busy_ = 0.0;
+  std::uint64_t travelled_ = 0;  // rays and answers that came
+  double travel_seconds_ = 0.0;  // of processor time that they took, and what was sent
   std::unique_ptr<RayRouter> router_;
 };
 
