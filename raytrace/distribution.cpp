@@ -16,7 +16,8 @@ constexpr Distribution kDistributions[] = {
      .description =
          "ranks fetch the parts of the scene that they need, and cache them (Badouel, Wald)",
      .decide = distribute_object,
-     .fetches = true},
+     .fetches = true,
+     .plans_tiles = true},
     {.name = "ray",
      .description = "rays go to the ranks that have the parts of the scene that they may hit "
                     "(Caspary, Jevans)",

@@ -37,6 +37,9 @@ struct Distribution {
   // Whether rays may travel instead, so that clusters are only fetched which are worth it, and make
   // room between frames for others that are worth more.
   bool chooses = false;
+  // Whether ranks that have less than an equal share trace tiles of the others: what rays need
+  // comes to them anyway.
+  bool plans_tiles = false;
 };
 
 // The table: command line, tests and benchmarks iterate over it.

@@ -18,6 +18,7 @@
 #include "raytrace/distributed/collect_tiles.h"
 #include "raytrace/distributed/distributed_tracer.h"
 #include "raytrace/distributed/serving_communicator.h"
+#include "raytrace/distributed/tile_plan.h"
 #include "raytrace/distributed/tile_shares.h"
 #include "raytrace/integrators/sample_tile.h"
 
@@ -105,12 +106,26 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame,
   return traced;
 }
 
+// What a rank's tiles of a frame took, of a grid of tiles.
+struct PlannedTiles {
+  std::vector<PlannedTile> tiles;
+  geometry::Rect frame;
+  int width = 0;
+};
+
 // As above, where the scene is shared out: the rank's threads work together at several tiles.
 Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedScene& scene,
-             const Distribution& distribution, loadbalance::ScheduleOptions how) {
+             const Distribution& distribution, PlannedTiles& planned,
+             loadbalance::ScheduleOptions how) {
   parallel::Progress* const progress = frame.options.progress;
   if (progress != nullptr && communicator.rank() == 0) progress->start(frame.tiles.grid().count());
-  DistributedTracer tracer(communicator, scene, distribution, frame);
+  std::vector<std::int32_t> plan;
+  if (distribution.plans_tiles && communicator.size() > 1) {
+    const bool same = planned.frame == frame.tiles.frame && planned.width == frame.tiles.width;
+    plan = plan_tiles(communicator, same ? planned.tiles : std::vector<PlannedTile>(),
+                      frame.tiles.grid().count());
+  }
+  DistributedTracer tracer(communicator, scene, distribution, frame, plan);
   ServingCommunicator serving(communicator, tracer);
   how.threads = 1;
   Traced traced;
@@ -121,6 +136,7 @@ Traced trace(comm::Communicator& communicator, const TiledFrame& frame, SharedSc
                       });
   tracer.finish();
   traced.tiles = std::move(tracer.tiles());
+  planned = {tracer.take_planned(), frame.tiles.frame, frame.tiles.width};
   traced.routing = tracer.counts();
   traced.busy = tracer.busy();
   return traced;
@@ -202,6 +218,7 @@ struct Renderer::Memory {
   SharedScene* scene;    // with
   const Distribution* distribution;
   TileShares shares = {};
+  PlannedTiles planned = {};
   image::ImageF last = {};  // given back
 
   image::ImageF picture(const geometry::Rect& window) {
@@ -267,9 +284,9 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   }
 
   recording.mark(comm::Phase::trace, 0);
-  Traced traced = tracer != nullptr
-                      ? trace(recording, frame, how)
-                      : trace(recording, frame, *memory_->scene, *memory_->distribution, how);
+  Traced traced = tracer != nullptr ? trace(recording, frame, how)
+                                    : trace(recording, frame, *memory_->scene,
+                                            *memory_->distribution, memory_->planned, how);
   statistics.trace_seconds = seconds_since(start);
 
   recording.mark(comm::Phase::gather, 0);

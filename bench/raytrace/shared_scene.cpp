@@ -3,6 +3,8 @@
 // their ratio to `replicated` in the same turn, by the clock and in processor time of all ranks,
 // which a busy machine changes little, and what was counted in the last frame. `object` comes with
 // a cache for everything and with one for a quarter of the scene.
+//
+// Under mpirun the ranks are its processes, and processor time is that of the first.
 #include <time.h>
 
 #include <CLI/CLI.hpp>
@@ -17,7 +19,9 @@
 #include "bench/measure.h"
 #include "bench/ratio.h"
 #include "comm/collectives.h"
+#include "comm/mpi.h"
 #include "comm/threads.h"
+#include "parallel/arena.h"
 #include "raytrace/render.h"
 #include "raytrace/shared_scene.h"
 #include "scenes/camera_path.h"
@@ -86,7 +90,9 @@ void print(const Variant& variant, const Times& times, const raytrace::Statistic
   std::fflush(stdout);
 }
 
-void compare(const std::string& name, const std::string& integrator, const Arguments& arguments) {
+// `world`: of MPI; null: ranks are threads.
+void compare(const std::string& name, const std::string& integrator, const Arguments& arguments,
+             comm::Communicator* world) {
   std::vector<std::string> warnings;
   scenes::Scene scene =
       scenes::is_generated(name) ? scenes::generate(name) : scenes::load(name, warnings);
@@ -102,8 +108,13 @@ void compare(const std::string& name, const std::string& integrator, const Argum
   constexpr int kFrames = 72;  // of a turn of the table
   const std::vector<scenes::Camera> cameras = scenes::turntable(camera, kFrames);
   const raytrace::Tracer tracer = raytrace::make_tracer(scene, options.build);
-  std::printf("%s, %s, %s, %d ranks x %d threads\n", name.c_str(), integrator.c_str(),
-              arguments.turntable ? "turntable" : "at rest", arguments.ranks, arguments.threads);
+  const bool prints = world == nullptr || world->rank() == 0;
+  if (prints) {
+    std::printf("%s, %s, %s, %d %s x %d threads\n", name.c_str(), integrator.c_str(),
+                arguments.turntable ? "turntable" : "at rest",
+                world == nullptr ? arguments.ranks : world->size(),
+                world == nullptr ? "ranks" : "processes", arguments.threads);
+  }
 
   std::vector<Variant> variants;
   for (const Variant& variant : kVariants) {
@@ -113,7 +124,7 @@ void compare(const std::string& name, const std::string& integrator, const Argum
   }
   std::vector<Times> times(variants.size());
   std::vector<raytrace::Statistics> last(variants.size());
-  comm::run_threads(arguments.ranks, arguments.threads, [&](comm::Communicator& communicator) {
+  const auto run_rank = [&](comm::Communicator& communicator) {
     std::vector<Side> sides(variants.size());
     for (std::size_t i = 0; i < variants.size(); ++i) {
       const raytrace::Distribution& distribution =
@@ -163,7 +174,13 @@ void compare(const std::string& name, const std::string& integrator, const Argum
         sides[i].renderer->recycle(std::move(result.image));
       }
     }
-  });
+  };
+  if (world == nullptr) {
+    comm::run_threads(arguments.ranks, arguments.threads, run_rank);
+  } else {
+    parallel::Arena(arguments.threads).execute([&] { run_rank(*world); });
+  }
+  if (!prints) return;
   for (std::size_t i = 0; i < variants.size(); ++i) {
     print(variants[i], times[i], last[i]);
     if (i == 0) continue;
@@ -194,10 +211,16 @@ int main(int argc, char** argv) try {
   app.add_flag("--random", arguments.random, "assign clusters to ranks at random");
   app.add_option("SCENE", arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  for (const std::string& scene : arguments.scenes) {
-    for (const std::string& integrator : arguments.integrators) {
-      compare(scene, integrator, arguments);
+  const auto compare_all = [&](comm::Communicator* world) {
+    for (const std::string& scene : arguments.scenes) {
+      for (const std::string& integrator : arguments.integrators)
+        compare(scene, integrator, arguments, world);
     }
+  };
+  if (comm::launched_by_mpi()) {
+    comm::run_mpi(&argc, &argv, [&](comm::Communicator& world) { compare_all(&world); });
+  } else {
+    compare_all(nullptr);
   }
   return 0;
 } catch (const std::exception& error) {

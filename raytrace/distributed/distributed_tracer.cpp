@@ -53,7 +53,8 @@ std::unique_ptr<RayRouter> make_router(const Distribution& distribution,
 }  // namespace
 
 DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedScene& scene,
-                                     const Distribution& distribution, const TiledFrame& frame)
+                                     const Distribution& distribution, const TiledFrame& frame,
+                                     std::span<const std::int32_t> plan)
     : communicator_(communicator),
       scene_(scene),
       frame_(frame),
@@ -61,6 +62,8 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       ready_at_once_(kReadyAtOnce),
       most_in_flight_(distribution.fetches ? kMostFetchingTasks : kMostPixelTasks),
       passes_tiles_on_(!(distribution.fetches && scene.has_room_for_all())),
+      plans_tiles_(distribution.plans_tiles && passes_tiles_on_ && communicator.size() > 1),
+      plan_(plan),
       kernels_{scene.has_instances()},
       termination_(communicator, kTagControl),
       messenger_(communicator, termination_) {
@@ -74,11 +77,16 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
   router_ = make_router(distribution, {scene_, messenger_, waiting_, counts_});
 }
 
-void DistributedTracer::add(std::uint32_t tile) {
+int DistributedTracer::rank_of_tile(std::uint32_t tile) const {
   const int rank = communicator_.rank();
-  const bool stays = !passes_tiles_on_ || scene_.elsewhere().empty();
-  const int owner = stays ? rank : owner_of_tile(frame_, scene_, rank, tile);
-  if (owner == rank)
+  if (!passes_tiles_on_ || scene_.elsewhere().empty()) return rank;
+  if (!plan_.empty() && plan_[tile] != kNoPlan) return plan_[tile];
+  return owner_of_tile(frame_, scene_, rank, tile);
+}
+
+void DistributedTracer::add(std::uint32_t tile) {
+  const int owner = rank_of_tile(tile);
+  if (owner == communicator_.rank())
     start(tile);
   else
     tiles_to_send_[static_cast<std::size_t>(owner)].push_back(tile);
@@ -278,6 +286,12 @@ void DistributedTracer::end_task(std::uint32_t index) {
   --in_flight_;
   Tile* const tile = std::exchange(pixel_tasks_[index].tile, nullptr);
   if (--tile->pixel_tasks > 0) return;
+  if (plans_tiles_) {
+    const double for_answer = answers_ > 0 ? waiting_seconds_ / static_cast<double>(answers_) : 0.0;
+    const std::uint32_t number = tile->pixels.tile;
+    planned_.push_back({number, owner_of_tile(frame_, scene_, communicator_.rank(), number),
+                        tile->pixels.busy + for_answer * static_cast<double>(tile->answers)});
+  }
   done_.push_back(std::move(tile->pixels));
   std::erase_if(open_tiles_, [tile](const auto& open) { return open.get() == tile; });
 }
@@ -317,6 +331,8 @@ void DistributedTracer::end_ray(const Message& message) {
   const std::uint32_t index = message.return_address.pixel_task;
   PixelTask& pixel_task = pixel_tasks_[index];
   deliver(message, pixel_task.integrator->batch());
+  ++pixel_task.tile->answers;
+  ++answers_;
   if (--pixel_task.open == 0) ready_.push_back(index);
 }
 
@@ -372,7 +388,7 @@ bool DistributedTracer::intersect_waiting() {
   parallel::parallel_for(0, batches.size(), 1, [&](std::size_t i) { intersect(batches[i]); });
   for (const ClusterBatch& batch : batches) {
     busy_ += batch.busy;
-    if (batch.clusters == &scene_.resident()) travel_seconds_ += batch.busy;
+    (batch.clusters == &scene_.resident() ? travel_seconds_ : waiting_seconds_) += batch.busy;
   }
   for (RayQueue& queue : queues) route_all(std::move(queue));
   counts_.tests += tests;

@@ -10,6 +10,7 @@
 #include "comm/termination.h"
 #include "raytrace/distributed/batch_rays.h"
 #include "raytrace/distributed/ray_router.h"
+#include "raytrace/distributed/tile_plan.h"
 #include "raytrace/integrators/sample_tile.h"
 
 namespace delray::raytrace {
@@ -22,8 +23,10 @@ namespace delray::raytrace {
 // done everywhere is found out by four counters (comm/termination.h).
 class DistributedTracer {
  public:
+  // `plan`: the ranks of tiles, as plan_tiles() returns them.
   DistributedTracer(comm::Communicator& communicator, SharedScene& scene,
-                    const Distribution& distribution, const TiledFrame& frame);
+                    const Distribution& distribution, const TiledFrame& frame,
+                    std::span<const std::int32_t> plan = {});
 
   // Adds a tile, here or on the rank that has what it shows, and works until there is room for
   // another.
@@ -37,12 +40,15 @@ class DistributedTracer {
 
   std::vector<TilePixels>& tiles() { return done_; }
   const RoutingCounts& counts() const { return counts_; }
+  // Of those tiles, where the distribution plans them.
+  std::vector<PlannedTile> take_planned() { return std::move(planned_); }
   double busy() const { return busy_; }
 
  private:
   struct Tile {
     TilePixels pixels;
     int pixel_tasks = 0;
+    std::uint64_t answers = 0;
   };
   // A task of a tile, sample after sample.
   struct PixelTask {
@@ -68,6 +74,7 @@ class DistributedTracer {
     double busy = 0.0;
   };
 
+  int rank_of_tile(std::uint32_t tile) const;
   void start(std::uint32_t tile);
   bool start_waiting_tiles();
   void receive_all();
@@ -97,6 +104,8 @@ class DistributedTracer {
   std::size_t ready_at_once_;   // tasks that are advanced together
   std::size_t most_in_flight_;  // tasks
   bool passes_tiles_on_;        // to ranks that have what they show
+  bool plans_tiles_;            // for the next frame
+  std::span<const std::int32_t> plan_;
   Kernels kernels_;
   comm::Termination termination_;
   RayMessenger messenger_;
@@ -108,12 +117,15 @@ class DistributedTracer {
   std::vector<std::uint32_t> waiting_tiles_;               // that other ranks passed on to this one
   std::vector<std::vector<std::uint32_t>> tiles_to_send_;  // by rank
   std::vector<TilePixels> done_;
+  std::vector<PlannedTile> planned_;
 
   WaitingRays waiting_;
   RoutingCounts counts_;
   double busy_ = 0.0;
-  std::uint64_t travelled_ = 0;  // rays and answers that came
-  double travel_seconds_ = 0.0;  // of processor time that they took, and what was sent
+  double waiting_seconds_ = 0.0;  // of processor time, for rays that waited
+  std::uint64_t answers_ = 0;     // to those of this rank
+  std::uint64_t travelled_ = 0;   // rays and answers that came
+  double travel_seconds_ = 0.0;   // of processor time that they took, and what was sent
   std::unique_ptr<RayRouter> router_;
 };
 

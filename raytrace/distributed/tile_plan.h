@@ -1,0 +1,33 @@
+// Which rank traces which tile, so that ranks that have what most of the picture shows need not
+// trace all of that.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "comm/communicator.h"
+
+namespace delray::raytrace {
+
+// A tile of the last frame: whose clusters it shows, and the seconds that it took.
+struct PlannedTile {
+  std::uint32_t tile = 0;
+  std::int32_t owner = 0;
+  double seconds = 0.0;
+};
+
+// Ranks keep tiles that show their own clusters, but for those beyond an equal share of all
+// seconds: the last ones of each such rank go to ranks that have less. Element i: the rank of tile
+// i of `count`, kNoPlan where no tile is known. O(tiles + ranks).
+//
+// REQUIRES: tiles are by ascending number.
+inline constexpr std::int32_t kNoPlan = -1;
+std::vector<std::int32_t> plan_tiles(std::span<const PlannedTile> tiles, std::uint32_t count,
+                                     int ranks);
+
+// Collective: the same from what each rank has traced; nothing where no rank knows any.
+std::vector<std::int32_t> plan_tiles(comm::Communicator& communicator,
+                                     std::span<const PlannedTile> mine, std::uint32_t count);
+
+}  // namespace delray::raytrace
