@@ -16,7 +16,8 @@ class Charged::Call {
  public:
   explicit Call(const Charged& charged) : clock_(*charged.clock_) {
     const std::int64_t passed = processor_nanoseconds() - clock_.resumed;
-    if (passed > 0) charged.inner().work(Work::seconds_e9, static_cast<std::uint64_t>(passed));
+    if (passed > 0 && !clock_.is_told())
+      charged.inner().work(Work::seconds_e9, static_cast<std::uint64_t>(passed));
   }
   ~Call() { clock_.resumed = processor_nanoseconds(); }
   Call(const Call&) = delete;
@@ -26,8 +27,11 @@ class Charged::Call {
   Clock& clock_;
 };
 
-Charged::Charged(Communicator& inner)
-    : ForwardingCommunicator(inner), clock_(new Clock{processor_nanoseconds()}) {}
+Charged::Charged(Communicator& inner, std::span<const Phase> told)
+    : ForwardingCommunicator(inner), clock_(std::make_shared<Clock>()) {
+  for (const Phase phase : told) clock_->told |= 1U << static_cast<unsigned>(phase);
+  clock_->resumed = processor_nanoseconds();
+}
 
 Charged::Charged(std::unique_ptr<Communicator> inner, std::shared_ptr<Clock> clock)
     : ForwardingCommunicator(std::move(inner)), clock_(std::move(clock)) {}
@@ -64,7 +68,29 @@ std::unique_ptr<Communicator> Charged::split(int color, int key) {
 
 void Charged::mark(Phase phase, int round) {
   const Call call(*this);
+  clock_->phase = phase;
   inner().mark(phase, round);
+}
+
+Communicator::Replica Charged::replicate(const std::function<Replica()>& compute) {
+  struct Timed {
+    Replica result;
+    std::uint64_t nanoseconds = 0;
+  };
+  const Call call(*this);
+  const auto timed = std::static_pointer_cast<const Timed>(inner().replicate([&]() -> Replica {
+    const std::int64_t begin = processor_nanoseconds();
+    auto computed = std::make_shared<Timed>();
+    computed->result = compute();
+    computed->nanoseconds = static_cast<std::uint64_t>(processor_nanoseconds() - begin);
+    return computed;
+  }));
+  if (!clock_->is_told()) inner().work(Work::seconds_e9, timed->nanoseconds);
+  return timed->result;
+}
+
+void Charged::work(Work kind, std::uint64_t amount) {
+  if (clock_->is_told()) inner().work(kind, amount);
 }
 
 }  // namespace delray::comm

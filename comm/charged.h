@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "comm/forwarding.h"
 
@@ -10,6 +11,8 @@ namespace delray::comm {
 // Passes on to `inner`, as work, the processor time of the calling thread between one call and the
 // next, so that real code runs on the simulated machine in its own time (direct execution:
 // Covington et al. 1988). What the code itself tells of its work is left out: it is in that time.
+// Only in the phases `told` it is the other way round: there the code only counts what it would do,
+// and what it tells takes the time that it says.
 // Times, and with them the order of what waits for any message, differ from run to run as measured
 // times do.
 //
@@ -17,7 +20,7 @@ namespace delray::comm {
 // of an arena of one thread, entered before. `inner` outlives this and what is split from it.
 class Charged final : public ForwardingCommunicator {
  public:
-  explicit Charged(Communicator& inner);
+  explicit Charged(Communicator& inner, std::span<const Phase> told = {});
 
   double seconds() const override;
 
@@ -27,12 +30,16 @@ class Charged final : public ForwardingCommunicator {
   std::optional<Envelope> probe(int from_or_any, Tag tag_or_any, Deadline deadline) override;
   std::unique_ptr<Communicator> split(int color, int key) override;
   void mark(Phase phase, int round) override;
-  void work(Work, std::uint64_t) override {}
+  void work(Work kind, std::uint64_t amount) override;
+  // Every rank is charged for what one of them computes.
+  Replica replicate(const std::function<Replica()>& compute) override;
 
  private:
-  // Processor time of the thread when the rank's code went on.
   struct Clock {
-    std::int64_t resumed = 0;
+    std::int64_t resumed = 0;    // processor time of the thread when the rank's code went on
+    std::uint32_t told = 0;      // bit k: of phase k
+    Phase phase = Phase::other;  // marked last, on whichever communicator
+    bool is_told() const { return (told >> static_cast<unsigned>(phase) & 1U) != 0; }
   };
   class Call;
   Charged(std::unique_ptr<Communicator> inner, std::shared_ptr<Clock> clock);

@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -106,6 +107,12 @@ class Communicator {
   // Everything until the next mark belongs to this phase and round.
   virtual void mark(Phase phase, int round) = 0;
   virtual void work(Work kind, std::uint64_t amount) = 0;
+
+  // What `compute` gives, which is the same on every rank: all call this, in the same order with
+  // regard to other calls of it. A machine whose ranks take turns on one thread may compute it once
+  // for all of them; elsewhere each does. REQUIRES: compute does not use the communicator.
+  using Replica = std::shared_ptr<const void>;
+  virtual Replica replicate(const std::function<Replica()>& compute) { return compute(); }
 
   // Ends all ranks; the launcher reports `why` with this rank's number (exit code 5).
   [[noreturn]] virtual void abort(std::string why) = 0;

@@ -36,6 +36,10 @@ void ForwardingCommunicator::mark(Phase phase, int round) { inner_.mark(phase, r
 
 void ForwardingCommunicator::work(Work kind, std::uint64_t amount) { inner_.work(kind, amount); }
 
+Communicator::Replica ForwardingCommunicator::replicate(const std::function<Replica()>& compute) {
+  return inner_.replicate(compute);
+}
+
 void ForwardingCommunicator::abort(std::string why) {
   inner_.abort(std::move(why));
   std::terminate();  // not reached; not every compiler sees that

@@ -24,6 +24,7 @@ class ForwardingCommunicator : public Communicator {
   std::unique_ptr<Communicator> split(int color, int key) override;
   void mark(Phase phase, int round) override;
   void work(Work kind, std::uint64_t amount) override;
+  Replica replicate(const std::function<Replica()>& compute) override;
   [[noreturn]] void abort(std::string why) override;
 
  protected:

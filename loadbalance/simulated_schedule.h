@@ -2,6 +2,7 @@
 // when, of as many ranks as one likes.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,19 +11,30 @@
 
 namespace delray::loadbalance {
 
+// Tasks whose times are known, and what their results cost on the way to rank 0, where they go in
+// one message of each rank once it gets no more tasks.
+struct SimulatedTasks {
+  TaskGrid grid;
+  std::span<const double> seconds;                   // of task i
+  std::span<const std::uint64_t> result_bytes = {};  // of task i; empty: nothing is gathered
+  std::uint64_t message_bytes = 0;                   // of a message besides
+  double seconds_per_byte = 0;                       // packing on a rank, unpacking on rank 0
+};
+
 // A run of a schedule on the simulated machine.
 struct SimulatedSchedule {
   std::vector<RankReport> ranks;
-  std::vector<int> owners;  // of task i: the rank that did it
-  double seconds = 0;       // from the first rank's begin to the last task's end
+  std::vector<int> owners;   // of task i: the rank that did it
+  double seconds = 0;        // from the first rank's begin to the last task's end
+  double frame_seconds = 0;  // until rank 0 has all results
 };
 
-// Runs the schedule's own code; a task takes a rank the virtual time that seconds[task] says. Ranks
+// Runs the schedule's own code; a task takes a rank the virtual time that tasks.seconds says. Ranks
 // have one thread each. O(log ranks) per message and task.
 //
-// REQUIRES: ranks >= 1; seconds.size() == tasks.count(), none negative; `options` has no `initial`.
-SimulatedSchedule simulate(const Schedule& schedule, const TaskGrid& tasks,
-                           std::span<const double> seconds, int ranks, const comm::Network& network,
-                           const ScheduleOptions& options = {});
+// REQUIRES: ranks >= 1; as many seconds as tasks, and bytes if any, none negative; `options` has no
+// `initial`.
+SimulatedSchedule simulate(const Schedule& schedule, const SimulatedTasks& tasks, int ranks,
+                           const comm::Network& network, const ScheduleOptions& options = {});
 
 }  // namespace delray::loadbalance

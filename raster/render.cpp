@@ -30,7 +30,6 @@ namespace {
 // What one rank did, as it travels to rank 0, which sums up the statistics of the frame.
 struct Report {
   RankStatistics rank;
-  Phases phases;
   TriangleCounts triangles;
   std::uint64_t fragments, shaded, triangles_travelled, fragments_travelled;
 };
@@ -112,7 +111,9 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
   Report report{};
   report.rank.rank = communicator.rank();
   report.rank.busy = phases.transform + phases.bin + phases.rasterize + phases.shade;
+  report.rank.phases = phases;
   report.rank.tasks = rank.counts.tiles;
+  report.rank.triangles_in = rank.counts.triangles.in;
   report.rank.triangles = rank.counts.triangles.rasterized;
   report.rank.shaded = rank.counts.shaded;
   report.rank.requests = rank.schedule.requests;
@@ -122,7 +123,6 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
   report.rank.bytes_sent = totals.bytes_sent;
   report.rank.bytes_received = totals.bytes_received;
   report.rank.messages = totals.messages_sent;
-  report.phases = phases;
   report.triangles = rank.counts.triangles;
   report.fragments = rank.counts.fragments;
   report.shaded = rank.counts.shaded;
@@ -137,7 +137,7 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
   double busiest = 0, sum = 0;
   for (const comm::Buffer& buffer : reports) {
     const Report& report = buffer.as<Report>()[0];
-    statistics.phases += report.phases;
+    statistics.phases += report.rank.phases;
     statistics.ranks.push_back(report.rank);
     busiest = std::max(busiest, report.rank.busy);
     sum += report.rank.busy;

@@ -15,6 +15,7 @@
 
 #include "comm/communicator.h"
 #include "composite/deep_image.h"
+#include "composite/layer_costs.h"
 #include "image/image.h"
 #include "loadbalance/cost_model.h"
 #include "loadbalance/partition.h"
@@ -96,6 +97,11 @@ struct RenderOptions {
   // Of two groups: ranks 0 .. geometry_ranks - 1 have the primitives, the others draw. 0: half.
   int geometry_ranks = 0;
   Redistribution redistribution = Redistribution::immediate;  // sort-middle
+  // Sort-last: the images that are composited are masks of covered pixels
+  // (composite/metadata_only.h), and cutting and merging them takes so long. All is drawn, sent and
+  // counted, but there is no picture, and a rank needs an image only while it draws. With codec
+  // `active`, an opaque scene and ranks of one process; otherwise nothing changes.
+  std::optional<composite::LayerCosts> count_only;
 };
 
 // The first four are seconds of processor time, summed over threads: clusters culled, transformed
@@ -111,8 +117,10 @@ struct Phases {
 // One rank's work for a frame.
 struct RankStatistics {
   int rank = 0;
-  double busy = 0;                          // transform + bin + rasterize + shade
-  std::uint64_t tasks = 0;                  // tiles
+  double busy = 0;          // transform + bin + rasterize + shade
+  std::uint64_t tasks = 0;  // tiles
+  Phases phases;
+  std::uint64_t triangles_in = 0;           // of the clusters that the rank looked at
   std::uint64_t triangles = 0, shaded = 0;  // triangles rasterized, samples shaded
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
   std::uint64_t requests = 0, steals = 0, blocks_stolen = 0;       // of a schedule

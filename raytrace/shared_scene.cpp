@@ -109,7 +109,11 @@ std::vector<ClusterData> assigned(comm::Communicator& communicator, std::vector<
 
 SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Scene& scene,
                               const ShareOptions& options) {
-  shading::Shader shader = shading::make_shader(scene);
+  return make(communicator, scene, shading::make_shader(scene), options);
+}
+
+SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Scene& scene,
+                              shading::Shader shader, const ShareOptions& options) {
   std::vector<ClusterData> mine;
   {
     const std::vector<GeometryInstance> instances =

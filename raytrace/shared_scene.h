@@ -47,6 +47,9 @@ class SharedScene {
   // clusters; `scene` has to be complete on every rank, and may be destroyed afterwards.
   static SharedScene make(comm::Communicator& communicator, const scenes::Scene& scene,
                           const ShareOptions& options);
+  // Of a scene whose shader was taken from it, or is at hand.
+  static SharedScene make(comm::Communicator& communicator, const scenes::Scene& scene,
+                          shading::Shader shader, const ShareOptions& options);
   // Collective. Of a part that no other rank has; all parts together are the whole scene, and no
   // rank ever has more than its own. Nothing in a part may glow.
   static SharedScene make(comm::Communicator& communicator, scenes::ScenePart&& part,

@@ -1,65 +1,48 @@
-// Runs the ranks of the rasterizer by turns on one thread, records their messages with the
-// processor time between them, and replays the record over a network.
+// Has the simulated machine draw a first frame, frames at rest, and frames of a turntable, and
+// replays what it recorded over a network.
 #include "apps/compare/simulated_frames.h"
 
 #include <algorithm>
 
-#include "comm/charged.h"
-#include "comm/collectives.h"
-#include "comm/recording.h"
 #include "comm/replay.h"
-#include "comm/simulated.h"
-#include "parallel/arena.h"
+#include "scenes/camera_path.h"
 
 namespace delray::apps {
+namespace {
+
+constexpr int kAround = 60;  // frames of a turntable: six degrees each
+
+}  // namespace
 
 SimulatedFrames simulate_frames(const Prepared& prepared, const raster::RenderOptions& options,
-                                int ranks, int repeats, parallel::Progress* progress) {
+                                int ranks, const FrameCounts& counts,
+                                parallel::Progress* progress) {
+  const auto at_rest = static_cast<std::size_t>(counts.at_rest);
+  std::vector<scenes::Camera> cameras(1 + at_rest, prepared.camera);
+  const std::vector<scenes::Camera> around = scenes::turntable(prepared.camera, kAround);
+  for (int i = 1; i <= counts.turning; ++i)
+    cameras.push_back(around[static_cast<std::size_t>(i % kAround)]);
+  raster::SimulatedFrames simulated = raster::simulate_frames(
+      {prepared.scene, prepared.shader, cameras, at_rest}, options, ranks, progress);
   SimulatedFrames result;
-  comm::SimulationOptions simulation;
-  simulation.stack_bytes = std::size_t{8} << 20;  // renderers expect a thread's
-  parallel::Arena(1).execute([&] {
-    comm::run_simulated(
-        ranks, {}, 1,
-        [&](comm::Communicator& communicator) {
-          raster::Renderer renderer(prepared.scene, prepared.shader);
-          const bool root = communicator.rank() == 0;
-          for (int repeat = 0; repeat <= repeats; ++repeat) {
-            raster::RenderOptions used = options;
-            used.report_partition = repeat == 0;  // not for free
-            std::vector<comm::Event> events;
-            comm::Recording recording(communicator, events);
-            comm::barrier(communicator);
-            raster::Result frame;
-            {
-              comm::Charged charged(recording);
-              frame = renderer.render(charged, prepared.camera, used, progress);
-              charged.mark(comm::Phase::other, 0);  // what was done since the last message
-            }
-            comm::Ledger ledger = comm::gather_ledger(communicator, events);
-            if (root) {
-              SimulatedFrame& simulated = repeat == 0 ? result.first : result.next.emplace_back();
-              simulated = {std::move(frame.statistics), std::move(ledger)};
-            }
-            if (root && repeat == repeats)
-              result.picture = std::get<image::Image8>(std::move(frame.picture));
-            else
-              renderer.recycle(std::move(frame.picture));
-          }
-        },
-        simulation);
-  });
+  auto frame = std::make_move_iterator(simulated.frames.begin());
+  result.first = *frame++;
+  result.next.assign(frame, frame + counts.at_rest);
+  result.turning.assign(frame + counts.at_rest, std::make_move_iterator(simulated.frames.end()));
+  result.picture = std::get<image::Image8>(std::move(simulated.picture));
+  result.resident_bytes = simulated.resident_bytes;
   return result;
 }
 
-double seconds_over(const SimulatedFrame& frame, const comm::Network& network) {
+double seconds_over(const raster::SimulatedFrame& frame, const comm::Network& network) {
   const std::vector<double> ends = comm::replay(frame.ledger, network);
   return *std::max_element(ends.begin(), ends.end());
 }
 
-Spread seconds_over(std::span<const SimulatedFrame> frames, const comm::Network& network) {
+Spread seconds_over(std::span<const raster::SimulatedFrame> frames, const comm::Network& network) {
   std::vector<double> seconds;
-  for (const SimulatedFrame& frame : frames) seconds.push_back(seconds_over(frame, network));
+  for (const raster::SimulatedFrame& frame : frames)
+    seconds.push_back(seconds_over(frame, network));
   return spread_of(std::move(seconds));
 }
 

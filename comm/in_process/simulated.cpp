@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <random>
 #include <set>
@@ -136,6 +137,16 @@ class Machine {
     return time;
   }
 
+  // The result of a group's call number `call` of replicate.
+  Communicator::Replica replica(const Group* group, int size, std::uint64_t call,
+                                const std::function<Communicator::Replica()>& compute) {
+    const auto [at, is_first] = replicas_.try_emplace({group, call});
+    if (is_first) at->second = {compute(), size};
+    Communicator::Replica result = at->second.result;
+    if (--at->second.left == 0) replicas_.erase(at);
+    return result;
+  }
+
   // REQUIRES: the message has arrived at the receiver's clock.
   void carry_in(int to, const Message& message) {
     Rank& receiver = ranks[to];
@@ -172,6 +183,11 @@ class Machine {
     failure.record(first, ranks[first].phase, std::move(why));
   }
 
+  struct Replicated {
+    Communicator::Replica result;
+    int left = 0;  // ranks that have not come for it
+  };
+  std::map<std::pair<const Group*, std::uint64_t>, Replicated> replicas_;
   std::mt19937_64 random_;
   std::set<std::tuple<double, std::uint64_t, int>> ready_;
   std::unordered_map<std::uint64_t, double> last_arrival_;
@@ -254,6 +270,11 @@ class SimulatedCommunicator final : public Communicator {
            static_cast<double>(amount));
   }
 
+  // Computed by the rank that comes first, and kept until the last has come.
+  Replica replicate(const std::function<Replica()>& compute) override {
+    return machine_.replica(group_.get(), size(), replicated_++, compute);
+  }
+
   void abort(std::string why) override {
     machine_.failure.record(world_rank(rank_), own_.phase, std::move(why));
     throw RunEnded{};
@@ -317,6 +338,7 @@ class SimulatedCommunicator final : public Communicator {
   std::shared_ptr<Group> group_;
   int rank_;
   Rank& own_;
+  std::uint64_t replicated_ = 0;  // calls of replicate
 };
 
 void run_rank(Machine& machine, const std::shared_ptr<Group>& group, int rank,

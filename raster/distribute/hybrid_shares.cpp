@@ -25,7 +25,7 @@ constexpr std::uint64_t kLargestGroup = 256;  // triangles
 // The ranges of everybody's groups on all ranks. A message only where there are any.
 std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, const CostedGroups& costed,
                                             const VisibleGroups& visible, const Shares& shares) {
-  const std::vector<int>& owners = shares.partition.owners;
+  const std::vector<int>& owners = shares.plan->partition.owners;
   std::vector<PrimitiveRange> ranges;
   if (std::find(owners.begin(), owners.end(), loadbalance::kEverybody) == owners.end())
     return ranges;
@@ -59,7 +59,7 @@ const CostedGroups& cost_groups(RankContext& rank) {
 DrawList exchange_groups(RankContext& rank, const CostedGroups& costed,
                          const VisibleGroups& visible, SharedOut& out) {
   const Shares& shares = out.shares;
-  const loadbalance::RegionIndex index(shares.partition.regions);
+  const loadbalance::RegionIndex index(shares.plan->partition.regions);
   std::size_t next = 0;  // of the visible groups
   return make_draw_list(
       out.traffic.exchange(rank, costed.groups,
@@ -68,9 +68,9 @@ DrawList exchange_groups(RankContext& rank, const CostedGroups& costed,
                              if (next == visible.numbers.size() || visible.numbers[next] != group)
                                return;
                              const std::size_t i = shares.first + next++;
-                             const int owner = shares.partition.owners[i];
+                             const int owner = shares.plan->partition.owners[i];
                              if (owner == loadbalance::kEverybody)
-                               index.owners_of(shares.boxes[i].box, owners);
+                               index.owners_of(shares.plan->boxes[i].box, owners);
                              else if (owner != loadbalance::kNobody)
                                owners = {owner};
                            }),
@@ -103,12 +103,17 @@ Shares share_out(const RankContext& rank, const CostedGroups& costed,
   Shares shares;
   const std::vector<comm::Buffer> all =
       comm::all_gather(rank.communicator, comm::Buffer::of(std::span(visible.boxes)));
-  for (int k = 0; k < rank.ranks(); ++k) {
-    if (k == rank.number()) shares.first = shares.boxes.size();
-    for (const GroupBox& box : all[k].as<GroupBox>())
-      shares.boxes.push_back({{box.x0, box.y0, box.x1, box.y1}, box.cost, box.setup});
-  }
-  shares.partition = loadbalance::hybrid_partition(shares.boxes, rank.frame(), rank.ranks());
+  for (int k = 0; k < rank.number(); ++k) shares.first += all[k].as<GroupBox>().size();
+  shares.plan = std::static_pointer_cast<const HybridPlan>(
+      rank.communicator.replicate([&]() -> std::shared_ptr<const void> {
+        auto plan = std::make_shared<HybridPlan>();
+        for (const comm::Buffer& of_rank : all) {
+          for (const GroupBox& box : of_rank.as<GroupBox>())
+            plan->boxes.push_back({{box.x0, box.y0, box.x1, box.y1}, box.cost, box.setup});
+        }
+        plan->partition = loadbalance::hybrid_partition(plan->boxes, rank.frame(), rank.ranks());
+        return plan;
+      }));
   shares.everybodys = find_everybodys(rank, costed, visible, shares);
   return shares;
 }

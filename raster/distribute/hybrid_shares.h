@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "image/image.h"
 #include "loadbalance/hybrid_partition.h"
 #include "raster/distribute/group_traffic.h"
 #include "raster/distribute/rank_context.h"
@@ -28,11 +30,16 @@ struct VisibleGroups {
 };
 VisibleGroups find_visible_groups(const RankContext& rank, const CostedGroups& costed);
 
-// How screen and primitives are shared out; equal on all ranks but for `first`.
-struct Shares {
+// How screen and primitives are shared out; equal on all ranks.
+struct HybridPlan {
   std::vector<loadbalance::WeightedBox> boxes;  // of all groups that are seen, by rank
-  std::size_t first = 0;                        // this rank's among them
   loadbalance::HybridPartition partition;
+};
+
+// The plan, and a rank's place in it.
+struct Shares {
+  std::shared_ptr<const HybridPlan> plan;
+  std::size_t first = 0;                   // this rank's boxes among those of all
   std::vector<PrimitiveRange> everybodys;  // primitives of groups that everybody draws, ascending
 };
 // Collective: every rank gets all boxes, and then the ranges of everybody's groups, if any.
@@ -46,7 +53,7 @@ struct SharedOut {
   GroupTraffic traffic;
   DrawList list;
   // Memory of a frame: by tile and position in it, which triangle of the list is seen there.
-  std::vector<std::uint32_t> numbers;
+  image::Plane<std::uint32_t> numbers;
 };
 
 // Shares out screen and groups, unless all is as in the last frame, and sends every group to its

@@ -44,12 +44,12 @@ class Drawing {
         contested_(static_cast<std::size_t>(rank.screen.tiles())),
         kept_(contested_.size()),
         leaving_(contested_.size()) {
-    for (const loadbalance::Region& region : shares_.partition.regions.regions)
+    for (const loadbalance::Region& region : shares_.plan->partition.regions.regions)
       if (region.owner == rank.number()) own_ = region.rect;
     drawn_ = {rank.options.width, rank.options.height, 0, 0};
-    for (std::size_t i = 0; i < shares_.boxes.size(); ++i) {
-      const Rect& box = shares_.boxes[i].box;
-      const int owner = shares_.partition.owners[i];
+    for (std::size_t i = 0; i < shares_.plan->boxes.size(); ++i) {
+      const Rect& box = shares_.plan->boxes[i].box;
+      const int owner = shares_.plan->partition.owners[i];
       if (owner == rank.number()) {
         drawn_ = {std::min(drawn_.x0, box.x0), std::min(drawn_.y0, box.y0),
                   std::max(drawn_.x1, box.x1), std::max(drawn_.y1, box.y1)};
@@ -60,11 +60,13 @@ class Drawing {
   }
 
   void draw() {
-    if (merges_into_image()) out_.numbers.resize(contested_.size() * kTilePixels);
+    const std::size_t places = contested_.size() * kTilePixels;
+    if (merges_into_image() && out_.numbers.size() != places)
+      out_.numbers = image::Plane<std::uint32_t>(places);  // touched where tiles are contested
     std::vector<Rect> rects = outside(drawn_, own_);
     if (!own_.empty()) rects.push_back(own_);
     const Rect own = samples_of(own_, samples());
-    const loadbalance::RegionIndex index(shares_.partition.regions);
+    const loadbalance::RegionIndex index(shares_.plan->partition.regions);
     rank_.communicator.mark(comm::Phase::rasterize, 0);
     RegionDrawing drawing = rank_.begin(out_.list, rects);
     drawing.draw_all();
@@ -161,7 +163,7 @@ class Drawing {
   // held against it. Else all that is seen of a contested tile is composited in the end.
   bool merges_into_image() const { return !kTransparent && samples() == 1; }
   std::span<std::uint32_t> numbers_of(std::size_t tile) {
-    return std::span(out_.numbers).subspan(tile * kTilePixels, kTilePixels);
+    return out_.numbers.span().subspan(tile * kTilePixels, kTilePixels);
   }
   void keep_numbers(const TileView& tile, const Rect& rect, int k) {
     const std::span<std::uint32_t> numbers = numbers_of(static_cast<std::size_t>(k));
@@ -213,7 +215,7 @@ Picture render(RankContext& rank) {
   drawing.compose();
   const double composed = communicator.seconds();
   rank.counts.phases.compose += composed - drawn;
-  return rank.gather(out.shares.partition.regions, std::move(image));
+  return rank.gather(out.shares.plan->partition.regions, std::move(image));
 }
 
 template <class Colour>

@@ -11,6 +11,8 @@
 #include "composite/deep.h"
 #include "composite/dense.h"
 #include "composite/flatten.h"
+#include "composite/mask.h"
+#include "composite/metadata_only.h"
 #include "composite/scheme.h"
 #include "parallel/parallel_for.h"
 #include "raster/distribute/frame_memory.h"
@@ -166,6 +168,15 @@ composite::OwnedPixels shade_points(RankContext& rank, composite::OwnedPixels&& 
   return result;
 }
 
+// Stands for an image that is not needed any more.
+template <class Colour>
+std::unique_ptr<composite::Layer> mask_of(const RankContext& rank,
+                                          const image::BasicImage<Colour>& image) {
+  return composite::make_metadata_only_active(composite::MaskMaker().add(image.depth.span()),
+                                              sizeof(Colour) + sizeof(float),
+                                              {&rank.communicator, *rank.options.count_only});
+}
+
 // Triangles are drawn as soon as they are set up, so that none are kept and hidden clusters are
 // skipped: that belongs to the first step, large and blended triangles and shading to the second.
 template <class Colour>
@@ -191,6 +202,10 @@ class Steps final : public FrameSteps {
       layer_ = draw_cell(rank_, list_, *drawing_, cell_);
     } else if (rank_.prepared.transparent) {
       layer_ = draw_surfaces(rank_, list_, *drawing_);
+    } else if (counts_only()) {
+      const image::BasicImage<Colour> image = rank_.end_samples<Colour>(*drawing_);
+      rank_.communicator.mark(comm::Phase::compose, 0);  // ranks that do more than count do not
+      layer_ = mask_of(rank_, image);
     } else {
       layer_ =
           composite::find_codec(rank_.options.codec)->make(rank_.end_samples<Colour>(*drawing_));
@@ -225,7 +240,7 @@ class Steps final : public FrameSteps {
   // Whether tiles can go to their owners before all are finished.
   bool has_tiles() const {
     return rank_.options.scheme == "tiles" && rank_.ranks() > 1 && !rank_.prepared.transparent &&
-           !shades_last() && !has_cells();
+           !shades_last() && !has_cells() && !counts_only();
   }
   // Instead of rasterize and compose. REQUIRES: has_tiles().
   Picture rasterize_and_compose() { return picture_of(hand_over_tiles<Colour>(rank_, *drawing_)); }
@@ -240,6 +255,10 @@ class Steps final : public FrameSteps {
     });
   }
   bool has_cells() const { return rank_.options.blend == Blend::by_cell && rank_.ranks() > 1; }
+  bool counts_only() const {
+    return rank_.options.count_only && rank_.options.codec == "active" && rank_.ranks() > 1 &&
+           !rank_.prepared.transparent && !shades_last() && !has_cells();
+  }
 
   std::vector<Piece> pieces() {
     if (has_cells()) {
@@ -258,6 +277,11 @@ class Steps final : public FrameSteps {
   }
 
   Picture picture_of(composite::OwnedPixels&& part) {
+    if (counts_only()) {
+      timed(rank_.communicator, rank_.counts.phases.gather,
+            [&] { return composite::gather(rank_.communicator, std::move(part), 0); });
+      return image::BasicImage<Colour>();
+    }
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
                            rank_.options.height);
     part = timed(rank_.communicator, rank_.counts.phases.gather,

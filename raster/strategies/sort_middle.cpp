@@ -312,6 +312,7 @@ Picture render(RankContext& rank) {
   if (is_unchanged) {
     // The triangles that arrived for the last frame would arrive for this one, too.
     rank.counts.phases.redistribute += communicator.seconds() - before_cut;
+    communicator.mark(comm::Phase::rasterize, 0);
     RegionDrawing drawing = rank.begin(sorted.list, regions);
     drawing.draw(sorted.drawn);
     return finish<Colour>(rank, partition, regions, drawing);
@@ -324,6 +325,7 @@ Picture render(RankContext& rank) {
   RegionDrawing drawing = rank.begin(sorted.list, regions);
   Redistributor redistributor(rank, partition, costed.boxes, sorted, drawing);
   if (redistributor.nothing_travels()) {
+    communicator.mark(comm::Phase::rasterize, 0);
     drawing.draw(own);
     sorted.drawn = own;
   } else if (rank.options.redistribution == Redistribution::at_end) {

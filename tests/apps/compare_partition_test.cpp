@@ -101,6 +101,59 @@ std::string advised(const std::string& page, int ranks) {
   return page.substr(begin, page.find('<', begin) - begin);
 }
 
+double sum_of(const Json& parts) {
+  double sum = 0;
+  for (const Json& seconds : parts) sum += seconds.get<double>();
+  return sum;
+}
+
+// Every strategy on each of so many numbers of ranks, the last of which is not timed.
+void check_scaling(const Json& scaling, std::size_t numbers) {
+  const std::size_t strategies = raster::strategies().size();
+  ASSERT_EQ(scaling["rows"].size(), numbers * strategies);
+  EXPECT_TRUE(scaling["left_out"].empty());
+  for (const Json& row : scaling["rows"]) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_EQ(row["drawing"], row["ranks"] > 64 ? "priced" : "timed");
+    EXPECT_GT(row["messages"], 0);
+    ASSERT_EQ(row["predicted"].size(), 4U);
+    for (const Json& over : row["predicted"]) {
+      for (const char* motion : {"at_rest", "turning"}) {
+        const Json& frame = over[motion];
+        const double seconds = frame["seconds"], alone = scaling["alone"][motion];
+        EXPECT_NEAR(sum_of(frame["busiest_rank_seconds"]), seconds, 1e-9);
+        EXPECT_NEAR(frame["speed_up"].get<double>(), alone / seconds, 1e-9);
+        EXPECT_NEAR(frame["efficiency"].get<double>() * row["ranks"].get<double>(), alone / seconds,
+                    1e-9);
+      }
+    }
+  }
+  ASSERT_EQ(scaling["stops_gaining"].size(), 4 * strategies);
+  // No other number of ranks is faster by more than 5 %, and of fewer all are slower by more.
+  for (const Json& limit : scaling["stops_gaining"]) {
+    SCOPED_TRACE(limit.dump());
+    for (const char* motion : {"at_rest", "turning"}) {
+      double least = 1e300;
+      const auto frames = [&](auto&& f) {
+        for (const Json& row : scaling["rows"]) {
+          for (const Json& over : row["predicted"])
+            if (row["strategy"] == limit["strategy"] && over["network"] == limit["network"])
+              f(row["ranks"].get<int>(), over[motion]["seconds"].get<double>());
+        }
+      };
+      frames([&](int, double seconds) { least = std::min(least, seconds); });
+      frames([&](int ranks, double seconds) {
+        if (ranks < limit[motion]["ranks"]) {
+          EXPECT_GT(seconds, 1.05 * least);
+        } else if (ranks == limit[motion]["ranks"]) {
+          EXPECT_LE(seconds, 1.05 * least);
+        }
+      });
+      EXPECT_EQ(limit[motion]["grows"].is_null(), limit[motion]["ranks"] == 80);
+    }
+  }
+}
+
 TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
   const Folder folder;
   const std::string scene = "gen:city:2000 --size 121x80";
@@ -142,6 +195,7 @@ TEST(ComparePartition, TellsOfEveryPartitionAndStrategyWhatTheInterfaceSays) {
     }
   }
   EXPECT_EQ(rows.size(), json["rows"].size());
+  check_scaling(json["scaling"], 3);
   ASSERT_EQ(json["strategies"].size(), 2 * raster::strategies().size());
   for (const Json& row : json["strategies"]) {
     SCOPED_TRACE(row.dump());

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "loadbalance/schedule.h"
+#include "raytrace/distribution.h"
 #include "tests/support/run_program.h"
 
 namespace delray::tests {
@@ -51,6 +52,15 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
       EXPECT_GE(predicted["seconds"].get<double>() * ranks, seconds * 0.9999);
       EXPECT_GE(predicted["idle"].get<double>(), -1e-4);
       EXPECT_LT(predicted["idle"], 1);
+      const double frame = predicted["frame_seconds"];
+      EXPECT_GT(frame, predicted["seconds"]);
+      EXPECT_NEAR(predicted["efficiency"].get<double>() * ranks, seconds / frame, 1e-9);
+      double sum = 0;
+      for (const Json& part : predicted["busiest_rank_seconds"]) {
+        EXPECT_GE(part.get<double>(), -1e-12);
+        sum += part.get<double>();
+      }
+      EXPECT_NEAR(sum, frame, 1e-9);
     }
     if (ranks == 2) {
       EXPECT_GT(row["seconds"]["frame"], 0);
@@ -61,6 +71,24 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
     }
   }
   EXPECT_EQ(rows.size(), json["rows"].size());
+  std::set<std::string> distributions;
+  for (const Json& row : json["distributions"]) {
+    SCOPED_TRACE(row.dump());
+    distributions.insert(row["distribution"].get<std::string>() + row["ranks"].dump());
+    ASSERT_EQ(row["predicted"].size(), 4U);
+    for (const Json& predicted : row["predicted"]) {
+      const double frame = predicted["frame_seconds"];
+      double sum = 0;
+      for (const Json& part : predicted["busiest_rank_seconds"]) sum += part.get<double>();
+      EXPECT_NEAR(sum, frame, 1e-9);
+      EXPECT_GT(predicted["messages"], 0);
+    }
+  }
+  // All but the one that leaves the whole scene on every rank, on 2 and on 5.
+  EXPECT_EQ(distributions.size(), 2 * (raytrace::distributions().size() - 1));
+  EXPECT_EQ(json["stops_gaining"].size(), loadbalance::schedules().size() * 4);
+  for (const Json& limit : json["stops_gaining"])
+    EXPECT_EQ(limit["grows"].is_null(), limit["ranks"] == 80) << limit;
   const std::string page = folder.read("report.html");
   EXPECT_NE(page.find("Who traced which tile: a colour for each of 5 ranks"), std::string::npos);
   EXPECT_NE(page.find("gen:spheres:500:1"), std::string::npos);  // with the seed

@@ -56,6 +56,90 @@ TEST(Charged, ChargesEveryRankWhatItTookItself) {
   EXPECT_LT(at[1], at[2]);
 }
 
+// Where code only counts, what it tells is charged, and nothing else.
+TEST(Charged, BelievesWhatIsToldInPhasesThatCountOnly) {
+  constexpr Phase kTold[] = {Phase::compose};
+  const std::vector<double> ends = run_simulated(2, free_network(), 1, [&](Communicator& inner) {
+    Charged communicator(inner, kTold);
+    communicator.work(Work::seconds_e9, 500'000'000);  // not told
+    communicator.mark(Phase::compose, 0);
+    spin(0.02);
+    auto both = communicator.split(0, communicator.rank());  // of one clock with what it came from
+    both->work(Work::seconds_e9, 1'000'000);
+    spin(0.02);
+    communicator.mark(Phase::other, 0);
+    spin(0.003);
+    communicator.mark(Phase::other, 1);
+  });
+  for (const double end : ends) {
+    EXPECT_GE(end, 0.004);
+    EXPECT_LT(end, 0.02);  // neither what was spun in between nor what was not told
+  }
+}
+
+TEST(Charged, ChargesAllForWhatOneHasComputed) {
+  int computed = 0;
+  std::vector<std::shared_ptr<const void>> results(5);
+  const std::vector<double> ends = run_simulated(5, free_network(), 1, [&](Communicator& inner) {
+    Charged communicator(inner);
+    const auto compute = [&]() -> Communicator::Replica {
+      spin(0.004);
+      return std::make_shared<int>(++computed);
+    };
+    results[communicator.rank()] = communicator.replicate(compute);
+    auto half = communicator.split(communicator.rank() % 2, 0);  // counts for itself
+    half->replicate(compute);
+    communicator.replicate(compute);
+  });
+  EXPECT_EQ(computed, 4);
+  for (int rank = 0; rank < 5; ++rank) {
+    EXPECT_EQ(results[rank], results[0]);
+    EXPECT_GE(ends[rank], 0.012);
+  }
+}
+
+TEST(Replay, TellsWhereTheTimeOfEveryRankGoes) {
+  Network network = free_network();
+  network.latency = 0.5;
+  network.overhead = 0.125;
+  network.copy_seconds_per_byte = 0.25;
+  network.seconds_per_byte = 1;
+  Ledger ledger;
+  ledger.ranks.resize(2);
+  const auto event = [](Event::Kind kind, Phase phase, std::uint64_t amount, int peer) {
+    Event one;
+    one.kind = kind;
+    one.phase = phase;
+    one.amount = amount;
+    one.peer = peer;
+    one.tag = 1;
+    return one;
+  };
+  ledger.ranks[0] = {event(Event::Kind::work, Phase::rasterize, 2'000'000'000, -1),
+                     event(Event::Kind::send, Phase::gather, 4, 0),  // to itself, for nothing
+                     event(Event::Kind::receive, Phase::gather, 4, 0),
+                     event(Event::Kind::send, Phase::gather, 4, 1)};
+  ledger.ranks[1] = {event(Event::Kind::work, Phase::transform, 1'000'000'000, -1),
+                     event(Event::Kind::receive, Phase::gather, 4, 0)};
+  const std::vector<ReplayedRank> ranks = replay_phases(ledger, network);
+  EXPECT_EQ(ranks[0].in(Phase::rasterize).work, 2);
+  EXPECT_EQ(ranks[0].in(Phase::gather).handling, 1.125);
+  EXPECT_EQ(ranks[0].in(Phase::gather).waiting, 0);
+  EXPECT_EQ(ranks[0].end, 3.125);
+  EXPECT_EQ(ranks[1].in(Phase::transform).work, 1);
+  EXPECT_EQ(ranks[1].in(Phase::gather).handling, 1.125);
+  // From 1 on until the last byte is there, at 3.125 + 4 + 0.5.
+  EXPECT_EQ(ranks[1].in(Phase::gather).waiting, 6.625);
+  EXPECT_EQ(ranks[1].end, 8.75);
+  EXPECT_EQ(replay(ledger, network), (std::vector<double>{3.125, 8.75}));
+  network.shared_cores = 1;  // rank 0 is first or last to work
+  for (const ReplayedRank& rank : replay_phases(ledger, network)) {
+    double sum = 0;
+    for (const PhaseSeconds& phase : rank.phases) sum += phase.all();
+    EXPECT_EQ(sum, rank.end);
+  }
+}
+
 TEST(Replay, GivesWhatTheRunTookOnItsOwnNetworkAndMoreOnASlowerOne) {
   constexpr int kRanks = 5;
   Network slow;

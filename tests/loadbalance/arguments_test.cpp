@@ -62,6 +62,8 @@ TEST(Arguments, OfCosts) {
 
 TEST(Arguments, OfSchedules) {
   const TaskGrid grid{4, 4};
+  const std::vector<double> few(3), enough(16);
+  const std::vector<std::uint64_t> few_bytes(3);
   for (const Schedule& schedule : schedules()) {
     SCOPED_TRACE(schedule.name);
     std::vector<ScheduleOptions> options(4);
@@ -74,8 +76,9 @@ TEST(Arguments, OfSchedules) {
         schedule.run(communicator, grid, wrong, [](std::uint32_t, int) {});
       }));
     }
-    EXPECT_REFUSED(simulate(schedule, grid, std::vector<double>(3), 2, {}));
-    EXPECT_REFUSED(simulate(schedule, grid, std::vector<double>(16), 0, {}));
+    EXPECT_REFUSED((simulate(schedule, {grid, few}, 2, {})));
+    EXPECT_REFUSED((simulate(schedule, {grid, enough, few_bytes}, 2, {})));
+    EXPECT_REFUSED((simulate(schedule, {grid, enough}, 0, {})));
   }
   ScheduleOptions beyond;
   beyond.initial = {{0, 100}};

@@ -23,7 +23,7 @@ TEST(SimulatedSchedule, DoesEveryTaskOnceInItsTime) {
   for (const Schedule& schedule : schedules()) {
     for (const int ranks : {1, 3, 8, 60}) {
       SCOPED_TRACE(std::string(schedule.name) + " " + std::to_string(ranks));
-      const SimulatedSchedule run = simulate(schedule, grid, seconds, ranks, {});
+      const SimulatedSchedule run = simulate(schedule, {grid, seconds}, ranks, {});
       ASSERT_EQ(run.ranks.size(), static_cast<std::size_t>(ranks));
       std::vector<std::uint64_t> tasks(ranks);
       std::vector<double> busy(ranks);
@@ -44,11 +44,27 @@ TEST(SimulatedSchedule, DoesEveryTaskOnceInItsTime) {
   }
 }
 
+TEST(SimulatedSchedule, GathersResultsOnRankZero) {
+  const std::vector<double> seconds(4, 1.0);
+  const std::vector<std::uint64_t> bytes(4, 8);
+  comm::Network network;
+  network.latency = 0.5;
+  network.overhead = 0;
+  network.seconds_per_byte = 1;
+  const SimulatedTasks tasks{{4, 1}, seconds, bytes, 4, 0.25};
+  const SimulatedSchedule run = simulate(*find_schedule("static"), tasks, 2, network);
+  EXPECT_NEAR(run.seconds, 2, 1e-3);
+  // Rank 1 packs 16 bytes, 20 travel, and rank 0 unpacks 16.
+  EXPECT_NEAR(run.frame_seconds, 2 + 4 + 20.5 + 4, 1e-3);
+  EXPECT_NEAR(simulate(*find_schedule("static"), {{4, 1}, seconds}, 2, network).frame_seconds, 2,
+              1e-3);
+}
+
 TEST(SimulatedSchedule, ShowsThatTakingWorkFromOthersPays) {
   const TaskGrid grid{40, 20};
   const std::vector<double> seconds = uneven(grid.count());
   const auto seconds_with = [&](const char* name) {
-    return simulate(*find_schedule(name), grid, seconds, 8, {}).seconds;
+    return simulate(*find_schedule(name), {grid, seconds}, 8, {}).seconds;
   };
   EXPECT_LT(seconds_with("stealing"), 0.4 * seconds_with("static"));
   EXPECT_LT(seconds_with("demand"), 0.4 * seconds_with("static"));

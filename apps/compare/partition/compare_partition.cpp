@@ -2,8 +2,9 @@
 //
 // Ranks take turns on one thread, so that each is timed as if it had a core of its own, and their
 // recorded messages are replayed over each network. Beyond kMostMeasuredRanks the screen is cut
-// only, and the costs foretell the balance. Recommended are partitions that are even by counts and
-// quick by processor time, and of these the ones that are cut soonest.
+// only, and the costs foretell the balance; strategies are drawn there too, and counted.
+// Recommended are partitions that are even by counts and quick by processor time, and of these the
+// ones that are cut soonest.
 //
 // Degenerate: where no partition is both even and quick, the even ones win; a stop keeps what is
 // finished.
@@ -17,6 +18,7 @@
 #include "apps/compare/simulated_frames.h"
 #include "apps/compare/verdict.h"
 #include "comm/network.h"
+#include "composite/layer_costs.h"
 #include "image/hash.h"
 #include "loadbalance/balance.h"
 #include "parallel/arena.h"
@@ -24,6 +26,13 @@
 
 namespace delray::apps {
 namespace {
+
+// Frames that follow the first where ranks are not measured, but counted.
+constexpr FrameCounts kCounted{4, 3}, kCountedQuickly{3, 2};
+// Smaller images tell too little of what layers cost.
+constexpr std::uint64_t kFewestPixelsTimed = 1 << 16;
+// Turning frames of ranks that are measured.
+constexpr int kTurning = 3;
 
 DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::string hash) {
   DrawnFrames result;
@@ -50,7 +59,7 @@ DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::stri
   result.bytes_next = bytes(frames.next.front().statistics);
   std::vector<double> busiest, imbalance;
   std::vector<std::vector<double>> by_rank(first.ranks.size());
-  for (const SimulatedFrame& frame : frames.next) {
+  for (const raster::SimulatedFrame& frame : frames.next) {
     double most = 0;
     for (std::size_t k = 0; k < by_rank.size(); ++k) {
       by_rank[k].push_back(frame.statistics.ranks[k].busy);
@@ -79,14 +88,16 @@ class PartitionRuns {
       : request_(request),
         prepared_(prepared),
         steps_(progress),
-        renderer_(prepared.scene, prepared.shader) {
+        renderer_(prepared.scene, prepared.shader),
+        scaling_(prepared.triangles) {
     options_.width = request.render.width;
     options_.height = request.render.height;
   }
 
   PartitionComparison run() {
-    steps_.start(1 + partitions().size() * variants().size() +
-                 (raster::strategies().size() - 1) * measured_ranks());
+    const std::size_t strategies = raster::strategies().size();
+    steps_.start(1 + partitions().size() * variants().size() + (strategies - 1) * measured_ranks() +
+                 strategies * (request_.ranks.size() - measured_ranks()));
     try {
       draw_alone();
       for (const auto& [ranks, regions] : variants()) {
@@ -96,13 +107,17 @@ class PartitionRuns {
           compare(*partitioner, ranks, regions);
           steps_.done();
         }
-        if (regions == request_.regions.front() && ranks <= kMostMeasuredRanks)
+        if (regions != request_.regions.front()) continue;
+        if (ranks <= kMostMeasuredRanks)
           compare_strategies(ranks);
+        else
+          count_strategies(ranks);
       }
     } catch (const parallel::Interrupted&) {
       if (result_.rows.empty()) throw;
       result_.unfinished = true;
     }
+    result_.scaling = scaling_.result();
     return std::move(result_);
   }
 
@@ -137,7 +152,8 @@ class PartitionRuns {
                       [](int ranks) { return ranks <= kMostMeasuredRanks; }));
   }
 
-  SimulatedFrames draw(const std::string& strategy, const char* partition, int ranks, int regions) {
+  raster::RenderOptions options_of(const std::string& strategy, const char* partition,
+                                   int regions) const {
     raster::RenderOptions options = options_;
     options.strategy = strategy;
     options.partition = partition;
@@ -145,7 +161,12 @@ class PartitionRuns {
     options.codec = "active";
     // Batches that come by chance would be recorded as if they always came so.
     options.redistribution = raster::Redistribution::at_end;
-    return simulate_frames(prepared_, options, ranks, repeats(), steps_.inside());
+    return options;
+  }
+  SimulatedFrames draw(const std::string& strategy, const char* partition, int ranks, int regions,
+                       bool turns = true) {
+    return simulate_frames(prepared_, options_of(strategy, partition, regions), ranks,
+                           {repeats(), turns ? kTurning : 0}, steps_.inside());
   }
 
   // As `delray render` would tell it.
@@ -157,6 +178,7 @@ class PartitionRuns {
 
   void draw_alone() {
     SimulatedFrames frames = draw("sort-first", loadbalance::partitioners()[0].name, 1, 1);
+    scaling_.alone(frames);
     const DrawnFrames alone = drawn_of(frames, 0, {});
     result_.alone_seconds = alone.busiest.median;
     result_.alone = alone.busiest;
@@ -196,7 +218,11 @@ class PartitionRuns {
     }
     row.cut_seconds = spread_of(std::move(seconds));
     if (ranks <= kMostMeasuredRanks) {
-      SimulatedFrames frames = draw("sort-first", partitioner.name, ranks, regions);
+      const bool is_of_strategies =
+          &partitioner == partitions().front() && regions == request_.regions.front();
+      SimulatedFrames frames =
+          draw("sort-first", partitioner.name, ranks, regions, is_of_strategies);
+      if (is_of_strategies) scaling_.timed("sort-first", ranks, frames);
       row.drawn = drawn_of(frames, result_.alone_work, hash_of(frames.picture));
       row.finish_seconds =
           row.cut_seconds.median + row.drawn->work_over_share * result_.alone_seconds / ranks;
@@ -230,10 +256,42 @@ class PartitionRuns {
         continue;
       }
       SimulatedFrames frames = draw(strategy.name, partition, ranks, 1);
+      scaling_.timed(strategy.name, ranks, frames);
       result_.strategies.push_back(
           {strategy.name, ranks, drawn_of(frames, result_.alone_work, hash_of(frames.picture))});
       steps_.done();
     }
+  }
+
+  // More ranks than are measured: their drawing is counted, and images are not kept.
+  void count_strategies(int ranks) {
+    for (const raster::Strategy& strategy : raster::strategies()) {
+      steps_.stop_if_asked();
+      if (!scaling_.fits(strategy.name, ranks)) {
+        steps_.done();
+        continue;
+      }
+      spdlog::info("{} ranks, {}", ranks, strategy.name);
+      raster::RenderOptions options = options_of(
+          strategy.name, partitions().front()->name,
+          std::string_view(strategy.name) == "sort-first" ? request_.regions.front() : 1);
+      if (strategy.composites) options.count_only = layer_costs();
+      scaling_.counted(
+          strategy.name, ranks,
+          simulate_frames(prepared_, options, ranks, request_.quick ? kCountedQuickly : kCounted,
+                          steps_.inside()));
+      steps_.done();
+    }
+  }
+
+  const composite::LayerCosts& layer_costs() {
+    if (!layer_costs_) {
+      const auto pixels =
+          static_cast<std::uint64_t>(options_.width) * static_cast<std::uint64_t>(options_.height);
+      layer_costs_ = composite::measure_layer_costs(*composite::find_codec("active"),
+                                                    std::max(pixels, kFewestPixelsTimed));
+    }
+    return *layer_costs_;
   }
 
   const PartitionRequest& request_;
@@ -243,6 +301,8 @@ class PartitionRuns {
   raster::RenderOptions options_;
   int costs_of_ = 0;
   loadbalance::Costs costs_;
+  ScalingRuns scaling_;
+  std::optional<composite::LayerCosts> layer_costs_;
   PartitionComparison result_;
 };
 

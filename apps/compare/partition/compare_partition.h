@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/compare/partition/strategy_scaling.h"
 #include "apps/compare/scene_comparison.h"
 #include "apps/compare/spread.h"
 #include "image/image.h"
@@ -77,6 +78,7 @@ struct PartitionComparison {
   Spread alone;                              // of alone_seconds
   std::vector<ComparedPartition> rows;       // by ranks and regions
   std::vector<ComparedStrategy> strategies;  // with the first partition of the table
+  StrategyScaling scaling;                   // of these and of more ranks
   std::vector<ShownPartition> shown;         // of shown_ranks(request)
   image::Image8 picture;
   bool unfinished = false;

@@ -43,9 +43,10 @@ void add_compare_partition(CLI::App& compare, Session& session) {
   CLI::App* command = compare.add_subcommand(
       "partition", "Compare partitions of the screen among ranks: balance, overlap and times");
   const auto request = std::make_shared<PartitionRequest>();
-  request->ranks = {2, 4, 8, 16, 32, 64, 256};
+  request->ranks = {2, 4, 8, 16, 32, 64, 256, 1024};
   add_scene_comparison_options(*command, *request,
-                               "(default: 2,4,8,16,32,64,256); more than 64 are predicted");
+                               "(default: 2,4,8,16,32,64,256,1024); of more than 64 work is "
+                               "counted and times are predicted");
   command
       ->add_option("--regions", request->regions,
                    "Numbers of regions per rank to compare, separated by commas (default: 1,2,4); "

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/compare/partition/scaling_figures.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -83,7 +84,8 @@ Json partition_statistics(const PartitionRequest& request, const Prepared& prepa
           {"networks", networks_json()},
           {"alone", {{"work", comparison.alone_work}, {"seconds", comparison.alone_seconds}}},
           {"rows", std::move(rows)},
-          {"strategies", std::move(strategies)}};
+          {"strategies", std::move(strategies)},
+          {"scaling", scaling_json(comparison.scaling)}};
 }
 
 TextTable partition_table(const std::vector<ComparedPartition>& rows) {

@@ -11,6 +11,7 @@
 
 #include "apps/compare/partition/partition_answer.h"
 #include "apps/compare/partition/partition_figures.h"
+#include "apps/compare/partition/scaling_figures.h"
 #include "apps/compare/variant_looks.h"
 #include "apps/compare/verdict.h"
 #include "apps/provenance.h"
@@ -298,6 +299,8 @@ std::string partition_report(const Session& session, const PartitionRequest& req
   if (!comparison.shown.empty()) result.tabs.push_back({"Regions", regions(request, comparison)});
   result.tabs.push_back({"Overlap and cutting", price(request, comparison)});
   result.tabs.push_back({"Strategies", strategies(comparison)});
+  if (!comparison.scaling.rows.empty())
+    result.tabs.push_back({"Beyond this machine", scaling_tab(comparison.scaling)});
   result.tabs.push_back({"All figures", all_rows(request, comparison.rows)});
   result.data = partition_statistics(request, prepared, comparison);
   result.provenance = provenance(session, request.render.scene.file.path);

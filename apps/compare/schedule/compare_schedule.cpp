@@ -23,12 +23,15 @@
 #include "loadbalance/simulated_schedule.h"
 #include "loadbalance/task_grid.h"
 #include "parallel/arena.h"
+#include "parallel/processor_time.h"
 
 namespace delray::apps {
 namespace {
 
 // Single frames that are handed out beside the medians of their tiles, for the spread.
 constexpr std::size_t kSampleFrames = 3;
+// Frames of a scene that is shared out: the last of them finds caches as the others left them.
+constexpr int kDistributedFrames = 2;
 
 ScheduleOver summary_of(const std::string& network, const loadbalance::SimulatedSchedule& run,
                         const std::vector<Tile>& tiles) {
@@ -55,6 +58,36 @@ ScheduleOver summary_of(const std::string& network, const loadbalance::Simulated
   return result;
 }
 
+// Where the time of the rank that traces longest goes.
+void split(const loadbalance::SimulatedSchedule& run, ScheduleOver& over) {
+  over.frame_seconds = run.frame_seconds;
+  for (const loadbalance::RankReport& rank : run.ranks) {
+    double traced = 0, served = 0;
+    for (const loadbalance::Interval& interval : rank.timeline) {
+      const double seconds = interval.end - interval.begin;
+      if (interval.kind == loadbalance::Interval::Kind::work) traced += seconds;
+      if (interval.kind == loadbalance::Interval::Kind::serve) served += seconds;
+    }
+    if (&rank != run.ranks.data() && traced <= over.parts[0]) continue;
+    over.parts = {traced, served, rank.end - traced - served, run.frame_seconds - rank.end};
+  }
+}
+
+// Seconds that a byte takes to be copied to memory that is not in the cache.
+double copy_seconds_per_byte() {
+  constexpr std::size_t kBytes = std::size_t{1} << 25;
+  constexpr int kTimes = 5;
+  const std::vector<std::byte> from(kBytes, std::byte{1});
+  std::vector<std::byte> to(kBytes);
+  std::vector<double> seconds;
+  for (int i = 0; i < kTimes; ++i) {
+    const std::int64_t begin = parallel::processor_nanoseconds();
+    std::copy(from.begin(), from.end(), to.begin());
+    seconds.push_back(static_cast<double>(parallel::processor_nanoseconds() - begin) * 1e-9);
+  }
+  return spread_of(std::move(seconds)).median / static_cast<double>(kBytes);
+}
+
 class ScheduleRuns {
  public:
   ScheduleRuns(const Session& session, const ScheduleRequest& request, const Prepared& prepared,
@@ -76,7 +109,8 @@ class ScheduleRuns {
     const auto traced = static_cast<std::size_t>(std::count_if(
         request_.ranks.begin(), request_.ranks.end(), [&](int ranks) { return is_traced(ranks); }));
     const auto frames = static_cast<std::size_t>(repeats());
-    steps_.start(frames + count * request_.ranks.size() + count * traced * frames);
+    steps_.start(frames + count * request_.ranks.size() + count * traced * frames +
+                 distributions().size() * distributed_ranks().size());
     try {
       measure_tiles();
       for (const int ranks : request_.ranks) {
@@ -89,6 +123,7 @@ class ScheduleRuns {
       }
       for (ComparedSchedule& row : result_.rows)
         if (is_traced(row.ranks)) trace(row);
+      for (const int ranks : distributed_ranks()) distribute(ranks);
     } catch (const parallel::Interrupted&) {
       if (result_.rows.empty()) throw;
       result_.unfinished = true;
@@ -111,6 +146,21 @@ class ScheduleRuns {
               request_.schedules.end())
         result.push_back(&schedule);
     }
+    return result;
+  }
+
+  // But for those that leave the whole scene on every rank.
+  static std::vector<const raytrace::Distribution*> distributions() {
+    std::vector<const raytrace::Distribution*> result;
+    for (const raytrace::Distribution& distribution : raytrace::distributions())
+      if (!distribution.replicated) result.push_back(&distribution);
+    return result;
+  }
+  std::vector<int> distributed_ranks() const {
+    const int most = request_.quick ? kMostDistributedQuickly : kMostDistributedRanks;
+    std::vector<int> result;
+    std::copy_if(request_.ranks.begin(), request_.ranks.end(), std::back_inserter(result),
+                 [&](int ranks) { return ranks > 1 && ranks <= most; });
     return result;
   }
 
@@ -151,6 +201,8 @@ class ScheduleRuns {
       Tile& tile = result_.tiles[i];
       tile.pixels = blocks_.block(static_cast<std::uint32_t>(i));
       tile.seconds = spread_of(std::move(seconds[i]));
+      bytes_.push_back(sizeof(raytrace::TileCost) + static_cast<std::uint64_t>(tile.pixels.area()) *
+                                                        (sizeof(image::RgbaF) + sizeof(float)));
       seconds_.push_back(tile.seconds.median);
       result_.rays += tile.rays;
       result_.seconds += tile.seconds.median;
@@ -190,7 +242,9 @@ class ScheduleRuns {
   loadbalance::SimulatedSchedule simulated(const loadbalance::Schedule& schedule, int ranks,
                                            const comm::NamedNetwork& named,
                                            const std::vector<double>& seconds) const {
-    return loadbalance::simulate(schedule, blocks_.grid(), seconds, ranks, named.network,
+    const loadbalance::SimulatedTasks tasks{blocks_.grid(), seconds, bytes_, sizeof(std::uint64_t),
+                                            copy_seconds_};
+    return loadbalance::simulate(schedule, tasks, ranks, named.network,
                                  raytrace::tile_schedule(blocks_.grid().count(), ranks, 1));
   }
 
@@ -204,6 +258,7 @@ class ScheduleRuns {
         times.push_back(simulated(schedule, ranks, *named, sample).seconds);
       over.spread = spread_of(std::move(times));
       over.spread.median = over.seconds;
+      split(run, over);
       row.over.push_back(std::move(over));
       if (row.over.size() == 1 && ranks == shown_ranks(request_))
         result_.shown.push_back({schedule.name, std::move(run.owners), std::move(run.ranks)});
@@ -243,13 +298,32 @@ class ScheduleRuns {
     row.traced = std::move(traced);
   }
 
+  // Runs the renderer's own code over each network: what rays meet depends on what comes first.
+  void distribute(int ranks) {
+    for (const raytrace::Distribution* distribution : distributions()) {
+      ComparedDistribution row{distribution->name, ranks, {}};
+      spdlog::info("{} ranks, {}", ranks, distribution->name);
+      for (const comm::NamedNetwork* named : networks()) {
+        steps_.stop_if_asked();
+        const std::vector<raytrace::SimulatedFrame> frames = raytrace::simulate_frames(
+            {prepared_.scene, *prepared_.tracer, prepared_.camera, options_, kDistributedFrames},
+            *distribution, ranks, named->network);
+        row.over.push_back({named->name, frames.back()});
+      }
+      result_.distributions.push_back(std::move(row));
+      steps_.done();
+    }
+  }
+
   const Session& session_;
   const ScheduleRequest& request_;
   const Prepared& prepared_;
   Steps steps_;
   raytrace::RenderOptions options_;
   loadbalance::Blocks blocks_;
-  std::vector<double> seconds_;               // of tiles
+  std::vector<double> seconds_;       // of tiles
+  std::vector<std::uint64_t> bytes_;  // of tiles' pixels on the way to rank 0
+  const double copy_seconds_ = copy_seconds_per_byte();
   std::vector<std::vector<double>> samples_;  // of tiles in single frames
   ScheduleComparison result_;
 };
@@ -272,6 +346,28 @@ std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSc
     if (row.ranks == ranks) all.push_back(&row);
   return winners<ComparedSchedule>(
       all, [&](const ComparedSchedule& row) { return row.over[network].spread; });
+}
+
+ScalingLimit limit_of(const ScheduleComparison& comparison, const std::string& schedule,
+                      std::size_t network) {
+  std::vector<ScaledFrame> frames;
+  for (const ComparedSchedule& row : comparison.rows) {
+    if (row.schedule != schedule) continue;
+    const ScheduleOver& over = row.over[network];
+    frames.push_back({row.ranks, over.frame_seconds, {over.parts.begin(), over.parts.end()}});
+  }
+  return limit_of(frames, comparison.seconds);
+}
+
+ScalingLimit limit_of_distribution(const ScheduleComparison& comparison,
+                                   const std::string& distribution, std::size_t network) {
+  std::vector<ScaledFrame> frames;
+  for (const ComparedDistribution& row : comparison.distributions) {
+    if (row.distribution != distribution) continue;
+    const raytrace::SimulatedFrame& frame = row.over[network].frame;
+    frames.push_back({row.ranks, frame.seconds, {frame.parts.begin(), frame.parts.end()}});
+  }
+  return limit_of(frames, comparison.seconds);
 }
 
 std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,

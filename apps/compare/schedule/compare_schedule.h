@@ -1,16 +1,19 @@
 // delray compare schedule: every schedule handing out the tiles of one ray traced picture.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/compare/scaling_limit.h"
 #include "apps/compare/scene_comparison.h"
 #include "apps/compare/spread.h"
 #include "comm/network.h"
 #include "image/image.h"
 #include "loadbalance/schedule.h"
+#include "raytrace/simulated_frames.h"
 
 namespace delray::apps {
 
@@ -31,7 +34,15 @@ struct ScheduleOver {
   // all of them: that of schedules differs where one is better in every frame.
   Spread spread;
   double idle = 0;  // of the ranks' time until then, the part spent waiting or at messages
+  // Until rank 0 has the picture, and what the rank that traces longest spends of it: their sum.
+  double frame_seconds = 0;
+  std::array<double, 4> parts{};  // indexed by kScheduleParts
 };
+
+// Messages: the schedule's. Waiting: for tiles. Gather: from the last tile's end until rank 0 has
+// the picture.
+inline constexpr std::array<const char*, 4> kScheduleParts = {"trace", "messages", "waiting",
+                                                              "gather"};
 
 // Frames of ranks that are threads of this process.
 struct TracedFrames {
@@ -55,6 +66,18 @@ struct Tile {
   Spread seconds;  // of processor time
 };
 
+// A distribution of the scene on the simulated machine, with the renderer's default schedule: every
+// rank has a part of the geometry. Of frames after the first.
+struct ComparedDistribution {
+  std::string distribution;
+  int ranks = 0;
+  struct Over {
+    std::string network;
+    raytrace::SimulatedFrame frame;
+  };
+  std::vector<Over> over;  // the request's network first
+};
+
 // A run over the request's network, of shown_ranks(request) or the fewest.
 struct ShownSchedule {
   std::string name;
@@ -65,15 +88,19 @@ struct ShownSchedule {
 struct ScheduleComparison {
   std::vector<Tile> tiles;
   std::uint64_t rays = 0;
-  double seconds = 0;                  // processor time for all tiles
-  Spread frame;                        // that of single frames
-  std::vector<ComparedSchedule> rows;  // by ranks
+  double seconds = 0;                               // processor time for all tiles
+  Spread frame;                                     // that of single frames
+  std::vector<ComparedSchedule> rows;               // by ranks
+  std::vector<ComparedDistribution> distributions;  // by ranks, few enough to run here
   std::vector<ShownSchedule> shown;
   image::Image8 picture;
   bool unfinished = false;
 };
 
 int shown_ranks(const ScheduleRequest& request);
+
+// On more ranks than this distributions are not run.
+inline constexpr int kMostDistributedRanks = 64, kMostDistributedQuickly = 8;
 
 // Told to stop, gives what is finished. Throws parallel::Interrupted where nothing is finished.
 ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,
@@ -83,6 +110,11 @@ ScheduleComparison compare_schedule(const Session& session, const ScheduleReques
 // that cannot be told from it (winners() in verdict.h). REQUIRES: there are such rows.
 std::vector<const ComparedSchedule*> best_schedules(const std::vector<ComparedSchedule>& rows,
                                                     int ranks, std::size_t network = 0);
+// Where the schedule stops gaining, over the i-th network of the rows. REQUIRES: it has rows.
+ScalingLimit limit_of(const ScheduleComparison& comparison, const std::string& schedule,
+                      std::size_t network);
+ScalingLimit limit_of_distribution(const ScheduleComparison& comparison,
+                                   const std::string& distribution, std::size_t network);
 // The best schedules by frames that were traced; empty if none were with so many ranks.
 std::vector<const ComparedSchedule*> best_traced(const std::vector<ComparedSchedule>& rows,
                                                  int ranks);

@@ -48,10 +48,11 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
   CLI::App* command = compare.add_subcommand(
       "schedule", "Compare schedules of the ray tracer: balance, messages and times");
   const auto request = std::make_shared<ScheduleRequest>();
-  request->ranks = {2, 4, 8, 16, 32, 64, 128, 256};
-  add_scene_comparison_options(*command, *request,
-                               "(default: 2,4,8,16,32,64,128,256); all are simulated, and those up "
-                               "to the number of cores also run");
+  request->ranks = {2, 4, 8, 16, 32, 64, 128, 256, 1024};
+  add_scene_comparison_options(
+      *command, *request,
+      "(default: 2,4,8,16,32,64,128,256,1024); all are simulated, and those up "
+      "to the number of cores also run");
   add_options({"--integrator", "--spp", "--depth"}, *command, request->render);
   command
       ->add_option("--tile", request->tile,

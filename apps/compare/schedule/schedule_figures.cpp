@@ -3,10 +3,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace delray::apps {
 namespace {
 
-Json row_of(const ComparedSchedule& row) {
+Json parts_json(const ScheduleOver& over) {
+  Json parts;
+  for (std::size_t i = 0; i < over.parts.size(); ++i) parts[kScheduleParts[i]] = over.parts[i];
+  return parts;
+}
+
+std::vector<std::string> schedules_of(const ScheduleComparison& comparison) {
+  std::vector<std::string> names;
+  for (const ComparedSchedule& row : comparison.rows)
+    if (std::find(names.begin(), names.end(), row.schedule) == names.end())
+      names.push_back(row.schedule);
+  return names;
+}
+
+// `alone`: seconds of one rank.
+Json row_of(const ComparedSchedule& row, double alone) {
   const ScheduleOver& counted = row.over.front();
   Json one = {{"schedule", row.schedule},
               {"ranks", row.ranks},
@@ -29,6 +46,10 @@ Json row_of(const ComparedSchedule& row) {
                                 {"ranks", row.ranks},
                                 {"seconds", over.seconds},
                                 {"spread", spread_json(over.spread)},
+                                {"frame_seconds", over.frame_seconds},
+                                {"speed_up", alone / over.frame_seconds},
+                                {"efficiency", alone / over.frame_seconds / row.ranks},
+                                {"busiest_rank_seconds", parts_json(over)},
                                 {"imbalance", over.time_imbalance},
                                 {"idle", over.idle},
                                 {"imbalance_rays", over.ray_imbalance},
@@ -40,12 +61,46 @@ Json row_of(const ComparedSchedule& row) {
   return one;
 }
 
+Json distributions_json(const ScheduleComparison& comparison) {
+  Json rows = Json::array();
+  for (const ComparedDistribution& row : comparison.distributions) {
+    Json one = {{"distribution", row.distribution}, {"ranks", row.ranks}};
+    one["predicted"] = Json::array();
+    for (const ComparedDistribution::Over& over : row.over) {
+      Json parts;
+      for (std::size_t i = 0; i < over.frame.parts.size(); ++i)
+        parts[kScheduleParts[i]] = over.frame.parts[i];
+      const double speed_up = comparison.seconds / over.frame.seconds;
+      one["predicted"].push_back({{"network", over.network},
+                                  {"frame_seconds", over.frame.seconds},
+                                  {"speed_up", speed_up},
+                                  {"efficiency", speed_up / row.ranks},
+                                  {"busiest_rank_seconds", std::move(parts)},
+                                  {"bytes_total", over.frame.bytes},
+                                  {"messages", over.frame.messages},
+                                  {"rays_sent", over.frame.rays_sent}});
+    }
+    rows.push_back(std::move(one));
+  }
+  return rows;
+}
+
 }  // namespace
 
 Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepared,
                          const ScheduleComparison& comparison) {
   Json rows = Json::array(), tiles = Json::array();
-  for (const ComparedSchedule& row : comparison.rows) rows.push_back(row_of(row));
+  for (const ComparedSchedule& row : comparison.rows)
+    rows.push_back(row_of(row, comparison.seconds));
+  Json limits = Json::array();
+  for (const std::string& schedule : schedules_of(comparison)) {
+    for (std::size_t i = 0; i < comparison.rows.front().over.size(); ++i) {
+      Json limit = limit_json(limit_of(comparison, schedule, i), kScheduleParts);
+      Json one = {{"schedule", schedule}, {"network", comparison.rows.front().over[i].network}};
+      one.update(limit);
+      limits.push_back(std::move(one));
+    }
+  }
   for (const Tile& tile : comparison.tiles)
     tiles.push_back({tile.pixels.x0, tile.pixels.y0, tile.rays, tile.seconds.median});
   return {{"schema", "delray.compare.schedule/1"},
@@ -63,6 +118,8 @@ Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepare
           {"networks", networks_json()},
           {"alone", {{"rays", comparison.rays}, {"seconds", comparison.seconds}}},
           {"rows", std::move(rows)},
+          {"stops_gaining", std::move(limits)},
+          {"distributions", distributions_json(comparison)},
           {"tile_columns", {"x", "y", "rays", "seconds"}},
           {"tiles", std::move(tiles)}};
 }

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "apps/compare/schedule/schedule_figures.h"
+#include "apps/compare/schedule/schedule_scaling.h"
 #include "apps/compare/variant_looks.h"
 #include "apps/compare/verdict.h"
 #include "apps/provenance.h"
@@ -405,6 +406,7 @@ std::string schedule_report(const Session& session, const ScheduleRequest& reque
   result.tabs.push_back({"Tiles", tiles(request, comparison)});
   if (!comparison.shown.empty()) result.tabs.push_back({"Timelines", timelines(comparison)});
   result.tabs.push_back({"Times", times(comparison)});
+  result.tabs.push_back({"Whole frames", schedule_scaling_tab(comparison)});
   result.tabs.push_back({"Requests and steals", traffic(comparison)});
   result.tabs.push_back({"All figures", figures(request, comparison)});
   result.data = schedule_statistics(request, prepared, comparison);
