@@ -2,6 +2,9 @@
 // thread each, 1920 x 1080, at rest and on a turntable. Ranks that are threads of this process are
 // measured, and the simulated machine predicts the same frames, in turns in one run; medians.
 //
+// Last, 64 ranks that only count, at prices of 4 to 16, beside 64 that are timed: how far the model
+// of more ranks than anybody times is from that of fewer.
+//
 // The model of this machine, measured first: a message costs what it takes round a ring of as many
 // ranks, its bytes nothing; ranks at work at the same time slow each other down as so many
 // renderers on their own do; more ranks than cores take turns on them (Network::shared_cores).
@@ -20,6 +23,8 @@
 #include "bench/this_machine.h"
 #include "comm/collectives.h"
 #include "comm/threads.h"
+#include "composite/codec.h"
+#include "composite/layer_costs.h"
 #include "parallel/arena.h"
 #include "raster/predicted_frame.h"
 #include "raster/strategies.h"
@@ -136,6 +141,49 @@ double tell(const std::string& name, const Row& row, const char* kind,
   return std::abs(error);
 }
 
+// Ranks that only count, at prices of fewer, beside as many that are timed; over InfiniBand, where
+// messages hide least.
+void extrapolate(const std::string& name, const View& view) {
+  constexpr int kFew[] = {4, 8, 16};
+  constexpr int kMany = 64;
+  const comm::Network& network = comm::find_network("hdr-infiniband")->network;
+  const auto primitives = scenes::first_primitives(view.scene).back();
+  const auto simulated = [&](const raster::RenderOptions& options, int ranks) {
+    return raster::simulate_frames({view.scene, view.shader, view.cameras}, options, ranks, nullptr)
+        .frames;
+  };
+  const composite::LayerCosts costs =
+      composite::measure_layer_costs(*composite::find_codec("active"));
+  std::vector<Row> rows;
+  for (const raster::Strategy& strategy : raster::strategies()) {
+    raster::RenderOptions options = options_of(strategy.name);
+    Row& row = rows.emplace_back(Row{strategy.name, kMany, {}, {}});
+    std::vector<raster::SimulatedFrame> at_rest, turning;
+    for (const int ranks : kFew) {
+      std::vector<raster::SimulatedFrame> frames = simulated(options, ranks);
+      for (std::size_t i = 1; i < frames.size(); ++i)
+        (i > view.at_rest ? turning : at_rest).push_back(std::move(frames[i]));
+    }
+    const raster::DrawingPrices still = raster::fit_prices(at_rest, primitives);
+    const raster::DrawingPrices moving = raster::fit_prices(turning, primitives);
+    const std::vector<raster::SimulatedFrame> timed = simulated(options, kMany);
+    options.count_only = costs;
+    std::vector<raster::SimulatedFrame> counted = simulated(options, kMany);
+    for (std::size_t i = 1; i < timed.size(); ++i) {
+      raster::apply_prices(i > view.at_rest ? moving : still, primitives, counted[i]);
+      row.measured.add(view, i, raster::predict(timed[i], network).seconds);
+      row.predicted.add(view, i, raster::predict(counted[i], network).seconds);
+    }
+  }
+  std::printf("  %d ranks over InfiniBand, timed and counted:\n", kMany);
+  for (const Row& row : rows) {
+    std::printf("  %d ranks %-12s", row.ranks, row.strategy);
+    tell(name, row, "at rest", &Times::at_rest);
+    tell(name, row, "turning", &Times::turning);
+    std::printf("\n");
+  }
+}
+
 void compare(const std::string& name, int turns, std::size_t frames) {
   const View view = load(name, frames);
   std::printf("%s\n", name.c_str());
@@ -171,6 +219,7 @@ void compare(const std::string& name, int turns, std::size_t frames) {
   std::printf("  %d of %d within %.0f %%; median %.1f %%, largest %.1f %%\n",
               static_cast<int>(within), static_cast<int>(errors.size()), kBar * 1e2,
               bench::median(errors) * 1e2, *std::max_element(errors.begin(), errors.end()) * 1e2);
+  extrapolate(name, view);
   std::fflush(stdout);
 }
 

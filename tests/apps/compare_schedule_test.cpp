@@ -17,7 +17,8 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
   const Folder folder;
   const std::string scene = "gen:spheres:500 --size 97x65 --integrator direct";
   const Ran ran = run("delray compare schedule " + scene +
-                          " --ranks 2,5,80 --tile 16 --quick --stats - -o report.html",
+                          " --ranks 2,5,80 --tile 16 --quick --data object,ray,hybrid,ring --stats "
+                          "- -o report.html",
                       folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Json json = Json::parse(ran.out);
@@ -75,7 +76,7 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
   for (const Json& row : json["distributions"]) {
     SCOPED_TRACE(row.dump());
     distributions.insert(row["distribution"].get<std::string>() + row["ranks"].dump());
-    ASSERT_EQ(row["predicted"].size(), 4U);
+    ASSERT_EQ(row["predicted"].size(), 3U);  // not the bus
     for (const Json& predicted : row["predicted"]) {
       const double frame = predicted["frame_seconds"];
       double sum = 0;
@@ -99,7 +100,8 @@ TEST(CompareSchedule, RefusesWhatItCannotDo) {
   const Folder folder;
   for (const std::string arguments :
        {"", "gen:spheres --schedule nothing", "gen:spheres --tile 20", "gen:spheres --network none",
-        "gen:spheres --integrator none", "gen:spheres -o report.png"}) {
+        "gen:spheres --integrator none", "gen:spheres --data replicated",
+        "gen:spheres -o report.png"}) {
     const Ran ran = run("delray compare schedule " + arguments, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << arguments << ran.err;
     EXPECT_EQ(ran.out, "");

@@ -82,7 +82,7 @@ bool ScalingRuns::fits(const std::string& strategy, int ranks) {
   if (samples.ranks == 0) return true;
   const double more = static_cast<double>(ranks) / samples.ranks;
   const auto bytes = static_cast<std::uint64_t>(static_cast<double>(samples.bytes) * more);
-  if (bytes <= files::MemoryBudget().left()) return true;
+  if (bytes <= files::MemoryBudget(files::machine_memory() / 4 * 3).left()) return true;
   result_.left_out.push_back({strategy, ranks, bytes});
   return false;
 }

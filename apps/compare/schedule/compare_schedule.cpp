@@ -150,17 +150,21 @@ class ScheduleRuns {
   }
 
   // But for those that leave the whole scene on every rank.
-  static std::vector<const raytrace::Distribution*> distributions() {
+  std::vector<const raytrace::Distribution*> distributions() const {
     std::vector<const raytrace::Distribution*> result;
-    for (const raytrace::Distribution& distribution : raytrace::distributions())
-      if (!distribution.replicated) result.push_back(&distribution);
+    for (const raytrace::Distribution& distribution : raytrace::distributions()) {
+      const std::vector<std::string>& names = request_.distributions;
+      const bool wanted =
+          names.empty() ? !request_.quick
+                        : std::find(names.begin(), names.end(), distribution.name) != names.end();
+      if (!distribution.replicated && wanted) result.push_back(&distribution);
+    }
     return result;
   }
   std::vector<int> distributed_ranks() const {
-    const int most = request_.quick ? kMostDistributedQuickly : kMostDistributedRanks;
     std::vector<int> result;
     std::copy_if(request_.ranks.begin(), request_.ranks.end(), std::back_inserter(result),
-                 [&](int ranks) { return ranks > 1 && ranks <= most; });
+                 [](int ranks) { return ranks > 1 && ranks <= kMostDistributedRanks; });
     return result;
   }
 
@@ -305,6 +309,7 @@ class ScheduleRuns {
       spdlog::info("{} ranks, {}", ranks, distribution->name);
       for (const comm::NamedNetwork* named : networks()) {
         steps_.stop_if_asked();
+        if (named->network.is_bus) continue;
         const std::vector<raytrace::SimulatedFrame> frames = raytrace::simulate_frames(
             {prepared_.scene, *prepared_.tracer, prepared_.camera, options_, kDistributedFrames},
             *distribution, ranks, named->network);

@@ -19,6 +19,8 @@ namespace delray::apps {
 
 struct ScheduleRequest : SceneComparison {
   std::vector<std::string> schedules;  // empty: all
+  // Of a scene that no rank has all of; empty: all of them, none with `quick`.
+  std::vector<std::string> distributions;
   std::string network = "10-gigabit-ethernet";
   int tile = 16;  // pixels, the side
 };
@@ -75,7 +77,7 @@ struct ComparedDistribution {
     std::string network;
     raytrace::SimulatedFrame frame;
   };
-  std::vector<Over> over;  // the request's network first
+  std::vector<Over> over;  // the request's network first; none that all ranks share
 };
 
 // A run over the request's network, of shown_ranks(request) or the fewest.
@@ -99,8 +101,8 @@ struct ScheduleComparison {
 
 int shown_ranks(const ScheduleRequest& request);
 
-// On more ranks than this distributions are not run.
-inline constexpr int kMostDistributedRanks = 64, kMostDistributedQuickly = 8;
+// On more ranks than this distributions are not run: with `ring` what travels grows with the ranks.
+inline constexpr int kMostDistributedRanks = 16;
 
 // Told to stop, gives what is finished. Throws parallel::Interrupted where nothing is finished.
 ScheduleComparison compare_schedule(const Session& session, const ScheduleRequest& request,

@@ -10,6 +10,7 @@
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
 #include "comm/network.h"
+#include "raytrace/distribution.h"
 #include "raytrace/integrator.h"
 
 namespace delray::apps {
@@ -70,6 +71,17 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
           "--network", request->network,
           "Network that the counts are for and the report shows (default: 10-gigabit-ethernet)")
       ->group(group::kSharing);
+  std::vector<std::string> distributions;
+  for (const raytrace::Distribution& distribution : raytrace::distributions())
+    if (!distribution.replicated) distributions.emplace_back(distribution.name);
+  command
+      ->add_option("--data", request->distributions,
+                   "Distributions of the scene over up to 16 ranks to compare, separated by commas "
+                   "(default: all; none with --quick)")
+      ->group(group::kSharing)
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  choose_from(*command, "--data", distributions);
   choose_from(*command, "--schedule", names_in(loadbalance::schedules()));
   choose_from(*command, "--network", names_in(comm::networks()));
   add_comparison_options(*command, *request, "Measure three frames of each",
