@@ -21,6 +21,7 @@ enum class Format {
   gltf,  // JSON
   glb,   // binary glTF
   las,
+  pcd,  // of the Point Cloud Library
   vtu,
   node,         // points of Triangle and TetGen; the suffix .ele names the pair as well
   json_points,  // [[x, y(, z)], ...]
@@ -36,27 +37,29 @@ struct FormatSign {
 };
 // The usual suffix of a format comes first.
 inline constexpr std::array kFormatSuffixes = {
-    FormatSign{".ply", Format::ply},          FormatSign{".obj", Format::obj},
-    FormatSign{".off", Format::off},          FormatSign{".stl", Format::stl},
-    FormatSign{".gltf", Format::gltf},        FormatSign{".glb", Format::glb},
-    FormatSign{".las", Format::las},          FormatSign{".laz", Format::las},
-    FormatSign{".vtu", Format::vtu},          FormatSign{".node", Format::node},
-    FormatSign{".ele", Format::node},         FormatSign{".xyz", Format::text},
-    FormatSign{".json", Format::json_points}, FormatSign{".csv", Format::text},
-    FormatSign{".txt", Format::text},         FormatSign{".pts", Format::text},
-    FormatSign{".asc", Format::text},         FormatSign{".tsv", Format::text},
-    FormatSign{".png", Format::image},        FormatSign{".jpg", Format::image},
-    FormatSign{".jpeg", Format::image},       FormatSign{".tif", Format::image},
-    FormatSign{".tiff", Format::image},       FormatSign{".exr", Format::image},
-    FormatSign{".hdr", Format::image},        FormatSign{".bmp", Format::image},
-    FormatSign{".tga", Format::image},        FormatSign{".pgm", Format::image},
-    FormatSign{".ppm", Format::image},        FormatSign{".webp", Format::image},
+    FormatSign{".ply", Format::ply},    FormatSign{".obj", Format::obj},
+    FormatSign{".off", Format::off},    FormatSign{".stl", Format::stl},
+    FormatSign{".gltf", Format::gltf},  FormatSign{".glb", Format::glb},
+    FormatSign{".las", Format::las},    FormatSign{".laz", Format::las},
+    FormatSign{".pcd", Format::pcd},    FormatSign{".vtu", Format::vtu},
+    FormatSign{".node", Format::node},  FormatSign{".ele", Format::node},
+    FormatSign{".xyz", Format::text},   FormatSign{".json", Format::json_points},
+    FormatSign{".csv", Format::text},   FormatSign{".txt", Format::text},
+    FormatSign{".pts", Format::text},   FormatSign{".asc", Format::text},
+    FormatSign{".tsv", Format::text},   FormatSign{".png", Format::image},
+    FormatSign{".jpg", Format::image},  FormatSign{".jpeg", Format::image},
+    FormatSign{".tif", Format::image},  FormatSign{".tiff", Format::image},
+    FormatSign{".exr", Format::image},  FormatSign{".hdr", Format::image},
+    FormatSign{".bmp", Format::image},  FormatSign{".tga", Format::image},
+    FormatSign{".pgm", Format::image},  FormatSign{".ppm", Format::image},
+    FormatSign{".webp", Format::image},
 };
 
 // Formats without a mark of their own are recognized by what they hold.
 inline constexpr std::array kFormatStarts = {
     FormatSign{"LASF", Format::las},
     FormatSign{"glTF", Format::glb},
+    FormatSign{"# .PCD", Format::pcd},
     FormatSign{"\x89PNG", Format::image},
     FormatSign{"\xff\xd8\xff", Format::image},
     FormatSign{std::string_view("II*\0", 4), Format::image},

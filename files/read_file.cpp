@@ -2,6 +2,9 @@
 // at, more than once, before they are read.
 #include "files/read_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -135,6 +138,26 @@ bool is_stream(const std::filesystem::path& path) {
 std::string read_file(const std::filesystem::path& path, const MemoryBudget& memory) {
   return is_stream(path) ? open_streams().take(path, memory)
                          : read_regular(path, kEverything, memory);
+}
+
+void read_range(const std::filesystem::path& path, std::uint64_t begin, std::span<char> bytes) {
+  const auto fail = [&](std::uint64_t byte, const char* what) {
+    throw FileError(Cause::input, path.string(), "byte " + std::to_string(byte), what);
+  };
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) throw FileError(Cause::input, path.string(), "", std::strerror(errno));
+  std::size_t read = 0;
+  int error = 0;
+  while (read < bytes.size() && error == 0) {
+    const ssize_t got =
+        ::pread(file, bytes.data() + read, bytes.size() - read, static_cast<off_t>(begin + read));
+    if (got == 0) break;
+    if (got > 0) read += static_cast<std::size_t>(got);
+    if (got < 0 && errno != EINTR) error = errno;
+  }
+  ::close(file);
+  if (error != 0) fail(begin + read, std::strerror(error));
+  if (read < bytes.size()) fail(begin + read, "the file ends here, though it was longer before");
 }
 
 std::string read_start(const std::filesystem::path& path, std::size_t limit,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "files/memory_budget.h"
@@ -18,6 +20,10 @@ std::string read_file(const std::filesystem::path& path, const MemoryBudget& mem
 // are kept, with the stream open, for who looks again and for read_file.
 std::string read_start(const std::filesystem::path& path, std::size_t limit,
                        const MemoryBudget& memory = {});
+
+// Fills `bytes` from byte `begin` of a regular file on, from any thread. Throws FileError (input)
+// where the file cannot be read or ends before.
+void read_range(const std::filesystem::path& path, std::uint64_t begin, std::span<char> bytes);
 
 // Whether `path` can be read but once: standard input ("-"), a pipe or a device.
 bool is_stream(const std::filesystem::path& path);

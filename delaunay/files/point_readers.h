@@ -17,6 +17,7 @@ PointCloud read_ply_points(const Input& input);
 PointCloud read_obj_points(const Input& input);
 PointCloud read_off_points(const Input& input);
 PointCloud read_las_points(const Input& input);
+PointCloud read_pcd_points(const Input& input);
 PointCloud read_json_points(const Input& input);
 PointCloud read_node_points(const Input& input);
 PointCloud read_vtu_points(const Input& input);
@@ -34,6 +35,9 @@ inline constexpr std::array kPointReaders = {
                 &read_off_points},
     PointReader{files::Format::las, "LAS", "LiDAR points, LAS 1.0 to 1.4, LAZ, COPC", ".las .laz",
                 &read_las_points},
+    PointReader{files::Format::pcd, "PCD",
+                "points of the Point Cloud Library: ascii, binary, binary_compressed", ".pcd",
+                &read_pcd_points},
     PointReader{files::Format::json_points, "JSON", "points as [[x, y], ...] or [[x, y, z], ...]",
                 ".json", &read_json_points},
     PointReader{files::Format::node, "NODE", "points of Triangle and TetGen", ".node",

@@ -2,123 +2,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "delaunay/files/ply.h"
+#include "delaunay/files/ply_vertices.h"
 #include "delaunay/files/point_readers.h"
-#include "delaunay/files/quantity.h"
 
 namespace delray::delaunay {
 namespace {
 
-struct PropertyName {
-  std::string_view name;
-  Quantity quantity;
-};
-constexpr std::array kPropertyNames = {
-    PropertyName{"x", kX},
-    PropertyName{"y", kY},
-    PropertyName{"z", kZ},
-    PropertyName{"red", kRed},
-    PropertyName{"r", kRed},
-    PropertyName{"diffuse_red", kRed},
-    PropertyName{"green", kGreen},
-    PropertyName{"g", kGreen},
-    PropertyName{"diffuse_green", kGreen},
-    PropertyName{"blue", kBlue},
-    PropertyName{"b", kBlue},
-    PropertyName{"diffuse_blue", kBlue},
-    PropertyName{"alpha", kAlpha},
-    PropertyName{"intensity", kIntensity},
-    PropertyName{"scalar_intensity", kIntensity},
-    PropertyName{"scalar_Intensity", kIntensity},
-    PropertyName{"classification", kClass},
-    PropertyName{"scalar_classification", kClass},
-    PropertyName{"scalar_Classification", kClass},
-};
-
-// Where the quantities are: property[q] is a property of the element, or -1.
-using Columns = std::array<int, kQuantities>;
-
-Columns find_columns(const PlyElement& element) {
-  Columns columns;
-  columns.fill(-1);
-  for (std::size_t j = 0; j < element.properties.size(); ++j) {
-    if (element.properties[j].count_type) continue;
-    for (const auto& [name, quantity] : kPropertyNames) {
-      const bool first = columns[quantity] < 0;
-      if (first && name == element.properties[j].name) columns[quantity] = static_cast<int>(j);
-    }
-  }
-  return columns;
-}
-
-// The value of a property at its full range: 1 for floating point.
-double full_range(PlyType type) {
-  switch (type) {
-    case PlyType::int8:
-      return std::numeric_limits<std::int8_t>::max();
-    case PlyType::uint8:
-      return std::numeric_limits<std::uint8_t>::max();
-    case PlyType::int16:
-      return std::numeric_limits<std::int16_t>::max();
-    case PlyType::uint16:
-      return std::numeric_limits<std::uint16_t>::max();
-    case PlyType::int32:
-      return std::numeric_limits<std::int32_t>::max();
-    case PlyType::uint32:
-      return std::numeric_limits<std::uint32_t>::max();
-    default:
-      return 1;
-  }
-}
-
-std::uint8_t to_byte(double value) {
-  return value > 0 ? static_cast<std::uint8_t>(std::round(std::min(value, 255.0))) : 0;
-}
-
-// A cloud under construction: rows may be set from several threads.
-class Vertices {
- public:
-  Vertices(const PlyElement& element, const Columns& columns) : columns_(columns) {
-    cloud.has_z = columns[kZ] >= 0;
-    cloud.positions.resize(element.count);
-    const bool coloured = columns[kRed] >= 0 && columns[kGreen] >= 0 && columns[kBlue] >= 0;
-    if (coloured) cloud.colours.resize(element.count);
-    if (columns[kIntensity] >= 0) cloud.intensity.resize(element.count);
-    if (columns[kClass] >= 0) cloud.classification.resize(element.count);
-    for (int q = 0; q < kQuantities; ++q) {
-      if (columns[q] >= 0) range_[q] = full_range(element.properties[columns[q]].type);
-    }
-  }
-
-  // False if a coordinate is not finite.
-  bool set(std::size_t i, const std::array<double, kQuantities>& values) {
-    cloud.positions[i] = {values[kX], values[kY], values[kZ]};
-    if (!cloud.colours.empty()) {
-      const auto channel = [&](Quantity q) { return to_byte(values[q] / range_[q] * 255); };
-      const std::uint8_t alpha = columns_[kAlpha] >= 0 ? channel(kAlpha) : 255;
-      cloud.colours[i] = {channel(kRed), channel(kGreen), channel(kBlue), alpha};
-    }
-    if (!cloud.intensity.empty()) {
-      cloud.intensity[i] = static_cast<float>(values[kIntensity] / range_[kIntensity]);
-    }
-    if (!cloud.classification.empty()) cloud.classification[i] = to_byte(values[kClass]);
-    return std::isfinite(values[kX]) && std::isfinite(values[kY]) && std::isfinite(values[kZ]);
-  }
-
-  PointCloud cloud;
-
- private:
-  Columns columns_;
-  std::array<double, kQuantities> range_{};
-};
-
 std::string at_vertex(std::size_t i) { return "vertex " + std::to_string(i); }
 
-void read_ascii(const Input& input, const PlyElement& element, const Columns& columns,
-                TextPlace begin, Vertices& vertices) {
+void read_ascii(const Input& input, const PlyElement& element, const PlyColumns& columns,
+                TextPlace begin, PlyVertices& vertices) {
   std::vector<int> quantity_of(element.properties.size(), -1);
   for (int q = 0; q < kQuantities; ++q) {
     if (columns[q] >= 0) quantity_of[columns[q]] = q;
@@ -144,7 +39,7 @@ void read_ascii(const Input& input, const PlyElement& element, const Columns& co
 }
 
 void read_binary_with_lists(const Input& input, const PlyHeader& header, const PlyElement& element,
-                            const Columns& columns, std::size_t byte, Vertices& vertices) {
+                            const PlyColumns& columns, std::size_t byte, PlyVertices& vertices) {
   std::vector<PlyValues> row(element.properties.size());
   for (std::size_t i = 0; i < element.count; ++i) {
     byte = read_ply_row(input, header.encoding, element, byte, row);
@@ -158,47 +53,15 @@ void read_binary_with_lists(const Input& input, const PlyHeader& header, const P
 }
 
 void read_binary(const Input& input, const PlyHeader& header, const PlyElement& element,
-                 const Columns& columns, std::size_t byte, Vertices& vertices) {
-  struct Source {
-    int quantity;
-    std::size_t offset;
-    PlyType type;
-  };
-  std::vector<Source> sources;
-  std::size_t offset = 0;
-  for (std::size_t j = 0; j < element.properties.size(); ++j) {
-    const auto quantity = std::ranges::find(columns, static_cast<int>(j)) - columns.begin();
-    const PlyType type = element.properties[j].type;
-    if (quantity < kQuantities) sources.push_back({static_cast<int>(quantity), offset, type});
-    offset += ply_size(type);
-  }
-  const std::size_t stride = offset;
-  constexpr std::size_t kGrain = 16384;  // about 0.2 ms
-  const std::size_t none = element.count;
-  const std::size_t bad = parallel::parallel_reduce(
-      0, element.count, kGrain, none,
-      [&](std::size_t first, std::size_t last) {
-        std::size_t first_bad = none;
-        for (std::size_t i = first; i < last; ++i) {
-          const char* row = input.content.data() + byte + i * stride;
-          std::array<double, kQuantities> values{};
-          for (const Source& source : sources) {
-            values[source.quantity] = ply_value(row + source.offset, source.type, header.encoding);
-          }
-          if (!vertices.set(i, values)) first_bad = std::min(first_bad, i);
-        }
-        return first_bad;
-      },
-      [](std::size_t a, std::size_t b) { return std::min(a, b); });
-  if (bad != none) fail(input, at_vertex(bad), "not a finite number");
+                 const PlyColumns& columns, std::size_t byte, PlyVertices& vertices) {
+  const std::string_view rows = input.content.substr(byte, element.count * element.smallest_row());
+  const std::size_t bad = read_ply_rows(element, header.encoding, columns, rows, vertices);
+  if (bad != element.count) fail(input, at_vertex(bad), "not a finite number");
 }
 
 void normalise(std::vector<float>& intensity) {
   float top = 1;
-  for (float& value : intensity) {
-    value = std::isfinite(value) ? std::max(value, 0.0F) : 0;
-    top = std::max(top, value);
-  }
+  for (const float value : intensity) top = std::max(top, value);
   for (float& value : intensity) value /= top;
 }
 
@@ -213,11 +76,11 @@ std::size_t find_element(const Input& input, const PlyHeader& header, std::strin
 PointCloud read_vertices(const Input& input, const PlyHeader& header) {
   const std::size_t number = find_element(input, header, "vertex");
   const PlyElement& element = header.elements[number];
-  const Columns columns = find_columns(element);
+  const PlyColumns columns = find_ply_columns(element);
   if (columns[kX] < 0 || columns[kY] < 0) fail(input, "", "the vertices have no x or no y");
   const TextPlace begin = ply_element_start(input, header, number);
   input.require_points(element.count);
-  Vertices vertices(element, columns);
+  PlyVertices vertices(element, columns, element.count);
   if (header.encoding == PlyEncoding::ascii) {
     read_ascii(input, element, columns, begin, vertices);
   } else if (element.has_lists()) {

@@ -2,6 +2,7 @@
 // chunks, whose sizes are coded arithmetically behind the last of them.
 #include "delaunay/files/laz/laz_file.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -50,7 +51,7 @@ void require_version(const Input& input, unsigned version, bool known) {
 
 Description parse_description(const Input& input, const LasHeader& header) {
   constexpr std::size_t kHead = 34, kItem = 6;
-  const std::string_view record = find_las_record(input, header, "laszip encoded", 22204);
+  const std::string_view record = find_las_record(header, "laszip encoded", 22204);
   if (record.size() < kHead) fail(input, "", "LAZ without its record on compression");
   Description description;
   description.compressor = load<std::uint16_t>(record.data());
@@ -106,15 +107,24 @@ struct Sizes {
   std::uint32_t points = 0, bytes = 0;
 };
 
-std::vector<Sizes> decode_chunk_sizes(const Input& input, std::size_t table, bool variable,
+std::vector<Sizes> decode_chunk_sizes(const ByteSource& source, std::uint64_t table, bool variable,
                                       std::size_t most_chunks) {
-  const std::string_view content = input.content.substr(table);
-  const auto count = load<std::uint32_t>(content.data() + 4);
-  if (load<std::uint32_t>(content.data()) != 0 || count > most_chunks) {
+  constexpr std::uint64_t kHead = 8;
+  // Two integers, each of two symbols of 15 bits at most and 24 bits that are not modelled.
+  constexpr std::uint64_t kMostBytesPerChunk = 14, kSlack = 16;
+  const Input input = source.input();
+  std::string buffer;
+  const std::string_view head = source.read(table, kHead, buffer);
+  const auto count = load<std::uint32_t>(head.data() + 4);
+  if (load<std::uint32_t>(head.data()) != 0 || count > most_chunks) {
     fail(input, at_byte(table), "the table of chunks is damaged");
   }
+  const std::uint64_t begin = table + kHead;
+  const std::string_view content = source.read(
+      begin, std::min(source.size() - begin, count * kMostBytesPerChunk + kSlack), buffer);
+  input.require_memory(count * (sizeof(Sizes) + sizeof(Chunk)));
   std::vector<Sizes> sizes(count);
-  ArithmeticDecoder decoder(content.substr(8));
+  ArithmeticDecoder decoder(content);
   IntegerDecoder integers(32, 2);
   Sizes last;
   for (Sizes& each : sizes) {
@@ -131,57 +141,64 @@ std::vector<Sizes> decode_chunk_sizes(const Input& input, std::size_t table, boo
 }
 
 // Where the table of chunks begins. Writers that cannot go back leave that at the end of the file.
-std::size_t find_chunk_table(const Input& input, const LasHeader& header) {
-  const std::string_view content = input.content;
-  constexpr std::size_t kPosition = sizeof(std::int64_t), kHead = 8;
-  if (content.size() < header.points_begin + kPosition + kHead) {
-    fail(input, at_byte(content.size()), "the file is cut off before its points");
+std::uint64_t find_chunk_table(const ByteSource& source, const LasHeader& header) {
+  constexpr std::uint64_t kPosition = sizeof(std::int64_t), kHead = 8;
+  const Input input = source.input();
+  if (source.size() < header.points_begin + kPosition + kHead) {
+    fail(input, at_byte(source.size()), "the file is cut off before its points");
   }
-  auto table = load<std::int64_t>(content.data() + header.points_begin);
-  if (table == -1) table = load<std::int64_t>(content.data() + content.size() - kPosition);
+  std::string buffer;
+  auto table = load<std::int64_t>(source.read(header.points_begin, kPosition, buffer).data());
+  if (table == -1) {
+    table = load<std::int64_t>(source.read(source.size() - kPosition, kPosition, buffer).data());
+  }
   if (table < static_cast<std::int64_t>(header.points_begin + kPosition) ||
-      static_cast<std::uint64_t>(table) > content.size() - kHead) {
+      static_cast<std::uint64_t>(table) > source.size() - kHead) {
     fail(input, at_byte(header.points_begin),
          "the table of chunks is not in the file, which may be cut off");
   }
-  return static_cast<std::size_t>(table);
+  return static_cast<std::uint64_t>(table);
 }
 
 }  // namespace
 
-LazFile parse_laz_file(const Input& input, const LasHeader& header) {
+LazFile parse_laz_file(const ByteSource& source, const LasHeader& header) {
+  const Input input = source.input();
   const Description description = parse_description(input, header);
   LazFile file{description.items, {}};
   if (header.count == 0) return file;
   // No symbol takes less than some 2^-13 of a bit.
   constexpr std::size_t kMostPointsPerByte = 1U << 14;
-  const auto add_chunk = [&](std::string_view bytes, std::size_t first, std::size_t count) {
-    if (bytes.size() < count / kMostPointsPerByte) {
-      fail(
-          input, "chunk " + std::to_string(file.chunks.size()),
-          std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(count) + " points");
+  std::size_t number = 0;
+  const auto add_chunk = [&](std::uint64_t begin, std::uint64_t size, std::size_t first,
+                             std::size_t count) {
+    if (size < count / kMostPointsPerByte) {
+      fail(input, "chunk " + std::to_string(number),
+           std::to_string(size) + " bytes cannot hold " + std::to_string(count) + " points");
     }
-    if (count > 0) file.chunks.push_back({bytes, first, count});
+    if (count > 0) file.chunks.push_back({begin, size, first, count, number});
+    ++number;
   };
   if (description.compressor == pointwise) {
-    add_chunk(input.content.substr(header.points_begin), 0, header.count);
+    add_chunk(header.points_begin, source.size() - header.points_begin, 0, header.count);
     return file;
   }
 
-  const std::size_t table = find_chunk_table(input, header);
+  const std::uint64_t table = find_chunk_table(source, header);
   const bool variable = description.chunk_size == kVariable;
   if (description.chunk_size == 0) fail(input, kPlace, "chunks have no points");
-  std::size_t begin = header.points_begin + sizeof(std::int64_t), first = 0;
+  std::uint64_t begin = header.points_begin + sizeof(std::int64_t);
+  std::size_t first = 0;
   for (const Sizes& sizes :
-       decode_chunk_sizes(input, table, variable, (table - begin) / header.record_size)) {
+       decode_chunk_sizes(source, table, variable, (table - begin) / header.record_size)) {
     if (sizes.bytes > table - begin) {
-      fail(input, "chunk " + std::to_string(file.chunks.size()), "reaches beyond the points");
+      fail(input, "chunk " + std::to_string(number), "reaches beyond the points");
     }
     const std::size_t left = header.count - first;
     const std::size_t count =
         variable ? sizes.points : std::min<std::size_t>(description.chunk_size, left);
     if (count > left) fail(input, at_byte(table), "chunks have more points than the header says");
-    add_chunk(input.content.substr(begin, sizes.bytes), first, count);
+    add_chunk(begin, sizes.bytes, first, count);
     begin += sizes.bytes;
     first += count;
   }
@@ -207,10 +224,10 @@ ChunkDecoder::ChunkDecoder(const LazFile& file)
       file.items);
 }
 
-std::string_view ChunkDecoder::decode(const Chunk& chunk) {
-  records_.resize(chunk.count * record_size_);
+std::string_view ChunkDecoder::decode(std::string_view chunk, std::size_t count) {
+  records_.resize(count * record_size_);
   const bool whole =
-      std::visit([&](auto& decoder) { return decoder.decode(chunk.bytes, records_); }, decoder_);
+      std::visit([&](auto& decoder) { return decoder.decode(chunk, records_); }, decoder_);
   return whole ? std::string_view(records_.data(), records_.size()) : std::string_view();
 }
 

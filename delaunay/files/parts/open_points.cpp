@@ -1,0 +1,191 @@
+// Several files behind each other, in parts or whole.
+#include "delaunay/open_points.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <utility>
+
+#include "delaunay/files/parts/file_parts.h"
+#include "parallel/parallel_for.h"
+
+namespace delray::delaunay {
+namespace {
+
+// Opened in parallel, as there may be thousands. The first error is thrown.
+std::vector<std::unique_ptr<FileParts>> open_files(std::span<const std::filesystem::path> inputs,
+                                                   const PointFilter& filter,
+                                                   const ReadOptions& options) {
+  const std::vector<std::filesystem::path> paths = expand_inputs(inputs);
+  std::vector<std::unique_ptr<FileParts>> files(paths.size());
+  std::vector<std::exception_ptr> errors(paths.size());
+  parallel::parallel_for(0, paths.size(), 1, [&](std::size_t i) {
+    try {
+      files[i] = open_file_parts(paths[i], filter, options);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return files;
+}
+
+// Where each of several runs of parts begins.
+class Begins {
+ public:
+  template <class Runs>
+  explicit Begins(const Runs& runs) {
+    for (const auto& run : runs) begins_.push_back(begins_.back() + run->parts());
+  }
+  std::size_t parts() const { return begins_.back(); }
+  // The run that a part is in, and its number there.
+  std::pair<std::size_t, std::size_t> find(std::size_t part) const {
+    const auto next = std::upper_bound(begins_.begin(), begins_.end(), part);
+    const auto run = static_cast<std::size_t>(next - begins_.begin()) - 1;
+    return {run, part - begins_[run]};
+  }
+
+ private:
+  std::vector<std::size_t> begins_ = {0};
+};
+
+class JoinedParts : public PointParts {
+ public:
+  explicit JoinedParts(std::vector<std::unique_ptr<PointParts>> inputs)
+      : inputs_(std::move(inputs)), begins_(inputs_) {}
+  std::size_t parts() const override { return begins_.parts(); }
+  std::uint64_t most_rows(std::size_t part) const override {
+    const auto [input, own] = begins_.find(part);
+    return inputs_[input]->most_rows(own);
+  }
+  void read(std::size_t part, PointCloud& points) const override {
+    const auto [input, own] = begins_.find(part);
+    inputs_[input]->read(own, points);
+  }
+
+ private:
+  std::vector<std::unique_ptr<PointParts>> inputs_;
+  Begins begins_;
+};
+
+class FilesInParts : public PointParts {
+ public:
+  FilesInParts(std::vector<std::unique_ptr<FileParts>> files, const PointFilter& filter)
+      : files_(std::move(files)), begins_(files_), ranges_(files_.size()), filter_(filter) {}
+
+  std::size_t parts() const override { return begins_.parts(); }
+
+  std::uint64_t most_rows(std::size_t part) const override {
+    const auto [file, own] = begins_.find(part);
+    return files_[file]->most_rows(own);
+  }
+
+  void read(std::size_t part, PointCloud& points) const override {
+    const auto [number, own] = begins_.find(part);
+    const FileParts& file = *files_[number];
+    PartPoints read;
+    file.read(own, read);
+    const AttributeRanges ranges = ranges_of(number, own == 0 ? &read : nullptr);
+    apply_filter(filter_, read);
+    finish_points(file.facts(), ranges, read);
+    read.cloud.has_z = file.facts().has_z;
+    if (own == 0) {
+      for (const std::string& warning : file.facts().warnings) {
+        read.cloud.warnings.push_back(files_.size() == 1 ? warning
+                                                         : file.facts().told.file + ": " + warning);
+      }
+    }
+    points = std::move(read.cloud);
+  }
+
+ private:
+  struct Ranges {
+    std::once_flag once;
+    AttributeRanges value;
+  };
+
+  // Those of the first part, which the caller may have.
+  AttributeRanges ranges_of(std::size_t number, const PartPoints* first) const {
+    const FileParts& file = *files_[number];
+    if (!file.facts().has_ranges) return {};
+    Ranges& ranges = ranges_[number];
+    std::call_once(ranges.once, [&] {
+      PartPoints read;
+      if (first == nullptr) file.read(0, read);
+      ranges.value.include(first == nullptr ? read : *first);
+    });
+    return ranges.value;
+  }
+
+  std::vector<std::unique_ptr<FileParts>> files_;
+  Begins begins_;
+  mutable std::vector<Ranges> ranges_;
+  PointFilter filter_;
+};
+
+// Appends the values of a file to those of the files before, `rows` of them, if all have them.
+template <class T>
+void join_values(std::vector<T>& all, const std::vector<T>& file, std::size_t rows) {
+  if (rows > 0 && all.empty()) return;
+  if (file.empty()) {
+    all = {};
+  } else {
+    all.insert(all.end(), file.begin(), file.end());
+  }
+}
+
+void join_clouds(PointCloud& all, PointCloud&& file) {
+  if (file.size() == 0) return;
+  if (all.size() == 0) {
+    all = std::move(file);
+    return;
+  }
+  const std::size_t rows = all.size();
+  join_values(all.colours, file.colours, rows);
+  join_values(all.intensity, file.intensity, rows);
+  join_values(all.classification, file.classification, rows);
+  join_values(all.positions, file.positions, 0);
+  all.has_z = all.has_z || file.has_z;
+  if (all.geographic != file.geographic) {
+    const std::string mixed = "some files are in degrees and others are not";
+    if (std::ranges::find(all.warnings, mixed) == all.warnings.end()) {
+      all.warnings.push_back(mixed);
+    }
+    all.geographic = false;
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<PointParts> join_parts(std::vector<std::unique_ptr<PointParts>> inputs) {
+  return std::make_unique<JoinedParts>(std::move(inputs));
+}
+
+std::unique_ptr<PointParts> open_points(std::span<const std::filesystem::path> inputs,
+                                        const PointFilter& filter, const ReadOptions& options) {
+  return std::make_unique<FilesInParts>(open_files(inputs, filter, options), filter);
+}
+
+PointCloud read_points(std::span<const std::filesystem::path> inputs, const PointFilter& filter,
+                       const ReadOptions& options) {
+  const auto files = open_files(inputs, filter, options);
+  PointCloud all;
+  std::vector<std::string> warnings;
+  for (const auto& file : files) {
+    PointCloud cloud = read_all(*file, filter, options.memory);
+    for (const std::string& warning : cloud.warnings) {
+      warnings.push_back(files.size() == 1 ? warning : file->facts().told.file + ": " + warning);
+    }
+    cloud.warnings.clear();
+    join_clouds(all, std::move(cloud));
+  }
+  all.warnings.insert(all.warnings.begin(), warnings.begin(), warnings.end());
+  if (all.size() > 0) return all;
+  std::vector<PointFileFacts> told;
+  for (const auto& file : files) told.push_back(file->facts().told);
+  refuse_no_points(told, filter);
+}
+
+}  // namespace delray::delaunay
