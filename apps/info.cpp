@@ -11,7 +11,7 @@
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
 #include "delaunay/read_mesh.h"
-#include "delaunay/read_points.h"
+#include "delaunay/summarize_points.h"
 #include "files/printable.h"
 #include "geometry/box.h"
 #include "image/geotiff.h"
@@ -26,17 +26,75 @@ Json numbers(const Vector& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
+Json attributes_of(bool colours, bool intensity, bool classes) {
+  Json attributes = Json::array();
+  if (colours) attributes.push_back("rgb");
+  if (intensity) attributes.push_back("intensity");
+  if (classes) attributes.push_back("classification");
+  return attributes;
+}
+
 Json describe_points(const std::string& path, const delaunay::PointCloud& points) {
   for (const std::string& warning : points.warnings) spdlog::warn("{}: {}", path, warning);
   geometry::Box3d box;
   for (const glm::dvec3& p : points.positions) box.include(p);
-  Json attributes = Json::array();
-  if (!points.colours.empty()) attributes.push_back("rgb");
-  if (!points.intensity.empty()) attributes.push_back("intensity");
-  if (!points.classification.empty()) attributes.push_back("classification");
-  return {{"points", points.size()},         {"dim", points.has_z ? 3 : 2},
-          {"low", numbers(box.low)},         {"high", numbers(box.high)},
-          {"geographic", points.geographic}, {"attributes", attributes}};
+  return {{"points", points.size()},
+          {"dim", points.has_z ? 3 : 2},
+          {"low", numbers(box.low)},
+          {"high", numbers(box.high)},
+          {"geographic", points.geographic},
+          {"attributes", attributes_of(!points.colours.empty(), !points.intensity.empty(),
+                                       !points.classification.empty())}};
+}
+
+// What a LAS file says of its points, and the coordinate system.
+void tell_facts(const delaunay::PointFileFacts& facts, Json& description) {
+  description["format"] = facts.version.empty() ? facts.format : facts.format + " " + facts.version;
+  if (!facts.compression.empty()) description["compression"] = facts.compression;
+  if (facts.point_format) description["point_format"] = *facts.point_format;
+  if (facts.scale) description["scale"] = numbers(*facts.scale);
+  if (facts.offset) description["offset"] = numbers(*facts.offset);
+  if (!facts.coordinate_system.empty()) {
+    description["coordinate_system"] = facts.coordinate_system;
+  }
+  if (facts.epsg != 0) description["epsg"] = facts.epsg;
+}
+
+Json describe_summary(const std::string& path, const delaunay::PointSummary& points) {
+  for (const std::string& warning : points.warnings) spdlog::warn("{}: {}", path, warning);
+  Json description = {
+      {"points", points.points},
+      {"dim", points.has_z ? 3 : 2},
+      {"low", numbers(points.box.low)},
+      {"high", numbers(points.box.high)},
+      {"geographic", points.geographic},
+      {"attributes", attributes_of(points.colours, points.intensity, points.classes.has_value())}};
+  if (points.classes) {
+    Json& classes = description["classes"] = Json::object();
+    for (std::size_t i = 0; i < points.classes->size(); ++i) {
+      if ((*points.classes)[i] > 0) classes[std::to_string(i)] = (*points.classes)[i];
+    }
+  }
+  if (points.returns) {
+    Json& returns = description["returns"] = Json::object();
+    for (std::size_t count = 0; count < 16; ++count) {
+      for (std::size_t number = 0; number < 16; ++number) {
+        const std::uint64_t found = (*points.returns)[number][count];
+        if (found > 0) returns[fmt::format("{} of {}", number, count)] = found;
+      }
+    }
+  }
+  if (points.files.size() == 1) {
+    tell_facts(points.files[0], description);
+    return description;
+  }
+  Json& files = description["files"] = Json::array();
+  for (std::size_t i = 0; i < points.files.size(); ++i) {
+    Json file = {{"file", points.files[i].file}, {"points", points.file_points[i]}};
+    tell_facts(points.files[i], file);
+    files.push_back(std::move(file));
+  }
+  return description;
 }
 
 Json describe_mesh(const std::string& path, const delaunay::PointMesh& mesh) {
@@ -97,23 +155,27 @@ Json describe_picture(const std::string& path, const files::MemoryBudget& memory
 }
 
 // `output` is not to be a file that a scene names.
-Json describe(const std::string& path, const InputLimits& limits, const OutputFile& output) {
+Json describe(const PointInput& asked, const OutputFile& output) {
+  const std::string& path = asked.path;
+  const InputLimits& limits = asked.limits;
   const files::MemoryBudget memory = limits.budget();
-  const InputKind kind = input_kind(path, memory);
+  const InputKind kind = input_kind_of(asked);
   if (kind != InputKind::scene) refuse_outside(path, limits);
+  if (kind != InputKind::points && asked.choice.given()) {
+    throw UsageError(fmt::format("options that choose points are not for {}", path));
+  }
   switch (kind) {
     case InputKind::picture:
       return describe_picture(path, memory);
     case InputKind::points:
-      return describe_points(path, delaunay::read_points(path, {.memory = memory}));
+      return describe_summary(path, summarize(asked));
     case InputKind::mesh:
       return describe_mesh(path, delaunay::read_mesh(path, memory));
     case InputKind::scene:
       break;
   }
   SceneInput input;
-  input.file.path = path;
-  input.file.limits = limits;
+  input.file = asked;
   const scenes::Scene scene = load_scene(input, nullptr);
   refuse_overwriting({output}, scene.files);
   return describe_scene(scene);
@@ -142,15 +204,16 @@ void print(const Json& description) {
 
 void add_info(CLI::App& program, Session& session) {
   struct Options {
-    std::string path, statistics;
-    InputLimits limits;
+    PointInput input;
+    std::string statistics;
     bool list = false;
   };
   CLI::App* command = program.add_subcommand(
       "info", "Describe what is in a file, or list the formats that are read");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "File to describe: " + format_names())
-      ->group(group::kInput);
+  add_points_argument(
+      *command, "FILE", options->input,
+      "File to describe: " + format_names() + "; of points several files, folders or patterns");
   command
       ->add_option("--stats", options->statistics,
                    "Description as JSON to this file; - for standard output")
@@ -159,20 +222,23 @@ void add_info(CLI::App& program, Session& session) {
   command
       ->add_flag("--list", options->list, "List the formats that are read, as happens without FILE")
       ->group(group::kOutput);
-  add_memory_option(*command, options->limits);
-  add_outside_option(*command, options->limits);
-  add_common_options(*command, session, "info model.glb\ninfo points.las --stats -\ninfo --list");
+  add_choice_options(*command, options->input.choice);
+  add_memory_option(*command, options->input.limits);
+  add_outside_option(*command, options->input.limits);
+  add_common_options(*command, session,
+                     "info model.glb\ninfo tiles/*.laz --class 2 --stats -\ninfo --list");
   command->callback([&session, options] {
     session.run = [options] {
-      if (options->list || options->path.empty()) {
+      const PointInput& input = options->input;
+      if (options->list || input.path.empty()) {
         list_formats();
         return int{kDone};
       }
       const OutputFile output = {"--stats", options->statistics};
-      check_outputs({output}, {options->path});
-      const Json description = describe(options->path, options->limits, output);
+      check_outputs({output}, input.paths);
+      const Json description = describe(input, output);
       if (options->statistics != "-") print(description);
-      Json statistics = {{"schema", "delray.info/1"}, {"file", options->path}};
+      Json statistics = {{"schema", "delray.info/1"}, {"file", input.path}};
       statistics.update(description);
       write_statistics(options->statistics, statistics);
       return int{kDone};

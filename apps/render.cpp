@@ -115,8 +115,10 @@ void finish(const RenderRequest& request, const Prepared& prepared, const Animat
 
 // Whose names are known before anything is read.
 std::vector<std::string> inputs_of(const RenderRequest& request) {
-  return {request.scene.file.path, request.camera_path,
-          request.light.is_picture() ? request.light.light : ""};
+  std::vector<std::string> inputs = request.scene.file.paths;
+  inputs.push_back(request.camera_path);
+  inputs.push_back(request.light.is_picture() ? request.light.light : "");
+  return inputs;
 }
 
 // Hours of samples, or another file.

@@ -180,7 +180,7 @@ void check(const Session& session, TriangulateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, {options.input.path});
+  check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, options.input.paths);
 }
 
 void warn_of_no_simplices(const TriangulateOptions& options, std::uint64_t simplices) {
@@ -314,10 +314,9 @@ void add_triangulate(CLI::App& program, Session& session) {
   CLI::App* command =
       program.add_subcommand("triangulate", "Compute the Delaunay triangulation of points");
   const auto options = std::make_shared<TriangulateOptions>();
-  command
-      ->add_option("POINTS", options->input.path,
-                   "File of points (delray info --list names the formats); - for standard input")
-      ->group(group::kInput);
+  add_points_argument(*command, "POINTS", options->input,
+                      "Files of points (delray info --list names the formats), folders of such or "
+                      "patterns; - for standard input");
   command
       ->add_option(
           "-o,--output", options->output,

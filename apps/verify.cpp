@@ -162,7 +162,9 @@ Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh
 int run(const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
   if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
-  check_outputs({{"--stats", options.statistics}}, {options.mesh, options.points.path});
+  std::vector<std::string> inputs = options.points.paths;
+  inputs.push_back(options.mesh);
+  check_outputs({{"--stats", options.statistics}}, inputs);
   delaunay::PointMesh mesh = delaunay::read_mesh(options.mesh, options.points.limits.budget());
   if (mesh.triangulation.dim != options.dim && mesh.triangulation.size() > 0) {
     throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,
@@ -222,11 +224,8 @@ void add_verify(CLI::App& program, Session& session) {
           "Triangulation to check: the exit code is 0 if it is what the options demand, 4 if it is "
           "not, 3 if a vertex is none of the points")
       ->group(group::kInput);
-  command
-      ->add_option("--points", options->points.path,
-                   "Points that MESH should be the triangulation of")
-      ->type_name("FILE")
-      ->group(group::kInput);
+  add_points_argument(*command, "--points", options->points,
+                      "Points that MESH should be the triangulation of: files, folders, patterns");
   command->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
       ->check(one_of({"2", "3"}));
   command->add_flag(
@@ -245,7 +244,16 @@ void add_verify(CLI::App& program, Session& session) {
                      "verify mesh.ply --points points.las\n"
                      "verify mesh.off --points points.csv --canonical --stats -\n"
                      "verify simplified.stl --points terrain.tif");
-  command->callback([&session, options] { session.run = [options] { return run(*options); }; });
+  command->callback([&session, options] {
+    // --points takes all names that follow.
+    std::vector<std::string>& points = options->points.paths;
+    if (options->mesh.empty() && points.size() > 1) {
+      options->mesh = points.back();
+      points.pop_back();
+      options->points.name_paths();
+    }
+    session.run = [options] { return run(*options); };
+  });
 }
 
 }  // namespace delray::apps

@@ -38,6 +38,9 @@ std::unique_ptr<PointParts> open_points(std::span<const std::filesystem::path> i
 // One input after another.
 std::unique_ptr<PointParts> join_parts(std::vector<std::unique_ptr<PointParts>> inputs);
 
+// All points of an input in parts, read in parallel in the caller's arena and joined as below.
+PointCloud read_points(const PointParts& parts, const ReadOptions& options = {});
+
 // All points of such an input, read in parallel in the caller's arena. Attributes that not all
 // files have are left out, z is 0 where a file has none. Throws what open_points() throws and
 // FileError (input) if there are no points.

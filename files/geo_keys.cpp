@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
-#include <limits>
 
 namespace delray::files {
 
@@ -20,13 +19,13 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(begin, text.find_last_not_of(kEnds) - begin + 1));
 }
 
-bool is_word(char c) {
-  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-}
-
-// The EPSG number that stands at the least depth of brackets, the first of several.
+// The EPSG number of the system itself, or of the first of those that it is composed of; numbers
+// deeper in brackets are those of its datum, units and other parts.
 int find_epsg(std::string_view text) {
-  int depth = 0, best_depth = std::numeric_limits<int>::max(), best = 0;
+  constexpr std::string_view kRegistry = "\"EPSG\",";
+  const bool compound = text.starts_with("COMPD_CS") || text.starts_with("COMPOUNDCRS");
+  const int deepest = compound ? 2 : 1;
+  int depth = 0, best_depth = deepest + 1, best = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') {
@@ -35,19 +34,16 @@ int find_epsg(std::string_view text) {
     } else if (c == ']' || c == ')') {
       --depth;
     } else if (c == '[' || c == '(') {
-      std::size_t word = i;
-      while (word > 0 && is_word(text[word - 1])) --word;
-      const std::string_view name = text.substr(word, i - word);
+      const bool number =
+          text.substr(0, i).ends_with("AUTHORITY") || text.substr(0, i).ends_with(",ID");
       std::string_view rest = text.substr(i + 1);
-      constexpr std::string_view kRegistry = "\"EPSG\",";
-      if ((name == "AUTHORITY" || name == "ID") && rest.starts_with(kRegistry) &&
-          depth < best_depth) {
+      if (number && depth < best_depth && rest.starts_with(kRegistry)) {
         rest.remove_prefix(kRegistry.size());
         rest.remove_prefix(std::min(rest.find_first_not_of(" \""), rest.size()));
-        int number = 0;
-        const auto parsed = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-        if (parsed.ec == std::errc() && number > 0) {
-          best = number;
+        int found = 0;
+        const auto parsed = std::from_chars(rest.data(), rest.data() + rest.size(), found);
+        if (parsed.ec == std::errc() && found > 0) {
+          best = found;
           best_depth = depth;
         }
       }
@@ -111,9 +107,8 @@ GeoKeys parse_well_known_text(std::string_view text) {
   keys.geographic = geographic && !other;
   if (!keys.known) return keys;
   keys.epsg = find_epsg(text);
-  if (const std::size_t quote = text.find('"'); quote != text.npos) {
-    keys.name = trimmed(text.substr(quote + 1, text.find('"', quote + 1) - quote - 1));
-  }
+  const std::size_t begin = text.find('"') + 1, end = text.find('"', begin);
+  if (begin > 0 && end != text.npos) keys.name = trimmed(text.substr(begin, end - begin));
   return keys;
 }
 

@@ -30,11 +30,12 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options, const
   command.add_flag("--list", options.list, "List the " + listed)->group(group::kOutput);
 }
 
-void check(const Session& session, const ComparisonOptions& options, const std::string& input) {
+void check(const Session& session, const ComparisonOptions& options,
+           const std::vector<std::string>& inputs) {
   if (!options.output.empty() && !options.output.ends_with(".html"))
     throw UsageError(fmt::format("-o: '{}' does not end in .html", options.output));
   if (!session.first_process) return;
-  check_outputs(outputs_of(options), {input});
+  check_outputs(outputs_of(options), inputs);
 }
 
 std::vector<OutputFile> outputs_of(const ComparisonOptions& options) {

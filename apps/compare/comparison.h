@@ -25,7 +25,8 @@ struct ComparisonOptions {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options, const std::string& quick,
                             const std::string& listed);
 // Throws UsageError, FileError where nothing could be written in the end.
-void check(const Session& session, const ComparisonOptions& options, const std::string& input);
+void check(const Session& session, const ComparisonOptions& options,
+           const std::vector<std::string>& inputs);
 std::vector<OutputFile> outputs_of(const ComparisonOptions& options);
 
 // Least, most and number of the runs, and the interval of their median, which stands elsewhere.

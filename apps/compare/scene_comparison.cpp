@@ -19,7 +19,7 @@ namespace {
 void check_scene(const CLI::App& command, const Session& session, SceneComparison& options) {
   if (options.render.scene.file.path.empty())
     throw UsageError(fmt::format("compare {}: SCENE is missing", command.get_name()));
-  check(session, options, options.render.scene.file.path);
+  check(session, options, options.render.scene.file.paths);
   parse_size(options.render);
   options.render.behind = parse_background(options.render.background);
   if (session.under_mpi && command.count("--ranks") > 0)

@@ -1,71 +1,147 @@
-// Reads a point file, or makes a point of every pixel of an elevation picture that has a height.
-// Also the options of point inputs and their checks.
+// Opens files of points and pictures of elevations as one input, in parts or whole. Also the
+// options of point inputs and their checks.
 #include "apps/input/point_input.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <optional>
+#include <filesystem>
+#include <span>
 
-#include "apps/input/inliers.h"
+#include "apps/input/elevations.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
 #include "delaunay/duplicates.h"
+#include "delaunay/open_points.h"
 #include "delaunay/read_points.h"
 #include "files/error.h"
 #include "files/format.h"
-#include "image/geotiff.h"
+#include "files/read_file.h"
 #include "image/io.h"
 
 namespace delray::apps {
 namespace {
 
-constexpr std::size_t kColourChannels = 3;
-
-// A picture of one channel, or with --terrain-rgb of three, and perhaps an alpha channel.
-void check_channels(const PointInput& input, const image::RawChannels& picture) {
-  const std::size_t wanted = input.terrain_rgb ? kColourChannels : 1;
-  const std::size_t channels = picture.channels.size();
-  const bool fits =
-      channels == wanted || (channels == wanted + 1 && picture.channels.back() == "A");
-  if (fits) return;
-  throw files::FileError(
-      files::Cause::input, input.path, "",
-      input.terrain_rgb
-          ? fmt::format("terrain-RGB needs three channels, this picture has {}", channels)
-          : fmt::format("heights are a single channel, this picture has {} ({}); --terrain-rgb "
-                        "decodes heights from colours",
-                        channels, fmt::join(picture.channels, ", ")));
+std::vector<std::filesystem::path> named_files(const PointInput& input) {
+  if (input.paths.empty()) return {input.path};
+  return {input.paths.begin(), input.paths.end()};
 }
 
-// The height that a pixel's values stand for.
-double height_of(const double* values, bool terrain_rgb) {
-  if (!terrain_rgb) return values[0];
-  return -10000.0 + (values[0] * 65536.0 + values[1] * 256.0 + values[2]) / 10.0;
+bool is_picture_file(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  // Of thousands of tiles four bytes each will do.
+  constexpr std::string_view kLas = "LASF";
+  if (files::read_start(path, kLas.size(), memory) == kLas) return false;
+  return files::identify_format(path, memory) == files::Format::image;
 }
 
-// GDAL writes the nearest decimal of a 32-bit float as text.
-bool is_missing(double value, std::optional<double> no_data) {
-  return no_data && (value == *no_data || value == double{static_cast<float>(*no_data)});
+void drop_outside(const delaunay::PointFilter& filter, delaunay::PointCloud& points) {
+  if (!filter.bounds) return;
+  const geometry::Box3d& box = *filter.bounds;
+  std::erase_if(points.positions, [&](const glm::dvec3& p) {
+    return glm::any(glm::lessThan(p, box.low)) || glm::any(glm::greaterThan(p, box.high));
+  });
 }
 
-// Elevations say nothing about the distance of their pixels: without --cell-size the relief is as
-// high as a fifth of its longer side.
-double guessed_cell_size(const delaunay::PointCloud& cloud, int longer_side) {
-  const geometry::Box3d box = usual_box(cloud);
-  const double relief = box.high.z - box.low.z;
-  return relief > 0 ? 5.0 * relief / longer_side : 1.0;
+// All of a picture is one part.
+class ElevationParts : public delaunay::PointParts {
+ public:
+  ElevationParts(std::filesystem::path path, const ElevationOptions& options,
+                 const delaunay::PointFilter& filter, const files::MemoryBudget& memory)
+      : path_(std::move(path)), options_(options), filter_(filter), memory_(memory) {
+    const image::PictureInfo info = image::read_info(path_, memory_);
+    pixels_ = static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height);
+  }
+  std::size_t parts() const override { return 1; }
+  std::uint64_t most_rows(std::size_t) const override { return pixels_; }
+  void read(std::size_t, delaunay::PointCloud& points) const override {
+    points = read_elevations(path_, options_, memory_);
+    drop_outside(filter_, points);
+  }
+
+ private:
+  std::filesystem::path path_;
+  ElevationOptions options_;
+  delaunay::PointFilter filter_;
+  files::MemoryBudget memory_;
+  std::uint64_t pixels_ = 0;
+};
+
+// The files that an input stands for, in order, and which are pictures.
+struct InputFiles {
+  std::vector<std::filesystem::path> paths;
+  std::vector<bool> pictures;
+  bool any_picture = false;
+};
+
+// Throws UsageError where options have no effect on the files.
+InputFiles find_files(const PointInput& input) {
+  InputFiles files;
+  files.paths = delaunay::expand_inputs(named_files(input));
+  for (const std::filesystem::path& path : files.paths) {
+    files.pictures.push_back(is_picture_file(path, input.limits.budget()));
+    files.any_picture = files.any_picture || files.pictures.back();
+  }
+  if (!files.any_picture && (input.terrain_rgb || input.cell_size > 0)) {
+    throw UsageError("--terrain-rgb and --cell-size are for elevation pictures");
+  }
+  const PointChoice& choice = input.choice;
+  if (files.any_picture &&
+      (!choice.classes.empty() || !choice.returns.empty() || choice.resolution > 0)) {
+    throw UsageError("--class, --returns and --resolution are not for elevation pictures");
+  }
+  return files;
+}
+
+std::unique_ptr<delaunay::PointParts> open_files(const PointInput& input, const InputFiles& files) {
+  const delaunay::PointFilter filter = filter_of(input.choice);
+  const files::MemoryBudget memory = input.limits.budget();
+  if (!files.any_picture) return delaunay::open_points(files.paths, filter, {.memory = memory});
+  std::vector<std::unique_ptr<delaunay::PointParts>> parts;
+  for (std::size_t i = 0; i < files.paths.size(); ++i) {
+    if (files.pictures[i]) {
+      parts.push_back(std::make_unique<ElevationParts>(
+          files.paths[i], ElevationOptions{input.terrain_rgb, input.cell_size}, filter, memory));
+    } else {
+      parts.push_back(
+          delaunay::open_points(std::span(&files.paths[i], 1), filter, {.memory = memory}));
+    }
+  }
+  return delaunay::join_parts(std::move(parts));
 }
 
 }  // namespace
 
+void PointInput::name_paths() {
+  path = paths.size() == 1 ? paths[0] : fmt::format("{} and {} more", paths[0], paths.size() - 1);
+}
+
+bool PointInput::is_set() const {
+  if (paths.size() > 1) return true;
+  if (path == "-" || path.empty()) return false;
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return true;
+  return path.find_first_of("*?") != std::string::npos && !std::filesystem::exists(path, error);
+}
+
+CLI::Option* add_points_argument(CLI::App& command, const std::string& name, PointInput& input,
+                                 const std::string& description) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&input](const std::vector<std::string>& paths) {
+            input.paths = paths;
+            input.name_paths();
+          },
+          description)
+      ->type_name("FILE")
+      ->group(group::kInput);
+}
+
 bool is_picture(const PointInput& input) {
-  return files::identify_format(input.path, input.limits.budget()) == files::Format::image;
+  return !input.is_set() && is_picture_file(input.path, input.limits.budget());
 }
 
 void add_point_options(CLI::App& command, PointInput& input) {
@@ -85,56 +161,29 @@ void add_point_options(CLI::App& command, PointInput& input) {
                   "min, max or mean")
       ->group(group::kInput);
   choose_from(command, "--duplicates", names_in(delaunay::duplicates_policies()));
+  add_choice_options(command, input.choice);
   add_memory_option(command, input.limits);
 }
 
-delaunay::PointCloud read_elevations(const PointInput& input) {
-  const files::MemoryBudget memory = input.limits.budget();
-  const image::GeoTiff ground = image::read_geotiff(input.path, memory);
-  const image::RawChannels picture = image::read_float_channels(input.path, memory);
-  check_channels(input, picture);
-  const std::size_t channels = picture.channels.size();
-  const bool has_alpha = channels != (input.terrain_rgb ? kColourChannels : 1);
-  delaunay::PointCloud cloud;
-  cloud.has_z = true;
-  memory.require(picture.values.size() / channels * sizeof(glm::dvec3), input.path);
-  cloud.positions.reserve(picture.values.size() / channels);
-  const double* values = picture.values.data();
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x, values += channels) {
-      const double height = height_of(values, input.terrain_rgb);
-      const bool missing =
-          is_missing(values[0], ground.no_data) || (has_alpha && values[channels - 1] == 0);
-      if (std::isfinite(height) && !missing) cloud.positions.emplace_back(x, y, height);
-    }
-  }
-  if (cloud.positions.empty()) {
-    throw files::FileError(files::Cause::input, input.path, "", "no pixel has a finite height");
-  }
-  glm::dmat3x2 to_ground;
-  if (input.cell_size == 0 && ground.to_ground) {
-    to_ground = *ground.to_ground;
-    cloud.geographic = ground.geographic;
-  } else {
-    const double cell = input.cell_size > 0
-                            ? input.cell_size
-                            : guessed_cell_size(cloud, std::max(picture.width, picture.height));
-    to_ground = {cell, 0, 0, -cell, 0, 0};
-  }
-  for (glm::dvec3& p : cloud.positions) {
-    p = glm::dvec3(to_ground * glm::dvec3(p.x, p.y, 1.0), p.z);
-  }
-  return cloud;
+std::filesystem::path first_file(const PointInput& input) {
+  return delaunay::expand_inputs(named_files(input)).front();
+}
+
+std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input) {
+  return open_files(input, find_files(input));
+}
+
+delaunay::PointSummary summarize(const PointInput& input) {
+  return delaunay::summarize_points(named_files(input), filter_of(input.choice),
+                                    {.memory = input.limits.budget()});
 }
 
 delaunay::PointCloud read_cloud(const PointInput& input) {
-  const bool picture = is_picture(input);
-  if (!picture && (input.terrain_rgb || input.cell_size > 0)) {
-    throw UsageError("--terrain-rgb and --cell-size are for elevation pictures");
-  }
+  const InputFiles files = find_files(input);
+  const delaunay::ReadOptions options = {.memory = input.limits.budget()};
   delaunay::PointCloud cloud =
-      picture ? read_elevations(input)
-              : delaunay::read_points(input.path, {.memory = input.limits.budget()});
+      files.any_picture ? delaunay::read_points(*open_files(input, files), options)
+                        : delaunay::read_points(files.paths, filter_of(input.choice), options);
   for (const std::string& warning : cloud.warnings) spdlog::warn("{}: {}", input.path, warning);
   return cloud;
 }

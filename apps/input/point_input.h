@@ -1,34 +1,64 @@
-// Points from whatever the user names: a point file, or a picture of elevations.
+// Points from whatever the user names: files of points, or pictures of elevations.
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "apps/input/point_choice.h"
 #include "apps/options/input_limits.h"
 #include "apps/session.h"
+#include "delaunay/point_parts.h"
 #include "delaunay/points.h"
+#include "delaunay/summarize_points.h"
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace delray::apps {
 
 struct PointInput {
-  std::string path;
+  std::string path;                // as messages name the input: the file, or the first of several
+  std::vector<std::string> paths;  // files, folders and patterns; none: `path` alone
+  PointChoice choice;
   bool terrain_rgb = false;  // heights are coded in the colours of a picture
   double cell_size = 0;      // of an elevation picture; 0: as it says, else such that relief shows
   std::string duplicates;    // empty: first
   InputLimits limits;
 
   // Whether an option was given that only points have a use for.
-  bool given() const { return terrain_rgb || cell_size > 0 || !duplicates.empty(); }
+  bool given() const {
+    return terrain_rgb || cell_size > 0 || !duplicates.empty() || choice.given();
+  }
+  // Sets `path` by `paths`.
+  void name_paths();
+  // Whether more than one file may be meant: several, a folder or a pattern.
+  bool is_set() const;
 };
 
-// Adds --terrain-rgb, --cell-size, --duplicates and --memory.
+// Adds an argument (or option) that takes files, folders and patterns, and sets `path` and `paths`.
+CLI::Option* add_points_argument(CLI::App& command, const std::string& name, PointInput& input,
+                                 const std::string& description);
+
+// Adds --terrain-rgb, --cell-size, --duplicates, --memory and those that choose points.
 void add_point_options(CLI::App& command, PointInput& input);
 
-// Whether the points are the pixels of a picture.
+// Whether the points are the pixels of a single picture.
 bool is_picture(const PointInput& input);
+
+// The first of the files that the input stands for. Throws FileError.
+std::filesystem::path first_file(const PointInput& input);
+
+// The input in parts, of which memory need not hold all; a picture is one part. Throws FileError
+// and UsageError, also for options that have no effect on the input.
+std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input);
+
+// What is in the files, read part by part. REQUIRES: none is a picture. Throws FileError and
+// UsageError.
+delaunay::PointSummary summarize(const PointInput& input);
 
 // Reads the points, whatever they come from. Warnings go to the log. Throws FileError and
 // UsageError.
@@ -43,10 +73,5 @@ delaunay::PointCloud load_points(const PointInput& input, int dim);
 
 // Throws FileError (memory) unless there is room to triangulate so many points in `dim` dimensions.
 void require_memory_to_triangulate(const PointInput& input, std::size_t points, int dim);
-
-// The elevations of a picture as points, row by row, z = height: x and y as a GeoTIFF says, unless
-// there is a cell size; else column and -row times the cell size. Pixels that are not finite,
-// transparent or marked as missing are left out. Throws FileError for a picture of colours.
-delaunay::PointCloud read_elevations(const PointInput& input);
 
 }  // namespace delray::apps

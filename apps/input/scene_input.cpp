@@ -214,11 +214,11 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory)
 }
 
 void add_scene_options(CLI::App& command, SceneInput& input) {
-  command
-      .add_option("SCENE", input.file.path,
-                  "Scene, mesh or points (delray info --list names the formats), elevation "
-                  "picture, or generated scene gen:KIND[:TRIANGLES[:SEED]], such as gen:city:1e6")
-      ->group(group::kInput);
+  add_points_argument(
+      command, "SCENE", input.file,
+      "Scene, mesh or points (delray info --list names the formats; of points several files, "
+      "folders or patterns), elevation picture, or generated scene gen:KIND[:TRIANGLES[:SEED]], "
+      "such as gen:city:1e6");
   command
       .add_option(
           "--color-by", input.colour_by,
@@ -247,8 +247,23 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
   add_outside_option(command, input.file.limits);
 }
 
+InputKind input_kind_of(const PointInput& input) {
+  const files::MemoryBudget memory = input.limits.budget();
+  if (!input.is_set()) return input_kind(input.path, memory);
+  for (const std::string& path : input.paths) {
+    std::error_code error;
+    if (!scenes::is_generated(path) && !std::filesystem::is_regular_file(path, error)) continue;
+    const InputKind kind = input_kind(path, memory);
+    if (kind == InputKind::scene || kind == InputKind::mesh) {
+      throw UsageError(
+          fmt::format("{} is no file of points, of which several make one input", path));
+    }
+  }
+  return InputKind::points;
+}
+
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
-  InputKind kind = input_kind(input.file.path, input.file.limits.budget());
+  InputKind kind = input_kind_of(input.file);
   // Options of points ask for those of a .node, without the .ele beside it.
   const bool is_node = files::format_of_suffix(input.file.path) == Format::node &&
                        !input.file.path.ends_with(".ele");
@@ -260,9 +275,10 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
     return from_points(input, progress);
   }
   if (input.file.given()) {
-    throw UsageError(
-        fmt::format("--terrain-rgb, --cell-size and --duplicates are for points; {} is a scene",
-                    input.file.path));
+    throw UsageError(fmt::format(
+        "--terrain-rgb, --cell-size, --duplicates and options that choose points are for "
+        "points; {} is a scene",
+        input.file.path));
   }
   if (!input.draw.empty()) {
     throw UsageError(fmt::format("--draw is for points; {} has triangles", input.file.path));

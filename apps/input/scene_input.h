@@ -27,6 +27,10 @@ struct SceneInput {
 enum class InputKind { scene, mesh, points, picture };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 
+// The same of an input that may be several files, which are points then. Throws UsageError for a
+// scene or mesh among several.
+InputKind input_kind_of(const PointInput& input);
+
 // Adds SCENE, --color-by, --exaggeration, --draw, --up, --allow-outside and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 

@@ -31,5 +31,30 @@ TEST(GeoKeys, TellAProjectedSystemFromTheGeographicOneInIt) {
   EXPECT_FALSE(parse_well_known_text("").known);
 }
 
+TEST(GeoKeys, TellNameAndNumber) {
+  // Texts "Own|Whole|" hold the names of the projected system and of all.
+  std::vector<std::uint16_t> keys = {1, 1,    0,    4,     1024, 0, 1,    1,     3072, 0,
+                                     1, 2992, 3073, 34737, 4,    0, 1026, 34737, 6,    4};
+  EXPECT_EQ(parse_geo_keys(keys, "Own|Whole|").name, "Own");
+  EXPECT_EQ(parse_geo_keys(keys, "Own|Whole|").epsg, 2992);
+  keys[12] = 9999;
+  EXPECT_EQ(parse_geo_keys(keys, "Own|Whole|").name, "Whole");
+  EXPECT_EQ(parse_geo_keys(keys, "Ow").name, "");
+  keys[11] = 32767;  // user-defined
+  EXPECT_EQ(parse_geo_keys(keys).epsg, 0);
+
+  const char* const datum =
+      "GEOGCS[\"WGS 84\",DATUM[\"a]b\",AUTHORITY[\"EPSG\",\"6326\"]],AUTHORITY[\"EPSG\",\"4326\"]]";
+  EXPECT_EQ(parse_well_known_text(datum).epsg, 4326);
+  EXPECT_EQ(parse_well_known_text(datum).name, "WGS 84");
+  const std::string projected = std::string("PROJCS[\"UTM\",") + datum;
+  EXPECT_EQ(parse_well_known_text(projected + "]").epsg, 0);
+  const std::string numbered = projected + ",AUTHORITY[\"EPSG\",\"32633\"]]";
+  EXPECT_EQ(parse_well_known_text(numbered).epsg, 32633);
+  EXPECT_EQ(parse_well_known_text("COMPD_CS[\"both\"," + numbered + "]").epsg, 32633);
+  EXPECT_EQ(parse_well_known_text("PROJCRS[\"x\",ID[\"EPSG\",28992]]").epsg, 28992);
+  EXPECT_EQ(parse_well_known_text("PROJCS[\"x").name, "");
+}
+
 }  // namespace
 }  // namespace delray::files

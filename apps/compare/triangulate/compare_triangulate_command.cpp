@@ -16,7 +16,6 @@
 #include "apps/terminal/progress_bar.h"
 #include "delaunay/distributed.h"
 #include "delaunay/methods.h"
-#include "delaunay/read_points.h"
 #include "files/format.h"
 
 namespace delray::apps {
@@ -25,15 +24,14 @@ namespace {
 // Pictures and scans from the air are terrain; other points with a z are points in space.
 bool is_terrain(const PointInput& input) {
   if (input.given()) return true;
-  const files::Format format = files::identify_format(input.path, input.limits.budget());
+  const files::Format format = files::identify_format(first_file(input), input.limits.budget());
   return format == files::Format::image || format == files::Format::las;
 }
 
 delaunay::PointCloud load(const PointInput& input, int& dim) {
   if (dim == 0 && is_terrain(input)) dim = 2;
   if (dim > 0) return load_points(input, dim);
-  delaunay::PointCloud points =
-      delaunay::read_points(input.path, {.memory = input.limits.budget()});
+  delaunay::PointCloud points = read_cloud(input);
   dim = points.has_z ? 3 : 2;
   return points;
 }
@@ -83,11 +81,11 @@ int run(Session& session, TriangulateRequest request) {
     list_distributed_methods();
     return kDone;
   }
-  if (request.input.path.empty()) throw UsageError("compare triangulate: POINTS is missing");
+  if (request.input.paths.empty()) throw UsageError("compare triangulate: POINTS is missing");
   if (session.under_mpi)
     throw UsageError("compare triangulate: threads are compared, there is nothing for mpirun");
   check_ranks(request);
-  check(session, request, request.input.path);
+  check(session, request, request.input.paths);
   std::sort(request.threads.begin(), request.threads.end());
   request.threads.erase(std::unique(request.threads.begin(), request.threads.end()),
                         request.threads.end());
@@ -112,10 +110,9 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
   CLI::App* command = compare.add_subcommand(
       "triangulate", "Compare methods of triangulation: times, speed-up and synchronization");
   const auto request = std::make_shared<TriangulateRequest>();
-  command
-      ->add_option("POINTS", request->input.path,
-                   "File of points (delray info --list names the formats); - for standard input")
-      ->group(group::kInput);
+  add_points_argument(*command, "POINTS", request->input,
+                      "Files of points (delray info --list names the formats), folders of such or "
+                      "patterns; - for standard input");
   command
       ->add_option(
           "--dim", request->dim,

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "delaunay/files/parts/file_parts.h"
+#include "files/error.h"
+#include "parallel/arena.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -166,6 +168,31 @@ std::unique_ptr<PointParts> join_parts(std::vector<std::unique_ptr<PointParts>> 
 std::unique_ptr<PointParts> open_points(std::span<const std::filesystem::path> inputs,
                                         const PointFilter& filter, const ReadOptions& options) {
   return std::make_unique<FilesInParts>(open_files(inputs, filter, options), filter);
+}
+
+PointCloud read_points(const PointParts& parts, const ReadOptions& options) {
+  constexpr std::uint64_t kBytesPerPoint = 40;  // with everything
+  const auto at_a_time = static_cast<std::size_t>(4 * parallel::arena_threads());
+  PointCloud all;
+  std::vector<std::string> warnings;
+  for (std::size_t first = 0; first < parts.parts(); first += at_a_time) {
+    std::vector<PointCloud> clouds(std::min(at_a_time, parts.parts() - first));
+    std::uint64_t rows = 0;
+    for (std::size_t i = 0; i < clouds.size(); ++i) rows += parts.most_rows(first + i);
+    options.memory.require(rows * kBytesPerPoint, "points");
+    parallel::parallel_for(0, clouds.size(), 1,
+                           [&](std::size_t i) { parts.read(first + i, clouds[i]); });
+    for (PointCloud& cloud : clouds) {
+      warnings.insert(warnings.end(), cloud.warnings.begin(), cloud.warnings.end());
+      cloud.warnings.clear();
+      join_clouds(all, std::move(cloud));
+    }
+  }
+  if (all.size() == 0) {
+    throw files::FileError(files::Cause::input, "points", "", "there are none");
+  }
+  all.warnings.insert(all.warnings.begin(), warnings.begin(), warnings.end());
+  return all;
 }
 
 PointCloud read_points(std::span<const std::filesystem::path> inputs, const PointFilter& filter,

@@ -59,8 +59,8 @@ TEST(ReadPoints, TakesLineEndsOfEveryKind) {
 }
 
 TEST(ReadPoints, RefusesFilesWithoutPoints) {
-  for (const char* name : {"a.xyz", "a.csv", "a.ply", "a.obj", "a.off", "a.las", "a.json", "a.node",
-                           "a.vtu", "a", "a.unknown"}) {
+  for (const char* name : {"a.xyz", "a.csv", "a.ply", "a.obj", "a.off", "a.las", "a.pcd", "a.json",
+                           "a.node", "a.vtu", "a", "a.unknown"}) {
     EXPECT_NE(complaint_about_points(name, "").find("empty"), std::string::npos);
     complaint_about_points(name, " \n\n");
     complaint_about_points(name, "# nothing\n");
@@ -180,6 +180,9 @@ TEST(ReadPoints, SurvivesFilesCutAtEveryByte) {
       {"a.obj", "v 1 2 3\nv 4 5 6\nf 1 2 1\n"},
       {"a.node", "2 2 1 1\n1 10 20 7 0\n2 11 21 8 1\n"},
       {"a.json", "[[1.5, 2], [3e5, 4]]"},
+      {"a.pcd",
+       "# .PCD v0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA "
+       "ascii\n1 2\n3 4\n"},
       {"a.csv", "x,y,red,green,blue,intensity\n1,2,3,4,5,6\n2,3,4,5,6,7\n"},
   };
   const tests::TemporaryFolder folder;
@@ -204,6 +207,9 @@ TEST(ReadPoints, SurvivesRandomDamage) {
       {"a.off", "OFF\n2 1 0\n1 2 3\n4 5 6\n3 0 1 0\n"},
       {"a.node", "2 2 1 1\n1 10 20 7 0\n2 11 21 8 1\n"},
       {"a.json", "[[1.5, 2], [3e5, 4]]"},
+      {"a.pcd",
+       "# .PCD v0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA "
+       "ascii\n1 2\n3 4\n"},
       {"a.csv", "x,y,red\n1,2,3\n2,3,4\n"},
   };
   const tests::TemporaryFolder folder;
