@@ -30,6 +30,7 @@ struct PointFileFacts {
   int epsg = 0;                   // its number in the EPSG registry, 0 if none is told
 };
 
+// What is in an input of several files.
 struct PointSummary {
   std::vector<PointFileFacts> files;       // in the order given
   std::vector<std::uint64_t> file_points;  // of each file

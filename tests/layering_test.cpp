@@ -68,6 +68,8 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/tiles", {"mesh"}},
     {"delaunay/distributed", {"insertion", "mesh", "predicates", "tiles"}},
     {"delaunay/verify", {"mesh"}},
+    {"delaunay/points", {"mesh"}},
+    {"delaunay/queries", {"mesh"}},
     {"raster/shading", {"pipeline"}},
     {"raster/distribute", {"pipeline", "shading"}},
     {"raster/strategies", {"distribute", "pipeline"}},

@@ -112,6 +112,18 @@ std::unique_ptr<delaunay::PointParts> open_files(const PointInput& input, const 
   return delaunay::join_parts(std::move(parts));
 }
 
+delaunay::PointCloud read_with_pictures(const PointInput& input, const InputFiles& files) {
+  const files::MemoryBudget memory = input.limits.budget();
+  if (files.paths.size() > 1) {
+    return delaunay::read_points(*open_files(input, files), {.memory = memory});
+  }
+  delaunay::PointCloud points =
+      read_elevations(files.paths[0], {input.terrain_rgb, input.cell_size}, memory);
+  drop_outside(filter_of(input.choice), points);
+  if (points.size() > 0) return points;
+  throw files::FileError(files::Cause::input, input.path, "", "no pixel is within --bounds");
+}
+
 }  // namespace
 
 void PointInput::name_paths() {
@@ -182,7 +194,7 @@ delaunay::PointCloud read_cloud(const PointInput& input) {
   const InputFiles files = find_files(input);
   const delaunay::ReadOptions options = {.memory = input.limits.budget()};
   delaunay::PointCloud cloud =
-      files.any_picture ? delaunay::read_points(*open_files(input, files), options)
+      files.any_picture ? read_with_pictures(input, files)
                         : delaunay::read_points(files.paths, filter_of(input.choice), options);
   for (const std::string& warning : cloud.warnings) spdlog::warn("{}: {}", input.path, warning);
   return cloud;

@@ -256,7 +256,7 @@ InputKind input_kind_of(const PointInput& input) {
     const InputKind kind = input_kind(path, memory);
     if (kind == InputKind::scene || kind == InputKind::mesh) {
       throw UsageError(
-          fmt::format("{} is no file of points, of which several make one input", path));
+          fmt::format("{} is a scene or mesh: only points are read from several files", path));
     }
   }
   return InputKind::points;

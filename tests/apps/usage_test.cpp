@@ -116,7 +116,9 @@ TEST(Usage, CountsThatAreNoneAreRefused) {
 TEST(Usage, EveryKindOfMistakeIsTheSameKindOfLine) {
   const Folder folder;
   const std::string gen = "delray render gen:cornell -o a.png --size 8x8 ";
-  expect_told(gen + "b.glb c.glb", "unexpected arguments: b.glb c.glb (", folder);
+  expect_told(gen + "b.glb c.glb", "only points are read from several files", folder);
+  expect_told("delray generate points uniform -n 5 -o p.xyz b c", "unexpected arguments: b c (",
+              folder);
   expect_told(gen + "--depth 1 --depth 2", "--depth: given more than once", folder);
   expect_told(gen + "--frames 0", "--frames: ", folder);
   expect_told(gen + "--camera", "--camera: a value is missing", folder);
@@ -124,7 +126,7 @@ TEST(Usage, EveryKindOfMistakeIsTheSameKindOfLine) {
   expect_told("delray completion", "SHELL", folder);
   expect_told("delray completion bash zsh", "zsh", folder);
   expect_told("delray render", "SCENE", folder);
-  expect_told("delray render 'a\nb' c", "delray render --help tells more", folder);
+  expect_told("delray completion bash 'a\nb' c", "delray completion --help tells more", folder);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "delaunay/files/parts/las_parts.h"
 #include "delaunay/files/point_readers.h"
 #include "files/read_file.h"
 
@@ -19,6 +20,14 @@ struct Reader {
 
 PointMesh read_elements(const Input& elements) {
   return read_node_mesh({"points", "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n"}, elements);
+}
+
+// Of an octree the nodes of a part of it.
+PointCloud read_octree(const Input& input) {
+  PointFilter filter;
+  filter.resolution = 2;
+  filter.bounds = {{-1e3, -1e3, -1e3}, {30, 30, 1e3}};
+  return read_all(LasParts(ByteSource(input), filter), filter, input.memory);
 }
 
 class Corpus : public testing::TestWithParam<Reader> {};
@@ -66,6 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Readers, Corpus,
                                          Reader{"read_obj", &read_obj_points, &read_obj_mesh},
                                          Reader{"read_off", &read_off_points, &read_off_mesh},
                                          Reader{"read_las", &read_las_points, nullptr},
+                                         Reader{"read_copc", &read_octree, nullptr},
                                          Reader{"read_pcd", &read_pcd_points, nullptr},
                                          Reader{"read_json", &read_json_points, nullptr},
                                          Reader{"read_node", &read_node_points, nullptr},

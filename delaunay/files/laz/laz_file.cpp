@@ -17,9 +17,11 @@ enum ItemType : std::uint16_t {
   point10 = 6,
   time11 = 7,
   colour12 = 8,
+  wave_packet13 = 9,
   point14 = 10,
   colour14 = 11,
   colour_and_infrared14 = 12,
+  wave_packet14 = 13,
   extra_bytes14 = 14,
 };
 
@@ -87,6 +89,9 @@ Description parse_description(const Input& input, const LasHeader& header) {
       layered_items.near_infrared = type == colour_and_infrared14;
     } else if (type == (layered ? extra_bytes14 : extra_bytes)) {
       (layered ? layered_items.extra_bytes : pointwise_items.extra_bytes) += size;
+    } else if (type == wave_packet13 || type == wave_packet14) {
+      fail(input, kPlace,
+           "wave packets (point format " + std::to_string(header.format_number) + ") are not read");
     } else {
       fail(input, kPlace, "items of type " + std::to_string(type) + " are not read there");
     }

@@ -2,7 +2,6 @@
 #include "delaunay/open_points.h"
 
 #include <algorithm>
-#include <exception>
 #include <mutex>
 #include <utility>
 
@@ -14,22 +13,12 @@
 namespace delray::delaunay {
 namespace {
 
-// Opened in parallel, as there may be thousands. The first error is thrown.
 std::vector<std::unique_ptr<FileParts>> open_files(std::span<const std::filesystem::path> inputs,
                                                    const PointFilter& filter,
                                                    const ReadOptions& options) {
-  const std::vector<std::filesystem::path> paths = expand_inputs(inputs);
-  std::vector<std::unique_ptr<FileParts>> files(paths.size());
-  std::vector<std::exception_ptr> errors(paths.size());
-  parallel::parallel_for(0, paths.size(), 1, [&](std::size_t i) {
-    try {
-      files[i] = open_file_parts(paths[i], filter, options);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
+  std::vector<std::unique_ptr<FileParts>> files;
+  for (const std::filesystem::path& path : expand_inputs(inputs)) {
+    files.push_back(open_file_parts(path, filter, options));
   }
   return files;
 }

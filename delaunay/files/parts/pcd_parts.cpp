@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "delaunay/files/lzf.h"
+#include "delaunay/files/parts/lzf.h"
 
 namespace delray::delaunay {
 namespace {

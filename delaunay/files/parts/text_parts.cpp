@@ -106,7 +106,7 @@ std::size_t LineRanges::first_line(std::size_t range) const {
   return static_cast<std::size_t>(line);
 }
 
-std::unique_ptr<FileParts> open_text_parts(const ByteSource& source) {
+std::unique_ptr<FileParts> open_text_parts(const ByteSource& source, std::uint64_t range_bytes) {
   std::string buffer;
   std::string_view text = source.read(0, std::min(source.size(), kTextStart), buffer);
   const std::size_t first_end = text.find_first_of("\r\n");
@@ -127,7 +127,8 @@ std::unique_ptr<FileParts> open_text_parts(const ByteSource& source) {
     const TextLayout layout = text_layout(start, true);
     // No row takes less than four bytes; of most points that are whole numbers this will do.
     const bool fits = counts->points <= source.size() / 4 && counts->edges <= source.size() / 4;
-    const std::uint64_t rows = fits || counts->single ? count_rows({source, layout.begin}) : 0;
+    const std::uint64_t rows =
+        fits || counts->single ? count_rows({source, layout.begin, range_bytes}) : 0;
     if (!counts->single && rows >= counts->points && counts->edges == rows - counts->points) {
       return nullptr;
     }
@@ -135,7 +136,7 @@ std::unique_ptr<FileParts> open_text_parts(const ByteSource& source) {
     with_counts = counts->single;
   }
   const TextLayout layout = text_layout(start, with_counts);
-  return std::make_unique<TextParts>(LineRanges(source, layout.begin), layout);
+  return std::make_unique<TextParts>(LineRanges(source, layout.begin, range_bytes), layout);
 }
 
 }  // namespace delray::delaunay

@@ -15,14 +15,18 @@ namespace delray::delaunay {
 // The lines of a text that begin in byte ranges of equal size.
 class LineRanges {
  public:
-  static constexpr std::uint64_t kRange = std::uint64_t{1} << 21;  // some 6 ms of parsing
+  static constexpr std::uint64_t kUsual = std::uint64_t{1} << 21;  // some 6 ms of parsing
 
   // Lines from byte `begin` on, where one begins, which is the line of that number.
-  LineRanges(ByteSource source, TextPlace begin) : source_(std::move(source)), begin_(begin) {}
+  //
+  // REQUIRES: range_bytes >= 1.
+  LineRanges(ByteSource source, TextPlace begin, std::uint64_t range_bytes = kUsual)
+      : source_(std::move(source)), begin_(begin), range_bytes_(range_bytes) {}
 
   const ByteSource& source() const { return source_; }
   std::size_t ranges() const {
-    return static_cast<std::size_t>((source_.size() - begin_.byte + kRange - 1) / kRange);
+    return static_cast<std::size_t>((source_.size() - begin_.byte + range_bytes_ - 1) /
+                                    range_bytes_);
   }
   std::uint64_t bytes(std::size_t range) const { return end_of(range) - begin_of(range); }
   // How many lines begin in the range: reads it.
@@ -33,13 +37,14 @@ class LineRanges {
   std::size_t first_line(std::size_t range) const;
 
  private:
-  std::uint64_t begin_of(std::size_t range) const { return begin_.byte + range * kRange; }
+  std::uint64_t begin_of(std::size_t range) const { return begin_.byte + range * range_bytes_; }
   std::uint64_t end_of(std::size_t range) const {
-    return std::min(source_.size(), begin_of(range) + kRange);
+    return std::min(source_.size(), begin_of(range) + range_bytes_);
   }
 
   ByteSource source_;
   TextPlace begin_;
+  std::uint64_t range_bytes_;
 };
 
 // Calls f(Fields&) for each row of a range, in order; of a FileError that it throws, the line
@@ -69,6 +74,7 @@ void for_each_row(const LineRanges& lines, std::size_t range, Separator separato
 
 // Null for what has to be looked at whole: line ends of "\r" alone, a first row of counts that the
 // rows confirm, nothing but comments in the first megabyte. Throws FileError.
-std::unique_ptr<FileParts> open_text_parts(const ByteSource& source);
+std::unique_ptr<FileParts> open_text_parts(const ByteSource& source,
+                                           std::uint64_t range_bytes = LineRanges::kUsual);
 
 }  // namespace delray::delaunay

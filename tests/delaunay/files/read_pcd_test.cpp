@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "tests/delaunay/files/lzf_encoder.h"
+#include "tests/delaunay/files/parts/lzf_encoder.h"
 #include "tests/delaunay/files/point_files.h"
 
 namespace delray::delaunay {

@@ -229,7 +229,9 @@ TEST(LazFile, TellsWhatIsNotRead) {
   EXPECT_NE(with(kDescription + 2, std::uint16_t{1}).find("entropy coder"), std::string::npos);
   EXPECT_NE(with(kDescription + 34 + 4, std::uint16_t{1}).find("coding of version 1"),
             std::string::npos);
-  EXPECT_NE(with(kDescription + 34 + 6, std::uint16_t{9}).find("items of type 9"),
+  EXPECT_NE(with(kDescription + 34 + 6, std::uint16_t{9}).find("wave packets (point format 1)"),
+            std::string::npos);
+  EXPECT_NE(with(kDescription + 34 + 6, std::uint16_t{5}).find("items of type 5"),
             std::string::npos);
   EXPECT_NE(with(105, std::uint16_t{30}).find("describes points of 28 bytes"), std::string::npos);
   EXPECT_NE(with(107, std::uint32_t{111}).find("the header announces 111"), std::string::npos);

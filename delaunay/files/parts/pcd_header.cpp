@@ -1,6 +1,6 @@
 // The header of PCD files, one keyword a line (Rusu and Cousins, 3D is here: Point Cloud Library,
 // 2011; the format is described at pointclouds.org).
-#include "delaunay/files/pcd_header.h"
+#include "delaunay/files/parts/pcd_header.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // What was packed comes out again; damage is noticed or harmless.
-#include "delaunay/files/lzf.h"
+#include "delaunay/files/parts/lzf.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 
-#include "tests/delaunay/files/lzf_encoder.h"
+#include "tests/delaunay/files/parts/lzf_encoder.h"
 
 namespace delray::delaunay {
 namespace {

@@ -1,7 +1,7 @@
 // Reads one control byte after the other: below 32 it is followed by that many literal bytes and
 // one more; else its upper three bits are the length of a copy, its lower five and the next byte
 // the distance.
-#include "delaunay/files/lzf.h"
+#include "delaunay/files/parts/lzf.h"
 
 #include <cstring>
 
