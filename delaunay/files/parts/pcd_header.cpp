@@ -123,7 +123,7 @@ PcdHeader parse_pcd_header(const Input& start) {
   while (place.byte < start.content.size()) {
     const std::size_t number = place.line;
     Fields line(start, take_line(start.content, place), number);
-    std::string_view keyword, word;
+    std::string_view keyword;
     if (!line.next(keyword)) continue;
     if (keyword == "FIELDS" || keyword == "COLUMNS") {
       header.fields.clear();
