@@ -124,11 +124,12 @@ std::unique_ptr<FileParts> open_text_parts(const ByteSource& source, std::uint64
   if (index_rows(start, {}, kFirstRows, is_data_row).count < kFirstRows) return nullptr;
   bool with_counts = false;
   if (const auto counts = announced_counts(start)) {
-    const TextLayout layout = text_layout(start, true);
+    TextPlace rest;
+    if (text.starts_with("\xef\xbb\xbf")) rest.byte = 3;  // UTF-8 byte order mark
+    rest = index_rows(start, rest, 1, is_data_row).end;
     // No row takes less than four bytes; of most points that are whole numbers this will do.
     const bool fits = counts->points <= source.size() / 4 && counts->edges <= source.size() / 4;
-    const std::uint64_t rows =
-        fits || counts->single ? count_rows({source, layout.begin, range_bytes}) : 0;
+    const std::uint64_t rows = fits || counts->single ? count_rows({source, rest, range_bytes}) : 0;
     if (!counts->single && rows >= counts->points && counts->edges == rows - counts->points) {
       return nullptr;
     }
