@@ -81,7 +81,7 @@ int run(Session& session, TriangulateRequest request) {
     list_distributed_methods();
     return kDone;
   }
-  if (request.input.paths.empty()) throw UsageError("compare triangulate: POINTS is missing");
+  if (request.input.path.empty()) throw UsageError("compare triangulate: POINTS is missing");
   if (session.under_mpi)
     throw UsageError("compare triangulate: threads are compared, there is nothing for mpirun");
   check_ranks(request);
