@@ -1,5 +1,6 @@
 // delray info: what is in a scene, point, mesh or picture file.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <variant>

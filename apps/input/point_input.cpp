@@ -1,5 +1,5 @@
-// Opens files of points and pictures of elevations as one input, in parts or whole. Also the
-// options of point inputs and their checks.
+// Reads files of points and pictures of elevations as one input. Also the options of point inputs
+// and their checks.
 #include "apps/input/point_input.h"
 
 #include <fmt/format.h>
@@ -8,9 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <span>
 
-#include "apps/input/elevations.h"
+#include "apps/input/point_parts_input.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
@@ -20,10 +19,8 @@
 #include "files/error.h"
 #include "files/format.h"
 #include "files/read_file.h"
-#include "image/io.h"
 
 namespace delray::apps {
-namespace {
 
 std::vector<std::filesystem::path> named_files(const PointInput& input) {
   if (input.paths.empty()) return {input.path};
@@ -36,95 +33,6 @@ bool is_picture_file(const std::filesystem::path& path, const files::MemoryBudge
   if (files::read_start(path, kLas.size(), memory) == kLas) return false;
   return files::identify_format(path, memory) == files::Format::image;
 }
-
-void drop_outside(const delaunay::PointFilter& filter, delaunay::PointCloud& points) {
-  if (!filter.bounds) return;
-  const geometry::Box3d& box = *filter.bounds;
-  std::erase_if(points.positions, [&](const glm::dvec3& p) {
-    return glm::any(glm::lessThan(p, box.low)) || glm::any(glm::greaterThan(p, box.high));
-  });
-}
-
-// All of a picture is one part.
-class ElevationParts : public delaunay::PointParts {
- public:
-  ElevationParts(std::filesystem::path path, const ElevationOptions& options,
-                 const delaunay::PointFilter& filter, const files::MemoryBudget& memory)
-      : path_(std::move(path)), options_(options), filter_(filter), memory_(memory) {
-    const image::PictureInfo info = image::read_info(path_, memory_);
-    pixels_ = static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height);
-  }
-  std::size_t parts() const override { return 1; }
-  std::uint64_t most_rows(std::size_t) const override { return pixels_; }
-  void read(std::size_t, delaunay::PointCloud& points) const override {
-    points = read_elevations(path_, options_, memory_);
-    drop_outside(filter_, points);
-  }
-
- private:
-  std::filesystem::path path_;
-  ElevationOptions options_;
-  delaunay::PointFilter filter_;
-  files::MemoryBudget memory_;
-  std::uint64_t pixels_ = 0;
-};
-
-// The files that an input stands for, in order, and which are pictures.
-struct InputFiles {
-  std::vector<std::filesystem::path> paths;
-  std::vector<bool> pictures;
-  bool any_picture = false;
-};
-
-// Throws UsageError where options have no effect on the files.
-InputFiles find_files(const PointInput& input) {
-  InputFiles files;
-  files.paths = delaunay::expand_inputs(named_files(input));
-  for (const std::filesystem::path& path : files.paths) {
-    files.pictures.push_back(is_picture_file(path, input.limits.budget()));
-    files.any_picture = files.any_picture || files.pictures.back();
-  }
-  if (!files.any_picture && (input.terrain_rgb || input.cell_size > 0)) {
-    throw UsageError("--terrain-rgb and --cell-size are for elevation pictures");
-  }
-  const PointChoice& choice = input.choice;
-  if (files.any_picture &&
-      (!choice.classes.empty() || !choice.returns.empty() || choice.resolution > 0)) {
-    throw UsageError("--class, --returns and --resolution are not for elevation pictures");
-  }
-  return files;
-}
-
-std::unique_ptr<delaunay::PointParts> open_files(const PointInput& input, const InputFiles& files) {
-  const delaunay::PointFilter filter = filter_of(input.choice);
-  const files::MemoryBudget memory = input.limits.budget();
-  if (!files.any_picture) return delaunay::open_points(files.paths, filter, {.memory = memory});
-  std::vector<std::unique_ptr<delaunay::PointParts>> parts;
-  for (std::size_t i = 0; i < files.paths.size(); ++i) {
-    if (files.pictures[i]) {
-      parts.push_back(std::make_unique<ElevationParts>(
-          files.paths[i], ElevationOptions{input.terrain_rgb, input.cell_size}, filter, memory));
-    } else {
-      parts.push_back(
-          delaunay::open_points(std::span(&files.paths[i], 1), filter, {.memory = memory}));
-    }
-  }
-  return delaunay::join_parts(std::move(parts));
-}
-
-delaunay::PointCloud read_with_pictures(const PointInput& input, const InputFiles& files) {
-  const files::MemoryBudget memory = input.limits.budget();
-  if (files.paths.size() > 1) {
-    return delaunay::read_points(*open_files(input, files), {.memory = memory});
-  }
-  delaunay::PointCloud points =
-      read_elevations(files.paths[0], {input.terrain_rgb, input.cell_size}, memory);
-  drop_outside(filter_of(input.choice), points);
-  if (points.size() > 0) return points;
-  throw files::FileError(files::Cause::input, input.path, "", "no pixel is within --bounds");
-}
-
-}  // namespace
 
 void PointInput::name_paths() {
   path = paths.size() == 1 ? paths[0] : fmt::format("{} and {} more", paths[0], paths.size() - 1);
@@ -177,25 +85,25 @@ void add_point_options(CLI::App& command, PointInput& input) {
   add_memory_option(command, input.limits);
 }
 
-std::filesystem::path first_file(const PointInput& input) {
-  return delaunay::expand_inputs(named_files(input)).front();
-}
-
-std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input) {
-  return open_files(input, find_files(input));
-}
-
 delaunay::PointSummary summarize(const PointInput& input) {
   return delaunay::summarize_points(named_files(input), filter_of(input.choice),
                                     {.memory = input.limits.budget()});
 }
 
 delaunay::PointCloud read_cloud(const PointInput& input) {
-  const InputFiles files = find_files(input);
+  const InputFiles files = find_input_files(input);
   const delaunay::ReadOptions options = {.memory = input.limits.budget()};
-  delaunay::PointCloud cloud =
-      files.any_picture ? read_with_pictures(input, files)
-                        : delaunay::read_points(files.paths, filter_of(input.choice), options);
+  delaunay::PointCloud cloud;
+  if (!files.any_picture) {
+    cloud = delaunay::read_points(files.paths, filter_of(input.choice), options);
+  } else if (const auto parts = open_parts(input); parts->parts() > 1) {
+    cloud = delaunay::read_points(*parts, options);
+  } else {
+    parts->read(0, cloud);
+    if (cloud.size() == 0) {
+      throw files::FileError(files::Cause::input, input.path, "", "no pixel is within --bounds");
+    }
+  }
   for (const std::string& warning : cloud.warnings) spdlog::warn("{}: {}", input.path, warning);
   return cloud;
 }

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "apps/input/point_choice.h"
 #include "apps/options/input_limits.h"
 #include "apps/session.h"
-#include "delaunay/point_parts.h"
 #include "delaunay/points.h"
 #include "delaunay/summarize_points.h"
 
@@ -49,12 +47,10 @@ void add_point_options(CLI::App& command, PointInput& input);
 // Whether the points are the pixels of a single picture.
 bool is_picture(const PointInput& input);
 
-// The first of the files that the input stands for. Throws FileError.
-std::filesystem::path first_file(const PointInput& input);
-
-// The input in parts, of which memory need not hold all; a picture is one part. Throws FileError
-// and UsageError, also for options that have no effect on the input.
-std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input);
+// The files, folders and patterns as the user named them.
+std::vector<std::filesystem::path> named_files(const PointInput& input);
+// Whether the file is a picture.
+bool is_picture_file(const std::filesystem::path& path, const files::MemoryBudget& memory);
 
 // What is in the files, read part by part. REQUIRES: none is a picture. Throws FileError and
 // UsageError.

@@ -10,6 +10,7 @@
 #include "apps/compare/triangulate/triangulate_figures.h"
 #include "apps/compare/triangulate/triangulate_report.h"
 #include "apps/families.h"
+#include "apps/input/point_parts_input.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
@@ -24,7 +25,8 @@ namespace {
 // Pictures and scans from the air are terrain; other points with a z are points in space.
 bool is_terrain(const PointInput& input) {
   if (input.given()) return true;
-  const files::Format format = files::identify_format(first_file(input), input.limits.budget());
+  const files::Format format =
+      files::identify_format(find_input_files(input).paths.front(), input.limits.budget());
   return format == files::Format::image || format == files::Format::las;
 }
 
