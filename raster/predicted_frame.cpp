@@ -124,7 +124,8 @@ void apply_prices(const DrawingPrices& prices, std::uint64_t primitives, Simulat
   for (std::size_t k = 0; k < frame.ledger.ranks.size(); ++k) {
     RankStatistics& rank = frame.statistics.ranks[k];
     if (!(frame.drawing[k] > 0)) continue;
-    const double factor = drawing_seconds(prices, rank, ranks, primitives) / frame.drawing[k];
+    const double factor =
+        std::min(1.0, drawing_seconds(prices, rank, ranks, primitives) / frame.drawing[k]);
     frame.drawing[k] *= factor;
     for (comm::Event& event : frame.ledger.ranks[k]) {
       if (event.kind == comm::Event::Kind::work && is_drawing(event.phase))

@@ -54,7 +54,7 @@ DrawingPrices fit_prices(std::span<const SimulatedFrame> frames, std::uint64_t p
 double drawing_seconds(const DrawingPrices& prices, const RankStatistics& rank, int ranks,
                        std::uint64_t primitives);
 
-// Has ranks take for drawing what the prices say of their counts, in place of what was measured:
+// Has ranks take for drawing what the prices say of their counts, but no longer than they took:
 // thousands of ranks that take turns find nothing in the caches, and take longer than each would on
 // a core of its own.
 void apply_prices(const DrawingPrices& prices, std::uint64_t primitives, SimulatedFrame& frame);

@@ -191,6 +191,9 @@ TEST(DrawingPrices, TakeThePlaceOfWhatWasMeasuredInDrawingAlone) {
   EXPECT_EQ(events[0].amount, 1'000'000U);
   EXPECT_EQ(events[1].amount, 3'000'000U);
   EXPECT_EQ(events[2].amount, 2'000'000U);
+  prices.seconds = {1, 0, 0, 0, 0};  // more than it took
+  apply_prices(prices, 10, frame);
+  EXPECT_EQ(events[0].amount, 1'000'000U);
   const PredictedFrame predicted = predict(frame, {});
   EXPECT_DOUBLE_EQ(predicted.seconds, 0.006);
   EXPECT_DOUBLE_EQ(predicted[Part::shade], 0.00075);
