@@ -44,6 +44,7 @@ class Administrators final : public RankInserter<D> {
     // All ranks appoint the same administrators of the first simplices.
     std::vector<Node<D>> nodes = first_nodes<D>(site.first);
     std::vector<std::uint32_t> homes;
+    homes.reserve(nodes.size());
     for (const Node<D>& node : nodes) homes.push_back(appoint(node));
     for (Node<D>& node : nodes) {
       for (NodeId& id : node.neighbours) id.home = homes[id.number];

@@ -46,6 +46,7 @@ class InterfaceWorkers final : public RankInserter<D> {
     nodes_.on_changes([this](int, const Changes<D>& changes) { note(changes); });
     std::vector<Node<D>> nodes = first_nodes<D>(site.first);
     std::vector<std::uint32_t> homes;
+    homes.reserve(nodes.size());
     for (const Node<D>& node : nodes) homes.push_back(home_of(node));
     for (Node<D>& node : nodes) {
       for (NodeId& id : node.neighbours) id.home = homes[id.number];

@@ -33,7 +33,8 @@ void KnownPoints::add(int area, std::vector<RowPoint> points) {
 
 template <class Touches, class Found>
 void KnownPoints::find(const Touches& touches, const Found& found) const {
-  for (const auto& [number, area] : areas_) {
+  for (const auto& entry : areas_) {
+    const Area& area = entry.second;
     area.runs.find(touches, [&](std::uint32_t run) {
       const std::size_t first = run * kRun, last = std::min(first + kRun, area.points.size());
       for (std::size_t i = first; i < last; ++i) found(area.points[i]);

@@ -82,6 +82,7 @@ Changes<D> make_star(RemoteNodes<D>& nodes, const Cavity<D>& cavity, const RowPo
 template <int D>
 std::vector<RowPoint> in_insertion_order(std::vector<RowPoint> points, std::uint64_t seed) {
   std::vector<Position<D>> positions;
+  positions.reserve(points.size());
   for (const RowPoint& point : points) positions.push_back(Position<D>(point.position));
   std::vector<RowPoint> ordered;
   for (const std::uint32_t i :
