@@ -70,6 +70,8 @@ struct DistributedMethod {
   std::string_view description;
   std::vector<int> dims;
   int ranks_without_area = 0;  // where there are more ranks
+  // Whether space is cut into areas by a grid of counts, 1024 cells an area, that every rank has.
+  bool cuts_areas = true;
   // Whether ranks triangulate parts on their own, by DistributedOptions::triangulate.
   bool triangulates_parts = false;
   // What triangulate_distributed() does, for points and options that it has checked.

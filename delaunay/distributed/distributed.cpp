@@ -134,11 +134,13 @@ std::span<const DistributedMethod> distributed_methods() {
            "halves the points along paths of Delaunay edges, found as lower hulls, until "
            "each rank has a part to triangulate",
        .dims = {2},
+       .cuts_areas = false,
        .triangulates_parts = true,
        .triangulate = hardwick},
       {.name = "lee-2001",
        .description = "as hardwick, but cuts into as many slabs as ranks in one step",
        .dims = {2},
+       .cuts_areas = false,
        .triangulates_parts = true,
        .triangulate = lee_2001},
   };

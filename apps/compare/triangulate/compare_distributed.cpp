@@ -1,8 +1,9 @@
 // Runs every distributed method on the simulated machine, once for each network: real code in its
 // own time (comm/charged.h), so that what ranks wait for is what they would wait for there.
 //
-// Methods whose ranks wait much take long to simulate. Where a run took longer than a limit, more
-// ranks of the method are left out, which the page says.
+// Methods whose ranks wait much take long to simulate. Where a run took longer than a limit, or the
+// grids of all ranks would not fit the memory, more ranks of the method are left out, which the
+// page says.
 #include "apps/compare/triangulate/compare_distributed.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include "comm/simulated.h"
 #include "delaunay/simplify_terrain.h"
 #include "files/find_named.h"
+#include "files/memory_budget.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -55,6 +57,14 @@ SimulatedTriangulation simulate_method(const delaunay::PointCloud& points,
         simulation);
   });
   return result;
+}
+
+// Whether the ranks of a method, which share this process's memory, may have their grids at a time.
+bool fits_memory(std::string_view method, int ranks) {
+  if (!files::find_named(delaunay::distributed_methods(), method)->cuts_areas) return true;
+  constexpr std::uint64_t kBytesPerArea = 1024 * 48;  // counts on their way, costs, owners
+  const auto areas = static_cast<std::uint64_t>(ranks);
+  return areas * areas * kBytesPerArea <= files::MemoryBudget().left();
 }
 
 class DistributedRuns {
@@ -98,7 +108,7 @@ class DistributedRuns {
     const double longest = request_.quick ? kLongestQuickRun : kLongestRun;
     double last = 0;
     for (const int ranks : request_.ranks) {
-      if (last > longest) {
+      if (last > longest || !fits_memory(method, ranks)) {
         result_.left_out.push_back(fmt::format("{}, {} ranks", method, ranks));
         steps_.done();
         continue;

@@ -37,7 +37,7 @@ struct DistributedComparison {
   std::vector<int> ranks;
 
   std::vector<ComparedDistribution> rows;  // by method, then points, then ranks
-  std::vector<std::string> left_out;       // "method, ranks", as fewer ranks took too long
+  std::vector<std::string> left_out;       // "method, ranks": too slow or large
   bool unfinished = false;                 // told to stop before the end
 };
 

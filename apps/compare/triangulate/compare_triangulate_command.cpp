@@ -52,9 +52,10 @@ void check_ranks(TriangulateRequest& request) {
   if (request.ranks.empty() && !request.distributed.empty())
     throw UsageError("compare triangulate: --distributed goes with --ranks");
   if (request.ranks.empty()) return;
-  if (!request.threads.empty() || !request.methods.empty())
+  if (!request.threads.empty() || !request.methods.empty()) {
     throw UsageError(
         "compare triangulate: --ranks compares distributed methods, not --method and --threads");
+  }
   std::ranges::sort(request.ranks);
   request.ranks.erase(std::unique(request.ranks.begin(), request.ranks.end()), request.ranks.end());
 }

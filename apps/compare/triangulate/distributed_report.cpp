@@ -188,8 +188,8 @@ Html distributed_answer(const DistributedComparison& comparison) {
     for (const std::string& name : comparison.left_out) {
       names += (names.empty() ? "" : "; ") + name;
     }
-    answer +=
-        paragraph("Left out, as fewer ranks took too long to simulate: " + escaped(names) + ".");
+    answer += paragraph(
+        "Left out, as they take too long to simulate or too much memory: " + escaped(names) + ".");
   }
   return answer;
 }
