@@ -168,15 +168,15 @@ Html distributed_answer(const DistributedComparison& comparison) {
     std::ranges::sort(rows, [i](const DistributedRow* a, const DistributedRow* b) {
       return a->predicted[i].seconds < b->predicted[i].seconds;
     });
-    answer += paragraph(fmt::format(
-        "On {} ranks over {} {} takes {:.2f} ms (predicted), with {} messages and {} bytes "
-        "(counted){}.",
+    answer += fmt::format(
+        "<p>On {} ranks over {} {} takes {:.2f} ms (predicted), with {} messages and {} bytes "
+        "(counted){}.</p>\n",
         ranks, comm::networks()[i].name, strong(rows[0]->method),
         rows[0]->predicted[i].seconds * 1e3, rows[0]->sum.messages,
         short_number(static_cast<double>(rows[0]->sum.bytes)),
         rows.size() > 1
             ? fmt::format("; {} {:.2f}", rows[1]->method, rows[1]->predicted[i].seconds * 1e3)
-            : std::string()));
+            : std::string());
   }
   const bool alike = std::ranges::all_of(
       rows, [&](const DistributedRow* row) { return row->hash == rows.front()->hash; });
@@ -188,8 +188,8 @@ Html distributed_answer(const DistributedComparison& comparison) {
     for (const std::string& name : comparison.left_out) {
       names += (names.empty() ? "" : "; ") + name;
     }
-    answer += paragraph(
-        "Left out, as they take too long to simulate or too much memory: " + escaped(names) + ".");
+    answer +=
+        paragraph("Left out, as they take too long to simulate or too much memory: " + names + ".");
   }
   return answer;
 }
