@@ -82,7 +82,8 @@ std::span<const Method> methods() {
        .locations = {},
        .splits = {},
        .orders = {},
-       .triangulate = internal::divide_and_conquer},
+       .triangulate = internal::divide_and_conquer,
+       .mesh_2d = internal::divide_and_conquer_mesh},
       {.name = "cavity",
        .description = "inserts random rounds of points along a curve, each into the cavity of "
                       "simplices that it replaces; the fastest in 3D",
@@ -91,7 +92,8 @@ std::span<const Method> methods() {
        .locations = {},
        .splits = {},
        .orders = {},
-       .triangulate = internal::insert_by_cavities},
+       .triangulate = internal::insert_by_cavities,
+       .mesh_3d = internal::mesh_by_cavities},
       {.name = "insertion",
        .description =
            "inserts one point after the other and restores the Delaunay property by flips",

@@ -17,6 +17,9 @@ struct Choice {
   std::string_view description;
 };
 
+template <int D>
+struct BuiltMesh;  // mesh/built_mesh.h
+
 // An entry of the table of methods, with what goes with it.
 struct Method {
   std::string_view name;
@@ -30,6 +33,9 @@ struct Method {
   // Leaves `created_by` empty where one thread made everything.
   // REQUIRES: options that resolve() returned.
   Result (*triangulate)(PointView<double> points, const Options& options);
+  // The same before it is copied out, of methods that can tell; null where they cannot.
+  BuiltMesh<2> (*mesh_2d)(PointView<double> points, const Options& options) = nullptr;
+  BuiltMesh<3> (*mesh_3d)(PointView<double> points, const Options& options) = nullptr;
 };
 
 std::span<const Method> methods();

@@ -46,6 +46,7 @@ struct TiledTriangulation {
   std::uint64_t distinct = 0;           // distinct points; the sum over ranks is that of all
   std::uint64_t hull_facets = 0;        // likewise
   std::vector<TileStatistics> tiles;    // of this rank's tiles
+  TileStatistics shared;                // of what they leave together, if there are several
   int rounds = 0;                       // of telling other tiles of points
 };
 

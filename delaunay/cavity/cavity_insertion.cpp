@@ -23,9 +23,9 @@
 #include "delaunay/mesh/slot_pool.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/mesh/stopwatch.h"
+#include "delaunay/mesh/with_threads.h"
 #include "delaunay/order/curve_order_3d.h"
 #include "delaunay/predicates/sphere_tests.h"
-#include "parallel/arena.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -47,53 +47,67 @@ Array<std::uint32_t> take_rows(Array<SpaceVertex>&& vertices, int threads) {
   return rows;
 }
 
-Result run(PointView<double> points, const Options& options) {
+struct Made {
+  BuiltMesh<3> built;
+  std::vector<std::uint16_t> created_by;
   Statistics seconds;
+};
+
+Made make(PointView<double> points, const Options& options) {
+  Made result;
   Stopwatch watch;
 
   const PointRange range = finite_range(points, options.threads);
   CurveOrder3d order = curve_order_3d(points, range, options.seed, options.threads);
   const std::size_t n = points.size();
-  seconds.order = watch.lap();
+  result.seconds.order = watch.lap();
 
   const auto at = [&](VertexNumber v) -> const glm::dvec3& {
     return order.vertices[std::size_t{v} + 1].position;
   };
   const auto start = first_tetrahedron(n, at);
   if (!start) {
-    Result result;
-    result.statistics = seconds;
-    result.triangulation.dim = 3;
     std::vector<glm::dvec3> all(n);
     for (VertexNumber v = 0; v < n; ++v) all[v] = at(v);
-    result.triangulation.distinct = count_distinct(std::move(all));
+    result.built.distinct = count_distinct(std::move(all));
     return result;
   }
   const SphereTests tests(range);
-  Mesh<3> mesh(first_slots(n, options.threads));
+  Mesh<3>& mesh = result.built.mesh;
+  mesh = Mesh<3>(first_slots(n, options.threads));
   start_mesh(mesh, *start);
   if (options.progress != nullptr) options.progress->advance(start->size());
   const CavityInput input{mesh, 5, *start, order, range, tests};
   const auto insert = options.threads > 1 ? insert_in_parallel : insert_alone;
   Inserted inserted = insert(input, options);
-  seconds.locate = inserted.locate_seconds;
-  seconds.subdivide = inserted.subdivide_seconds;
-  watch.lap();
-  const Array<std::uint32_t> rows = take_rows(std::move(order.vertices), options.threads);
-  Result result = extract(std::move(mesh), std::span(rows.data(), rows.size()), options.threads,
-                          std::move(inserted.created_by));
-  result.triangulation.distinct = inserted.distinct;
-  seconds.extract = watch.lap();
-  result.statistics = seconds;
+  result.seconds.locate = inserted.locate_seconds;
+  result.seconds.subdivide = inserted.subdivide_seconds;
+  result.built.rows = take_rows(std::move(order.vertices), options.threads);
+  result.built.distinct = inserted.distinct;
+  result.created_by = std::move(inserted.created_by);
+  return result;
+}
+
+Result run(PointView<double> points, const Options& options) {
+  Made made = make(points, options);
+  Stopwatch watch;
+  const Array<std::uint32_t>& rows = made.built.rows;
+  Result result = extract(std::move(made.built.mesh), std::span(rows.data(), rows.size()),
+                          options.threads, std::move(made.created_by));
+  result.triangulation.distinct = made.built.distinct;
+  made.seconds.extract = watch.lap();
+  result.statistics = made.seconds;
   return result;
 }
 
 }  // namespace
 
 Result insert_by_cavities(PointView<double> points, const Options& options) {
-  // An arena takes longer to set up than a thousand points to triangulate.
-  if (options.threads <= 1) return run(points, options);
-  return parallel::Arena(options.threads).execute([&] { return run(points, options); });
+  return with_threads(options.threads, [&] { return run(points, options); });
+}
+
+BuiltMesh<3> mesh_by_cavities(PointView<double> points, const Options& options) {
+  return with_threads(options.threads, [&] { return make(points, options).built; });
 }
 
 }  // namespace delray::delaunay::internal

@@ -1,6 +1,7 @@
 // Incremental insertion in 3D by cavities.
 #pragma once
 
+#include "delaunay/mesh/built_mesh.h"
 #include "delaunay/points.h"
 #include "delaunay/triangulate.h"
 
@@ -13,5 +14,7 @@ namespace delray::delaunay::internal {
 //
 // REQUIRES: resolved options, dim 3. Errors: see triangulate().
 Result insert_by_cavities(PointView<double> points, const Options& options);
+// The mesh before it is copied out.
+BuiltMesh<3> mesh_by_cavities(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

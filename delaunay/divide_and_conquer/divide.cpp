@@ -27,6 +27,7 @@
 #include "delaunay/mesh/extract.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/mesh/stopwatch.h"
+#include "delaunay/mesh/with_threads.h"
 #include "delaunay/order/cell_order.h"
 #include "delaunay/order/cells.h"
 #include "delaunay/predicates/conflict.h"
@@ -230,36 +231,51 @@ class Divider {
   std::atomic<double> seconds_ = 0;
 };
 
-Result run(PointView<double> points, const Options& options) {
+struct Divided {
+  BuiltMesh<2> built;
+  std::vector<std::uint16_t> created_by;
   Statistics seconds;
+};
+
+Divided divide(PointView<double> points, const Options& options) {
+  Divided result;
   Stopwatch watch;
   CellOrder order = cell_order(points, options.threads);
-  seconds.order = watch.lap();
+  result.seconds.order = watch.lap();
   const std::size_t n = order.points.size();
   if (options.progress != nullptr) options.progress->advance(points.size() - n);
-  Mesh<2> mesh(n < 2 ? 0 : 2 * n - 2);
-  std::vector<std::uint16_t> created_by;
+  result.built.mesh = Mesh<2>(n < 2 ? 0 : 2 * n - 2);
   if (n >= 2) {
-    Divider divider(order, mesh, options);
+    Divider divider(order, result.built.mesh, options);
     divider.divide(0, n, CellGrid(order.box));
-    seconds.subdivide = divider.seconds();
-    created_by = divider.take_created_by();
+    result.seconds.subdivide = divider.seconds();
+    result.created_by = divider.take_created_by();
   }
-  watch.lap();
-  order.points = {};
-  Result result =
-      extract(std::move(mesh), {order.rows.data(), n}, options.threads, std::move(created_by));
-  seconds.extract = watch.lap();
-  result.statistics = seconds;
+  order.rows.shrink(n);
+  result.built.rows = std::move(order.rows);
+  result.built.distinct = n;
+  return result;
+}
+
+Result run(PointView<double> points, const Options& options) {
+  Divided divided = divide(points, options);
+  Stopwatch watch;
+  const Array<std::uint32_t>& rows = divided.built.rows;
+  Result result = extract(std::move(divided.built.mesh), {rows.data(), rows.size()},
+                          options.threads, std::move(divided.created_by));
+  divided.seconds.extract = watch.lap();
+  result.statistics = divided.seconds;
   return result;
 }
 
 }  // namespace
 
 Result divide_and_conquer(PointView<double> points, const Options& options) {
-  // An arena takes longer to set up than a thousand points to triangulate.
-  if (options.threads <= 1) return run(points, options);
-  return parallel::Arena(options.threads).execute([&] { return run(points, options); });
+  return with_threads(options.threads, [&] { return run(points, options); });
+}
+
+BuiltMesh<2> divide_and_conquer_mesh(PointView<double> points, const Options& options) {
+  return with_threads(options.threads, [&] { return divide(points, options).built; });
 }
 
 }  // namespace delray::delaunay::internal

@@ -1,6 +1,7 @@
 // Divide and conquer in 2D.
 #pragma once
 
+#include "delaunay/mesh/built_mesh.h"
 #include "delaunay/points.h"
 #include "delaunay/triangulate.h"
 
@@ -14,5 +15,7 @@ namespace delray::delaunay::internal {
 //
 // Errors: see triangulate().
 Result divide_and_conquer(PointView<double> points, const Options& options);
+// The mesh before it is copied out.
+BuiltMesh<2> divide_and_conquer_mesh(PointView<double> points, const Options& options);
 
 }  // namespace delray::delaunay::internal

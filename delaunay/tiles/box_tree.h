@@ -33,6 +33,12 @@ class BoxTree {
     if (!order_.empty()) find(0, 0, order_.size(), touches, found);
   }
 
+  // Whether `wanted(i)` is true for any of these boxes.
+  template <class Touches, class Wanted>
+  bool any(const Touches& touches, const Wanted& wanted) const {
+    return !order_.empty() && any(0, 0, order_.size(), touches, wanted);
+  }
+
  private:
   // The node of order_[first, last). Its lower half follows it, then the upper one.
   void build(std::size_t node, std::size_t first, std::size_t last) {
@@ -66,6 +72,16 @@ class BoxTree {
     const std::size_t middle = first + (last - first) / 2;
     find(node + 1, first, middle, touches, found);
     find(node + 2 * (middle - first), middle, last, touches, found);
+  }
+
+  template <class Touches, class Wanted>
+  bool any(std::size_t node, std::size_t first, std::size_t last, const Touches& touches,
+           const Wanted& wanted) const {
+    if (!touches(nodes_[node])) return false;
+    if (last - first == 1) return wanted(order_[first]);
+    const std::size_t middle = first + (last - first) / 2;
+    return any(node + 1, first, middle, touches, wanted) ||
+           any(node + 2 * (middle - first), middle, last, touches, wanted);
   }
 
   std::vector<Box> boxes_, nodes_;

@@ -1,79 +1,116 @@
-// Cuts space into tiles of about as many points: a grid of counts, summed over ranks, that a
-// partition of loadbalance/ takes for costs.
+// Cuts space into tiles of about as many points: the counts of a slab's cells are the costs that a
+// partition of loadbalance/ cuts by.
 #include "delaunay/tiles/tile_cut.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
-#include "comm/collectives.h"
 #include "loadbalance/costs.h"
 
 namespace delray::delaunay {
 namespace {
 
-// Fine enough that a cell has a small share of a tile's points, unless they are all in one place.
-int cells_along(int tiles) {
-  constexpr double kCellsPerTile = 1024, kMost = 4096;
-  return static_cast<int>(std::min(kMost, std::ceil(std::sqrt(kCellsPerTile * tiles))));
+// A slab [first, last) of cells across an axis, and its tiles.
+struct Slab {
+  int first = 0, last = 0;
+  int first_tile = 0, tiles = 0;
+};
+
+// As thick as columns are wide, in cells.
+int slabs_for(const std::array<int, 3>& cells, int axis, int tiles) {
+  double columns = tiles;
+  for (int k = 0; k < 3; ++k) {
+    if (k != axis) columns *= double(cells[axis]) / cells[k];
+  }
+  return std::clamp(static_cast<int>(std::lround(std::cbrt(columns))), 1,
+                    std::min(tiles, cells[axis]));
 }
 
-geometry::Box3d box_of_all(comm::Communicator& communicator, std::span<const RowPoint> points) {
-  geometry::Box3d box;
-  for (const RowPoint& point : points) box.include(point.position);
-  std::array<double, 6> bounds;
-  for (int k = 0; k < 3; ++k) {
-    bounds[k] = -box.low[k];
-    bounds[3 + k] = box.high[k];
+std::vector<Slab> cut_slabs(std::span<const std::uint64_t> layers, int slabs, int tiles) {
+  std::uint64_t total = 0;
+  for (const std::uint64_t layer : layers) total += layer;
+  std::vector<Slab> result;
+  std::uint64_t below = 0;
+  int layer = 0;
+  for (int slab = 0; slab < slabs; ++slab) {
+    const int first_tile = static_cast<int>(std::int64_t{slab} * tiles / slabs);
+    const int end_tile = static_cast<int>(std::int64_t{slab + 1} * tiles / slabs);
+    const double wanted = static_cast<double>(total) * end_tile / tiles;
+    const int first = layer;
+    while (layer < static_cast<int>(layers.size()) &&
+           (slab + 1 == slabs || static_cast<double>(below + layers[layer] / 2) < wanted)) {
+      below += layers[layer++];
+    }
+    result.push_back({first, layer, first_tile, end_tile - first_tile});
   }
-  comm::all_reduce(communicator, std::span<double>(bounds),
-                   [](double a, double b) { return std::max(a, b); });
-  for (int k = 0; k < 3; ++k) {
-    box.low[k] = -bounds[k];
-    box.high[k] = bounds[3 + k];
-  }
-  return box;
+  return result;
 }
 
 }  // namespace
 
-TileCut::TileCut(comm::Communicator& communicator, std::span<const RowPoint> points, int dim,
-                 int tiles, const loadbalance::Partitioner& partitioner)
-    : box_(box_of_all(communicator, points)), side_(cells_along(tiles)) {
-  const glm::dvec3 size = box_.high * 0.5 - box_.low * 0.5;
-  if (dim == 3 && size.z > std::min(size.x, size.y)) axes_[size.x < size.y ? 0 : 1] = 2;
+int cells_along_axis(int dim, std::uint64_t tiles) {
+  constexpr double kPerTile2D = 64, kPerTile3D = 24, kMost2D = 4096, kMost3D = 256;
+  const auto n = static_cast<double>(std::max<std::uint64_t>(tiles, 1));
+  return static_cast<int>(dim == 2 ? std::min(kMost2D, std::ceil(kPerTile2D * std::sqrt(n)))
+                                   : std::min(kMost3D, std::ceil(kPerTile3D * std::cbrt(n))));
+}
 
-  const std::size_t cells = static_cast<std::size_t>(side_) * side_;
-  std::vector<std::uint64_t> counts(cells);
-  for (const RowPoint& point : points) ++counts[cell_of(point.position)];
-  comm::all_reduce(communicator, std::span<std::uint64_t>(counts), std::plus<>());
-  loadbalance::Costs costs{{0, 0, side_, side_}, side_, side_, {}, {}, {}, {}};
-  costs.cells.assign(counts.begin(), counts.end());
-  costs.cross_right.resize(cells);
-  costs.cross_down.resize(cells);
-
-  owner_.resize(cells);
-  for (const loadbalance::Region& region :
-       partitioner.partition(costs, costs.frame, tiles).regions) {
-    for (int y = region.rect.y0; y < region.rect.y1; ++y) {
-      for (int x = region.rect.x0; x < region.rect.x1; ++x) {
-        owner_[static_cast<std::size_t>(y) * side_ + x] = region.owner;
+TileCut::TileCut(const CellLattice& lattice, std::span<const std::uint64_t> counts, int tiles,
+                 const loadbalance::Partitioner& partitioner)
+    : lattice_(lattice), tiles_(tiles), owner_(lattice.cells()) {
+  std::array<int, 3> cells;
+  std::array<std::size_t, 3> stride;
+  for (int k = 0; k < 3; ++k) {
+    cells[k] = lattice.cells_along(k);
+    stride[k] = k == 0 ? 1 : stride[k - 1] * static_cast<std::size_t>(cells[k - 1]);
+  }
+  // In 2D there is one cell along z.
+  const int across = static_cast<int>(std::ranges::min_element(cells) - cells.begin());
+  const int axis = cells[2] == 1 ? 2 : across;
+  const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+  std::vector<std::uint64_t> layers(static_cast<std::size_t>(cells[axis]));
+  for (std::size_t cell = 0; cell < counts.size(); ++cell) {
+    layers[cell / stride[axis] % layers.size()] += counts[cell];
+  }
+  const int slabs = cells[axis] == 1 ? 1 : slabs_for(cells, axis, tiles);
+  for (const Slab& slab : cut_slabs(layers, slabs, tiles)) {
+    if (slab.first == slab.last || slab.tiles == 0) continue;
+    loadbalance::Costs costs{{0, 0, cells[u], cells[v]}, cells[u], cells[v], {}, {}, {}, {}};
+    const std::size_t area =
+        static_cast<std::size_t>(cells[u]) * static_cast<std::size_t>(cells[v]);
+    costs.cells.resize(area);
+    costs.cross_right.resize(area);
+    costs.cross_down.resize(area);
+    const auto each_cell = [&](const geometry::Rect& rect, const auto& f) {
+      for (int k = slab.first; k < slab.last; ++k) {
+        for (int y = rect.y0; y < rect.y1; ++y) {
+          for (int x = rect.x0; x < rect.x1; ++x) {
+            f(k * stride[axis] + x * stride[u] + y * stride[v],
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(cells[u]) +
+                  static_cast<std::size_t>(x));
+          }
+        }
       }
+    };
+    each_cell(costs.frame, [&](std::size_t cell, std::size_t column) {
+      costs.cells[column] += static_cast<double>(counts[cell]);
+    });
+    for (const loadbalance::Region& region :
+         partitioner.partition(costs, costs.frame, slab.tiles).regions) {
+      each_cell(region.rect, [&](std::size_t cell, std::size_t) {
+        owner_[cell] = slab.first_tile + region.owner;
+      });
     }
   }
 }
 
-std::size_t TileCut::cell_of(const glm::dvec3& position) const {
-  std::size_t cell[2];
-  for (int i = 0; i < 2; ++i) {
-    const int k = axes_[i];
-    // Halved, as the difference of large numbers may be infinite.
-    const double size = box_.high[k] * 0.5 - box_.low[k] * 0.5;
-    const double share = size > 0 ? (position[k] * 0.5 - box_.low[k] * 0.5) / size : 0;
-    cell[i] = static_cast<std::size_t>(std::clamp(share * side_, 0.0, side_ - 1.0));
+std::vector<std::uint64_t> TileCut::points_of_tiles(std::span<const std::uint64_t> counts) const {
+  std::vector<std::uint64_t> points(static_cast<std::size_t>(tiles_));
+  for (std::size_t cell = 0; cell < counts.size(); ++cell) {
+    points[static_cast<std::size_t>(owner_[cell])] += counts[cell];
   }
-  return cell[1] * side_ + cell[0];
+  return points;
 }
 
 int rank_of_tile(int tile, int ranks, int tiles) {

@@ -6,30 +6,33 @@
 #include <span>
 #include <vector>
 
-#include "comm/communicator.h"
-#include "delaunay/tiles.h"
-#include "geometry/box.h"
+#include "delaunay/tiles/count_grid.h"
 #include "loadbalance/partition.h"
 
 namespace delray::delaunay {
 
-// Counts points on a grid over the two longest axes of their box and cuts it by a partition of
-// loadbalance/, the same that cut pictures: tiles are unions of its cells, columns in 3D.
+// Cells along an axis of a grid that leaves so many tiles fine cuts.
+int cells_along_axis(int dim, std::uint64_t tiles);
+
+// Cuts a grid of counts by a partition of loadbalance/, the same that cut pictures: tiles are
+// unions of its cells. In 3D slabs are cut first, across the axis with the fewest cells, each for a
+// run of tiles with as many points as these should have; a partition cuts each slab into columns.
+// Tiles with near numbers are near each other if the partition numbers owners so. O(cells).
 class TileCut {
  public:
-  // Collective. O(points of the rank + tiles).
-  TileCut(comm::Communicator& communicator, std::span<const RowPoint> points, int dim, int tiles,
+  TileCut() = default;
+  // REQUIRES: tiles >= 1.
+  TileCut(const CellLattice& lattice, std::span<const std::uint64_t> counts, int tiles,
           const loadbalance::Partitioner& partitioner);
 
-  // Equal points lie in one tile. REQUIRES: `position` is in the box of all ranks' points.
-  int tile_of(const glm::dvec3& position) const { return owner_[cell_of(position)]; }
+  // Equal points lie in one tile. REQUIRES: `position` is in the box of the lattice.
+  int tile_of(const glm::dvec3& position) const { return owner_[lattice_.cell_of(position)]; }
+  // How many points each tile has, by the counts of the same lattice.
+  std::vector<std::uint64_t> points_of_tiles(std::span<const std::uint64_t> counts) const;
 
  private:
-  std::size_t cell_of(const glm::dvec3& position) const;
-
-  geometry::Box3d box_;
-  int axes_[2] = {0, 1};
-  int side_ = 1;  // cells of the grid along each axis
+  CellLattice lattice_;
+  int tiles_ = 1;
   std::vector<std::int32_t> owner_;
 };
 

@@ -1,0 +1,91 @@
+// The rule of the exchange of halos, for the region of one rank.
+#include "delaunay/tiles/rank_region.h"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+namespace delray::delaunay {
+
+struct RankRegion::Mesh {
+  std::optional<RegionMesh<2>> plane;
+  std::optional<RegionMesh<3>> space;
+
+  Mesh(const Region& region, const Options& options) {
+    if (options.dim == 2) {
+      plane.emplace(Region(region), options);
+    } else {
+      space.emplace(Region(region), options);
+    }
+  }
+  template <class F>
+  auto visit(const F& f) {
+    return plane ? f(*plane) : f(*space);
+  }
+};
+
+RankRegion::RankRegion(Region&& region, const OtherTiles& others, const Options& options,
+                       RankOf rank_of)
+    : region_(std::move(region)),
+      others_(others),
+      options_(options),
+      rank_of_(std::move(rank_of)) {}
+RankRegion::~RankRegion() = default;
+
+void RankRegion::add_halo(std::span<const RowPoint> points) {
+  for (const RowPoint& point : points) {
+    if (!halo_rows_.insert(point.row).second) continue;
+    region_.points.push_back(point);
+    changed_ = true;
+  }
+}
+
+std::vector<RankMessage> RankRegion::untold(const std::vector<TileMessage>& messages) {
+  std::vector<RankMessage> all;
+  for (const TileMessage& message : messages)
+    all.push_back({rank_of_(message.tile), message.point});
+  const auto key = [](const RankMessage& message) {
+    return std::pair(message.rank, message.point.row);
+  };
+  std::ranges::sort(all, {}, key);
+  all.erase(std::ranges::unique(all, {}, key).begin(), all.end());
+  std::erase_if(all, [&](const RankMessage& message) {
+    return std::ranges::binary_search(told_, key(message));
+  });
+  const auto before = static_cast<std::ptrdiff_t>(told_.size());
+  std::ranges::transform(all, std::back_inserter(told_), key);
+  std::ranges::inplace_merge(told_, told_.begin() + before);
+  return all;
+}
+
+std::vector<RankMessage> RankRegion::look(Settled& settled) {
+  if (region_.own == 0 || !changed_) return {};
+  if (!settled_) {
+    settled = settle(std::move(region_), others_, options_, Messages::yes);
+    settled_ = true;
+    region_ = std::move(settled.rest);
+    return untold(settled.messages);
+  }
+  mesh_ = std::make_unique<Mesh>(region_, options_);
+  changed_ = false;
+  const auto messages = mesh_->visit([&](auto& mesh) {
+    settled.simplices = mesh.simplices();
+    mesh.find_open(others_);
+    return mesh.find_messages(others_);
+  });
+  return untold(messages);
+}
+
+Settled RankRegion::finish() {
+  Settled settled;
+  if (region_.own == 0) return settled;
+  if (changed_) {
+    mesh_ = std::make_unique<Mesh>(region_, options_);
+    mesh_->visit([&](auto& mesh) { settled.simplices = mesh.simplices(); });
+  }
+  settled.finals = mesh_->visit([](auto& mesh) { return mesh.take_own(); });
+  mesh_.reset();
+  return settled;
+}
+
+}  // namespace delray::delaunay
