@@ -57,6 +57,7 @@ class CountGrid {
   // The counts of another grid as well.
   void add(const CountGrid& other);
 
+  int dim() const { return dim_; }
   const geometry::Box3d& box() const { return box_; }
   const CellLattice& lattice() const { return lattice_; }
   std::span<std::uint64_t> counts() { return counts_; }

@@ -24,12 +24,17 @@ struct RankRegion::Mesh {
   }
 };
 
-RankRegion::RankRegion(Region&& region, const OtherTiles& others, const Options& options,
-                       RankOf rank_of)
+RankRegion::RankRegion(Region&& region, const OtherTiles& others, const SettleOptions& options,
+                       const RankTiles& tiles)
     : region_(std::move(region)),
       others_(others),
-      options_(options),
-      rank_of_(std::move(rank_of)) {}
+      progress_(options.triangulate.progress),
+      options_(options.triangulate),
+      require_(options.require),
+      tiles_(tiles) {
+  options_.threads *= std::max(options.workers, 1);
+  if (!tiles_.is_one && options_.progress != nullptr) options_.progress = &progress_;
+}
 RankRegion::~RankRegion() = default;
 
 void RankRegion::add_halo(std::span<const RowPoint> points) {
@@ -43,7 +48,7 @@ void RankRegion::add_halo(std::span<const RowPoint> points) {
 std::vector<RankMessage> RankRegion::untold(const std::vector<TileMessage>& messages) {
   std::vector<RankMessage> all;
   for (const TileMessage& message : messages)
-    all.push_back({rank_of_(message.tile), message.point});
+    all.push_back({tiles_.rank_of(message.tile), message.point});
   const auto key = [](const RankMessage& message) {
     return std::pair(message.rank, message.point.row);
   };
@@ -60,9 +65,12 @@ std::vector<RankMessage> RankRegion::untold(const std::vector<TileMessage>& mess
 
 std::vector<RankMessage> RankRegion::look(Settled& settled) {
   if (region_.own == 0 || !changed_) return {};
+  if (require_ && !(tiles_.is_one && !settled_)) require_(region_.points.size());
   if (!settled_) {
-    settled = settle(std::move(region_), others_, options_, Messages::yes);
+    settled =
+        settle(std::move(region_), others_, options_, {.is_tile = tiles_.is_one, .messages = true});
     settled_ = true;
+    if (options_.progress != nullptr) options_.progress = &progress_;
     region_ = std::move(settled.rest);
     return untold(settled.messages);
   }

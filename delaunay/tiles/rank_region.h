@@ -11,6 +11,7 @@
 
 #include "delaunay/tiles/region.h"
 #include "delaunay/tiles/settle.h"
+#include "delaunay/tiles/settle_tiles.h"
 #include "delaunay/tiles/tile_boxes.h"
 
 namespace delray::delaunay {
@@ -28,9 +29,13 @@ struct RankMessage {
 // memory, 2017). The proof stands beside RegionMesh::find_messages().
 class RankRegion {
  public:
-  using RankOf = std::function<int(std::size_t tile)>;
+  struct RankTiles {
+    std::function<int(std::size_t tile)> rank_of;
+    bool is_one = false;  // the region is a tile that nobody has triangulated yet
+  };
 
-  RankRegion(Region&& region, const OtherTiles& others, const Options& options, RankOf rank_of);
+  RankRegion(Region&& region, const OtherTiles& others, const SettleOptions& options,
+             const RankTiles& tiles);
   ~RankRegion();
 
   // Takes the points in that it does not know.
@@ -49,8 +54,10 @@ class RankRegion {
 
   Region region_;
   OtherTiles others_;
+  parallel::Progress progress_;  // of what was triangulated before
   Options options_;
-  RankOf rank_of_;
+  std::function<void(std::uint64_t points)> require_;
+  RankTiles tiles_;
   std::unordered_set<std::uint64_t> halo_rows_;
   std::vector<std::pair<int, std::uint64_t>> told_;  // ranks, and rows of points; ascending
   bool changed_ = true, settled_ = false;

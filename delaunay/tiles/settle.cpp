@@ -7,13 +7,18 @@ namespace {
 
 template <int D>
 Settled settle_in(Region&& region, const OtherTiles& others, const Options& options,
-                  Messages messages) {
+                  const SettleWish& wish) {
   Settled settled;
+  const std::size_t own = region.own, halo = region.halo();
   RegionMesh<D> mesh(std::move(region), options);
-  settled.distinct = mesh.distinct();
+  if (wish.is_tile) {
+    settled.points = own;
+    // Points of halos are distinct, and equal to none of the tile's own.
+    settled.distinct = mesh.distinct() - halo;
+  }
   settled.simplices = mesh.simplices();
   mesh.find_open(others);
-  if (messages == Messages::yes) settled.messages = mesh.find_messages(others);
+  if (wish.messages) settled.messages = mesh.find_messages(others);
   settled.rest = mesh.rest();
   settled.finals = mesh.take_settled();
   return settled;
@@ -22,9 +27,9 @@ Settled settle_in(Region&& region, const OtherTiles& others, const Options& opti
 }  // namespace
 
 Settled settle(Region&& region, const OtherTiles& others, const Options& options,
-               Messages messages) {
-  return options.dim == 2 ? settle_in<2>(std::move(region), others, options, messages)
-                          : settle_in<3>(std::move(region), others, options, messages);
+               const SettleWish& wish) {
+  return options.dim == 2 ? settle_in<2>(std::move(region), others, options, wish)
+                          : settle_in<3>(std::move(region), others, options, wish);
 }
 
 }  // namespace delray::delaunay

@@ -14,14 +14,19 @@ struct Settled {
   FinalSimplices finals;
   Region rest;
   std::vector<TileMessage> messages;  // if they were asked for
-  std::uint64_t distinct = 0;         // of the region's points, its halo's included
+  std::uint64_t points = 0;           // of a tile, equal ones included; else 0
+  std::uint64_t distinct = 0;         // of a tile's points; else 0
   std::uint64_t simplices = 0;        // that it took
+  bool is_last = false;               // of what is left in the end, which no journal has
 };
 
 // Triangulates the region and gives away what others cannot change: all of it where there are no
 // others. Errors: see triangulate().
-enum class Messages : std::uint8_t { no, yes };
+struct SettleWish {
+  bool is_tile = false;   // nobody has triangulated its points yet
+  bool messages = false;  // are wanted
+};
 Settled settle(Region&& region, const OtherTiles& others, const Options& options,
-               Messages messages = Messages::no);
+               const SettleWish& wish);
 
 }  // namespace delray::delaunay

@@ -3,7 +3,6 @@
 #include "delaunay/tiles/settle_ranks.h"
 
 #include <functional>
-#include <mutex>
 #include <utility>
 
 #include "comm/agree_on_failure.h"
@@ -26,11 +25,6 @@ std::vector<comm::Parcel> pack(const std::vector<RankMessage>& messages) {
   return parcels;
 }
 
-void count(const Settled& settled, int dim, TileStatistics& statistics) {
-  statistics.simplices += settled.simplices;
-  statistics.own_simplices += settled.finals.simplices.size() / (static_cast<std::size_t>(dim) + 1);
-}
-
 }  // namespace
 
 std::vector<TileSummary> share_summaries(comm::Communicator& communicator,
@@ -43,69 +37,43 @@ std::vector<TileSummary> share_summaries(comm::Communicator& communicator,
   return all;
 }
 
-RankTotals settle_ranks(comm::Communicator& communicator, std::span<const TileSummary> summaries,
-                        const SettleOptions& options, const TileWork& work) {
+Exchanges settle_ranks(comm::Communicator& communicator, std::span<const TileSummary> summaries,
+                       const SettleOptions& options, const TileWork& work) {
   const int tiles = static_cast<int>(summaries.size()), ranks = communicator.size();
-  const int dim = options.triangulate.dim;
   const auto first = static_cast<std::size_t>(first_tile(communicator.rank(), ranks, tiles));
   const auto last = static_cast<std::size_t>(first_tile(communicator.rank() + 1, ranks, tiles));
   const TileBoxes boxes(summaries);
   const OtherTiles others{boxes, first, last};
 
-  RankTotals totals;
-  totals.tiles.resize(last - first);
-  std::mutex mutex;
-  TileWork counted = work;
-  counted.take = [&](std::size_t region, Settled& settled) {
-    work.take(region, settled);
-    const std::lock_guard lock(mutex);
-    const bool is_tile = region < summaries.size();
-    count(settled, dim, is_tile ? totals.tiles[region - first] : totals.shared);
-    if (is_tile) totals.distinct += settled.distinct;
-    totals.hull_facets += settled.finals.hull_facets;
-  };
-  counted.points = [&](std::size_t tile) {
-    Region region = work.points(tile);
-    const std::lock_guard lock(mutex);
-    totals.tiles[tile - first].points = region.own;
-    return region;
-  };
-
   // A single tile learns of others' extreme points before it is triangulated.
-  const bool is_single = last - first == 1 && ranks > 1;
+  Exchanges exchanges;
+  exchanges.of_tile = last - first == 1 && ranks > 1;
   Region rest = comm::all_or_none(communicator, comm::Phase::other, [&] {
     if (first == last) return Region();
-    return is_single ? counted.points(first) : settle_tiles(others, options, counted);
+    return exchanges.of_tile ? work.points(first) : settle_tiles(others, options, work);
   });
-  TileStatistics& statistics = is_single ? totals.tiles.front() : totals.shared;
-  const std::size_t root =
-      is_single ? first : summaries.size() + first + (last - first) / 2 - (first < last ? 1 : 0);
-  Options triangulate = options.triangulate;
-  triangulate.threads *= options.workers;
-  if (!is_single) triangulate.progress = nullptr;
-  RankRegion region(std::move(rest), others, triangulate, [&](std::size_t tile) {
-    return rank_of_tile(static_cast<int>(tile), ranks, tiles);
-  });
+  const std::size_t own_region =
+      exchanges.of_tile || first == last ? first : region_of(summaries.size(), first, last);
+  RankRegion region(
+      std::move(rest), others, options,
+      {[&](std::size_t tile) { return rank_of_tile(static_cast<int>(tile), ranks, tiles); },
+       exchanges.of_tile});
   for (std::size_t tile = 0; tile < summaries.size(); ++tile) {
     if (!others.has(tile)) continue;
     region.add_halo({summaries[tile].extremes, summaries[tile].extreme_count});
   }
   const auto take = [&](Settled& settled) {
-    count(settled, dim, statistics);
-    totals.hull_facets += settled.finals.hull_facets;
-    if (settled.finals.simplices.size() > 0) work.take(root, settled);
+    settled.is_last = true;
+    work.take(own_region, settled);
   };
-  for (;; ++totals.rounds) {
+  for (;; ++exchanges.rounds) {
     const auto messages = comm::all_or_none(communicator, comm::Phase::other, [&] {
       Settled settled;
       auto found = region.look(settled);
-      if (is_single && totals.rounds == 0 && settled.distinct > 0) {
-        totals.distinct += settled.distinct - region.halo();
-      }
-      take(settled);
+      if (settled.simplices > 0 || settled.points > 0) take(settled);
       return found;
     });
-    statistics.sent += messages.size();
+    exchanges.sent += messages.size();
     const auto told =
         comm::all_reduce_value(communicator, std::uint64_t{messages.size()}, std::plus<>());
     if (told == 0) break;
@@ -113,12 +81,14 @@ RankTotals settle_ranks(comm::Communicator& communicator, std::span<const TileSu
       region.add_halo(parcel.message.as<RowPoint>());
     }
   }
-  statistics.halo = region.halo();
+  exchanges.halo = region.halo();
   comm::all_or_none(communicator, comm::Phase::other, [&] {
     Settled settled = region.finish();
-    take(settled);
+    if (settled.finals.simplices.size() > 0 || settled.finals.hull_facets > 0) {
+      take(settled);
+    }
   });
-  return totals;
+  return exchanges;
 }
 
 }  // namespace delray::delaunay

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "comm/communicator.h"
@@ -11,11 +12,12 @@
 
 namespace delray::delaunay {
 
-struct RankTotals {
-  std::vector<TileStatistics> tiles;  // of this rank's tiles
-  TileStatistics shared;              // of what its tiles leave together
-  std::uint64_t distinct = 0, hull_facets = 0;
-  int rounds = 0;  // of telling other ranks of points
+// What it took to tell other ranks of points.
+struct Exchanges {
+  std::uint64_t halo = 0;  // points of others that this rank was told of
+  std::uint64_t sent = 0;  // its own that it told others of, once for each
+  int rounds = 0;
+  bool of_tile = false;  // whether the rank has one tile, which these are counts of
 };
 
 // Collective: the summaries of all tiles, given those of this rank's.
@@ -23,9 +25,9 @@ std::vector<TileSummary> share_summaries(comm::Communicator& communicator,
                                          std::span<const TileSummary> mine);
 
 // Collective: every simplex of the triangulation of all ranks' points goes to one rank's
-// `work.take`. Regions that several ranks share are not restored. `mine` are the rank's tiles, of
-// those that `summaries` tell of. Errors that a rank meets are thrown on all.
-RankTotals settle_ranks(comm::Communicator& communicator, std::span<const TileSummary> summaries,
-                        const SettleOptions& options, const TileWork& work);
+// `work.take`. What several ranks share is not restored. Errors that a rank meets are thrown on
+// all.
+Exchanges settle_ranks(comm::Communicator& communicator, std::span<const TileSummary> summaries,
+                       const SettleOptions& options, const TileWork& work);
 
 }  // namespace delray::delaunay

@@ -66,8 +66,8 @@ class TileTree {
     const std::size_t tile = all_.first + i;
     Region rest;
     if (!restored(tile, rest)) {
-      Settled settled =
-          settle(work_.points(tile), {all_.boxes, tile, tile + 1}, options_.triangulate);
+      Settled settled = settle(work_.points(tile), {all_.boxes, tile, tile + 1},
+                               options_.triangulate, {.is_tile = true});
       work_.take(tile, settled);
       rest = std::move(settled.rest);
     }
@@ -108,7 +108,7 @@ class TileTree {
   // The root is left to the caller.
   void settle_node(const Node& node, Rests& rests) {
     if (node.parent == kNoNode) return;
-    const std::size_t region = all_.boxes.size() + middle_of(node) - 1;
+    const std::size_t region = region_of(all_.boxes.size(), node.first, node.last);
     Region rest;
     if (!restored(region, rest)) {
       std::size_t sum = 0, largest = 0;
@@ -117,8 +117,10 @@ class TileTree {
         largest = std::max(largest, each.points.size());
       }
       if (sum < options_.put_together || sum < 2 * largest) return;
+      if (options_.require) options_.require(sum);
+      parallel::Progress part(options_.triangulate.progress);
       Settled settled = settle(put_together(std::move(rests)), {all_.boxes, node.first, node.last},
-                               options_.triangulate);
+                               options_.again(part), {});
       work_.take(region, settled);
       rest = std::move(settled.rest);
     }

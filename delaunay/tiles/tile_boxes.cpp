@@ -43,6 +43,10 @@ void TileSummary::include(const RowPoint& point, int dim) {
   }
 }
 
+void TileSummary::include(const TileSummary& other, int dim) {
+  for (std::uint64_t i = 0; i < other.extreme_count; ++i) include(other.extremes[i], dim);
+}
+
 TileBoxes::TileBoxes(std::span<const TileSummary> summaries)
     : plane_(boxes_of<glm::dvec2>(summaries)), space_(boxes_of<glm::dvec3>(summaries)) {
   for (const TileSummary& each : summaries) boxes_.push_back(each.box);

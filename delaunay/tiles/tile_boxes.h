@@ -21,6 +21,7 @@ struct TileSummary {
 
   // Of equal points the one with the lowest row is extreme: it represents them.
   void include(const RowPoint& point, int dim);
+  void include(const TileSummary& other, int dim);
 };
 
 // The boxes of all tiles, by number.

@@ -10,6 +10,9 @@
 #include "delaunay/mesh/arguments.h"
 #include "delaunay/tiles/distribute_points.h"
 #include "delaunay/tiles/settle_ranks.h"
+#include "delaunay/tiles/tally.h"
+#include "delaunay/tiles/tile_cut.h"
+#include "loadbalance/partition.h"
 
 namespace delray::delaunay {
 namespace {
@@ -60,6 +63,7 @@ TiledTriangulation triangulate_tiles(comm::Communicator& communicator,
   std::mutex mutex;
   const auto first =
       static_cast<std::size_t>(first_tile(communicator.rank(), communicator.size(), tiles));
+  Tally tally(first, own.size(), summaries.size());
   const TileWork work{
       .points =
           [&](std::size_t tile) {
@@ -68,19 +72,23 @@ TiledTriangulation triangulate_tiles(comm::Communicator& communicator,
             return Region{std::move(points_of_tile), size, {}};
           },
       .take =
-          [&](std::size_t, Settled& settled) {
+          [&](std::size_t region, Settled& settled) {
+            tally.add(count_of(region, settled, result.dim));
             const std::lock_guard lock(mutex);
             append_rows(settled.finals, result.vertices);
           },
   };
   SettleOptions how;
   how.triangulate = options.triangulate;
-  RankTotals totals = settle_ranks(communicator, summaries, how, work);
-  result.distinct = totals.distinct;
-  result.hull_facets = totals.hull_facets;
-  result.tiles = std::move(totals.tiles);
-  result.shared = totals.shared;
-  result.rounds = totals.rounds;
+  const Exchanges exchanges = settle_ranks(communicator, summaries, how, work);
+  TileStatistics& told = exchanges.of_tile ? tally.tiles.front() : tally.shared;
+  told.halo = exchanges.halo;
+  told.sent = exchanges.sent;
+  result.distinct = tally.distinct;
+  result.hull_facets = tally.hull_facets;
+  result.tiles = std::move(tally.tiles);
+  result.shared = tally.shared;
+  result.rounds = exchanges.rounds;
   return result;
 }
 
