@@ -17,6 +17,7 @@
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
 #include "apps/triangulate_distributed.h"
+#include "apps/triangulate_parts.h"
 #include "apps/triangulate_tiles.h"
 #include "apps/triangulation_json.h"
 #include "comm/agree_on_failure.h"
@@ -36,7 +37,7 @@ struct TriangulateOptions {
   delaunay::Options how;
   std::optional<double> max_error;
   Launch launch;
-  int tiles = 0;            // 0: one for each rank
+  TilesChoice tiles;
   std::string distributed;  // a method of delaunay/distributed.h; empty: tiles
   bool makers = false;      // go to the mesh
   bool list = false;
@@ -124,7 +125,7 @@ void add_choices(CLI::App& command) {
 }
 
 bool is_tiled(const Session& session, const TriangulateOptions& options) {
-  return options.tiles > 0 || !options.distributed.empty() || options.launch.ranks > 1 ||
+  return options.tiles.given() || !options.distributed.empty() || options.launch.ranks > 1 ||
          session.processes > 1;
 }
 
@@ -132,8 +133,9 @@ bool is_tiled(const Session& session, const TriangulateOptions& options) {
 void require_distributed(const TriangulateOptions& options) {
   const auto& method =
       find_entry(delaunay::distributed_methods(), options.distributed, "--distributed");
-  if (options.tiles > 0)
-    throw UsageError("--tiles: not with --distributed, which has an area a rank");
+  if (options.tiles.given())
+    throw UsageError(
+        "--tiles, --scratch and --resume: not with --distributed, which has an area a rank");
   const delaunay::Options defaults;
   const delaunay::Options& how = options.how;
   if (!method.triangulates_parts &&
@@ -166,6 +168,12 @@ void check(const Session& session, TriangulateOptions& options) {
                      ": not with several ranks or tiles");
   }
   if (!options.distributed.empty()) require_distributed(options);
+  if (!options.output.empty() && (!options.tiles.scratch.empty() || options.tiles.resume)) {
+    throw UsageError("--scratch and --resume: a mesh in one file is made in memory");
+  }
+  if (options.max_error && options.tiles.given()) {
+    throw UsageError("--max-error: not with tiles");
+  }
   check(session, options.launch);
   delaunay::Options& how = options.how;
   how.threads = session.under_mpi
@@ -217,7 +225,7 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
   require_memory_to_triangulate(options.input, points.size(), options.how.dim);
   seconds.read = watch.lap();
   delaunay::TileOptions how;
-  how.tiles = options.tiles;
+  how.tiles = options.tiles.tiles;
   how.triangulate = options.how;
   how.triangulate.progress = &session.progress;
   const ProgressBar bar(session, "triangulate");
@@ -247,6 +255,41 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
   return kDone;
 }
 
+// Without a mesh nothing but sums need be kept.
+int run_in_parts(Session& session, const TriangulateOptions& options) {
+  const PartsTask task{options.input, options.launch, options.how, options.tiles, options.output};
+  triangulate_in_parts(session, task, [&](const PartsMade& made) {
+    const delaunay::PartsResult& result = made.result;
+    warn_of_no_simplices(options, result.simplices);
+    delaunay::Triangulation counts;
+    counts.dim = result.dim;
+    counts.distinct = result.distinct;
+    counts.hull_facets = result.hull_facets;
+    Json statistics = statistics_of(options, result.points, counts, result.simplices, result.hash,
+                                    {.read = 0, .triangulate = made.seconds});
+    statistics["options"].update({{"ranks", made.ranks}, {"tiles", result.tiles.size()}});
+    statistics["rounds"] = result.rounds;
+    statistics["scratch"] = result.scratch;
+    statistics["resumed"] = result.resumed;
+    statistics.update(tiles_json(result));
+    write_statistics(options.statistics, statistics);
+    tell_result(result.dim, result.points, result.distinct, result.simplices, made.seconds);
+  });
+  return kDone;
+}
+
+// Whether the input goes through memory in parts, which it says where nobody asked for it.
+bool goes_in_parts(const Session& session, const TriangulateOptions& options) {
+  if (!options.output.empty() || !options.distributed.empty() || options.max_error) return false;
+  if (is_tiled(session, options)) return true;
+  const std::uint64_t needed = memory_beyond_limit(options.input, options.how.dim);
+  if (needed == 0) return false;
+  spdlog::info("{} would take {}, and {} are allowed (--memory): triangulating in tiles",
+               options.input.path, files::bytes_text(needed),
+               files::bytes_text(options.input.limits.budget().limit()));
+  return true;
+}
+
 int run(Session& session, TriangulateOptions options) {
   if (options.list) {
     list_methods();
@@ -255,6 +298,7 @@ int run(Session& session, TriangulateOptions options) {
     return kDone;
   }
   check(session, options);
+  if (goes_in_parts(session, options)) return run_in_parts(session, options);
   if (is_tiled(session, options)) return run_tiled(session, options);
   delaunay::Options& how = options.how;
 
@@ -352,13 +396,7 @@ void add_triangulate(CLI::App& program, Session& session) {
                    "above or below the mesh, in units of z")
       ->check(non_negative_number());
   add_launch_options(*command, options->launch);
-  command
-      ->add_option(
-          "--tiles", options->tiles,
-          "Tiles that points are cut into, each triangulated with what it must know of its "
-          "neighbours (default: one per rank)")
-      ->group(group::kParallel)
-      ->transform(count_between(1, 65536));
+  add_tiles_options(*command, options->tiles);
   command
       ->add_option("--distributed", options->distributed,
                    "How ranks share one triangulation (--list describes the methods; default: "

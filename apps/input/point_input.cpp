@@ -133,9 +133,8 @@ delaunay::PointCloud load_points(const PointInput& input, int dim) {
 }
 
 void require_memory_to_triangulate(const PointInput& input, std::size_t points, int dim) {
-  // Measured of the default methods on uniform points, besides the points themselves.
-  constexpr std::uint64_t kBytes2D = 70, kBytes3D = 260;
-  input.limits.budget().require(points * (dim == 2 ? kBytes2D : kBytes3D), input.path,
+  input.limits.budget().require(points * (dim == 2 ? kBytesToTriangulate2D : kBytesToTriangulate3D),
+                                input.path,
                                 "triangulation of " + std::to_string(points) + " points");
 }
 

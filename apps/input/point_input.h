@@ -1,6 +1,7 @@
 // Points from whatever the user names: files of points, or pictures of elevations.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -67,6 +68,9 @@ void merge_places(const PointInput& input, delaunay::PointCloud& cloud);
 // UsageError.
 delaunay::PointCloud load_points(const PointInput& input, int dim);
 
+// Bytes a point that the default methods take besides the points themselves; measured on uniform
+// ones.
+inline constexpr std::uint64_t kBytesToTriangulate2D = 70, kBytesToTriangulate3D = 260;
 // Throws FileError (memory) unless there is room to triangulate so many points in `dim` dimensions.
 void require_memory_to_triangulate(const PointInput& input, std::size_t points, int dim);
 

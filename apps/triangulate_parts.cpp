@@ -1,0 +1,163 @@
+// Opens the input in parts on every rank and triangulates tile by tile, within the memory that
+// --memory leaves.
+#include "apps/triangulate_parts.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/numbers.h"
+#include "apps/terminal/progress_bar.h"
+#include "comm/agree_on_failure.h"
+#include "delaunay/duplicates.h"
+#include "delaunay/open_points.h"
+#include "files/error.h"
+#include "files/read_file.h"
+#include "parallel/arena.h"
+
+namespace delray::apps {
+namespace {
+
+std::vector<std::filesystem::path> input_files(const PointInput& input) {
+  if (input.paths.empty()) return {input.path};
+  return delaunay::expand_inputs(
+      std::vector<std::filesystem::path>(input.paths.begin(), input.paths.end()));
+}
+
+// Inputs, their sizes and ages, and all options that the result depends on.
+std::string identity_of(const Session& session, const PartsTask& task) {
+  std::string identity;
+  std::error_code none;
+  for (const std::filesystem::path& input : input_files(task.input)) {
+    const auto path = std::filesystem::absolute(input, none);
+    const auto age = std::filesystem::last_write_time(path, none).time_since_epoch().count();
+    identity +=
+        fmt::format("{} {} {}\n", path.string(), std::filesystem::file_size(path, none), age);
+  }
+  for (const comm::Fact& option : session.options) {
+    if (option.what == "--resume" || option.what == "--stats" || option.what == "--scratch")
+      continue;
+    identity += fmt::format("{} {}\n", option.what, option.value);
+  }
+  return identity;
+}
+
+// Large blocks go back to the system at once, so that what is resident is what is used.
+void return_memory_at_once() {
+  constexpr int kLarge = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_TRIM_THRESHOLD, kLarge);
+}
+
+}  // namespace
+
+void add_tiles_options(CLI::App& command, TilesChoice& choice) {
+  command
+      .add_option(
+          "--tiles", choice.tiles,
+          "Tiles that points are cut into, each triangulated by itself (default: one per rank, or "
+          "as many as --memory asks for)")
+      ->group(group::kParallel)
+      ->transform(count_between(1, 1000000));
+  command
+      .add_option("--scratch", choice.scratch,
+                  "Folder for the points of tiles, which then wait on disk (default where memory "
+                  "does not do: that of the output, or TMPDIR)")
+      ->group(group::kParallel)
+      ->type_name("DIR");
+  command
+      .add_flag("--resume", choice.resume,
+                "Go on from the last tile that an earlier run with the same options has finished")
+      ->group(group::kParallel);
+}
+
+std::string scratch_folder(const TilesChoice& choice, const std::string& output) {
+  if (!choice.scratch.empty()) return choice.scratch;
+  if (output.empty() || output == "-") return std::filesystem::temp_directory_path().string();
+  std::filesystem::path path = std::filesystem::absolute(output);
+  if (path.filename().empty()) path = path.parent_path();
+  return path.parent_path().string();
+}
+
+std::uint64_t memory_beyond_limit(const PointInput& input, int dim) {
+  const std::uint64_t left = input.limits.budget().left();
+  const std::uint64_t bytes_per_point =
+      sizeof(glm::dvec3) + (dim == 2 ? kBytesToTriangulate2D : kBytesToTriangulate3D);
+  constexpr std::uint64_t kShortestRow = 4;  // of text
+  std::uint64_t most = 0;
+  for (const std::filesystem::path& path : input_files(input)) {
+    std::error_code error;
+    if (files::is_stream(path)) return 0;
+    most += std::filesystem::file_size(path, error) / kShortestRow;
+    if (error) return 0;
+  }
+  if (most <= left / bytes_per_point || is_picture(input)) return 0;
+  const auto parts = open_parts(input);
+  std::uint64_t rows = 0;
+  for (std::size_t part = 0; part < parts->parts(); ++part) rows += parts->most_rows(part);
+  return rows > left / bytes_per_point ? rows * bytes_per_point : 0;
+}
+
+void triangulate_in_parts(Session& session, const PartsTask& task,
+                          const std::function<void(const PartsMade&)>& done) {
+  if (task.how.dim == 3 && !task.input.duplicates.empty()) {
+    throw UsageError("--duplicates: points of 3D are equal only if their z is");
+  }
+  return_memory_at_once();
+  const std::string_view duplicates =
+      task.input.duplicates.empty() ? "first" : task.input.duplicates.c_str();
+  delaunay::PartsOptions options;
+  options.tiles.tiles = task.tiles.tiles;
+  options.tiles.triangulate = task.how;
+  options.tiles.triangulate.progress = &session.progress;
+  options.memory =
+      task.input.limits.budget().limit() /
+      static_cast<std::uint64_t>(session.under_mpi ? 1 : std::max(1, task.launch.ranks));
+  options.scratch = scratch_folder(task.tiles, task.output);
+  options.to_disk = !task.tiles.scratch.empty() || task.tiles.resume;
+  options.resume = task.tiles.resume;
+  options.identity = identity_of(session, task);
+  options.duplicates =
+      find_entry(delaunay::duplicates_policies(), duplicates, "--duplicates").policy;
+  options.say = [](const std::string& what) { spdlog::info("{}", what); };
+  options.on_resume = task.on_resume;
+  const ProgressBar bar(session, "triangulate");
+  const parallel::AllowThreads allowed(std::max(1, task.launch.ranks) * task.how.threads);
+  run_ranks(session, task.launch, {task.input.path}, [&](comm::Communicator& communicator) {
+    Stopwatch watch;
+    const auto parts =
+        comm::all_or_none(communicator, comm::Phase::other, [&] { return open_parts(task.input); });
+    PartsMade made{triangulate_parts(communicator, *parts, options, task.sink), communicator.size(),
+                   0};
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() != 0) return;
+      made.seconds = watch.lap();
+      const delaunay::PartsResult& result = made.result;
+      if (result.duplicates.places > 0) {
+        spdlog::warn("{}: {} places have several heights ({} rows): took the {}", task.input.path,
+                     result.duplicates.places, result.duplicates.rows, duplicates);
+      }
+      done(made);
+    });
+  });
+}
+
+Json tiles_json(const delaunay::PartsResult& result) {
+  const auto json_of = [](const delaunay::TileStatistics& tile) {
+    return Json{{"points", tile.points},
+                {"halo", tile.halo},
+                {"sent", tile.sent},
+                {"simplices", tile.simplices},
+                {"own_simplices", tile.own_simplices}};
+  };
+  Json tiles = Json::array();
+  for (const delaunay::TileStatistics& tile : result.tiles) tiles.push_back(json_of(tile));
+  return {{"tiles", tiles}, {"shared", json_of(result.shared)}};
+}
+
+}  // namespace delray::apps
