@@ -25,8 +25,7 @@ CellLattice::CellLattice(const geometry::Box3d& box, int dim, int most) {
       size_[k] = index(box.high[k], k) - first_[k] + 1;
       fits = fits && size_[k] <= most;
     }
-    // With two cells along an axis they may never become one, on both sides of 0.
-    if (fits || most == 1) break;
+    if (fits) break;
   }
 }
 

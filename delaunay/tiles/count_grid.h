@@ -18,7 +18,7 @@ class CellLattice {
  public:
   CellLattice() = default;
   // The finest cells of which at most `most` along an axis, and at least one, cover the box.
-  // REQUIRES: the box is finite and not empty; 1 <= most.
+  // REQUIRES: the box is finite and not empty; most >= 2, as 0 is a border of cells of all sizes.
   CellLattice(const geometry::Box3d& box, int dim, int most);
 
   int cells_along(int axis) const { return static_cast<int>(size_[axis]); }

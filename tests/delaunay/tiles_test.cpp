@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "comm/threads.h"
 #include "delaunay/generate.h"
+#include "delaunay/methods.h"
 #include "delaunay/triangulate.h"
 #include "loadbalance/partition.h"
 
@@ -88,6 +90,20 @@ TEST(Tiles, GiveTheSameForEveryNumberOfRanksAndPartition) {
   for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
     SCOPED_TRACE(partitioner.name);
     expect_whole(positions, 2, 3, {5, partitioner.name}, false);
+  }
+}
+
+// Methods that have no mesh to give are matched facet by facet.
+TEST(Tiles, GiveTheSameByEveryMethod) {
+  for (const int dim : {2, 3}) {
+    const auto positions = generate_points("gauss", dim == 2 ? 600 : 200, dim, 5).positions;
+    for (const Method& method : methods()) {
+      if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
+      SCOPED_TRACE(method.name);
+      TileOptions options{5};
+      options.triangulate.method = method.name;
+      expect_whole(positions, dim, 2, options, true);
+    }
   }
 }
 
