@@ -108,7 +108,7 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
   if (task.how.dim == 3 && !task.input.duplicates.empty()) {
     throw UsageError("--duplicates: points of 3D are equal only if their z is");
   }
-  return_memory_at_once();
+  if (task.input.limits.memory > 0) return_memory_at_once();
   const std::string_view duplicates =
       task.input.duplicates.empty() ? "first" : task.input.duplicates.c_str();
   delaunay::PartsOptions options;

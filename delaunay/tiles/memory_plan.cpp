@@ -14,8 +14,8 @@ namespace {
 constexpr std::uint64_t kReserve = std::uint64_t{48} << 20;
 // Of the memory that is left, what tiles in the making may take; rests wait in some of the others.
 constexpr double kTilesShare = 0.75;
-// Tiles of more points than that are no faster in 2D: a smaller part of them lies at borders, but
-// they leave the cache.
+// Tiles of more points than that are slower in 2D: a smaller part of them lies at borders, but they
+// leave the cache. In 3D borders cost more.
 constexpr std::uint64_t kLargeTile2D = std::uint64_t{1} << 20;
 // Fewer points leave too many of them at borders for several tiles at a time.
 constexpr std::uint64_t kSmallTile = 200000, kSmallestTile = 4000;
@@ -40,6 +40,10 @@ MemoryPlan plan_memory(const Task& task) {
   const std::uint64_t bytes = bytes_to_triangulate(task.dim);
   const std::uint64_t share = task.points / static_cast<std::uint64_t>(task.ranks) + 1;
   plan.tiles = task.tiles > 0 ? task.tiles : task.ranks;
+  if (task.tiles == 0 && task.dim == 2) {
+    plan.tiles *=
+        static_cast<int>(std::min((share + kLargeTile2D - 1) / kLargeTile2D, std::uint64_t{1000}));
+  }
   const auto use_workers = [&](std::uint64_t most) {
     const int per_rank = std::max(1, plan.tiles / task.ranks);
     const int workers = static_cast<int>(std::min<std::uint64_t>(most, per_rank));

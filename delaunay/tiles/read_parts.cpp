@@ -78,6 +78,8 @@ std::vector<comm::Parcel> read_batch(const PointParts& parts, const PartCounts& 
   std::vector<PointCloud> clouds(last - first);
   std::vector<PointRun> runs;
   std::vector<std::int32_t> tile_of;
+  tile_of.reserve(counts.first_rows[last - counts.first_part] -
+                  counts.first_rows[first - counts.first_part]);
   for (std::size_t part = first; part < last; ++part) {
     PointCloud& cloud = clouds[part - first];
     parts.read(part, cloud);
