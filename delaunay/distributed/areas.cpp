@@ -6,6 +6,8 @@
 #include <cstring>
 
 #include "comm/collectives.h"
+#include "delaunay/tiles/distribute_points.h"
+#include "loadbalance/partition.h"
 
 namespace delray::delaunay {
 
@@ -28,8 +30,8 @@ std::vector<RowPoint> distinct_points(std::vector<RowPoint> points, int dim) {
 Areas::Areas(comm::Communicator& communicator, std::span<const RowPoint> points,
              const DistributedOptions& options, int spared)
     : spared_(spared),
-      cut_(communicator, points, options.triangulate.dim, communicator.size() - spared,
-           *loadbalance::find_partitioner(options.partition)) {}
+      cut_(cut_points(communicator, points, options.triangulate.dim, communicator.size() - spared,
+                      *loadbalance::find_partitioner(options.partition))) {}
 
 std::vector<RowPoint> send_points(comm::Communicator& communicator,
                                   std::span<const RowPoint> points, std::span<const int> ranks) {

@@ -25,7 +25,7 @@ class Areas {
 
   // The rank whose area has the point. Points beyond the box of the first ones belong to the area
   // at the border there.
-  int rank_of(const glm::dvec3& position) const { return spared_ + cut_.tile_of(position); }
+  int rank_of(const glm::dvec3& position) const { return spared_ + cut_.nearest_tile_of(position); }
 
   // Collective: the distinct points of this rank's area, of those that all ranks give.
   std::vector<RowPoint> own_points(comm::Communicator& communicator,

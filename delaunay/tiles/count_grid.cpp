@@ -6,7 +6,7 @@
 
 namespace delray::delaunay {
 
-CellLattice::CellLattice(const geometry::Box3d& box, int dim, int most) {
+CellLattice::CellLattice(const geometry::Box3d& box, int dim, int most) : box_(box) {
   // Cell numbers are exact in doubles, and the scale is finite and no denormal.
   constexpr int kLargestNumber = 50, kLeast = -1000;
   double longest = 0, farthest = 0;

@@ -21,6 +21,7 @@ class CellLattice {
   // REQUIRES: the box is finite and not empty; most >= 2, as 0 is a border of cells of all sizes.
   CellLattice(const geometry::Box3d& box, int dim, int most);
 
+  const geometry::Box3d& box() const { return box_; }
   int cells_along(int axis) const { return static_cast<int>(size_[axis]); }
   std::size_t cells() const { return static_cast<std::size_t>(size_[0] * size_[1] * size_[2]); }
   // x first, then y. REQUIRES: the place is in the box.
@@ -40,6 +41,7 @@ class CellLattice {
     return towards_zero - (static_cast<double>(towards_zero) > place ? 1 : 0);
   }
 
+  geometry::Box3d box_{glm::dvec3(0), glm::dvec3(0)};
   int exponent_ = 0;                         // of the side
   std::array<double, 3> scale_ = {1, 1, 0};  // 2^-exponent_; 0 along axes without cells
   std::array<std::int64_t, 3> first_ = {0, 0, 0}, size_ = {1, 1, 1};

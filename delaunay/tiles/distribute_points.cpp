@@ -33,6 +33,17 @@ void add_up(comm::Communicator& communicator, CountGrid& grid) {
   comm::all_reduce(communicator, grid.counts(), std::plus<>());
 }
 
+TileCut cut_points(comm::Communicator& communicator, std::span<const RowPoint> points, int dim,
+                   int tiles, const loadbalance::Partitioner& partitioner) {
+  CountGrid grid(dim, cells_along_axis(dim, static_cast<std::uint64_t>(tiles)));
+  geometry::Box3d box;
+  for (const RowPoint& point : points) box.include(point.position);
+  grid.cover(box);
+  for (const RowPoint& point : points) grid.add(point.position);
+  add_up(communicator, grid);
+  return TileCut(grid.lattice(), grid.counts(), tiles, partitioner);
+}
+
 std::vector<std::vector<RowPoint>> distribute_points(comm::Communicator& communicator,
                                                      std::span<const RowPoint> points,
                                                      const TileOptions& options, int tiles) {
@@ -43,14 +54,8 @@ std::vector<std::vector<RowPoint>> distribute_points(comm::Communicator& communi
   if (tiles == 1 && ranks == 1) {
     own.front().assign(points.begin(), points.end());
   } else {
-    CountGrid grid(dim, cells_along_axis(dim, static_cast<std::uint64_t>(tiles)));
-    geometry::Box3d box;
-    for (const RowPoint& point : points) box.include(point.position);
-    grid.cover(box);
-    for (const RowPoint& point : points) grid.add(point.position);
-    add_up(communicator, grid);
-    const TileCut cut(grid.lattice(), grid.counts(), tiles,
-                      *loadbalance::find_partitioner(options.partition));
+    const TileCut cut = cut_points(communicator, points, dim, tiles,
+                                   *loadbalance::find_partitioner(options.partition));
     std::vector<std::int32_t> tile_of(points.size());
     constexpr std::size_t kGrain = 16384;  // points: some tenths of a millisecond
     parallel::parallel_for(0, points.size(), kGrain,

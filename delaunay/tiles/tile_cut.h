@@ -27,6 +27,12 @@ class TileCut {
 
   // Equal points lie in one tile. REQUIRES: `position` is in the box of the lattice.
   int tile_of(const glm::dvec3& position) const { return owner_[lattice_.cell_of(position)]; }
+  // The same for a place anywhere: outside of the box, the tile at the border there. REQUIRES: the
+  // lattice was made of the box, which is not empty.
+  int nearest_tile_of(const glm::dvec3& position) const {
+    const geometry::Box3d& box = lattice_.box();
+    return tile_of(glm::clamp(position, box.low, box.high));
+  }
   // How many points each tile has, by the counts of the same lattice.
   std::vector<std::uint64_t> points_of_tiles(std::span<const std::uint64_t> counts) const;
 
