@@ -44,6 +44,7 @@ struct PartsMade {
   double seconds = 0;
 };
 
+// What is triangulated, and how.
 struct PartsTask {
   const PointInput& input;
   const Launch& launch;

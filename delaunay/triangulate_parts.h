@@ -19,6 +19,7 @@
 
 namespace delray::delaunay {
 
+// How points in parts are triangulated, and where they wait.
 struct PartsOptions {
   // Tiles 0: as many as keep within memory, at least one a rank. Threads are those of a rank.
   TileOptions tiles;

@@ -32,6 +32,11 @@ struct Region {
 };
 
 // Puts the rest of `other` into `all`. REQUIRES: neither has a halo.
-void append(Region& all, const Region& other);
+inline void append(Region& all, const Region& other) {
+  const auto first = static_cast<std::uint32_t>(all.points.size());
+  all.points.insert(all.points.end(), other.points.begin(), other.points.end());
+  all.own = all.points.size();
+  for (const std::uint32_t corner : other.walls) all.walls.push_back(first + corner);
+}
 
 }  // namespace delray::delaunay

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "delaunay/mesh/blocks.h"
+#include "delaunay/mesh/build_mesh.h"
 #include "delaunay/mesh/facets.h"
-#include "delaunay/tiles/build_mesh.h"
 #include "delaunay/tiles/circumball.h"
 #include "delaunay/tiles/deep_ball.h"
 #include "delaunay/tiles/wall_table.h"

@@ -1,3 +1,4 @@
+// Chooses the mesh of the dimension and asks it for all that is wanted, in the order that it needs.
 #include "delaunay/tiles/settle.h"
 
 #include <utility>

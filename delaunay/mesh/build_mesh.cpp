@@ -1,5 +1,5 @@
 // Asks the method for its mesh, or matches the facets of its simplices.
-#include "delaunay/tiles/build_mesh.h"
+#include "delaunay/mesh/build_mesh.h"
 
 #include <numeric>
 #include <stdexcept>
