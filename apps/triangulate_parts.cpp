@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "apps/input/point_parts_input.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
