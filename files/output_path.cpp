@@ -132,6 +132,25 @@ OutputPath output_path(const fs::path& path) {
   return result;
 }
 
+fs::path output_folder(const fs::path& path) {
+  const fs::path named = path.has_filename() ? path : path.parent_path();
+  if (named.empty()) fail(path, std::strerror(ENOENT));
+  const fs::path folder = resolve(named).path;
+  struct stat status {};
+  const bool exists = ::stat(folder.c_str(), &status) == 0;
+  if (!folder.has_filename() || (!exists && errno != ENOENT)) {
+    fail(path, std::strerror(exists ? EBUSY : errno));
+  }
+  if (exists && !S_ISDIR(status.st_mode)) fail(path, std::strerror(ENOTDIR));
+  if (exists && may_be_planted(folder.parent_path(), status)) {
+    fail(path, "it was made by another user in a folder that is open to all");
+  }
+  if (::access(folder_name(folder.parent_path()), W_OK | X_OK) != 0) {
+    fail(path, std::strerror(errno));
+  }
+  return folder;
+}
+
 void check_writable(const fs::path& path) {
   if (path.empty()) return;
   const OutputPath target = output_path(path);

@@ -30,6 +30,10 @@ struct OutputPath {
 // where a folder on the way is missing. Nothing is opened: a FIFO without a reader does not block.
 OutputPath output_path(const std::filesystem::path& path);
 
+// As output_path() of a folder, which may be there already: its name behind all links, without a
+// slash at the end. Throws FileError (device) for what is there and is no folder, too.
+std::filesystem::path output_folder(const std::filesystem::path& path);
+
 // Throws the FileError (device) that writing `path` would throw as far as that can be told before
 // the work that makes the content; "-" and an empty path are fine.
 void check_writable(const std::filesystem::path& path);
