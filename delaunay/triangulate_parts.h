@@ -16,8 +16,16 @@
 #include "delaunay/point_parts.h"
 #include "delaunay/tile_sink.h"
 #include "delaunay/tiles.h"
+#include "geometry/box.h"
 
 namespace delray::delaunay {
+
+// What is known of all points before the first simplex is.
+struct PointsFound {
+  std::uint64_t points = 0;
+  bool has_z = false;
+  geometry::Box3d box;  // z is 0 in 2D; empty without points
+};
 
 // How points in parts are triangulated, and where they wait.
 struct PartsOptions {
@@ -36,6 +44,11 @@ struct PartsOptions {
   // the sink had all of them and does not get them again. On every rank, of that rank's regions.
   std::function<void(const std::function<bool(std::uint64_t region)>& finished)> on_resume =
       nullptr;
+  // Collective, once, after that and before the sink gets anything.
+  std::function<void(comm::Communicator& communicator, const PointsFound& points)> on_points =
+      nullptr;
+  // Told after an error if `resume` can go on: what the sink has got must stay. On every rank.
+  std::function<void()> on_keep = nullptr;
   Duplicates duplicates = Duplicates::first;              // in 2D, which z points in one place get
   std::uint64_t first_row = 0;                            // of the first point
   std::function<void(const std::string&)> say = nullptr;  // told what happens, by the first rank
@@ -57,7 +70,8 @@ struct PartsResult {
 
 // Collective: the triangulation that triangulate() gives for all points, of which each rank reads
 // its share of the parts. Every final simplex goes to the sink of one rank, if it has one. A region
-// of tiles whose rests were put together has a number of its own, from the number of tiles on.
+// of tiles whose rests were put together has a number of its own, from the number of tiles on, and
+// what is put together last, which is never resumed, one from twice that on.
 //
 // Errors, on all ranks: those of reading; std::invalid_argument for options that cannot be and
 // coordinates that are not finite; FileError (memory) where memory does not do, as for points that

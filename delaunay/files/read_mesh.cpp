@@ -8,6 +8,7 @@
 
 #include "delaunay/files/line_ends.h"
 #include "delaunay/files/point_readers.h"
+#include "delaunay/mesh_folder.h"
 #include "files/read_file.h"
 
 namespace delray::delaunay {
@@ -63,6 +64,7 @@ std::string no_mesh() {
 }
 
 PointMesh read_any(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  if (is_mesh_folder(path)) return read_mesh_folder(path, memory);
   const bool is_node = files::format_of_suffix(path) == Format::node;
   const Format format = is_node ? Format::node : files::identify_format(path, memory);
   const auto reader = std::ranges::find(kReaders, format, &MeshReader::format);

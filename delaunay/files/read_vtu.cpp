@@ -40,6 +40,15 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
   return tag.substr(0, tag.find('"'));
 }
 
+// What the file calls the type of an array; empty if it has none of this name.
+std::string_view type_of_array(const Parts& parts, std::string_view name) {
+  const std::size_t mark = parts.xml.find(" Name=\"" + std::string(name) + "\"");
+  if (mark == std::string_view::npos) return {};
+  const std::size_t begin = parts.xml.rfind('<', mark);
+  if (begin == std::string_view::npos) return {};
+  return attribute(parts.xml.substr(begin, parts.xml.find('>', begin) - begin), "type");
+}
+
 // The bytes of an array of `type`; none if the file has no array of this name.
 std::optional<std::string_view> find_array(const Input& input, const Parts& parts,
                                            std::string_view name, std::string_view type) {
@@ -130,6 +139,26 @@ int cell_dimension(const Input& input, std::string_view types) {
   return type == kTriangle ? 2 : 3;
 }
 
+template <class Index>
+void copy_corners(const Input& input, const Parts& parts, std::string_view type, std::size_t wanted,
+                  PointMesh& mesh) {
+  const auto connectivity =
+      copy_rows<Index>(input, require_array(input, parts, "connectivity", type), "connectivity");
+  if (connectivity.size() != wanted) {
+    fail(input, "", "array \"connectivity\" does not match the cells");
+  }
+  input.require_memory(connectivity.size() * sizeof mesh.triangulation.vertices[0]);
+  mesh.triangulation.vertices.resize(connectivity.size());
+  const auto corners = static_cast<std::size_t>(mesh.triangulation.dim) + 1;
+  for (std::size_t i = 0; i < connectivity.size(); ++i) {
+    const Index vertex = connectivity[i];
+    if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= mesh.points.size()) {
+      fail(input, "cell " + std::to_string(i / corners), "refers to a point that is not there");
+    }
+    mesh.triangulation.vertices[i] = static_cast<std::uint32_t>(vertex);
+  }
+}
+
 }  // namespace
 
 PointCloud read_vtu_points(const Input& input) { return read_cloud(input, split(input)); }
@@ -141,19 +170,11 @@ PointMesh read_vtu_mesh(const Input& input) {
   const std::string_view types = require_array(input, parts, "types", "UInt8");
   mesh.triangulation.dim = cell_dimension(input, types);
   const auto corners = static_cast<std::size_t>(mesh.triangulation.dim) + 1;
-  const auto connectivity = copy_rows<std::int64_t>(
-      input, require_array(input, parts, "connectivity", "Int64"), "connectivity");
-  if (connectivity.size() != types.size() * corners) {
-    fail(input, "", "array \"connectivity\" does not match the cells");
-  }
-  input.require_memory(connectivity.size() * sizeof mesh.triangulation.vertices[0]);
-  mesh.triangulation.vertices.resize(connectivity.size());
-  for (std::size_t i = 0; i < connectivity.size(); ++i) {
-    const std::int64_t vertex = connectivity[i];
-    if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= mesh.points.size()) {
-      fail(input, "cell " + std::to_string(i / corners), "refers to a point that is not there");
-    }
-    mesh.triangulation.vertices[i] = static_cast<std::uint32_t>(vertex);
+  // Pieces of large meshes have indices of 32 bits.
+  if (type_of_array(parts, "connectivity") == "Int32") {
+    copy_corners<std::int32_t>(input, parts, "Int32", types.size() * corners, mesh);
+  } else {
+    copy_corners<std::int64_t>(input, parts, "Int64", types.size() * corners, mesh);
   }
   return mesh;
 }

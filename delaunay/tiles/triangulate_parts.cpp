@@ -52,7 +52,10 @@ class PartsRun {
       }
       settle();
     } catch (...) {
-      if (journal_ && journal_->is_worth_keeping() && !damaged_) journal_->keep();
+      if (journal_ && journal_->is_worth_keeping() && !damaged_) {
+        journal_->keep();
+        if (options_.on_keep) options_.on_keep();
+      }
       throw;
     }
     return result();
@@ -305,8 +308,10 @@ class PartsRun {
     record.count = count_of(region, settled, dim_);
     record.count.hash = hash(settled.finals, dim_);
     if (sink_ != nullptr && record.count.own_simplices > 0) {
+      // What is not journaled has numbers of its own, which no later run takes for finished.
+      const auto tiles = static_cast<std::uint64_t>(plan_.tiles);
       sink_->take({dim_,
-                   region,
+                   settled.is_last ? 2 * tiles + region : region,
                    {settled.finals.points.data(), settled.finals.points.size()},
                    {settled.finals.simplices.data(), settled.finals.simplices.size()}});
     }
@@ -347,6 +352,11 @@ class PartsRun {
     communicator_.mark(comm::Phase::other, 0);
     tally_.emplace(first_own(), own_tiles(), static_cast<std::size_t>(plan_.tiles));
     const std::vector<TileSummary> summaries = share_summaries(communicator_, own_);
+    if (options_.on_points) {
+      PointsFound found{points_, has_z_, {}};
+      for (const TileSummary& summary : summaries) found.box.include(summary.box);
+      options_.on_points(communicator_, found);
+    }
     SettleOptions how;
     how.triangulate = options_.tiles.triangulate;
     how.triangulate.threads = plan_.threads;

@@ -7,8 +7,8 @@
 
 #include "delaunay/files/parts/byte_source.h"
 #include "delaunay/files/parts/file_parts.h"
-#include "delaunay/files/parts/text_parts.h"
 #include "delaunay/files/parts/pcd_header.h"
+#include "delaunay/files/parts/text_parts.h"
 
 namespace delray::delaunay {
 
