@@ -35,7 +35,7 @@ std::size_t find_first(std::size_t n, Bad&& bad) {
       [](std::size_t a, std::size_t b) { return std::min(a, b); });
 }
 
-inline std::string row(std::size_t vertex) { return "row " + std::to_string(vertex); }
+inline std::string row(std::uint64_t vertex) { return "row " + std::to_string(vertex); }
 
 // Something to say against a triangulation; `simplex` is kAll where it is about no single one.
 struct Objection {
@@ -60,7 +60,11 @@ struct VerifiedMesh {
   std::vector<std::uint32_t> vertices;  // kCorners per simplex
   std::size_t distinct = 0;
   FacetMates facets;
+  PointView<std::uint64_t> rows{};  // of the points in the whole input; none: their numbers
 
+  std::string row(std::size_t vertex) const {
+    return internal::row(rows.size() == 0 ? vertex : rows(vertex, 0));
+  }
   std::size_t size() const { return given.size() / kCorners; }
   Point at(std::size_t i) const {
     Point p;

@@ -40,26 +40,29 @@ struct Edge {
 // Whether edges, of which as many leave a vertex as enter it, form one convex polygon,
 // counterclockwise. A polygon whose corners are all convex winds once around its inside if it has
 // one lexicographic minimum, and so do several only if they are one.
-template <class View, class Point>
-Check check_polygon(std::size_t points, const std::vector<Edge>& edges, Point&& at) {
-  std::vector<std::uint32_t> leaving(points, kNoMate);  // edge per vertex
+template <class View, int D>
+Check check_polygon(const VerifiedMesh<D>& mesh, const std::vector<Edge>& edges) {
+  std::vector<std::uint32_t> leaving(mesh.points.size(), kNoMate);  // edge per vertex
   for (std::size_t i = 0; i < edges.size(); ++i) {
     std::uint32_t& known = leaving[edges[i].start];
     if (known != kNoMate) {
-      return Objection{edges[i].simplex, "the boundary passes " + row(edges[i].start) + " twice"};
+      return Objection{edges[i].simplex,
+                       "the boundary passes " + mesh.row(edges[i].start) + " twice"};
     }
     known = static_cast<std::uint32_t>(i);
   }
   bool has_minimum = false;
   for (const Edge& edge : edges) {
-    const auto a = at(edge.start), b = at(edge.end), c = at(edges[leaving[edge.end]].end);
+    const auto a = mesh.at(edge.start), b = mesh.at(edge.end);
+    const auto c = mesh.at(edges[leaving[edge.end]].end);
     const int turn = View::turn(a, b, c);
     if (turn < 0 || (turn == 0 && View::before(a, b) != View::before(b, c))) {
-      return Objection{edge.simplex, "the boundary is not convex at " + row(edge.end)};
+      return Objection{edge.simplex, "the boundary is not convex at " + mesh.row(edge.end)};
     }
     if (View::before(b, a) && View::before(b, c)) {
       if (has_minimum) {
-        return Objection{edge.simplex, "the boundary is more than one polygon at " + row(edge.end)};
+        return Objection{edge.simplex,
+                         "the boundary is more than one polygon at " + mesh.row(edge.end)};
       }
       has_minimum = true;
     }
@@ -102,7 +105,7 @@ Check check_hull(const VerifiedMesh<2>& mesh) {
     const auto edge = mesh.outward(facet);
     edges.push_back({edge[0], edge[1], facet / 3});
   }
-  return check_polygon<Plane>(mesh.points.size(), edges, [&](auto i) { return mesh.at(i); });
+  return check_polygon<Plane>(mesh, edges);
 }
 
 // The faces seen from above lie, projected, side by side in the polygon of the edges where they
@@ -115,7 +118,7 @@ Check check_hull(const VerifiedMesh<3>& mesh) {
   const auto start = [&](std::size_t e) { return surface.triangles[e - e % 3 + (e + 1) % 3]; };
   const auto end = [&](std::size_t e) { return surface.triangles[e - e % 3 + (e + 2) % 3]; };
   const auto simplex = [&](std::size_t e) -> std::size_t { return surface.facets[e / 3] / 4; };
-  const auto name = [&](std::size_t e) { return row(start(e)) + " and " + row(end(e)); };
+  const auto name = [&](std::size_t e) { return mesh.row(start(e)) + " and " + mesh.row(end(e)); };
   if (const std::size_t crowded = surface.edges.crowded; crowded != kNoMate) {
     return Objection{simplex(crowded),
                      "more than two faces of the boundary meet between " + name(crowded)};
@@ -145,7 +148,7 @@ Check check_hull(const VerifiedMesh<3>& mesh) {
   for (std::size_t e = 0; e < surface.triangles.size(); ++e) {
     if (surface.up[e / 3] && is_outline(e)) outline.push_back({start(e), end(e), simplex(e)});
   }
-  return check_polygon<Projection>(mesh.points.size(), outline, [&](auto i) { return mesh.at(i); });
+  return check_polygon<Projection>(mesh, outline);
 }
 
 }  // namespace delray::delaunay::internal

@@ -1,0 +1,52 @@
+// The verifier for meshes that memory need not hold: piece by piece, against points part by part.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "delaunay/mesh_folder.h"
+#include "delaunay/point_parts.h"
+#include "files/memory_budget.h"
+
+namespace delray::delaunay {
+
+// A mesh in pieces: simplices with their points, of which each piece has every one once. `read`
+// replaces its argument by a piece, again and again with equal results; one thread calls it at a
+// time.
+struct PieceSource {
+  int dim = 2;
+  std::size_t pieces = 0;
+  std::function<void(std::size_t piece, PieceMesh& mesh)> read;
+};
+
+// What verify_pieces() finds.
+struct PiecesVerdict {
+  // As in Verdict: each includes those before it.
+  bool valid = false, delaunay = false, canonical = false;
+  // The first simplex that breaks the first property which fails, where it is about one: its piece,
+  // and its place there.
+  std::optional<std::size_t> piece, simplex;
+  std::string reason;  // one sentence about that; empty if canonical
+  // In 2D whether z is that of the points: empty where points or mesh have none.
+  std::string heights;       // "equal", "different"
+  std::string other_height;  // one sentence about the first that is different
+
+  std::uint64_t points = 0, distinct = 0, simplices = 0, hull_facets = 0;
+  Hash128 hash;  // of the simplices as they are; complete only if valid
+};
+
+// Checks exactly that simplices of pieces together are the Delaunay triangulation of the points, or
+// at least a triangulation, as verify_simplices() does for one in memory. Memory: a piece and its
+// adjacency, a part of the points, a bit for each row, and facets and vertices on the borders of
+// pieces, facets until their other side has come: pieces should come in an order that goes through
+// space. Cost: pieces and points are read once; pieces once more if rows are equal to others, and
+// once to name what is wrong with points.
+//
+// Throws what the sources throw, and FileError (memory) where the borders take more than `memory`,
+// naming `name`.
+PiecesVerdict verify_pieces(const PieceSource& pieces, const PointParts& points,
+                            const std::string& name, const files::MemoryBudget& memory = {});
+
+}  // namespace delray::delaunay
