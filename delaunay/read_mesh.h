@@ -31,8 +31,9 @@ struct MeshReader {
 
 std::span<const MeshReader> mesh_readers();
 
-// Reads what mesh_readers() lists; of .node and .ele, which lie beside each other, either may be
-// named. Corners of STL that are at one place are one vertex. A mesh without simplices is legal.
+// Reads what mesh_readers() lists, and folders of pieces (mesh_folder.h); of .node and .ele, which
+// lie beside each other, either may be named. Corners of STL that are at one place are one vertex.
+// A mesh without simplices is legal.
 //
 // Throws FileError (input) if the file cannot be read or is broken, and if a face is no triangle or
 // refers to a missing vertex; FileError (memory) if it takes more than `memory`. O(bytes).
