@@ -11,6 +11,7 @@
 #include "apps/options/help.h"
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
+#include "delaunay/mesh_folder.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/summarize_points.h"
 #include "files/printable.h"
@@ -105,6 +106,27 @@ Json describe_mesh(const std::string& path, const delaunay::PointMesh& mesh) {
   return description;
 }
 
+// From the index alone.
+Json describe_folder(const std::string& path, const files::MemoryBudget& memory) {
+  const delaunay::MeshFolder folder(path, memory);
+  const delaunay::MeshIndex& index = folder.index();
+  const geometry::Box3d box = index.box();
+  Json pieces = Json::array();
+  for (const delaunay::MeshPiece& piece : index.pieces) {
+    pieces.push_back(
+        {{"file", piece.file}, {"points", piece.points}, {"simplices", piece.simplices}});
+  }
+  Json description = {{"points", index.points}, {"distinct", index.distinct}, {"dim", index.dim}};
+  if (!box.empty()) description.update({{"low", numbers(box.low)}, {"high", numbers(box.high)}});
+  description.update({{"simplices", index.simplices},
+                      {"simplex", index.dim == 2 ? "triangle" : "tetrahedron"},
+                      {"hull_facets", index.hull_facets},
+                      {"hash", to_string(index.hash)},
+                      {"format", index.format},
+                      {"pieces", pieces}});
+  return description;
+}
+
 Json describe_scene(const scenes::Scene& scene) {
   const scenes::Description d = scenes::describe(scene);
   Json textures = Json::array();
@@ -171,6 +193,7 @@ Json describe(const PointInput& asked, const OutputFile& output) {
     case InputKind::points:
       return describe_summary(path, summarize(asked));
     case InputKind::mesh:
+      if (delaunay::is_mesh_folder(path)) return describe_folder(path, memory);
       return describe_mesh(path, delaunay::read_mesh(path, memory));
     case InputKind::scene:
       break;

@@ -8,12 +8,13 @@
 
 #include "apps/commands.h"
 #include "apps/families.h"
+#include "apps/input/point_choice.h"
 #include "apps/input/point_input.h"
 #include "apps/launch.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
-#include "apps/options/outputs.h"
+#include "apps/output/triangulation_output.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
 #include "apps/triangulate_distributed.h"
@@ -25,7 +26,6 @@
 #include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
 #include "delaunay/triangulate.h"
-#include "delaunay/write_mesh.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -33,7 +33,8 @@ namespace {
 
 struct TriangulateOptions {
   PointInput input;
-  std::string output, statistics;
+  TriangulationOutput output;
+  std::string statistics;
   delaunay::Options how;
   std::optional<double> max_error;
   Launch launch;
@@ -107,6 +108,11 @@ void add_phases(const delaunay::Statistics& phases, Json& statistics) {
   sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
 }
 
+// Of a raster.
+void add_output(const Json& output, Json& statistics) {
+  if (!output.is_null()) statistics["raster"] = output;
+}
+
 // Names in a table, or that which leaves the choice to the program.
 template <class Table>
 void choose(CLI::App& command, const char* option, const Table& table) {
@@ -154,13 +160,25 @@ void require_distributed(const TriangulateOptions& options) {
 // Refuses what does not go together, and resolves every "auto".
 void check(const Session& session, TriangulateOptions& options) {
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
-  if (options.output.empty() && options.statistics.empty()) {
+  const OutputKind output = options.output.kind();
+  if (output == OutputKind::none && options.statistics.empty()) {
     throw UsageError("triangulate: -o MESH is missing");
   }
-  if (!options.output.empty() && options.output != "-") {
-    delaunay::mesh_writer_for(options.output);
+  check_output(options.output, options.input, options.how.dim);
+  if (options.max_error && output == OutputKind::folder) {
+    throw UsageError("--max-error: a simplified terrain goes to one file");
   }
-  if (options.makers && !options.output.ends_with(".vtu")) {
+  if (output == OutputKind::file && (!options.tiles.scratch.empty() || options.tiles.resume)) {
+    throw UsageError(
+        "--scratch and --resume: a mesh in one file is made in memory; -o FOLDER/ is not");
+  }
+  if (output == OutputKind::raster && options.tiles.resume) {
+    throw UsageError("--resume: a raster is made in one run");
+  }
+  if (is_tiled(session, options) && options.output.interpolate == "natural-neighbour") {
+    throw UsageError("--interpolate natural-neighbour: not with several ranks or tiles");
+  }
+  if (options.makers && (output != OutputKind::file || !options.output.path.ends_with(".vtu"))) {
     throw UsageError("--makers: only a mesh in a .vtu file can tell them");
   }
   if (is_tiled(session, options) && (options.max_error || options.makers)) {
@@ -168,12 +186,7 @@ void check(const Session& session, TriangulateOptions& options) {
                      ": not with several ranks or tiles");
   }
   if (!options.distributed.empty()) require_distributed(options);
-  if (!options.output.empty() && (!options.tiles.scratch.empty() || options.tiles.resume)) {
-    throw UsageError("--scratch and --resume: a mesh in one file is made in memory");
-  }
-  if (options.max_error && options.tiles.given()) {
-    throw UsageError("--max-error: not with tiles");
-  }
+  if (options.max_error && options.tiles.given()) throw UsageError("--max-error: not with tiles");
   check(session, options.launch);
   delaunay::Options& how = options.how;
   how.threads = session.under_mpi
@@ -188,7 +201,7 @@ void check(const Session& session, TriangulateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  check_outputs({{"-o", options.output}, {"--stats", options.statistics}}, options.input.paths);
+  check_output_paths(options.output, options.statistics, options.input.paths);
 }
 
 void warn_of_no_simplices(const TriangulateOptions& options, std::uint64_t simplices) {
@@ -207,7 +220,7 @@ void tell_result(int dim, std::size_t rows, std::uint64_t distinct, std::uint64_
 TiledRun triangulate_with_ranks(comm::Communicator& communicator, const TriangulateOptions& options,
                                 const delaunay::PointCloud& points,
                                 const delaunay::TileOptions& how, Json& statistics) {
-  const bool with_vertices = !options.output.empty();
+  const bool with_vertices = options.output.kind() != OutputKind::none;
   if (options.distributed.empty()) {
     return triangulate_by_ranks(communicator, points, how, with_vertices);
   }
@@ -222,6 +235,9 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
   Stopwatch watch;
   Seconds seconds;
   const delaunay::PointCloud points = load_points(options.input, options.how.dim);
+  if (!points.has_z && options.output.kind() == OutputKind::raster) {
+    throw UsageError("-o " + options.output.path + ": " + options.input.path + " has no z");
+  }
   require_memory_to_triangulate(options.input, points.size(), options.how.dim);
   seconds.read = watch.lap();
   delaunay::TileOptions how;
@@ -246,7 +262,8 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
       statistics["rounds"] = made.rounds;
       statistics["tiles"] = tiles_json(made);
       own_watch.lap();
-      if (!options.output.empty()) write_mesh(options.output, points, result);
+      add_output(write_triangulation(options.output, options.input, points, result, {}),
+                 statistics);
       statistics["seconds"]["write"] = own_watch.lap();
       write_statistics(options.statistics, statistics);
       tell_result(result.dim, points.size(), result.distinct, made.simplices, seconds.triangulate);
@@ -257,7 +274,25 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
 
 // Without a mesh nothing but sums need be kept.
 int run_in_parts(Session& session, const TriangulateOptions& options) {
-  const PartsTask task{options.input, options.launch, options.how, options.tiles, options.output};
+  std::optional<RanksOutput> output;
+  PartsTask task{options.input, options.launch, options.how, options.tiles, options.output.path};
+  if (options.output.kind() != OutputKind::none) {
+    OutputFacts facts;
+    facts.dim = options.how.dim;
+    facts.coordinate_system = coordinate_system_of(options.input);
+    facts.bounds = filter_of(options.input.choice).bounds;
+    facts.memory = std::min(facts.memory, options.input.limits.budget().limit() / 8);
+    facts.scratch = scratch_folder(options.tiles, options.output.path);
+    facts.resume = options.tiles.resume;
+    output.emplace(
+        options.output, facts,
+        session.processes > 1 ? RanksOutput::Ranks::processes : RanksOutput::Ranks::threads);
+    task.to = &*output;
+    task.kept_free =
+        options.output.kind() == OutputKind::raster
+            ? facts.memory
+            : delaunay::MeshFolderWriter::kBytesOfThread * std::uint64_t(options.how.threads);
+  }
   triangulate_in_parts(session, task, [&](const PartsMade& made) {
     const delaunay::PartsResult& result = made.result;
     warn_of_no_simplices(options, result.simplices);
@@ -269,6 +304,8 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
                                     {.read = 0, .triangulate = made.seconds});
     statistics["options"].update({{"ranks", made.ranks}, {"tiles", result.tiles.size()}});
     statistics["rounds"] = result.rounds;
+    statistics["seconds"]["write"] = made.write;
+    add_output(made.output, statistics);
     statistics["scratch"] = result.scratch;
     statistics["resumed"] = result.resumed;
     statistics.update(tiles_json(result));
@@ -280,7 +317,11 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
 
 // Whether the input goes through memory in parts, which it says where nobody asked for it.
 bool goes_in_parts(const Session& session, const TriangulateOptions& options) {
-  if (!options.output.empty() || !options.distributed.empty() || options.max_error) return false;
+  const OutputKind output = options.output.kind();
+  if (output == OutputKind::file || !options.distributed.empty() || options.makers ||
+      options.max_error || options.output.interpolate == "natural-neighbour") {
+    return false;
+  }
   if (is_tiled(session, options)) return true;
   const std::uint64_t needed = memory_beyond_limit(options.input, options.how.dim);
   if (needed == 0) return false;
@@ -298,6 +339,10 @@ int run(Session& session, TriangulateOptions options) {
     return kDone;
   }
   check(session, options);
+  if (options.output.path == "-" && memory_beyond_limit(options.input, options.how.dim) > 0) {
+    throw UsageError(
+        "-o -: a mesh that is beyond --memory does not fit a stream; -o FOLDER/ takes it");
+  }
   if (goes_in_parts(session, options)) return run_in_parts(session, options);
   if (is_tiled(session, options)) return run_tiled(session, options);
   delaunay::Options& how = options.how;
@@ -305,8 +350,9 @@ int run(Session& session, TriangulateOptions options) {
   Stopwatch watch;
   Seconds seconds;
   delaunay::PointCloud points = load_points(options.input, how.dim);
-  if (options.max_error && !points.has_z) {
-    throw UsageError("--max-error: " + options.input.path + " has no z");
+  if (!points.has_z && (options.max_error || options.output.kind() == OutputKind::raster)) {
+    throw UsageError((options.max_error ? "--max-error: " : "-o " + options.output.path + ": ") +
+                     options.input.path + " has no z");
   }
   const std::size_t rows = points.size();
   require_memory_to_triangulate(options.input, rows, how.dim);
@@ -341,7 +387,13 @@ int run(Session& session, TriangulateOptions options) {
     keep_rows(simplified->kept, points, result);
   }
   watch.lap();
-  if (!options.output.empty()) write_mesh(options.output, points, result, made.created_by);
+  {
+    parallel::Arena arena(how.threads);
+    add_output(arena.execute([&] {
+      return write_triangulation(options.output, options.input, points, result, made.created_by);
+    }),
+               statistics);
+  }
   statistics["seconds"]["write"] = watch.lap();
   write_statistics(options.statistics, statistics);
   tell_result(how.dim, rows, result.distinct, result.size(), seconds.triangulate);
@@ -361,12 +413,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   add_points_argument(*command, "POINTS", options->input,
                       "Files of points (delray info --list names the formats), folders of such or "
                       "patterns; - for standard input");
-  command
-      ->add_option(
-          "-o,--output", options->output,
-          "Mesh to write: .ply, .obj, .off, .stl, .vtu or .node; - for PLY on standard output")
-      ->type_name("FILE")
-      ->group(group::kOutput);
+  add_output_options(*command, options->output);
   command
       ->add_option("--dim", options->how.dim,
                    "Dimension: 2, over x and y, where z is kept as height (default), or 3")
@@ -420,7 +467,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   add_point_options(*command, options->input);
   add_common_options(*command, session,
                      "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"
-                     "triangulate heights.png --terrain-rgb -o mesh.ply --max-error 2.5\n"
+                     "triangulate points.las -o terrain.tif --cell-size 1\n"
                      "generate points gauss -n 100000 -o - | delray triangulate - -o mesh.vtu");
   command->callback([&session, options] {
     session.run = [&session, options] { return run(session, *options); };

@@ -7,7 +7,9 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include "apps/input/point_parts_input.h"
 #include "apps/options/help.h"
@@ -67,8 +69,8 @@ void add_tiles_options(CLI::App& command, TilesChoice& choice) {
       ->transform(count_between(1, 1000000));
   command
       .add_option("--scratch", choice.scratch,
-                  "Folder for the points of tiles, which then wait on disk (default where memory "
-                  "does not do: that of the output, or TMPDIR)")
+                  "Folder for the points of tiles, which then wait on disk (default: that of the "
+                  "output or TMPDIR, where memory does not do)")
       ->group(group::kParallel)
       ->type_name("DIR");
   command
@@ -126,18 +128,27 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
   options.duplicates =
       find_entry(delaunay::duplicates_policies(), duplicates, "--duplicates").policy;
   options.say = [](const std::string& what) { spdlog::info("{}", what); };
-  options.on_resume = task.on_resume;
+  if (task.to != nullptr) {
+    options.memory -= std::min(options.memory / 2, task.kept_free);
+    options.on_resume = [&](const auto& finished) { task.to->add_finished(finished); };
+    options.on_points = [&](comm::Communicator& communicator, const delaunay::PointsFound& found) {
+      task.to->open(communicator, found);
+    };
+    options.on_keep = [&] { task.to->keep_unfinished(); };
+  }
   const ProgressBar bar(session, "triangulate");
   const parallel::AllowThreads allowed(std::max(1, task.launch.ranks) * task.how.threads);
   run_ranks(session, task.launch, {task.input.path}, [&](comm::Communicator& communicator) {
     Stopwatch watch;
     const auto parts =
         comm::all_or_none(communicator, comm::Phase::other, [&] { return open_parts(task.input); });
-    PartsMade made{triangulate_parts(communicator, *parts, options, task.sink), communicator.size(),
-                   0};
+    delaunay::TileSink* const sink = task.to == nullptr ? nullptr : &task.to->sink();
+    PartsMade made{triangulate_parts(communicator, *parts, options, sink), communicator.size(),
+                   watch.lap(), 0, nullptr};
+    if (task.to != nullptr) made.output = task.to->commit(communicator, made.result);
+    made.write = watch.lap();
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() != 0) return;
-      made.seconds = watch.lap();
       const delaunay::PartsResult& result = made.result;
       if (result.duplicates.places > 0) {
         spdlog::warn("{}: {} places have several heights ({} rows): took the {}", task.input.path,

@@ -7,9 +7,9 @@
 
 #include "apps/input/point_input.h"
 #include "apps/launch.h"
+#include "apps/output/ranks_output.h"
 #include "apps/session.h"
 #include "apps/statistics.h"
-#include "delaunay/tile_sink.h"
 #include "delaunay/triangulate_parts.h"
 
 namespace CLI {
@@ -41,7 +41,8 @@ std::uint64_t memory_beyond_limit(const PointInput& input, int dim);
 struct PartsMade {
   delaunay::PartsResult result;
   int ranks = 1;
-  double seconds = 0;
+  double seconds = 0, write = 0;  // of both together; to complete the output after that
+  Json output;                    // what statistics say of it, or null
 };
 
 // What is triangulated, and how.
@@ -50,10 +51,9 @@ struct PartsTask {
   const Launch& launch;
   delaunay::Options how;
   TilesChoice tiles;
-  std::string output;  // beside which scratch files may go; may be empty
-  // Of this process; may be null. Told which regions of an earlier run it had.
-  delaunay::TileSink* sink = nullptr;
-  std::function<void(const std::function<bool(std::uint64_t)>&)> on_resume = nullptr;
+  std::string output;           // beside which scratch files may go; may be empty
+  RanksOutput* to = nullptr;    // where simplices go; null: nowhere
+  std::uint64_t kept_free = 0;  // of --memory, for what `to` takes
 };
 
 // Runs all ranks; `done` is called on rank 0 within their run. Throws what triangulate_parts()

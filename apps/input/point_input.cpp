@@ -14,6 +14,7 @@
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
 #include "delaunay/duplicates.h"
+#include "delaunay/mesh_folder.h"
 #include "delaunay/open_points.h"
 #include "delaunay/read_points.h"
 #include "files/error.h"
@@ -39,6 +40,7 @@ void PointInput::name_paths() {
 }
 
 bool PointInput::is_set() const {
+  if (paths.size() <= 1 && delaunay::is_mesh_folder(path)) return false;
   if (paths.size() > 1) return true;
   if (path == "-" || path.empty()) return false;
   std::error_code error;
@@ -130,6 +132,14 @@ delaunay::PointCloud load_points(const PointInput& input, int dim) {
     throw UsageError("--dim 3: " + input.path + " has no z");
   }
   return cloud;
+}
+
+files::CoordinateSystem coordinate_system_of(const PointInput& input) {
+  if (files::is_stream(input.path)) return {};
+  if (!is_picture(input)) return files::read_las_coordinate_system(input.path);
+  files::CoordinateSystem system;
+  system.raster = input.path;
+  return system;
 }
 
 void require_memory_to_triangulate(const PointInput& input, std::size_t points, int dim) {

@@ -11,6 +11,7 @@
 #include "apps/session.h"
 #include "delaunay/points.h"
 #include "delaunay/summarize_points.h"
+#include "files/coordinate_system.h"
 
 namespace CLI {
 class App;
@@ -67,6 +68,9 @@ void merge_places(const PointInput& input, delaunay::PointCloud& cloud);
 // Reads the points and merges places with several heights (`dim` 2). Throws FileError and
 // UsageError.
 delaunay::PointCloud load_points(const PointInput& input, int dim);
+
+// The coordinate system of the points, as their file has it.
+files::CoordinateSystem coordinate_system_of(const PointInput& input);
 
 // Bytes a point that the default methods take besides the points themselves; measured on uniform
 // ones.

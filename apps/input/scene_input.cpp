@@ -18,6 +18,7 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
+#include "delaunay/mesh_folder.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/triangulate.h"
 #include "files/error.h"
@@ -187,6 +188,7 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
 
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory) {
   if (scenes::is_generated(path)) return InputKind::scene;
+  if (delaunay::is_mesh_folder(path)) return InputKind::mesh;
   const files::FileKind kind = files::identify(path, memory);
   switch (kind.format) {
     case Format::vtu:

@@ -23,7 +23,7 @@ struct SceneInput {
 
 // The kind that a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit
 // coordinates, an OBJ, OFF or STL that delray wrote, a VTU, an .ele or a .node beside one is a mesh
-// of points.
+// of points, and so is a folder with an index of pieces.
 enum class InputKind { scene, mesh, points, picture };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 

@@ -67,8 +67,8 @@ class ScalingRuns {
   // Ranks of which only counts are taken, where any of the strategy were timed.
   void counted(const std::string& strategy, int ranks, SimulatedFrames&& frames);
 
-  // Whether so many ranks of the strategy fit into three quarters of the machine's memory, by what fewer
-  // took; notes it where they do not.
+  // Whether so many ranks of the strategy fit into three quarters of the machine's memory, by what
+  // fewer took; notes it where they do not.
   bool fits(const std::string& strategy, int ranks);
 
   const StrategyScaling& result() const { return result_; }

@@ -1,0 +1,202 @@
+// Options of outputs, and the way of a triangulation to each kind of them.
+#include "apps/output/triangulation_output.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "apps/input/point_choice.h"
+#include "apps/options/help.h"
+#include "apps/options/list.h"
+#include "apps/options/outputs.h"
+#include "apps/output/raster_output.h"
+#include "delaunay/triangulation_pieces.h"
+#include "delaunay/write_mesh.h"
+#include "files/output_path.h"
+
+namespace delray::apps {
+namespace {
+
+constexpr const char* kNaturalNeighbour = "natural-neighbour";
+
+bool is_raster_name(const std::string& path) {
+  constexpr std::array kSuffixes = {".tif", ".tiff"};
+  return std::ranges::any_of(kSuffixes, [&](const char* suffix) { return path.ends_with(suffix); });
+}
+
+// Pieces and blocks that processes send to that of rank 0.
+enum OutputTag : comm::Tag { kTagPieces = 1, kTagBlock };
+
+class FolderOutput : public SimplexOutput {
+ public:
+  FolderOutput(const TriangulationOutput& output, const OutputFacts& facts)
+      : writer_(output.path, {facts.dim, output.pieces.empty() ? "vtu" : output.pieces,
+                              facts.resume, facts.writer}) {}
+  delaunay::TileSink& sink() override { return writer_; }
+  void keep_tiles(const std::function<bool(std::uint64_t tile)>& finished) override {
+    writer_.keep_tiles(finished);
+  }
+  void keep_unfinished() override { writer_.keep_unfinished(); }
+  void send_to_first(comm::Communicator& communicator) override {
+    const std::string pieces = writer_.pieces();
+    communicator.send(0, kTagPieces, comm::Buffer::of(std::span<const char>(pieces)));
+  }
+  void receive(comm::Communicator& communicator, int from) override {
+    const comm::Buffer pieces = communicator.receive(from, kTagPieces);
+    const auto text = pieces.as<char>();
+    writer_.add_pieces({text.begin(), text.end()});
+  }
+  Json commit(const delaunay::MeshFolderWriter::Counts& counts) override {
+    writer_.commit(counts);
+    return nullptr;
+  }
+
+ private:
+  delaunay::MeshFolderWriter writer_;
+};
+
+class RasterOutput : public SimplexOutput {
+ public:
+  RasterOutput(const TriangulationOutput& output, const OutputFacts& facts)
+      : output_(output), facts_(facts), raster_(make_raster(output, facts)) {}
+  delaunay::TileSink& sink() override { return *raster_; }
+  void keep_tiles(const std::function<bool(std::uint64_t tile)>&) override {}
+  void keep_unfinished() override {}
+  // A message for each block: its number, then its cells; one that is empty ends them.
+  void send_to_first(comm::Communicator& communicator) override {
+    raster_->for_blocks([&](std::uint64_t block, std::span<const float> cells) {
+      comm::Buffer message(sizeof block + cells.size_bytes());
+      std::memcpy(message.data(), &block, sizeof block);
+      std::memcpy(message.data() + sizeof block, cells.data(), cells.size_bytes());
+      communicator.send(0, kTagBlock, std::move(message));
+    });
+    communicator.send(0, kTagBlock, comm::Buffer());
+  }
+  void receive(comm::Communicator& communicator, int from) override {
+    std::vector<float> cells(delaunay::TerrainRaster::kBlock * delaunay::TerrainRaster::kBlock);
+    for (;;) {
+      const comm::Buffer message = communicator.receive(from, kTagBlock);
+      if (message.size() == 0) return;
+      std::uint64_t block = 0;
+      std::memcpy(&block, message.data(), sizeof block);
+      std::memcpy(cells.data(), message.data() + sizeof block, cells.size() * sizeof(float));
+      raster_->merge(block, cells);
+    }
+  }
+  Json commit(const delaunay::MeshFolderWriter::Counts&) override {
+    return write_raster(output_, facts_, *raster_);
+  }
+
+ private:
+  TriangulationOutput output_;
+  OutputFacts facts_;
+  std::unique_ptr<delaunay::TerrainRaster> raster_;
+};
+
+OutputFacts facts_of(const PointInput& input, const delaunay::PointCloud& points, int dim) {
+  OutputFacts facts;
+  facts.dim = dim;
+  for (const glm::dvec3& p : points.positions) facts.box.include(p);
+  facts.coordinate_system = coordinate_system_of(input);
+  facts.bounds = filter_of(input.choice).bounds;
+  return facts;
+}
+
+}  // namespace
+
+OutputKind TriangulationOutput::kind() const {
+  if (path.empty()) return OutputKind::none;
+  if (path == "-") return OutputKind::file;
+  if (delaunay::names_folder(path)) return OutputKind::folder;
+  return is_raster_name(path) ? OutputKind::raster : OutputKind::file;
+}
+
+void add_output_options(CLI::App& command, TriangulationOutput& output) {
+  command
+      .add_option("-o,--output", output.path,
+                  "Mesh to write: .ply, .obj, .off, .stl, .vtu or .node; - for PLY on standard "
+                  "output; a name that ends in / for a folder of pieces; .tif for the heights of a "
+                  "terrain as a GeoTIFF, a cell of --cell-size each")
+      ->type_name("FILE")
+      ->group(group::kOutput);
+  command
+      .add_option(
+          "--pieces", output.pieces,
+          "Format of a folder's pieces: vtu (default), with a .pvtu that names them, or ply")
+      ->group(group::kOutput);
+  choose_from(command, "--pieces", names_in(delaunay::piece_formats()));
+  command
+      .add_option("--interpolate", output.interpolate,
+                  "Heights of a .tif: linear in each triangle (default) or natural-neighbour, "
+                  "which is smooth")
+      ->group(group::kOutput);
+  choose_from(command, "--interpolate", {"linear", kNaturalNeighbour});
+}
+
+void check_output(TriangulationOutput& output, PointInput& input, int dim) {
+  const OutputKind kind = output.kind();
+  if (kind == OutputKind::file && output.path != "-") delaunay::mesh_writer_for(output.path);
+  if (!output.pieces.empty() && kind != OutputKind::folder) {
+    throw UsageError("--pieces: only a folder has pieces (-o FOLDER/)");
+  }
+  if (output.pieces == "ply" && dim == 3) {
+    throw UsageError("--pieces ply: PLY has triangles only; tetrahedra are in pieces of vtu");
+  }
+  if (!output.interpolate.empty() && kind != OutputKind::raster) {
+    throw UsageError("--interpolate: only a raster has heights between points (-o FILE.tif)");
+  }
+  if (kind != OutputKind::raster) return;
+  if (dim != 2)
+    throw UsageError("-o " + output.path + ": a raster is of terrains, which are --dim 2");
+  if (input.cell_size == 0) throw UsageError("-o " + output.path + ": --cell-size is missing");
+  output.cell_size = std::exchange(input.cell_size, 0);
+}
+
+void check_output_paths(const TriangulationOutput& output, const std::string& statistics,
+                        const std::vector<std::string>& inputs) {
+  if (output.kind() != OutputKind::folder) {
+    return check_outputs({{"-o", output.path}, {"--stats", statistics}}, inputs);
+  }
+  check_outputs({{"--stats", statistics}}, inputs);
+  // Whether an existing folder may be replaced is for its writer.
+  [[maybe_unused]] const auto folder = files::output_folder(output.path);
+}
+
+std::unique_ptr<SimplexOutput> open_simplex_output(const TriangulationOutput& output,
+                                                   const OutputFacts& facts) {
+  if (output.kind() == OutputKind::folder) return std::make_unique<FolderOutput>(output, facts);
+  return std::make_unique<RasterOutput>(output, facts);
+}
+
+Json write_triangulation(const TriangulationOutput& output, const PointInput& input,
+                         const delaunay::PointCloud& points, const delaunay::Triangulation& result,
+                         std::span<const std::uint16_t> created_by) {
+  const OutputKind kind = output.kind();
+  if (kind == OutputKind::none) return nullptr;
+  if (kind == OutputKind::file) {
+    write_mesh(output.path, points, result, created_by);
+    return nullptr;
+  }
+  const OutputFacts facts = facts_of(input, points, result.dim);
+  const auto positions = delaunay::view(points.positions);
+  if (output.interpolate == kNaturalNeighbour) {
+    const auto raster = make_raster(output, facts);
+    fill_natural_neighbours(positions, result, *raster);
+    return write_raster(output, facts, *raster);
+  }
+  const auto opened = open_simplex_output(output, facts);
+  if (kind == OutputKind::raster) {
+    constexpr std::uint64_t kTrianglesOfRun = 1 << 15;  // milliseconds of work
+    give_runs(positions, result, kTrianglesOfRun, opened->sink());
+  } else {
+    give_pieces(positions, result, delaunay::kSimplicesOfPiece, opened->sink());
+  }
+  return opened->commit({points.size(), result.distinct, result.hull_facets, hash(result)});
+}
+
+}  // namespace delray::apps
