@@ -176,7 +176,8 @@ PointMesh read_mesh_folder(const std::filesystem::path& path, const files::Memor
   }
   memory.require(points.size() * sizeof(glm::dvec3) + corners * 4, path.string());
   std::ranges::sort(points, {}, &RowPoint::row);
-  points.erase(std::ranges::unique(points, {}, &RowPoint::row).begin(), points.end());
+  const auto same = [](const RowPoint& a, const RowPoint& b) { return a.row == b.row; };
+  points.erase(std::unique(points.begin(), points.end(), same), points.end());
   if (points.size() > internal::kMostCorners) {
     fail_file(path.string(), "has more points than a mesh in memory may have");
   }

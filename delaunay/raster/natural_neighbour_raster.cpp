@@ -17,7 +17,7 @@ Triangulation sorted_triangles(const Triangulation& triangulation) {
   std::vector<std::array<std::uint32_t, 3>> triangles(triangulation.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     std::copy_n(triangulation.vertices.data() + 3 * i, 3, triangles[i].begin());
-    std::ranges::rotate(triangles[i], std::ranges::min_element(triangles[i]));
+    std::rotate(triangles[i].begin(), std::ranges::min_element(triangles[i]), triangles[i].end());
   }
   std::ranges::sort(triangles);
   Triangulation sorted = triangulation;

@@ -53,7 +53,8 @@ std::vector<RankMessage> RankRegion::untold(const std::vector<TileMessage>& mess
     return std::pair(message.rank, message.point.row);
   };
   std::ranges::sort(all, {}, key);
-  all.erase(std::ranges::unique(all, {}, key).begin(), all.end());
+  const auto same = [&](const RankMessage& a, const RankMessage& b) { return key(a) == key(b); };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
   std::erase_if(all, [&](const RankMessage& message) {
     return std::ranges::binary_search(told_, key(message));
   });
