@@ -135,6 +135,7 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
       task.to->open(communicator, found);
     };
     options.on_keep = [&] { task.to->keep_unfinished(); };
+    options.can_resume = task.to->can_resume();
   }
   const ProgressBar bar(session, "triangulate");
   const parallel::AllowThreads allowed(std::max(1, task.launch.ranks) * task.how.threads);

@@ -39,6 +39,8 @@ struct PartsOptions {
   // Goes on from the last tile that an earlier run with the same `identity` finished and did not
   // live to tell. `identity` says what is triangulated: inputs, their sizes and ages, options.
   bool resume = false;
+  // Whether an error in the last phase leaves the scratch folder, for `resume` to go on from.
+  bool can_resume = true;
   std::string identity;
   // Told once, before the sink gets anything, which regions of tiles an earlier run has finished:
   // the sink had all of them and does not get them again. On every rank, of that rank's regions.

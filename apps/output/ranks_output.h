@@ -29,6 +29,8 @@ class RanksOutput {
   void open(comm::Communicator& communicator, const delaunay::PointsFound& points);
   // Forwards to what was opened.
   delaunay::TileSink& sink() { return sink_; }
+  // Whether a later run may go on with what has been written.
+  bool can_resume() const { return asked_.kind() != OutputKind::raster; }
   // What has been written stays for a run that resumes this one. Any thread.
   void keep_unfinished();
   // Collective, after the last simplex. On rank 0 what statistics say of it, or null. Throws

@@ -52,7 +52,7 @@ class PartsRun {
       }
       settle();
     } catch (...) {
-      if (journal_ && journal_->is_worth_keeping() && !damaged_) {
+      if (options_.can_resume && journal_ && journal_->is_worth_keeping() && !damaged_) {
         journal_->keep();
         if (options_.on_keep) options_.on_keep();
       }
@@ -321,6 +321,7 @@ class PartsRun {
       if (const auto at = duplicates_.find(region); at != duplicates_.end()) {
         record.places = at->second.places;
         record.rows = at->second.rows;
+        duplicates_.erase(at);  // a tile of several ranks is settled again
       }
     }
     if (journal_ && !settled.is_last) journal_->finish(record, settled.rest);

@@ -335,24 +335,30 @@ TEST(TriangulateParts, GivesPlacesTheHeightThatWasAskedFor) {
   class Heights final : public TileSink {
    public:
     void take(const TilePiece& piece) override {
+      const std::lock_guard lock(mutex);
       for (const std::uint32_t corner : piece.simplices) {
         const RowPoint& point = piece.points[corner];
         heights[point.row] = point.position.z;
       }
     }
+    std::mutex mutex;
     std::map<std::uint64_t, double> heights;
-  } heights;
-  comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
-    PartsOptions options;
-    options.tiles.tiles = 5;
-    options.duplicates = Duplicates::max;
-    const PartsResult result = triangulate_parts(communicator, parts, options, &heights);
-    EXPECT_EQ(result.duplicates.places, 100U);
-    EXPECT_EQ(result.duplicates.rows, 200U);
-  });
-  EXPECT_EQ(heights.heights.size(), 500U);
-  for (std::size_t i = 0; i < 100; ++i) {
-    EXPECT_EQ(heights.heights.at(i), cloud.positions[i].z + 1) << i;
+  };
+  for (const int ranks : {1, 3}) {
+    Heights heights;
+    comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+      PartsOptions options;
+      options.tiles.tiles = 5;
+      options.duplicates = Duplicates::max;
+      const PartsResult result = triangulate_parts(communicator, parts, options, &heights);
+      // Counted once, though tiles of several ranks are settled more than once.
+      EXPECT_EQ(result.duplicates.places, 100U);
+      EXPECT_EQ(result.duplicates.rows, 200U);
+    });
+    EXPECT_EQ(heights.heights.size(), 500U);
+    for (std::size_t i = 0; i < 100; ++i) {
+      EXPECT_EQ(heights.heights.at(i), cloud.positions[i].z + 1) << i;
+    }
   }
 }
 

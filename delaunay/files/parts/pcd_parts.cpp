@@ -69,6 +69,7 @@ PcdParts::PcdParts(ByteSource source)
     : source_(std::move(source)), header_(read_pcd_header(source_)) {
   if (header_.encoding == PcdEncoding::ascii) {
     if (header_.body.byte < source_.size()) lines_.emplace(source_, header_.body);
+    check_lines();
   } else {
     check_size();
   }
@@ -89,6 +90,16 @@ void PcdParts::check_size() const {
   fail(source_.input(), at_byte(header_.body.byte),
        "the header announces " + std::to_string(header_.points) +
            " points, more than the file holds");
+}
+
+// Empty lines count, so that what is cut short by as many goes unnoticed.
+void PcdParts::check_lines() const {
+  std::uint64_t lines = 0;
+  for (std::size_t range = 0; range < parts(); ++range) lines += lines_->lines(range);
+  if (lines >= header_.points) return;
+  fail(source_.input(), at_byte(source_.size()),
+       "the header announces " + std::to_string(header_.points) + " points, the file has " +
+           std::to_string(lines) + " lines of them");
 }
 
 std::size_t PcdParts::parts() const {

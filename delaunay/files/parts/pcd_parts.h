@@ -27,6 +27,7 @@ class PcdParts : public FileParts {
   // Points under construction.
   struct Rows;
   void check_size() const;
+  void check_lines() const;
   void read_lines(std::size_t range, Rows& rows) const;
   void read_records(std::size_t part, Rows& rows) const;
   void read_compressed(Rows& rows) const;

@@ -115,6 +115,8 @@ TEST(ReadPcd, RefusesWhatCannotBe) {
   refused("# .PCD\nFIELDS x y\nNOTE\n", "line 3: not a line of a PCD header");
   refused("# .PCD\nFIELDS x y\n", "has no DATA");
   refused(pcd("x y", "4 4", "F F", 2, "ascii") + "1 2\n3\n", "line 12: the line ends too early");
+  refused(pcd("x y", "4 4", "F F", 3, "ascii") + "1 2\n3 4\n",
+          "the header announces 3 points, the file has 2 lines of them");
   refused(pcd("x y", "4 4", "F F", 2, "ascii") + "1 2\n3 x\n", "line 12: not a number");
   std::string damaged = pcd("x y", "4 4", "F F", 2, "binary_compressed");
   append_bytes(damaged, std::uint32_t{4});
