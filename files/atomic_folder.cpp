@@ -43,7 +43,12 @@ AtomicFolder::AtomicFolder(fs::path path, Options options)
   for (int attempt = 0; attempt < kAttempts && !open_partial(); ++attempt) {
   }
   if (descriptor_ < 0) fail(EBUSY);
-  if (options_.unfinished == Unfinished::removed) remove_all(descriptor_);
+  if (options_.unfinished != Unfinished::removed) return;
+  if (const std::string foreign = foreign_to_unfinished(); !foreign.empty()) {
+    ::close(descriptor_);
+    fail(temporary_.string() + ", where it would be made, has other files, such as " + foreign);
+  }
+  remove_all(descriptor_);
 }
 
 AtomicFolder::~AtomicFolder() {
@@ -106,6 +111,15 @@ std::vector<std::string> AtomicFolder::names_in(int folder) const {
 }
 
 std::vector<std::string> AtomicFolder::names() const { return names_in(descriptor_); }
+
+// A file of the unfinished folder that no run has made, or nothing.
+std::string AtomicFolder::foreign_to_unfinished() const {
+  for (const std::string& name : names()) {
+    const bool is_temporary = options_.is_temporary != nullptr && options_.is_temporary(name);
+    if (name != options_.index && !options_.is_own(name) && !is_temporary) return name;
+  }
+  return {};
+}
 
 void AtomicFolder::check_replaceable() const {
   const int folder = ::open(target_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);

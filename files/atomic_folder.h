@@ -21,7 +21,8 @@ enum class Unfinished : std::uint8_t { removed, resumed, joined };
 // Who joined a folder neither removes anything but what it names nor commits.
 //
 // A folder that is there already is replaced, but only if it is empty or each of its entries is a
-// file whose name `is_own` knows, and one is `index`: nothing else is ever removed.
+// file whose name `is_own` knows, and one is `index`. An unfinished one that has files of other
+// names is refused: nothing else is ever removed.
 //
 // Everything throws FileError (device), naming `path`. Any thread may make files.
 class AtomicFolder {
@@ -32,6 +33,7 @@ class AtomicFolder {
     std::string index;  // the name of a file that every folder of this kind has
     NameTest is_own;    // other names that such folders have
     Unfinished unfinished = Unfinished::removed;
+    NameTest is_temporary = nullptr;  // names that only unfinished folders have
   };
 
   AtomicFolder(std::filesystem::path path, Options options);
@@ -61,6 +63,7 @@ class AtomicFolder {
   [[noreturn]] void fail(int error) const;
   [[noreturn]] void fail(const std::string& why) const;
   void check_replaceable() const;
+  std::string foreign_to_unfinished() const;
   bool open_partial();
   void remove_all(int folder) const;
   std::vector<std::string> names_in(int folder) const;

@@ -171,7 +171,8 @@ struct MeshFolderWriter::State {
         folder(path, {std::string(kMeshIndex), &is_name_of_folder,
                       given.writer != 0 ? files::Unfinished::joined
                       : given.resume    ? files::Unfinished::resumed
-                                        : files::Unfinished::removed}),
+                                        : files::Unfinished::removed,
+                      [](std::string_view name) { return name.starts_with(kJournal); }}),
         journal_name(std::string(kJournal) + std::to_string(given.writer)),
         journal(folder.append(journal_name)) {}
   ~State() { ::close(journal); }

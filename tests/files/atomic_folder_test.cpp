@@ -118,6 +118,18 @@ TEST(AtomicFolder, IsResumedOrBegunAnew) {
   EXPECT_EQ(base.entries(), 0U);
 }
 
+TEST(AtomicFolder, LeavesWhatOthersPutWhereItWouldBeMade) {
+  const tests::TemporaryFolder base;
+  fs::create_directory(base / ".new.delray-part");
+  base.write(".new.delray-part/thesis.txt", "years of work");
+  EXPECT_EQ(cause_of(base / "new"), Cause::device);
+  EXPECT_TRUE(fs::exists(base / ".new.delray-part" / "thesis.txt"));
+  fs::rename(base / ".new.delray-part" / "thesis.txt", base / ".new.delray-part" / "log");
+  AtomicFolder::Options with_log = options();
+  with_log.is_temporary = [](std::string_view name) { return name == "log"; };
+  EXPECT_TRUE(AtomicFolder(base / "new", with_log).names().empty());
+}
+
 TEST(AtomicFolder, WritesThroughNoLinks) {
   const tests::TemporaryFolder base;
   fs::create_directory(base / "elsewhere");
