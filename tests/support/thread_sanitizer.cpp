@@ -6,8 +6,5 @@ extern "C" const char* __tsan_default_suppressions();   // NOLINT(bugprone-reser
 extern "C" const char* __tsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
   return "called_from_lib:libtbb.so\n"
          "called_from_lib:libembree3.so\n"
-         // Embree compares its settings so, and tells memory that it took so, both in those tasks.
-         "race:std::__cxx11::basic_string<*>::compare(char const*) const\n"
-         "race:count_memory\n"
          "deadlock:openmpi\n";  // it takes two of its locks in either order
 }
