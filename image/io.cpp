@@ -16,6 +16,7 @@
 #include "files/format.h"
 #include "files/read_file.h"
 #include "image/openimageio/codec.h"
+#include "image/picture_rows.h"
 #include "image/srgb.h"
 
 namespace delray::image {
@@ -103,6 +104,58 @@ void write_bytes(const std::filesystem::path& path, std::span<const std::byte> b
 }
 
 }  // namespace
+
+struct PictureRows::File {
+  files::AtomicFile target;
+  bool is_exr;
+  int width, missing;
+  std::unique_ptr<openimageio::RowSink> rows;
+
+  void append(const void* values, int count) {
+    assert(count <= missing);
+    missing -= count;
+    rows->append(values, count);
+  }
+};
+
+bool is_written_in_rows(const std::filesystem::path& path) {
+  const std::string suffix = picture_suffix(path);
+  return path != "-" && (suffix == ".exr" || suffix == ".tif" || suffix == ".tiff");
+}
+
+PictureRows::PictureRows(const std::filesystem::path& path, int width, int height,
+                         const WriteOptions& options) {
+  assert(is_written_in_rows(path) && width >= 1 && height >= 1 && options.channels.empty());
+  const bool is_exr = picture_suffix(path) == ".exr";
+  file_.reset(new File{files::AtomicFile(path), is_exr, width, height, nullptr});
+  file_->rows =
+      codec().open_rows({file_->target.temporary(), path.string()}, width, height, is_exr, options);
+}
+PictureRows::~PictureRows() = default;
+
+void PictureRows::append(const Image8& rows) {
+  assert(rows.width == file_->width);
+  if (file_->is_exr) return append(to_float(rows));
+  file_->append(straight(rows).data(), rows.height);
+}
+
+void PictureRows::append(const ImageF& rows) {
+  assert(rows.width == file_->width);
+  if (!file_->is_exr) return append(to_8bit(rows));
+  struct Values {
+    RgbaF colour;
+    float depth;
+  };
+  std::vector<Values> values(rows.pixels());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = {rows.colour[i], rows.depth[i]};
+  file_->append(values.data(), rows.height);
+}
+
+void PictureRows::commit() {
+  assert(file_->missing == 0);
+  file_->rows->close();
+  file_->target.commit();
+}
 
 PictureInfo read_info(const std::filesystem::path& path, const files::MemoryBudget& memory) {
   // Only looks at a stream, which somebody may want to read afterwards.

@@ -15,6 +15,7 @@ namespace delray::loadbalance {
 struct Region {
   geometry::Rect rect;
   int owner = 0;
+  bool operator==(const Region&) const = default;
 };
 
 // Disjoint regions that cover the frame exactly once; an owner may have several or none.

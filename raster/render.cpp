@@ -22,6 +22,7 @@
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/rank_context.h"
 #include "raster/distribute/share_communicator.h"
+#include "raster/pipeline/samples.h"
 #include "raster/strategies.h"
 
 namespace delray::raster {
@@ -32,6 +33,15 @@ struct Report {
   RankStatistics rank;
   TriangleCounts triangles;
   std::uint64_t fragments, shaded, triangles_travelled, fragments_travelled;
+
+  void operator+=(const Report& other) {
+    rank += other.rank;
+    triangles += other.triangles;
+    fragments += other.fragments;
+    shaded += other.shaded;
+    triangles_travelled += other.triangles_travelled;
+    fragments_travelled += other.fragments_travelled;
+  }
 };
 
 void check(const RenderOptions& options, int ranks) {
@@ -51,6 +61,20 @@ void check(const RenderOptions& options, int ranks) {
   if (std::min(options.width, options.height) < 1 || longest > kLargestSide / n) {
     throw std::invalid_argument("a picture's sides are from 1 to " + std::to_string(kLargestSide) +
                                 " samples");
+  }
+  const geometry::Rect frame{0, 0, options.width, options.height};
+  const geometry::Rect& window = options.window;
+  if (window != geometry::Rect() &&
+      (window.empty() || geometry::intersection(window, frame) != window))
+    throw std::invalid_argument("a window has pixels of the frame");
+  for (const loadbalance::Region& display : options.displays) {
+    if (display.rect.empty() || display.owner < 0 || display.owner >= ranks ||
+        geometry::intersection(display.rect, frame) != display.rect)
+      throw std::invalid_argument("a display has pixels of the frame and a rank that shows it");
+  }
+  if (options.owners_draw && (options.displays.empty() || !strategy->displays ||
+                              !options.schedule.empty() || options.groups != Groups::one)) {
+    throw std::invalid_argument("only sort-first and sort-middle of one group draw by displays");
   }
   if (!options.schedule.empty()) {
     known(loadbalance::find_schedule(options.schedule) != nullptr, "schedule", options.schedule);
@@ -90,6 +114,22 @@ void check(const scenes::Camera& camera) {
     throw std::invalid_argument(
         "a camera has finite places, an angle from 0 to 180 degrees, and no negative distances");
   }
+}
+
+// The options of a frame that is the window; those of all of one have no window any more.
+RenderOptions options_of_window(const RenderOptions& options) {
+  RenderOptions result = options;
+  if (options.window.empty()) return result;
+  result.width = options.window.width();
+  result.height = options.window.height();
+  return result;
+}
+
+Screen screen_of(const scenes::Camera& camera, const RenderOptions& options) {
+  const int n = options.supersampling;
+  const geometry::Rect all{0, 0, options.width, options.height};
+  return make_screen(scenes::make_view(camera, options.width * n, options.height * n),
+                     samples_of(options.window.empty() ? all : options.window, n));
 }
 
 // Makes distances along the view axis of depths (-near / distance); empty pixels stay.
@@ -156,6 +196,13 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
   return statistics;
 }
 
+// The statistics of a frame of which this rank did what the report says; on rank 0. Collective.
+Statistics gather_statistics(comm::Communicator& communicator, const Report& mine) {
+  const std::vector<comm::Buffer> reports =
+      comm::gather(communicator, 0, comm::Buffer::of_value(mine));
+  return communicator.rank() == 0 ? summarize(reports) : Statistics();
+}
+
 }  // namespace
 
 void Phases::operator+=(const Phases& other) {
@@ -166,6 +213,22 @@ void Phases::operator+=(const Phases& other) {
   redistribute += other.redistribute;
   compose += other.compose;
   gather += other.gather;
+}
+
+void RankStatistics::operator+=(const RankStatistics& other) {
+  busy += other.busy;
+  tasks += other.tasks;
+  phases += other.phases;
+  triangles_in += other.triangles_in;
+  triangles += other.triangles;
+  shaded += other.shaded;
+  bytes_sent += other.bytes_sent;
+  bytes_received += other.bytes_received;
+  messages += other.messages;
+  requests += other.requests;
+  steals += other.steals;
+  blocks_stolen += other.blocks_stolen;
+  idle += other.idle;
 }
 
 namespace {
@@ -202,27 +265,29 @@ struct Renderer::Memory {
 struct Renderer::Frame {
   // `scratch` is the frame's until it is rasterized.
   Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
-        const scenes::Camera& camera, const RenderOptions& clip, parallel::Progress* progress)
-      : options((check(clip, communicator.size()), check(camera), clip)),
-        screen(make_screen(scenes::make_view(camera, options.width * options.supersampling,
-                                             options.height * options.supersampling))),
+        const scenes::Camera& camera, const RenderOptions& whole, parallel::Progress* progress)
+      : options((check(whole, communicator.size()), check(camera), options_of_window(whole))),
+        screen(screen_of(camera, whole)),
         recording(communicator, events),
         rank{recording, memory.scene, screen, options, progress, scratch, memory.memory} {}
 
   const Strategy& strategy() const { return *find_strategy(options.strategy); }
 
+  void make_distances(Picture& picture) const {
+    if (rank.depths_are_distances()) return;
+    std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); }, picture);
+  }
+
+  Report report() const { return make_report(rank, events); }
+
   // Collective.
-  Result finish(comm::Communicator& communicator, Picture&& picture) const {
-    Result result{std::move(picture), {}};
-    const std::vector<comm::Buffer> reports =
-        comm::gather(communicator, 0, comm::Buffer::of_value(make_report(rank, events)));
-    if (communicator.rank() != 0) return result;
-    result.statistics = summarize(reports);
-    if (options.strategy != "sort-last") result.statistics.partition = partition_of_ranks();
-    if (!rank.depths_are_distances()) {
-      std::visit([&](auto& image) { to_distances(image.depth.span(), screen.view); },
-                 result.picture);
-    }
+  Result finish(comm::Communicator& communicator, Picture&& picture) {
+    Result result{std::move(picture), std::move(rank.shown), {}};
+    result.statistics = gather_statistics(communicator, report());
+    make_distances(result.picture);
+    for (Picture& display : result.shown) make_distances(display);
+    if (communicator.rank() == 0 && options.strategy != "sort-last")
+      result.statistics.partition = partition_of_ranks();
     return result;
   }
 
@@ -293,12 +358,34 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
                         const RenderOptions& options, parallel::Progress* progress) {
   Frame frame(*memory_, memory_->scratch, communicator, camera, options, progress);
+  if (!options.displays.empty() && frame.strategy().composites)
+    return composite_displays(communicator, camera, options, progress);
   return frame.finish(communicator, frame.strategy().render(frame.rank));
+}
+
+// Every display is a frame that all ranks draw and that its owner gets.
+Result Renderer::composite_displays(comm::Communicator& communicator, const scenes::Camera& camera,
+                                    const RenderOptions& options, parallel::Progress* progress) {
+  Result result;
+  Report all{};
+  all.rank.rank = communicator.rank();
+  RenderOptions of_display = options;
+  for (const loadbalance::Region& display : options.displays) {
+    of_display.window = display.rect;
+    Frame frame(*memory_, memory_->scratch, communicator, camera, of_display, progress);
+    frame.rank.root = display.owner;
+    Picture picture = frame.strategy().render(frame.rank);
+    frame.make_distances(picture);
+    if (display.owner == communicator.rank()) result.shown.push_back(std::move(picture));
+    all += frame.report();
+  }
+  result.statistics = gather_statistics(communicator, all);
+  return result;
 }
 
 bool Renderer::has_steps(const RenderOptions& options, int ranks) {
   check(options, ranks);
-  return find_strategy(options.strategy)->steps != nullptr;
+  return find_strategy(options.strategy)->steps != nullptr && options.displays.empty();
 }
 
 std::unique_ptr<FrameInSteps> Renderer::begin(comm::Communicator& communicator,

@@ -16,6 +16,7 @@
 #include "comm/communicator.h"
 #include "composite/deep_image.h"
 #include "composite/layer_costs.h"
+#include "geometry/rect.h"
 #include "image/image.h"
 #include "loadbalance/cost_model.h"
 #include "loadbalance/partition.h"
@@ -67,6 +68,9 @@ enum class Redistribution : std::uint8_t { at_end, immediate };
 // The size and quality of a frame, and how it is shared out.
 struct RenderOptions {
   int width = 1024, height = 768;
+  // Of the frame: the part of it that is rendered, with the bytes that it has in the whole; costs
+  // and memory are the part's. Empty: all of it.
+  geometry::Rect window;
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
   int supersampling = 1;      // 1, 2 or 4: so many samples per pixel in either direction
   Lighting lighting = Lighting::phong;
@@ -85,6 +89,14 @@ struct RenderOptions {
   // A partition is kept from frame to frame for as long as no rank would have to do more than so
   // many times an equal share.
   double keep_factor = 1.2;
+  // Who shows which part of the frame (loadbalance/wall.h): every rank gets the pixels of the
+  // displays that it owns, and rank 0 no picture. Disjoint; without a window. Sort-last composites
+  // one after the other, the others draw regions of the whole frame, of which every rank sends on
+  // what others show (Samanta et al. 1999). Empty: all of it goes to rank 0.
+  std::vector<loadbalance::Region> displays;
+  // Sort-first, and sort-middle with one group: instead of `partition`, displays are the regions,
+  // each drawn by its owner. Primitives travel, pixels do not.
+  bool owners_draw = false;
   // Of loadbalance::schedules(): blocks of the screen change rank while they are rendered, for
   // instance from a rank whose region takes long to one that is done with its own. Every rank needs
   // all primitives then, and knows from their clusters' bounds which a block shows. Empty: none.
@@ -125,6 +137,8 @@ struct RankStatistics {
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
   std::uint64_t requests = 0, steals = 0, blocks_stolen = 0;       // of a schedule
   double idle = 0;  // seconds that threads waited for tasks of a schedule
+
+  void operator+=(const RankStatistics& other);  // but for `rank`
 };
 
 // Measures of the screen's partition: see loadbalance/balance.h.
@@ -164,8 +178,9 @@ using Picture = std::variant<image::Image8, image::ImageF>;
 
 // A frame.
 struct Result {
-  Picture picture;        // on rank 0; of size 0 elsewhere
-  Statistics statistics;  // on rank 0; empty elsewhere
+  Picture picture;             // on rank 0; of size 0 elsewhere, and where there are displays
+  std::vector<Picture> shown;  // of this rank's displays, in their order
+  Statistics statistics;       // on rank 0; empty elsewhere
 };
 
 // One rank's part of a frame in the making, in steps that follow each other. Steps may be taken by
@@ -205,8 +220,8 @@ class Renderer {
   // surface at its samples, opaque or not. `progress` counts tiles of this rank.
   //
   // Throws std::invalid_argument for names that are in no table, for options that exclude each
-  // other and for sizes in samples below 1 or above 65534; parallel::Interrupted when asked to
-  // stop.
+  // other, for sizes in samples below 1 or above 65534, for a window or display that reaches beyond
+  // the frame and for owners that are no rank; parallel::Interrupted when asked to stop.
   Result render(comm::Communicator& communicator, const scenes::Camera& camera,
                 const RenderOptions& options, parallel::Progress* progress = nullptr);
 
@@ -248,6 +263,8 @@ class Renderer {
   struct Memory;
   struct Frame;
   class Steps;
+  Result composite_displays(comm::Communicator& communicator, const scenes::Camera& camera,
+                            const RenderOptions& options, parallel::Progress* progress);
   std::unique_ptr<Memory> memory_;
 };
 

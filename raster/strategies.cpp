@@ -22,13 +22,15 @@ constexpr std::array kStrategies = {
              .render = sort_first,
              .partitions = true,
              .travels = true,
-             .schedules = true},
+             .schedules = true,
+             .displays = true},
     Strategy{.name = "sort-middle",
              .description = "triangles go to the ranks whose regions of the screen they touch, "
                             "once transformed",
              .render = sort_middle,
              .partitions = true,
-             .groups = true},
+             .groups = true,
+             .displays = true},
     Strategy{
         .name = "hybrid",
         .description = "each primitive is drawn by one rank; pixels go to the ranks that own them",

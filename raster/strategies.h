@@ -37,6 +37,7 @@ struct Strategy {
   bool travels = false;     // travel
   bool schedules = false;   // schedule, block, master_works
   bool groups = false;      // groups, geometry_ranks, redistribution
+  bool displays = false;    // owners_draw
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -18,6 +18,7 @@
 
 #include "comm/collectives.h"
 #include "loadbalance/partition.h"
+#include "raytrace/distributed/collect_tiles.h"
 
 namespace delray::raytrace {
 namespace {
@@ -206,6 +207,18 @@ void show_progress(const Film& film, bool first_pass, double left, parallel::Pro
   whole.expect(film.total_samples() + static_cast<std::uint64_t>(left));
 }
 
+// Sends a picture that is whole on rank 0 to displays.
+std::vector<image::ImageF> show(comm::Communicator& communicator, const Rect& window,
+                                image::ImageF&& picture, const RenderOptions& options) {
+  TilePixels all;
+  all.rect = window;
+  all.pixels = static_cast<std::uint32_t>(picture.pixels());
+  all.colour = picture.colour.data();
+  all.depth = picture.depth.data();
+  all.stride = static_cast<std::size_t>(picture.width);
+  return deliver_tiles(communicator, {&all, 1}, options.displays);
+}
+
 // Whether the picture of the first pass is that of its film, bit for bit: sums of powers of two are
 // exact.
 bool one_pass_does(const ProgressiveOptions& options) {
@@ -252,10 +265,13 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
   RenderOptions pass_options = options.frame;
   const int side = tile_side(pass_options);
   pass_options.part.window = film_window;
+  if (!one_pass_does(options)) pass_options.displays.clear();
   pass_options.scattered = options.noise > 0.0F || std::isfinite(options.seconds);
   if (one_pass_does(options)) {
     Result traced = renderer.render(communicator, camera, pass_options);
-    if (root) result.image = cut(std::move(traced.image), film_window, window);
+    if (root && options.frame.displays.empty())
+      result.image = cut(std::move(traced.image), film_window, window);
+    result.shown = std::move(traced.shown);
     result.statistics = std::move(traced.statistics);
     result.passes = 1;
     return result;
@@ -314,6 +330,8 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
     throw;
   }
   if (root) result.image = cut(mean(film), film_window, window);
+  if (!options.frame.displays.empty())
+    result.shown = show(communicator, window, std::exchange(result.image, {}), options.frame);
   return result;
 }
 

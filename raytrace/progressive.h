@@ -38,7 +38,8 @@ struct ProgressiveOptions {
 
 // On rank 0; elsewhere all but the statistics of the call is empty.
 struct ProgressiveResult {
-  image::ImageF image;    // of the window
+  image::ImageF image;               // of the window; of size 0 where there are displays
+  std::vector<image::ImageF> shown;  // on any rank, of its displays
   Film film;              // of a window that may be larger: see grown; empty where not asked for
   Features features;      // of the window
   Statistics statistics;  // of all passes together

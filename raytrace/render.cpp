@@ -262,14 +262,20 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
                              scenes::pixels_of(view, memory_->bounds())};
   IntegratorPool pool(integrator(options.integrator), context);
   const int side = tile_side(options);
+  for (const loadbalance::Region& display : options.displays) {
+    if (display.rect.empty() || display.owner < 0 || display.owner >= communicator.size() ||
+        geometry::intersection(display.rect, window) != display.rect)
+      throw std::invalid_argument("a display has pixels of the frame and a rank that shows it");
+  }
   const bool root = communicator.rank() == 0;
+  const bool gathers = root && options.displays.empty();
   Result result;
-  if (root) {
+  if (gathers) {
     result.image = memory_->picture(window);
     if (!options.part.squares.empty()) image::clear(result.image);
   }
   const TiledFrame frame{
-      tracer, options, context, pool, {window, side, side}, root ? &result.image : nullptr};
+      tracer, options, context, pool, {window, side, side}, gathers ? &result.image : nullptr};
   std::vector<comm::Event> events;
   comm::Recording recording(communicator, events);
   Statistics& statistics = result.statistics;
@@ -290,7 +296,13 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
   statistics.trace_seconds = seconds_since(start);
 
   recording.mark(comm::Phase::gather, 0);
-  std::vector<TileCost> costs = collect_tiles(recording, frame.tiles, traced.tiles, result.image);
+  std::vector<TileCost> costs;
+  if (options.displays.empty()) {
+    costs = collect_tiles(recording, frame.tiles, traced.tiles, result.image);
+  } else {
+    result.shown = deliver_tiles(recording, traced.tiles, options.displays);
+    costs = collect_costs(recording, traced.tiles);
+  }
   if (root) memory_->shares.learn(frame.tiles, costs, options.costs);
   result.tile_costs = std::move(costs);
   statistics.frame_seconds = seconds_since(start);

@@ -12,6 +12,7 @@
 #include "comm/communicator.h"
 #include "geometry/rect.h"
 #include "image/image.h"
+#include "loadbalance/partition.h"
 #include "loadbalance/schedule.h"
 #include "parallel/progress.h"
 #include "raytrace/distribution.h"
@@ -47,6 +48,10 @@ struct RenderOptions {
   // Of loadbalance::schedules(): tiles are handed out to ranks and threads.
   std::string schedule = "interlaced";
   bool master_works = true;  // whether ranks that hand out tiles trace some themselves
+  // Who shows which part of the window (loadbalance/wall.h): every rank gets the pixels of the
+  // displays that it owns, and rank 0 no picture. Disjoint, of frames without Part::squares. Empty:
+  // all of it goes to rank 0.
+  std::vector<loadbalance::Region> displays;
   // Pixels, the side of a tile, a multiple of kTaskSide; 0: Integrator::side. The smaller the more
   // evenly work is shared out; there is more to hand out and to collect then, and tasks are no
   // larger than tiles.
@@ -117,7 +122,8 @@ struct TileCost {
 // On rank 0; other ranks get an empty image and no ranks' statistics.
 struct Result {
   image::ImageF image;  // of the window: linear, premultiplied, the mean of the part's samples;
-                        // depth along the view axis
+                        // depth along the view axis; of size 0 where there are displays
+  std::vector<image::ImageF> shown;  // on any rank, of its displays, in their order
   Statistics statistics;
   std::vector<TileCost> tile_costs;  // in no particular order; tiles are cut from the window
 };
@@ -147,8 +153,8 @@ class Renderer {
   // threads (and the same Embree instruction set). Works in as many threads as the caller's arena
   // has; with no width or height the image is empty. Of several samples colours are averaged and
   // the least depth is kept. Throws std::invalid_argument for names that are in no table and for
-  // sizes of tiles that are no multiple of kTaskSide; parallel::Interrupted when the progress is
-  // told to stop.
+  // sizes of tiles that are no multiple of kTaskSide and for displays that nobody owns or that
+  // reach beyond the window; parallel::Interrupted when the progress is told to stop.
   //
   // REQUIRES: samples >= 1, depth >= 0, regions_per_rank >= 1, keep_factor >= 1; the same scene,
   // camera and options on every rank.

@@ -56,6 +56,15 @@ View make_view(const Camera& camera, int width, int height) {
   return view;
 }
 
+View cropped(const View& view, const geometry::Rect& window) {
+  View part = view;
+  part.half_width -= static_cast<float>(window.x0);
+  part.half_height -= static_cast<float>(window.y0);
+  part.width = window.width();
+  part.height = window.height();
+  return part;
+}
+
 geometry::Rect pixels_of(const View& view, const geometry::Box3& box) {
   const geometry::Rect all{0, 0, view.width, view.height};
   if (box.empty()) return {};

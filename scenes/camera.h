@@ -77,6 +77,11 @@ struct View {
 // view, gets some direction rather than NaN.
 View make_view(const Camera& camera, int width, int height);
 
+// The view of a part of its frame alone, in whose pixels everything falls to the same places, in
+// whole numbers shifted. Of a part, half_width and half_height are where the axis is, not half its
+// sides. REQUIRES: the window lies in the frame.
+View cropped(const View& view, const geometry::Rect& window);
+
 // A rectangle of pixels outside of which no ray from the lens, through any place in its pixel,
 // meets a point of the box. Empty for an empty box; for one that reaches behind the eye and for a
 // lens with a size it is the whole frame. Rays may be rounded as make_view's numbers and a

@@ -12,6 +12,7 @@ extern "C" const delray::image::openimageio::Codec* delray_openimageio_codec() {
       .write_exr = openimageio::write_exr,
       .write_tiff = openimageio::write_tiff,
       .encode_jpeg = openimageio::encode_jpeg,
+      .open_rows = openimageio::open_rows,
   };
   return &kCodec;
 }

@@ -3,6 +3,7 @@
 // program a sixth of a second to start.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "image/io.h"
@@ -25,6 +26,16 @@ struct Target {
   std::string name;
 };
 
+// A tiled file that is written from top to bottom.
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  // `count` rows of interleaved values: of an EXR floats R, G, B, A, Z, of a TIFF bytes R, G, B, A.
+  virtual void append(const void* values, int count) = 0;
+  // After the last row.
+  virtual void close() = 0;
+};
+
 // As the functions of io.h by these names, but that files are written in place.
 struct Codec {
   PictureInfo (*read_info)(const Encoded& from);
@@ -37,6 +48,9 @@ struct Codec {
                      const WriteOptions& options);
   std::vector<std::byte> (*encode_jpeg)(const std::string& name, const Image8& image,
                                         const WriteOptions& options);
+  // Straight alpha.
+  std::unique_ptr<RowSink> (*open_rows)(const Target& target, int width, int height, bool is_exr,
+                                        const WriteOptions& options);
 };
 
 // The entries of a Codec, in read.cpp and write.cpp.
@@ -48,6 +62,8 @@ void write_exr(const Target& target, const ImageF& image, const WriteOptions& op
 void write_tiff(const Target& target, int width, int height, std::span<const Rgba8> texels,
                 const WriteOptions& options);
 std::vector<std::byte> encode_jpeg(const std::string& name, const Image8& image,
+                                   const WriteOptions& options);
+std::unique_ptr<RowSink> open_rows(const Target& target, int width, int height, bool is_exr,
                                    const WriteOptions& options);
 
 }  // namespace delray::image::openimageio

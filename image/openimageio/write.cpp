@@ -60,18 +60,81 @@ OIIO::ImageSpec spec_of_codes(int width, int height, int channels) {
   return spec;
 }
 
+OIIO::ImageSpec spec_of_light(int width, int height, std::span<const Channel> channels) {
+  OIIO::ImageSpec spec(width, height, static_cast<int>(5 + channels.size()), OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"R", "G", "B", "A", "Z"};
+  spec.alpha_channel = 3;
+  spec.z_channel = 4;
+  for (const Channel& channel : channels) spec.channelnames.push_back(channel.name);
+  return spec;
+}
+
+class Tiles final : public RowSink {
+ public:
+  Tiles(const Target& target, const OIIO::ImageSpec& spec)
+      : target_(target), spec_(spec), row_(spec.scanline_bytes(true)) {
+    spec_.tile_width = spec_.tile_height = kSide;
+    guarded([&] {
+      output_ = OIIO::ImageOutput::create(target_.file.string());
+      if (!output_) fail(target_, OIIO::geterror());
+      return output_->open(target_.file.string(), spec_);
+    });
+  }
+
+  void append(const void* values, int count) override {
+    const auto* bytes = static_cast<const std::byte*>(values);
+    for (int left = count; left > 0;) {
+      const int had = static_cast<int>(waiting_.size() / row_);
+      const int taken = std::min(left, std::min(kSide, spec_.height - written_) - had);
+      const std::byte* const end = bytes + row_ * static_cast<std::size_t>(taken);
+      waiting_.insert(waiting_.end(), bytes, end);
+      bytes = end;
+      left -= taken;
+      if (had + taken == std::min(kSide, spec_.height - written_)) write();
+    }
+  }
+
+  void close() override {
+    guarded([&] { return output_->close(); });
+  }
+
+ private:
+  static constexpr int kSide = 128;
+
+  void write() {
+    const int end = written_ + static_cast<int>(waiting_.size() / row_);
+    guarded([&] {
+      return output_->write_tiles(0, spec_.width, written_, end, 0, 1, spec_.format,
+                                  waiting_.data());
+    });
+    written_ = end;
+    waiting_.clear();
+  }
+
+  template <class F>
+  void guarded(F&& f) {
+    try {
+      if (!f() || output_->has_error()) fail(target_, output_->geterror());
+    } catch (const files::FileError&) {
+      throw;
+    } catch (const std::exception& error) {
+      fail(target_, error.what());
+    }
+  }
+
+  Target target_;
+  OIIO::ImageSpec spec_;
+  std::size_t row_;  // bytes
+  std::unique_ptr<OIIO::ImageOutput> output_;
+  std::vector<std::byte> waiting_;  // rows of a row of tiles that is not complete
+  int written_ = 0;                 // rows
+};
+
 }  // namespace
 
 void write_exr(const Target& target, const ImageF& image, const WriteOptions& options) {
   const std::size_t channels = 5 + options.channels.size();
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels),
-                       OIIO::TypeDesc::FLOAT);
-  spec.channelnames = {"R", "G", "B", "A", "Z"};
-  spec.alpha_channel = 3;
-  spec.z_channel = 4;
-  for (const Channel& channel : options.channels) {
-    spec.channelnames.push_back(channel.name);
-  }
+  OIIO::ImageSpec spec = spec_of_light(image.width, image.height, options.channels);
   if (options.half) {
     spec.channelformats.assign(channels, OIIO::TypeDesc::FLOAT);
     std::fill_n(spec.channelformats.begin(), 4, OIIO::TypeDesc::HALF);
@@ -93,6 +156,17 @@ void write_tiff(const Target& target, int width, int height, std::span<const Rgb
   OIIO::ImageSpec spec = spec_of_codes(width, height, 4);
   add_attributes(spec, options.attributes);
   write_values(target, spec, OIIO::TypeDesc::UINT8, texels.data());
+}
+
+std::unique_ptr<RowSink> open_rows(const Target& target, int width, int height, bool is_exr,
+                                   const WriteOptions& options) {
+  // Compression saves some, but nobody knows how much before.
+  constexpr std::uint64_t kLargestTiff = std::uint64_t{3} << 30;
+  OIIO::ImageSpec spec =
+      is_exr ? spec_of_light(width, height, {}) : spec_of_codes(width, height, 4);
+  add_attributes(spec, options.attributes);
+  if (spec.image_bytes(true) > kLargestTiff) spec.attribute("tiff:bigtiff", 1);
+  return std::make_unique<Tiles>(target, spec);
 }
 
 // libjpeg ends the program when it cannot write to a file, so it never writes to one.

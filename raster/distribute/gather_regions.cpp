@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "loadbalance/deliver.h"
+
 namespace delray::raster {
 namespace {
 
@@ -69,7 +71,42 @@ void gather_regions(comm::Communicator& communicator, const loadbalance::Partiti
   }
 }
 
+template <class Colour>
+std::vector<image::BasicImage<Colour>> deliver_regions(
+    comm::Communicator& communicator, const loadbalance::Partition& partition,
+    const image::BasicImage<Colour>& image, std::span<const loadbalance::Region> displays) {
+  const int rank = communicator.rank();
+  const auto stride = static_cast<std::size_t>(image.width);
+  std::vector<loadbalance::Pixels> mine;
+  for (const loadbalance::Region& region : partition.regions) {
+    if (region.owner != rank || region.rect.empty()) continue;
+    const std::size_t first = static_cast<std::size_t>(region.rect.y0) * stride +
+                              static_cast<std::size_t>(region.rect.x0);
+    mine.push_back({region.rect, reinterpret_cast<const std::byte*>(image.colour.data() + first),
+                    image.depth.data() + first, stride});
+  }
+  std::vector<image::BasicImage<Colour>> pictures;
+  std::vector<loadbalance::PixelsToSet> shown;
+  for (const loadbalance::Region& display : displays) {
+    if (display.owner != rank) continue;
+    image::BasicImage<Colour>& picture =
+        pictures.emplace_back(display.rect.width(), display.rect.height());
+    shown.push_back({display.rect, reinterpret_cast<std::byte*>(picture.colour.data()),
+                     picture.depth.data(), static_cast<std::size_t>(picture.width)});
+  }
+  loadbalance::deliver(communicator, mine, sizeof(Colour), displays, shown);
+  return pictures;
+}
+
 template void gather_regions(comm::Communicator&, const loadbalance::Partition&, image::Image8&);
 template void gather_regions(comm::Communicator&, const loadbalance::Partition&, image::ImageF&);
+template std::vector<image::Image8> deliver_regions(comm::Communicator&,
+                                                    const loadbalance::Partition&,
+                                                    const image::Image8&,
+                                                    std::span<const loadbalance::Region>);
+template std::vector<image::ImageF> deliver_regions(comm::Communicator&,
+                                                    const loadbalance::Partition&,
+                                                    const image::ImageF&,
+                                                    std::span<const loadbalance::Region>);
 
 }  // namespace delray::raster

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "comm/communicator.h"
 #include "image/image.h"
@@ -14,5 +15,13 @@ namespace delray::raster {
 template <class Colour>
 void gather_regions(comm::Communicator& communicator, const loadbalance::Partition& partition,
                     image::BasicImage<Colour>& image);
+
+// The pictures of the displays that this rank owns, in their order, of every region from its
+// owner's image; an image may be of size 0 where a rank owns no region. See loadbalance/deliver.h.
+// Collective.
+template <class Colour>
+std::vector<image::BasicImage<Colour>> deliver_regions(
+    comm::Communicator& communicator, const loadbalance::Partition& partition,
+    const image::BasicImage<Colour>& image, std::span<const loadbalance::Region> displays);
 
 }  // namespace delray::raster

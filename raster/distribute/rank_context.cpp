@@ -147,9 +147,13 @@ Picture RankContext::gather(const loadbalance::Partition& partition,
                             image::BasicImage<Colour>&& image) {
   communicator.mark(comm::Phase::gather, 0);
   const double before = communicator.seconds();
-  gather_regions(communicator, partition, image);
+  if (options.displays.empty())
+    gather_regions(communicator, partition, image);
+  else
+    for (auto& display : deliver_regions(communicator, partition, image, options.displays))
+      shown.emplace_back(std::move(display));
   counts.phases.gather += communicator.seconds() - before;
-  if (number() == 0) return std::move(image);
+  if (number() == 0 && options.displays.empty()) return std::move(image);
   if (image.width > 0) scratch.spare = std::move(image);  // for the next frame
   return image::BasicImage<Colour>();
 }

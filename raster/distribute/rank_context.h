@@ -47,6 +47,9 @@ struct RankContext {
   std::vector<int> rank_of_owner = {};
   // In steps, of which only the last may use the communicator: work is reported then.
   bool in_steps = false;
+  // The rank that gets what is composited, a frame or a display of it.
+  int root = 0;
+  std::vector<Picture> shown = {};  // of this rank's displays, in their order
 
   int number() const { return communicator.rank(); }
   int ranks() const { return communicator.size(); }
@@ -86,7 +89,8 @@ struct RankContext {
   // Ends a drawing of the whole frame with the samples of a pixel together: see samples.h.
   template <class Colour>
   image::BasicImage<Colour> end_samples(RegionDrawing& drawing);
-  // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Collective.
+  // The picture on rank 0, of every region from its owner's image; of size 0 elsewhere. Of displays
+  // their pictures, in `shown`. Collective.
   template <class Colour>
   Picture gather(const loadbalance::Partition& partition, image::BasicImage<Colour>&& image);
   // An image of any content; the spare one if that fits.

@@ -19,6 +19,7 @@
 #include "comm/collectives.h"
 #include "loadbalance/balance.h"
 #include "loadbalance/costs.h"
+#include "loadbalance/wall.h"
 #include "parallel/parallel_for.h"
 #include "raster/distribute/coverage.h"
 #include "raster/distribute/extent.h"
@@ -204,8 +205,9 @@ const CostedGroups& ScreenPartition::groups(RankContext& rank, const Grouping& g
 
 const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts, int first_rank) {
   const RenderOptions& options = rank.options;
-  const Kind kind{options.partition, rank.ranks(), parts, options.regions_per_rank,
-                  options.keep_factor};
+  Kind kind{options.partition,        rank.ranks(),        parts,
+            options.regions_per_rank, options.keep_factor, {}};
+  if (options.owners_draw) kind.displays = options.displays;
   if (unchanged_ && cut_before_ && kind == kind_ && (reported_ || !options.report_partition)) {
     if (!options.report_partition) {
       statistics_.reset();
@@ -214,7 +216,7 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts,
       statistics_->kept = true;
       statistics_->seconds = 0;
     }
-    return kept_->again();
+    return options.owners_draw ? by_displays_ : kept_->again();
   }
   ++version_;
   cut_before_ = true;
@@ -223,9 +225,14 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts,
     kept_.emplace(*loadbalance::find_partitioner(options.partition), parts, options.keep_factor,
                   options.regions_per_rank);
   }
-  kind_ = kind;
+  kind_ = std::move(kind);
 
   const geometry::Rect frame = rank.frame();
+  statistics_.reset();
+  if (options.owners_draw) {
+    by_displays_ = loadbalance::cut_by_displays(frame, options.displays);
+    if (!options.report_partition) return by_displays_;
+  }
   std::vector<loadbalance::WeightedBox> all =
       loadbalance::gather_boxes(costed_.boxes, rank.communicator);
   all.insert(all.end(), large_.begin(), large_.end());
@@ -237,11 +244,14 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts,
     for (int k = 0; k < parts; ++k) seconds.push_back(samples_[first_rank + k].seconds);
     loadbalance::scale_to_measured(costs, kept_->last(), seconds);
   }
+  if (options.owners_draw) {
+    if (cuts_here) report(costs, by_displays_, parts);
+    return by_displays_;
+  }
   const std::uint64_t recomputed = kept_->recomputed();
   const double before = rank.communicator.seconds();
   const loadbalance::Partition& partition = kept_->next(costs, rank.communicator);
   const double taken = rank.communicator.seconds() - before;
-  statistics_.reset();
   if (!options.report_partition || !cuts_here) return partition;
   report(costs, partition, parts);
   statistics_->kept = kept_->recomputed() == recomputed;

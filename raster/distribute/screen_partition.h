@@ -62,7 +62,8 @@ class ScreenPartition {
   // before. It changes on all ranks or on none.
   std::uint64_t version() const { return version_; }
 
-  // The frame cut by options.partition for `parts` owners, of about equal cost over all ranks'
+  // The frame cut by its displays where their owners draw, else by options.partition for `parts`
+  // owners, of about equal cost over all ranks'
   // groups, or as it was cut for the last frame. Collective; nothing travels if all is unchanged.
   // Valid until the next call. Owner k is rank first_rank + k.
   const loadbalance::Partition& cut(RankContext& rank, int parts, int first_rank = 0);
@@ -82,6 +83,7 @@ class ScreenPartition {
     std::string partition;
     int ranks, parts, regions_per_rank;
     double keep_factor;
+    std::vector<loadbalance::Region> displays;  // that are the regions
     bool operator==(const Kind&) const = default;
   };
 
@@ -121,6 +123,7 @@ class ScreenPartition {
   bool cut_before_ = false, reported_ = false;  // since the ranks agreed
   Kind kind_{};
   std::optional<loadbalance::KeptPartition> kept_;
+  loadbalance::Partition by_displays_;
   std::optional<PartitionStatistics> statistics_;
   std::vector<loadbalance::WeightedBox> large_;     // on rank 0: large triangles' pixels
   loadbalance::RasterSample sample_;                // this rank's last frame

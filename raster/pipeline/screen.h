@@ -24,14 +24,16 @@ inline constexpr int kGuardSubpixels = kGuardPixels * kSubpixels;
 // The largest width and height of a frame: all of it must lie in the guard band.
 inline constexpr int kLargestSide = 2 * kGuardPixels;
 
-// Tiles are squares of pixels, aligned to the frame's corner whatever a rank's regions are.
+// Tiles are squares of pixels, aligned to the screen's corner whatever a rank's regions are.
 inline constexpr int kTileSize = 64;
 inline constexpr int kTilePixels = kTileSize * kTileSize;
 
-// A frame as the rasterizer sees it.
+// A frame, or a window of one, as the rasterizer sees it. The bytes of a window are those of the
+// frame there: what is rounded is relative to places of the frame, wherever the window lies.
 struct Screen {
   scenes::View view;
   int width = 0, height = 0;
+  geometry::Rect whole;              // the frame, in pixels of the window
   int centre_x = 0, centre_y = 0;    // the pixel that subpixel positions are relative to
   float offset_x = 0, offset_y = 0;  // of the view's axis from that pixel's corner, in subpixels
   int tiles_x = 0, tiles_y = 0;
@@ -45,19 +47,25 @@ struct Screen {
   }
 };
 
-// REQUIRES: 1 <= view.width, view.height <= kLargestSide; view.near > 0 unless it is orthographic.
-inline Screen make_screen(const scenes::View& view) {
+// REQUIRES: 1 <= view.width, view.height <= kLargestSide; view.near > 0 unless it is orthographic;
+// the window is not empty and lies in the view's frame.
+inline Screen make_screen(const scenes::View& view, const geometry::Rect& window) {
   Screen screen;
-  screen.view = view;
-  screen.width = view.width;
-  screen.height = view.height;
-  screen.centre_x = view.width / 2;
-  screen.centre_y = view.height / 2;
-  screen.offset_x = (view.half_width - static_cast<float>(screen.centre_x)) * kSubpixels;
-  screen.offset_y = (view.half_height - static_cast<float>(screen.centre_y)) * kSubpixels;
-  screen.tiles_x = (view.width + kTileSize - 1) / kTileSize;
-  screen.tiles_y = (view.height + kTileSize - 1) / kTileSize;
+  screen.view = scenes::cropped(view, window);
+  screen.width = window.width();
+  screen.height = window.height();
+  screen.whole = {-window.x0, -window.y0, view.width - window.x0, view.height - window.y0};
+  screen.centre_x = view.width / 2 - window.x0;
+  screen.centre_y = view.height / 2 - window.y0;
+  screen.offset_x = (screen.view.half_width - static_cast<float>(screen.centre_x)) * kSubpixels;
+  screen.offset_y = (screen.view.half_height - static_cast<float>(screen.centre_y)) * kSubpixels;
+  screen.tiles_x = (screen.width + kTileSize - 1) / kTileSize;
+  screen.tiles_y = (screen.height + kTileSize - 1) / kTileSize;
   return screen;
+}
+// Of all of the view's frame.
+inline Screen make_screen(const scenes::View& view) {
+  return make_screen(view, {0, 0, view.width, view.height});
 }
 
 // The distance along the view axis of a depth in the rasterizer's unit: -near / distance, or of an

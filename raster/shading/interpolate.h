@@ -54,13 +54,14 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   const auto& [p, q, r] = vertices;
   Barycentrics result;
   // The origin is a pixel of the frame amid the triangle: planes lose the least precision there.
-  const auto amid = [](int low, int high, int centre, int size) {
-    return std::clamp(((low + high) >> (kSubpixelBits + 1)) + centre, 0, size - 1);
+  const auto amid = [](int low, int high, int centre, int begin, int end) {
+    return std::clamp(((low + high) >> (kSubpixelBits + 1)) + centre, begin, end - 1);
   };
-  result.x =
-      amid(std::min({p.x, q.x, r.x}), std::max({p.x, q.x, r.x}), screen.centre_x, screen.width);
-  result.y =
-      amid(std::min({p.y, q.y, r.y}), std::max({p.y, q.y, r.y}), screen.centre_y, screen.height);
+  const geometry::Rect& whole = screen.whole;
+  result.x = amid(std::min({p.x, q.x, r.x}), std::max({p.x, q.x, r.x}), screen.centre_x, whole.x0,
+                  whole.x1);
+  result.y = amid(std::min({p.y, q.y, r.y}), std::max({p.y, q.y, r.y}), screen.centre_y, whole.y0,
+                  whole.y1);
   const int from_x = (result.x - screen.centre_x) * kSubpixels + kHalfPixel;
   const int from_y = (result.y - screen.centre_y) * kSubpixels + kHalfPixel;
   // Whole numbers below 2^50: exact.
@@ -99,28 +100,34 @@ inline Barycentrics make_barycentrics(const Screen& screen,
   glm::dvec3 v[3] = {vertices[0], vertices[1], vertices[2]};
   // Seen along parallel rays, everything might as well lie in one plane.
   for (glm::dvec3& p : v) p.z = view.orthographic ? 1 : p.z;
-  // The origin is a pixel of the frame amid the triangle: planes lose the least precision there.
-  double low_x = screen.width, high_x = 0, low_y = screen.height, high_y = 0;
+  // The origin is a pixel of the frame amid the triangle: planes lose the least precision there. It
+  // is found in pixels of the whole frame, so that it is the same pixel in every window.
+  const geometry::Rect& whole = screen.whole;
+  const int width = whole.width(), height = whole.height();
+  const double axis_x = double{view.half_width} - whole.x0;
+  const double axis_y = double{view.half_height} - whole.y0;
+  double low_x = width, high_x = 0, low_y = height, high_y = 0;
   for (const glm::dvec3& p : v) {
     const bool in_front = view.orthographic || p.z >= view.near;
-    const double x = p.x / p.z * view.scale + view.half_width;
-    const double y = view.half_height - p.y / p.z * view.scale;
+    const double x = p.x / p.z * view.scale + axis_x;
+    const double y = axis_y - p.y / p.z * view.scale;
     low_x = in_front ? std::min(low_x, x) : 0;
-    high_x = in_front ? std::max(high_x, x) : screen.width;
+    high_x = in_front ? std::max(high_x, x) : width;
     low_y = in_front ? std::min(low_y, y) : 0;
-    high_y = in_front ? std::max(high_y, y) : screen.height;
+    high_y = in_front ? std::max(high_y, y) : height;
   }
   const auto amid = [](double low, double high, int size) {
     const double centre = (std::max(low, 0.0) + std::min(high, double(size))) * 0.5;
     return static_cast<int>(std::clamp(centre, 0.0, size - 1.0));
   };
   Barycentrics result;
-  result.x = amid(low_x, high_x, screen.width);
-  result.y = amid(low_y, high_y, screen.height);
+  const int x = amid(low_x, high_x, width), y = amid(low_y, high_y, height);
+  result.x = x + whole.x0;
+  result.y = y + whole.y0;
 
   // The ray of the origin's centre, and one plane per vertex through the eye and the edge opposite.
-  const double ray_x = (result.x + 0.5 - view.half_width) / view.scale;
-  const double ray_y = (view.half_height - (result.y + 0.5)) / view.scale;
+  const double ray_x = (x + 0.5 - axis_x) / view.scale;
+  const double ray_y = (axis_y - (y + 0.5)) / view.scale;
   const double step = 1.0 / view.scale;
   const double volume = glm::dot(v[0], glm::cross(v[1] - v[0], v[2] - v[0]));
   const double facing = volume < 0 ? -1.0 : 1.0;
@@ -147,8 +154,7 @@ inline Barycentrics make_barycentrics(const Screen& screen,
     result.b[k] = static_cast<float>(b);
     result.c[k] = static_cast<float>(c);
     const double moved = (std::abs(a) + std::abs(b)) / kSubpixels;
-    const double rounded =
-        (std::abs(a) * screen.width + std::abs(b) * screen.height + std::abs(c)) * 0x1p-22;
+    const double rounded = (std::abs(a) * width + std::abs(b) * height + std::abs(c)) * 0x1p-22;
     result.proper = result.proper && (moved + rounded) * 64 < least_sum;
   }
   return result;

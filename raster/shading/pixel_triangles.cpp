@@ -47,12 +47,12 @@ struct ScreenCorner {
   F depth;
 };
 
-HWY_INLINE I amid(I a, I b, I c, int centre, int size) {
+HWY_INLINE I amid(I a, I b, I c, int centre, int begin, int end) {
   const Ints d;
   const I low = hn::Min(hn::Min(a, b), c), high = hn::Max(hn::Max(a, b), c);
   const I middle =
       hn::Add(hn::ShiftRight<kSubpixelBits + 1>(hn::Add(low, high)), hn::Set(d, centre));
-  return hn::Min(hn::Max(middle, hn::Zero(d)), hn::Set(d, size - 1));
+  return hn::Min(hn::Max(middle, hn::Set(d, begin)), hn::Set(d, end - 1));
 }
 HWY_INLINE I subpixel_of(I pixel, int centre) {
   const Ints d;
@@ -79,8 +79,9 @@ HWY_INLINE LaneFacing set_up_vector(const Screen& screen, const ScreenCorner (&c
   const Floats d;
   const Ints di;
   const auto& [p, q, r] = corner;
-  const I origin_x = amid(p.x, q.x, r.x, screen.centre_x, screen.width);
-  const I origin_y = amid(p.y, q.y, r.y, screen.centre_y, screen.height);
+  const geometry::Rect& whole = screen.whole;
+  const I origin_x = amid(p.x, q.x, r.x, screen.centre_x, whole.x0, whole.x1);
+  const I origin_y = amid(p.y, q.y, r.y, screen.centre_y, whole.y0, whole.y1);
   const I from_x = subpixel_of(origin_x, screen.centre_x);
   const I from_y = subpixel_of(origin_y, screen.centre_y);
   const I ix0 = hn::Sub(p.x, from_x), ix1 = hn::Sub(q.x, from_x), ix2 = hn::Sub(r.x, from_x);

@@ -268,8 +268,9 @@ class Steps final : public FrameSteps {
       order_ = loadbalance::front_to_back(cells.cells, rank_.screen.view.viewpoint);
       return cells.pieces;
     }
-    // Frames in steps overlap, and none knows what the one before took.
-    const auto [begin, end] = rank_.in_steps
+    // Frames in steps overlap, and none knows what the one before took; of a wall it was another
+    // display's.
+    const auto [begin, end] = rank_.in_steps || !rank_.options.displays.empty()
                                   ? rank_.own_primitives()
                                   : rank_.memory.primitive_shares.next(
                                         rank_.communicator, rank_.prepared.first_primitives.back());
@@ -279,15 +280,16 @@ class Steps final : public FrameSteps {
   Picture picture_of(composite::OwnedPixels&& part) {
     if (counts_only()) {
       timed(rank_.communicator, rank_.counts.phases.gather,
-            [&] { return composite::gather(rank_.communicator, std::move(part), 0); });
+            [&] { return composite::gather(rank_.communicator, std::move(part), rank_.root); });
       return image::BasicImage<Colour>();
     }
     part = resolve<Colour>(std::move(part), rank_.options.supersampling, rank_.options.width,
                            rank_.options.height);
-    part = timed(rank_.communicator, rank_.counts.phases.gather,
-                 [&] { return composite::gather(rank_.communicator, std::move(part), 0); });
+    part = timed(rank_.communicator, rank_.counts.phases.gather, [&] {
+      return composite::gather(rank_.communicator, std::move(part), rank_.root);
+    });
     image::BasicImage<Colour> image = composite::take_image<Colour>(std::move(part));
-    if (rank_.number() == 0) return image;
+    if (rank_.number() == rank_.root) return image;
     // For the next frame. In steps the scratch memory is another frame's by now.
     if (!rank_.in_steps) rank_.scratch.spare = std::move(image);
     return image::BasicImage<Colour>();

@@ -298,7 +298,7 @@ Picture render(RankContext& rank) {
   const bool is_unchanged = sorted.version == screen.version();
   if (!is_unchanged) {
     sorted = {};
-    if (drawing_ranks == rank.ranks())
+    if (drawing_ranks == rank.ranks() && !rank.options.owners_draw)
       sorted.rank_of_owner = match_regions(rank, partition, costed.boxes);
   }
   rank.rank_of_owner = sorted.rank_of_owner;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "comm/collectives.h"
+#include "loadbalance/deliver.h"
 
 namespace delray::raytrace {
 namespace {
@@ -96,6 +97,39 @@ std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
     unpack(messages[rank], tiles, costs, image);
   }
   return costs;
+}
+
+std::vector<image::ImageF> deliver_tiles(comm::Communicator& communicator,
+                                         std::span<const TilePixels> mine,
+                                         std::span<const loadbalance::Region> displays) {
+  std::vector<loadbalance::Pixels> pixels;
+  for (const TilePixels& tile : mine) {
+    if (tile.pixels == 0) continue;
+    pixels.push_back(
+        {tile.rect, reinterpret_cast<const std::byte*>(tile.colour), tile.depth, tile.stride});
+  }
+  std::vector<image::ImageF> pictures;
+  std::vector<loadbalance::PixelsToSet> shown;
+  for (const loadbalance::Region& display : displays) {
+    if (display.owner != communicator.rank()) continue;
+    image::ImageF& picture = pictures.emplace_back(display.rect.width(), display.rect.height());
+    shown.push_back({display.rect, reinterpret_cast<std::byte*>(picture.colour.data()),
+                     picture.depth.data(), static_cast<std::size_t>(picture.width)});
+  }
+  loadbalance::deliver(communicator, pixels, sizeof(image::RgbaF), displays, shown);
+  return pictures;
+}
+
+std::vector<TileCost> collect_costs(comm::Communicator& communicator,
+                                    std::span<const TilePixels> mine) {
+  std::vector<TileCost> own, all;
+  for (const TilePixels& tile : mine) own.push_back(cost_of(tile));
+  for (const comm::Buffer& from :
+       comm::gather(communicator, 0, comm::Buffer::of(std::span<const TileCost>(own)))) {
+    const std::span<const TileCost> costs = from.as<TileCost>();
+    all.insert(all.end(), costs.begin(), costs.end());
+  }
+  return all;
 }
 
 std::vector<RankStatistics> gather_statistics(comm::Communicator& communicator,

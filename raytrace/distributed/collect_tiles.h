@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "comm/communicator.h"
+#include "loadbalance/partition.h"
 #include "raytrace/integrators/sample_tile.h"
 
 namespace delray::raytrace {
@@ -15,6 +16,16 @@ namespace delray::raytrace {
 std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
                                     const loadbalance::Blocks& tiles,
                                     std::span<const TilePixels> mine, image::ImageF& image);
+
+// Collective: the pictures of the displays that this rank owns, in their order, of everybody's
+// tiles.
+std::vector<image::ImageF> deliver_tiles(comm::Communicator& communicator,
+                                         std::span<const TilePixels> mine,
+                                         std::span<const loadbalance::Region> displays);
+
+// Collective: what each tile took, on rank 0; nothing elsewhere.
+std::vector<TileCost> collect_costs(comm::Communicator& communicator,
+                                    std::span<const TilePixels> mine);
 
 // Collective: every rank's statistics on rank 0, by rank; nothing elsewhere.
 std::vector<RankStatistics> gather_statistics(comm::Communicator& communicator,

@@ -13,7 +13,8 @@ struct TiledFrame {
   const FrameContext& context;
   IntegratorPool& integrators;
   loadbalance::Blocks tiles;  // tile k is task k of the schedule
-  image::ImageF* picture;     // of the window, on rank 0, whose tiles go there; null elsewhere
+  // Of the window, on rank 0, whose tiles go there; null elsewhere, and where there are displays.
+  image::ImageF* picture;
 };
 
 }  // namespace delray::raytrace

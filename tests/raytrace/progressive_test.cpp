@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "comm/threads.h"
+#include "loadbalance/wall.h"
 #include "raytrace/shared_scene.h"
 #include "tests/raytrace/small_scenes.h"
 
@@ -265,6 +268,49 @@ TEST(Progressive, FeaturesSayWhatIsSeen) {
     rays += result.film.costs()[c].rays * static_cast<float>(result.film.cell(c).area());
   }
   EXPECT_GT(rays, 4.0F * 70 * 50);
+}
+
+// Tiles straddle displays and what is hidden between them; of three samples there is a film.
+TEST(Progressive, AWallShowsThePicture) {
+  for (const char* data : {"replicated", "object", "ring"}) {
+    for (const int samples : {1, 3}) {
+      ProgressiveOptions options = balls_of(samples);
+      options.film = false;
+      const image::ImageF whole = render_by(1, options).image;
+      const loadbalance::Wall wall{3, 2, 21, 23, 3, 4};
+      for (const int ranks : {1, 2, 5, 7}) {
+        options.frame.displays = loadbalance::displays_of(wall, ranks);
+        comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+          const bool is_shared = std::string(data) != "replicated";
+          std::optional<SharedScene> shared;
+          if (is_shared) shared.emplace(SharedScene::make(communicator, balls(), {}));
+          Renderer renderer =
+              is_shared ? Renderer(*shared, *find_distribution(data)) : Renderer(tracer());
+          const ProgressiveResult result =
+              render_progressively(communicator, renderer, before_balls(), options);
+          EXPECT_EQ(result.image.pixels(), 0U);
+          std::size_t k = 0;
+          for (const loadbalance::Region& display : options.frame.displays) {
+            if (display.owner != communicator.rank()) continue;
+            ASSERT_LT(k, result.shown.size());
+            const image::ImageF& shown = result.shown[k++];
+            const geometry::Rect& rect = display.rect;
+            for (int y = rect.y0; y < rect.y1; ++y) {
+              for (int x = rect.x0; x < rect.x1; ++x) {
+                const auto i = static_cast<std::size_t>((y - rect.y0) * shown.width + x - rect.x0);
+                const auto j = static_cast<std::size_t>(y * whole.width + x);
+                ASSERT_EQ(shown.colour[i], whole.colour[j]) << data << " " << x << " " << y;
+                ASSERT_EQ(shown.depth[i], whole.depth[j]) << data << " " << x << " " << y;
+              }
+            }
+          }
+          EXPECT_EQ(k, result.shown.size());
+        });
+      }
+      options.frame.displays = {{{0, 0, 71, 10}, 0}};
+      EXPECT_THROW(render_by(1, options), std::invalid_argument);
+    }
+  }
 }
 
 }  // namespace
