@@ -14,6 +14,8 @@
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
 #include "apps/render/animation.h"
+#include "apps/render/bands.h"
+#include "apps/render/displays.h"
 #include "apps/render/render_frames.h"
 #include "apps/render/render_options.h"
 #include "apps/render/render_statistics.h"
@@ -76,12 +78,26 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
   if (shows_nothing(request, frames.picture)) {
     spdlog::warn("{}: nothing of the scene is in view", request.scene.file.path);
   }
-  put_background_behind(request, prepared, prepared.camera, frames.picture);
+  put_background_behind(request, prepared, prepared.camera, request.window, frames.picture);
   const std::string hash = write_picture(session, request.output, frames.picture, frames.extras);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
   spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame",
                request.output == "-" ? "standard output" : request.output, request.picture_width(),
+               request.picture_height(), prepared.triangles,
+               statistics["seconds"]["frame"].get<double>());
+  log_details(statistics);
+}
+
+// Rank 0: statistics of a picture in several files, or in one that was written in bands.
+void finish(const RenderRequest& request, const Prepared& prepared, const Frames& frames,
+            const std::string& hash, bool is_empty, double write_seconds, const Json& wall,
+            const std::string& files) {
+  if (is_empty) spdlog::warn("{}: nothing of the scene is in view", request.scene.file.path);
+  Json statistics = render_statistics(request, prepared, frames, hash, write_seconds);
+  if (!wall.is_null()) statistics["wall"] = wall;
+  write_statistics(request.statistics, statistics);
+  spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame", files, request.picture_width(),
                request.picture_height(), prepared.triangles,
                statistics["seconds"]["frame"].get<double>());
   log_details(statistics);
@@ -138,8 +154,9 @@ void refuse_to_lose(const SamplingOptions& sampling) {
 
 // Nobody wants to know of these after an hour.
 void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) {
-  for (const std::string& path :
-       {request.output, request.statistics, request.sampling.checkpoint}) {
+  const std::string output =
+      request.layout.has_displays() ? display_path(request.output, 0, 0) : request.output;
+  for (const std::string& path : {output, request.statistics, request.sampling.checkpoint}) {
     files::check_writable(path);
   }
   refuse_to_lose(request.sampling);
@@ -151,7 +168,12 @@ void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) 
 void refuse_overwriting(const RenderRequest& request, const std::vector<std::string>& inputs) {
   std::vector<OutputFile> outputs = {{"--stats", request.statistics},
                                      {"--checkpoint", request.sampling.checkpoint}};
-  if (!request.is_animation() || is_video(request.output)) {
+  if (request.layout.has_displays()) {
+    for (int i = 0; i < request.layout.wall->displays(); ++i) {
+      const int columns = request.layout.wall->columns;
+      outputs.push_back({"-o", display_path(request.output, i % columns, i / columns)});
+    }
+  } else if (!request.is_animation() || is_video(request.output)) {
     outputs.push_back({"-o", request.output});
   } else {
     std::vector<std::string> others = inputs;
@@ -186,6 +208,34 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
     shared = arena.execute([&] { return prepare(request, progress); });
     refuse_overwriting(request, shared->scene.files);
   }
+  const auto render_in_bands = [&](comm::Communicator& communicator, const Prepared& prepared,
+                                   const std::vector<geometry::Rect>& bands) {
+    const BandedPicture picture =
+        render_bands(communicator, prepared, request, session, progress, bands);
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() != 0) return;
+      bar.end();
+      finish(request, prepared, picture.frames, picture.hash, picture.is_empty,
+             picture.write_seconds, Json(),
+             request.layout.one_file
+                 ? request.output
+                 : fmt::format("{}, in {} bands", request.output, bands.size()));
+    });
+  };
+  const auto write_wall = [&](comm::Communicator& communicator, const Prepared& prepared,
+                              Frames& frames) {
+    Stopwatch watch;
+    const std::vector<ShownDisplay> displays =
+        write_displays(communicator, prepared, request, session, std::move(frames.shown));
+    comm::all_or_none(communicator, comm::Phase::other, [&] {
+      if (communicator.rank() != 0) return;
+      bar.end();
+      finish(request, prepared, frames, hash_of(displays),
+             std::ranges::all_of(displays, &ShownDisplay::is_empty), watch.lap(),
+             wall_statistics(request, displays),
+             fmt::format("{} .. {}", displays.front().path, displays.back().path));
+    });
+  };
   const auto render = [&](comm::Communicator& communicator) {
     std::shared_ptr<const Prepared> prepared = shared;
     if (!prepared) {
@@ -210,11 +260,22 @@ int run(Session& session, const CLI::App& command, RenderRequest request) {
       });
       return;
     }
+    if (!request.layout.has_displays()) {
+      const std::vector<geometry::Rect> bands = choose_bands(communicator, request);
+      if (bands.size() > 1 || request.layout.one_file) {
+        render_in_bands(communicator, *prepared, bands);
+        return;
+      }
+    }
     Frames frames =
         render_frames(communicator, *prepared, request, progress, [&](Picture&& picture) {
-          put_background_behind(request, *prepared, prepared->camera, picture);
+          put_background_behind(request, *prepared, prepared->camera, request.window, picture);
           write_picture(session, request.output, picture);
         });
+    if (request.layout.has_displays()) {
+      write_wall(communicator, *prepared, frames);
+      return;
+    }
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() != 0) return;
       bar.end();

@@ -215,6 +215,32 @@ void Phases::operator+=(const Phases& other) {
   gather += other.gather;
 }
 
+void Statistics::operator+=(Statistics&& more) {
+  if (ranks.empty()) {
+    *this = std::move(more);
+    return;
+  }
+  phases += more.phases;
+  std::vector<double> busy;
+  for (std::size_t r = 0; r < ranks.size(); ++r) {
+    ranks[r] += more.ranks[r];
+    busy.push_back(ranks[r].busy);
+  }
+  imbalance = loadbalance::imbalance(busy);
+  triangles_in += more.triangles_in;
+  triangles_culled += more.triangles_culled;
+  triangles_clipped += more.triangles_clipped;
+  triangles_rasterized += more.triangles_rasterized;
+  triangles_hidden += more.triangles_hidden;
+  clusters_hidden += more.clusters_hidden;
+  triangles_travelled += more.triangles_travelled;
+  fragments_travelled += more.fragments_travelled;
+  fragments += more.fragments;
+  shaded += more.shaded;
+  partition = std::move(more.partition);
+  warnings = std::move(more.warnings);
+}
+
 void RankStatistics::operator+=(const RankStatistics& other) {
   busy += other.busy;
   tasks += other.tasks;

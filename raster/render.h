@@ -171,6 +171,9 @@ struct Statistics {
   std::uint64_t fragments = 0, shaded = 0;
   std::optional<PartitionStatistics> partition;  // if asked for, and the screen was cut
   std::vector<std::string> warnings;
+
+  // Of several renderings by the same ranks: times and counts are summed, the rest is the last's.
+  void operator+=(Statistics&& more);
 };
 
 // Depths are distances along the view axis, in the scene's units.

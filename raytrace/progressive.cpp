@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "comm/collectives.h"
-#include "loadbalance/partition.h"
 #include "raytrace/distributed/collect_tiles.h"
 
 namespace delray::raytrace {
@@ -113,45 +112,6 @@ void add_costs(std::span<const TileCost> costs, const loadbalance::Blocks& tiles
   }
 }
 
-void add_statistics(Statistics&& pass, Statistics& total) {
-  if (total.ranks.empty() && total.rays == RayCounts{}) {
-    total = std::move(pass);
-    return;
-  }
-  total.frame_seconds += pass.frame_seconds;
-  total.trace_seconds += pass.trace_seconds;
-  total.gather_seconds += pass.gather_seconds;
-  total.rays += pass.rays;
-  total.partition = pass.partition;
-  total.structure_bytes = pass.structure_bytes;
-  std::vector<double> rays;
-  for (std::size_t r = 0; r < total.ranks.size(); ++r) {
-    RankStatistics& sum = total.ranks[r];
-    RankStatistics& more = pass.ranks[r];
-    sum.busy += more.busy;
-    sum.idle += more.idle;
-    sum.tasks += more.tasks;
-    sum.rays += more.rays;
-    sum.bytes_sent += more.bytes_sent;
-    sum.bytes_received += more.bytes_received;
-    sum.messages += more.messages;
-    sum.requests += more.requests;
-    sum.steals += more.steals;
-    sum.tasks_stolen += more.tasks_stolen;
-    sum.rays_sent += more.rays_sent;
-    sum.answers_sent += more.answers_sent;
-    sum.tests += more.tests;
-    sum.clusters_fetched += more.clusters_fetched;
-    sum.clusters_fetched_bytes += more.clusters_fetched_bytes;
-    sum.clusters_moved += more.clusters_moved;
-    sum.clusters_dropped += more.clusters_dropped;
-    sum.geometry_bytes = more.geometry_bytes;  // the most since the scene was shared out
-    sum.timeline.insert(sum.timeline.end(), more.timeline.begin(), more.timeline.end());
-    rays.push_back(static_cast<double>(sum.rays.primary + sum.rays.shadow + sum.rays.secondary));
-  }
-  total.imbalance_rays = loadbalance::imbalance(rays);
-}
-
 Features trace_features(comm::Communicator& communicator, Renderer& renderer,
                         const scenes::Camera& camera, const RenderOptions& frame,
                         const Rect& window, Statistics& statistics) {
@@ -160,7 +120,7 @@ Features trace_features(comm::Communicator& communicator, Renderer& renderer,
   const auto picture = [&](const char* integrator) {
     options.integrator = integrator;
     Result result = renderer.render(communicator, camera, options);
-    add_statistics(std::move(result.statistics), statistics);
+    statistics += std::move(result.statistics);
     return cut(std::move(result.image), options.part.window, window);
   };
   const bool root = communicator.rank() == 0;
@@ -265,6 +225,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
   RenderOptions pass_options = options.frame;
   const int side = tile_side(pass_options);
   pass_options.part.window = film_window;
+  check_displays(options.frame.displays, window, communicator.size());
   if (!one_pass_does(options)) pass_options.displays.clear();
   pass_options.scattered = options.noise > 0.0F || std::isfinite(options.seconds);
   if (one_pass_does(options)) {
@@ -323,7 +284,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
         last.seconds = elapsed() - before;
         if (several) whole->advance(last.work);
       }
-      add_statistics(std::move(traced.statistics), result.statistics);
+      result.statistics += std::move(traced.statistics);
     }
   } catch (...) {  // of this rank, or of another that ended this one
     if (root && options.on_interruption) options.on_interruption(film);

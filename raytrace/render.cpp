@@ -197,6 +197,48 @@ void summarize(std::vector<RankStatistics>&& ranks, Statistics& statistics) {
 
 }  // namespace
 
+void RankStatistics::operator+=(RankStatistics&& more) {
+  busy += more.busy;
+  idle += more.idle;
+  tasks += more.tasks;
+  rays += more.rays;
+  bytes_sent += more.bytes_sent;
+  bytes_received += more.bytes_received;
+  messages += more.messages;
+  requests += more.requests;
+  steals += more.steals;
+  tasks_stolen += more.tasks_stolen;
+  rays_sent += more.rays_sent;
+  answers_sent += more.answers_sent;
+  tests += more.tests;
+  clusters_fetched += more.clusters_fetched;
+  clusters_fetched_bytes += more.clusters_fetched_bytes;
+  clusters_moved += more.clusters_moved;
+  clusters_dropped += more.clusters_dropped;
+  geometry_bytes = more.geometry_bytes;  // the most since the scene was shared out
+  timeline.insert(timeline.end(), more.timeline.begin(), more.timeline.end());
+}
+
+void Statistics::operator+=(Statistics&& more) {
+  if (ranks.empty() && rays == RayCounts{}) {
+    *this = std::move(more);
+    return;
+  }
+  frame_seconds += more.frame_seconds;
+  trace_seconds += more.trace_seconds;
+  gather_seconds += more.gather_seconds;
+  rays += more.rays;
+  partition = more.partition;
+  structure_bytes = more.structure_bytes;
+  std::vector<double> of_ranks;
+  for (std::size_t r = 0; r < ranks.size(); ++r) {
+    ranks[r] += std::move(more.ranks[r]);
+    const RayCounts& sent = ranks[r].rays;
+    of_ranks.push_back(static_cast<double>(sent.primary + sent.shadow + sent.secondary));
+  }
+  imbalance_rays = loadbalance::imbalance(of_ranks);
+}
+
 int tile_side(const RenderOptions& options) {
   return options.tile > 0 ? options.tile : integrator(options.integrator).side;
 }
@@ -262,11 +304,7 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
                              scenes::pixels_of(view, memory_->bounds())};
   IntegratorPool pool(integrator(options.integrator), context);
   const int side = tile_side(options);
-  for (const loadbalance::Region& display : options.displays) {
-    if (display.rect.empty() || display.owner < 0 || display.owner >= communicator.size() ||
-        geometry::intersection(display.rect, window) != display.rect)
-      throw std::invalid_argument("a display has pixels of the frame and a rank that shows it");
-  }
+  check_displays(options.displays, window, communicator.size());
   const bool root = communicator.rank() == 0;
   const bool gathers = root && options.displays.empty();
   Result result;

@@ -89,6 +89,8 @@ struct RankCounts {
 // One rank's work for a frame.
 struct RankStatistics : RankCounts {
   std::vector<loadbalance::Interval> timeline;  // by thread, then time, on the rank's clock
+
+  void operator+=(RankStatistics&& more);
 };
 
 // The partition that rank 0 has cut the frame into.
@@ -109,6 +111,9 @@ struct Statistics {
   std::optional<PartitionStatistics> partition;
   std::vector<RankStatistics> ranks;
   std::string embree_version, embree_isa;
+
+  // Of several renderings by the same ranks: times and counts are summed, the rest is the last's.
+  void operator+=(Statistics&& more);
 };
 
 // The cost of a tile, whichever rank traced it.

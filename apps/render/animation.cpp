@@ -86,7 +86,7 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
     slot.picture = std::move(picture);
     if (first_rank) {
       if (shows_nothing(request, slot.picture)) ++animation.empty_frames;
-      put_background_behind(request, prepared, cameras[i], slot.picture);
+      put_background_behind(request, prepared, cameras[i], request.window, slot.picture);
     }
     animation.frames.statistics = std::move(statistics);
   };

@@ -73,6 +73,7 @@ std::string why_no_travel(const RenderRequest& r) {
   return r.sharing.schedule.empty() ? "" : "--schedule: every rank has all primitives";
 }
 std::string why_no_partition(const RenderRequest& r) {
+  if (r.layout.draw_at_home) return "--draw-at-home";
   if (is_raster(r) || schedule_of(r)->begins_with_shares) return "";
   return fmt::format("--schedule {}, which begins with no shares", r.sharing.schedule);
 }

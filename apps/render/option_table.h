@@ -11,6 +11,7 @@ namespace delray::apps {
 using RenderOption = OptionRow<RenderRequest>;
 
 std::vector<RenderOption> picture_options();
+std::vector<RenderOption> layout_options();  // see frame_layout.h
 std::vector<RenderOption> animation_options();
 std::vector<RenderOption> rasterizer_options();
 std::vector<RenderOption> raytracer_options();

@@ -47,7 +47,6 @@ raytrace::Rendering rendering_of(const RenderRequest& request, const scenes::Cam
                                  const Prepared& prepared) {
   const SamplingOptions& p = request.sampling;
   const geometry::Rect all{0, 0, request.width, request.height};
-  const geometry::Rect window = p.window.empty() ? all : p.window;
   const bool scattered = p.noise > 0.0 || p.seconds > 0.0;
   const bool any_samples = raytrace::integrator(request.raytrace.integrator).any_samples;
   const auto text = [](const auto& value) { return fmt::format("{}", value); };
@@ -62,7 +61,7 @@ raytrace::Rendering rendering_of(const RenderRequest& request, const scenes::Cam
   rendering.values.push_back({"height of the view", text(camera.height)});
   if (!any_samples)
     rendering.values.push_back({"--noise or --time", scattered ? "given" : "not given"});
-  rendering.window = raytrace::grown(window, all);
+  rendering.window = raytrace::grown(request.window, all);
   rendering.samples = request.raytrace.samples;
   rendering.any_samples = any_samples || scattered;
   return rendering;
@@ -93,8 +92,9 @@ double noisy_part(const raytrace::Film& film, float threshold) {
 }
 
 // Facts of the sampling, of at most so many samples per pixel, and channels where they are wanted.
-Extras extras_of(const raytrace::ProgressiveResult& result, const SamplingOptions& sampling,
+Extras extras_of(const raytrace::ProgressiveResult& result, const RenderRequest& request,
                  int samples) {
+  const SamplingOptions& sampling = request.sampling;
   Extras extras;
   extras.passes = result.passes;
   extras.out_of_time = result.out_of_time;
@@ -112,7 +112,7 @@ Extras extras_of(const raytrace::ProgressiveResult& result, const SamplingOption
                        : fmt::format("a maximum of {} samples per pixel (--spp)", samples));
     }
   }
-  if (sampling.channels) extras.channels = channels_of(result, sampling.window);
+  if (sampling.channels) extras.channels = channels_of(result, request.window);
   return extras;
 }
 
@@ -126,7 +126,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   const bool root = communicator.rank() == 0;
   raytrace::ProgressiveOptions options;
   options.frame = frame;
-  options.window = sampling.window;
+  options.window = request.window;
   options.noise = static_cast<float>(sampling.noise);
   if (sampling.seconds > 0.0) options.seconds = sampling.seconds;
   options.film = sampling.channels || sampling.denoise || sampling.show != "colour";
@@ -153,7 +153,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
     options.after_pass = [&](const raytrace::Film& film) {
       if (checkpoint_due.due()) save(film);
       if (preview_due.due()) {
-        preview(raytrace::cut(raytrace::mean(film), film.window(), sampling.window));
+        preview(raytrace::cut(raytrace::mean(film), film.window(), request.window));
       }
     };
   }
@@ -169,15 +169,16 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
       raytrace::render_progressively(communicator, renderer, camera, options);
   RayFrame done;
   done.statistics = std::move(result.statistics);
+  done.shown = std::move(result.shown);
   if (!root) return done;
   if (!sampling.checkpoint.empty()) save(result.film);
-  done.extras = extras_of(result, sampling, frame.samples);
+  done.extras = extras_of(result, request, frame.samples);
   done.picture = std::move(result.image);
   if (sampling.denoise) {
-    raytrace::denoise(done.picture, result.features, variance_of(result.film, sampling.window));
+    raytrace::denoise(done.picture, result.features, variance_of(result.film, request.window));
   }
   if (sampling.show != "colour") {
-    const double most = show(sampling.show, result, sampling.window, done.picture);
+    const double most = show(sampling.show, result, request.window, done.picture);
     if (most > 0.0) spdlog::info("{}: 99 % are below {:.6g}", sampling.show, most);
   }
   return done;

@@ -12,9 +12,10 @@ namespace delray::apps {
 // Shows a picture that is not yet done, on rank 0.
 using Preview = std::function<void(Picture&& picture)>;
 
-// On rank 0; elsewhere all but the statistics is empty.
+// On rank 0; elsewhere all but the statistics and the displays is empty.
 struct RayFrame {
-  image::ImageF picture;  // of the window
+  image::ImageF picture;             // of the window; of size 0 where there are displays
+  std::vector<image::ImageF> shown;  // on any rank, of its displays
   raytrace::Statistics statistics;
   Extras extras;
 };

@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "apps/render/animation.h"
+#include "apps/render/bands.h"
 #include "apps/render/ray_frame.h"
 #include "apps/render/scene_facts.h"
 #include "apps/statistics.h"
@@ -41,11 +42,21 @@ void set_lens(const SamplingOptions& sampling, scenes::Camera& camera) {
   camera.focus = static_cast<float>(sampling.focus);
 }
 
-raster::RenderOptions raster_options(const RenderRequest& request) {
+// Who shows what, where ranks show displays.
+std::vector<loadbalance::Region> displays(const RenderRequest& request, int ranks) {
+  if (!request.layout.has_displays()) return {};
+  return loadbalance::displays_of(*request.layout.wall, ranks);
+}
+
+raster::RenderOptions raster_options(const RenderRequest& request, const geometry::Rect& window,
+                                     int ranks) {
   const Sharing& sharing = request.sharing;
   raster::RenderOptions options = request.raster;
   options.width = request.width;
   options.height = request.height;
+  if (window != geometry::Rect{0, 0, request.width, request.height}) options.window = window;
+  options.displays = displays(request, ranks);
+  options.owners_draw = request.layout.draw_at_home;
   options.float_pixels = wants_floats(request);
   options.partition = sharing.partition;
   options.costs = sharing.measured_costs ? raster::CostSource::measured : raster::CostSource::model;
@@ -58,12 +69,13 @@ raster::RenderOptions raster_options(const RenderRequest& request) {
   return options;
 }
 
-raytrace::RenderOptions raytrace_options(const RenderRequest& request,
+raytrace::RenderOptions raytrace_options(const RenderRequest& request, int ranks,
                                          parallel::Progress* progress) {
   const Sharing& sharing = request.sharing;
   raytrace::RenderOptions options = request.raytrace;
   options.width = request.width;
   options.height = request.height;
+  options.displays = displays(request, ranks);
   if (request.reach > 0) options.trace.reach = static_cast<float>(request.reach);
   options.trace.background = raytrace::TraceOptions::Background::transparent;
   options.partition = sharing.partition;
@@ -117,18 +129,24 @@ std::uint64_t bytes_per_pixel(const RenderRequest& request) {
   return floats ? 48 : 33;
 }
 
-// Pictures on their way, and of sort-last the layers of all ranks in the process.
+bool has_layers(const RenderRequest& request) {
+  return request.engine == Engine::raster &&
+         raster::find_strategy(request.raster.strategy)->composites;
+}
+
+// Pictures on their way; of a wall they are those of displays where these are composited one after
+// the other, else a part for each process. One that can be written in bands takes what it finds.
 void require_memory_for_pictures(const RenderRequest& request) {
-  const std::uint64_t layer = wants_floats(request) ? sizeof(image::RgbaF) + sizeof(float)
-                                                    : sizeof(image::Rgba8) + sizeof(float);
-  const bool layers = request.engine == Engine::raster &&
-                      raster::find_strategy(request.raster.strategy)->composites;
-  const auto others =
-      static_cast<std::uint64_t>(layers ? std::max(0, request.launch.ranks - 1) : 0);
-  const auto pixels = static_cast<std::uint64_t>(request.picture_width()) *
-                      static_cast<std::uint64_t>(request.picture_height());
+  const int ranks = std::max(1, request.launch.ranks);
+  auto pixels = static_cast<std::uint64_t>(request.window.area());
+  if (comes_in_bands(request)) {
+    pixels = static_cast<std::uint64_t>(request.picture_width()) * kLeastBand;
+  } else if (const auto& wall = request.layout.wall) {
+    const std::uint64_t shown = pixels / static_cast<std::uint64_t>(wall->displays()) + 1;
+    if (has_layers(request)) pixels = 2 * shown;
+  }
   request.scene.file.limits.budget().require(
-      pixels * (bytes_per_pixel(request) + others * layer), request.output,
+      pixels * picture_bytes_per_pixel(request, ranks), request.output,
       fmt::format("{} x {} pixels", request.picture_width(), request.picture_height()));
 }
 
@@ -263,6 +281,14 @@ scenes::FarthestPoints of_all_ranks(comm::Communicator& communicator,
 
 }  // namespace
 
+// Of sort-last every rank has a layer.
+std::uint64_t picture_bytes_per_pixel(const RenderRequest& request, int ranks_here) {
+  const std::uint64_t layer = wants_floats(request) ? sizeof(image::RgbaF) + sizeof(float)
+                                                    : sizeof(image::Rgba8) + sizeof(float);
+  const auto others = static_cast<std::uint64_t>(has_layers(request) ? ranks_here - 1 : 0);
+  return bytes_per_pixel(request) + others * layer;
+}
+
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
                                         parallel::Progress* progress) {
   Stopwatch watch;
@@ -326,17 +352,23 @@ FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& p
   raytrace_.emplace(*shared_, *raytrace::find_distribution(request.data));
 }
 
-Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera) {
+Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
+                            const geometry::Rect& window) {
   Frame frame;
+  const int ranks = communicator.size();
   if (raster_) {
     raster::Result result =
-        raster_->render(communicator, camera, raster_options(request_), progress_);
+        raster_->render(communicator, camera, raster_options(request_, window, ranks), progress_);
     frame.picture = std::move(result.picture);
+    frame.shown = std::move(result.shown);
     frame.statistics = std::move(result.statistics);
   } else {
-    RayFrame done = render_rays(communicator, *raytrace_, prepared_, request_, camera,
-                                raytrace_options(request_, progress_), preview_);
+    RenderRequest request = request_;
+    request.window = window;
+    RayFrame done = render_rays(communicator, *raytrace_, prepared_, request, camera,
+                                raytrace_options(request, ranks, progress_), preview_);
     frame.picture = std::move(done.picture);
+    for (image::ImageF& shown : done.shown) frame.shown.emplace_back(std::move(shown));
     frame.statistics = std::move(done.statistics);
     frame.extras = std::move(done.extras);
   }
@@ -344,12 +376,14 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
 }
 
 bool FrameRenderer::has_steps(int ranks) const {
-  return raster_ && raster::Renderer::has_steps(raster_options(request_), ranks);
+  return raster_ &&
+         raster::Renderer::has_steps(raster_options(request_, request_.window, ranks), ranks);
 }
 
 std::unique_ptr<raster::FrameInSteps> FrameRenderer::begin(comm::Communicator& communicator,
                                                            const scenes::Camera& camera) {
-  return raster_->begin(communicator, camera, raster_options(request_), progress_);
+  return raster_->begin(communicator, camera,
+                        raster_options(request_, request_.window, communicator.size()), progress_);
 }
 
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
@@ -366,6 +400,7 @@ Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,
     Frame frame = renderer.render(communicator, prepared.camera);
     frames.seconds.push_back(watch.lap());
     frames.picture = std::move(frame.picture);
+    frames.shown = std::move(frame.shown);
     frames.statistics = std::move(frame.statistics);
     frames.extras = std::move(frame.extras);
   }

@@ -56,9 +56,10 @@ struct Extras {
 using Picture = std::variant<image::Image8, image::ImageF>;
 using EngineStatistics = std::variant<raster::Statistics, raytrace::Statistics>;
 
-// On rank 0; elsewhere the pictures are of size 0.
+// On rank 0; elsewhere the pictures are of size 0, but for those of displays.
 struct Frame {
   Picture picture;
+  std::vector<Picture> shown;  // on any rank, of the displays that it shows
   EngineStatistics statistics;
   Extras extras;
 };
@@ -74,8 +75,12 @@ class FrameRenderer {
   double build_seconds() const { return build_seconds_; }
   // Is given pictures that are not yet done, as often as the options want it.
   void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
-  // Collective.
-  Frame render(comm::Communicator& communicator, const scenes::Camera& camera);
+  // Collective. The window of the request, or another part of the frame.
+  Frame render(comm::Communicator& communicator, const scenes::Camera& camera) {
+    return render(communicator, camera, request_.window);
+  }
+  Frame render(comm::Communicator& communicator, const scenes::Camera& camera,
+               const geometry::Rect& window);
   // Gives the memory of a picture, as render returned it, to the next frame where that takes less
   // time so.
   void recycle(Picture&& picture) {
@@ -108,6 +113,7 @@ struct Launched {
 // The last of some frames from the same camera.
 struct Frames {
   Picture picture;
+  std::vector<Picture> shown;  // on any rank
   EngineStatistics statistics;
   Extras extras;
   std::vector<double> seconds;  // per frame, from the scene in memory to the picture on rank 0
@@ -116,6 +122,10 @@ struct Frames {
 
 // Collective.
 Launched launched(comm::Communicator& communicator, const FrameRenderer& renderer);
+
+// Bytes that a pixel of the picture takes while it is on its way, at most, in a process with so
+// many of the ranks.
+std::uint64_t picture_bytes_per_pixel(const RenderRequest& request, int ranks_here);
 
 // Collective. With more than one frame a further one goes before, to warm up.
 Frames render_frames(comm::Communicator& communicator, const Prepared& prepared,

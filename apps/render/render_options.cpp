@@ -21,8 +21,6 @@
 namespace delray::apps {
 namespace {
 
-constexpr int kLargestSide = 32768;
-
 bool is_jpeg(const std::string& path) {
   const std::string suffix = image::picture_suffix(path);
   return suffix == ".jpg" || suffix == ".jpeg";
@@ -52,8 +50,8 @@ void check_output(RenderRequest& request) {
 const std::vector<RenderOption>& all_options() {
   static const std::vector<RenderOption> all = [] {
     std::vector<RenderOption> rows;
-    for (auto family : {picture_options, animation_options, rasterizer_options, raytracer_options,
-                        sampling_options, output_options}) {
+    for (auto family : {picture_options, layout_options, animation_options, rasterizer_options,
+                        raytracer_options, sampling_options, output_options}) {
       for (RenderOption& row : family()) rows.push_back(std::move(row));
     }
     return rows;
@@ -113,11 +111,14 @@ void parse_size(RenderRequest& request) {
     throw UsageError(fmt::format("--size: '{}' is not WIDTHxHEIGHT, each from 1 to {}",
                                  request.size, kLargestSide));
   }
+  request.window = {0, 0, request.width, request.height};
 }
 
 void add_render_options(CLI::App& command, RenderRequest& request) {
   add_scene_options(command, request.scene);
-  for (const RenderOption& option : picture_options()) option.add(command, request);
+  for (auto family : {picture_options, layout_options}) {
+    for (const RenderOption& option : family()) option.add(command, request);
+  }
   add_light_options(command, request.light);
   add_camera_options(command, request.camera);
   for (const RenderOption& option : animation_options()) option.add(command, request);
@@ -159,6 +160,7 @@ void check(const CLI::App& command, RenderRequest& request) {
   if (request.output.empty()) throw UsageError("render: -o IMAGE is missing");
   check_output(request);
   parse_size(request);
+  complete_layout(request);
   check_light(command, request.light);
   request.behind = parse_background(request.background);
   const bool is_opaque = is_jpeg(request.output) || is_video(request.output);

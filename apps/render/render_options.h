@@ -10,6 +10,7 @@
 #include "apps/launch.h"
 #include "apps/render/background.h"
 #include "apps/render/camera_options.h"
+#include "apps/render/frame_layout.h"
 #include "apps/render/light_options.h"
 #include "apps/render/sampling_options.h"
 #include "apps/statistics.h"
@@ -48,21 +49,28 @@ struct RenderRequest {
   double cache_mebibytes = 0;       // 0: a tenth of the scene
   double reach = 0;                 // of ambient occlusion; 0: without end
   SamplingOptions sampling;
+  FrameLayout layout;
 
-  // The size of the pictures that are written: the frame, or a crop of it.
-  int picture_width() const { return sampling.window.empty() ? width : sampling.window.width(); }
-  int picture_height() const { return sampling.window.empty() ? height : sampling.window.height(); }
+  // The size of the pictures that are written: the frame, or a crop of it; of a wall all that its
+  // displays and bezels show and hide, or, in one file, what the displays show.
+  int picture_width() const {
+    return layout.one_file ? layout.wall->columns * layout.wall->width : window.width();
+  }
+  int picture_height() const {
+    return layout.one_file ? layout.wall->rows * layout.wall->height : window.height();
+  }
   bool is_animation() const { return turntable > 0 || !camera_path.empty(); }
 
   // Set by check:
   std::string frames_output;  // of which frame_path makes the names of an animation's frames
-  int width = 0, height = 0;
+  int width = 0, height = 0;  // of the frame: of all of a wall, what bezels hide included
+  geometry::Rect window;      // of the frame
   Background behind;
 };
 
 inline bool is_raytrace(const RenderRequest& request) { return request.engine == Engine::raytrace; }
 
-// Sets width and height by size. Throws UsageError.
+// Sets width, height and window by size. Throws UsageError.
 void parse_size(RenderRequest& request);
 
 void add_render_options(CLI::App& command, RenderRequest& request);

@@ -21,24 +21,6 @@ namespace {
 // of 256 samples is a sixteenth of that of one; a tenth of it would take 25 600.
 constexpr int kMostInTime = 65536, kMostForNoise = 256;
 
-geometry::Rect parse_crop(const std::string& text, int width, int height) {
-  std::array<int, 4> n{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  bool fine = true;
-  for (std::size_t i = 0; i < n.size() && fine; ++i) {
-    const auto [next, error] = std::from_chars(at, end, n[i]);
-    fine = error == std::errc() && (i == 3 ? next == end : next != end && *next == ',');
-    at = next + 1;
-  }
-  fine = fine && n[0] >= 0 && n[1] >= 0 && n[2] >= 1 && n[3] >= 1 && n[2] <= width - n[0] &&
-         n[3] <= height - n[1];
-  if (fine) return {n[0], n[1], n[0] + n[2], n[1] + n[3]};
-  throw UsageError(
-      fmt::format("--crop: '{}' is not x,y,width,height within the picture of {} x {} pixels", text,
-                  width, height));
-}
-
 bool writes_exr(const RenderRequest& r) { return image::picture_suffix(r.output) == ".exr"; }
 bool shows_colour(const RenderRequest& r) { return r.sampling.show == "colour"; }
 
@@ -111,16 +93,6 @@ std::vector<RenderOption> sampling_options() {
           "Continue from the file of --checkpoint, to the same picture as without interruption",
           "resume"),
       sampling_option(
-          "--crop", [](auto& r) -> auto& { return r.sampling.crop; },
-          "Render only a part of the picture: x,y,width,height in pixels, from its upper left "
-          "corner",
-          "crop")
-          .type_name("RECT")
-          .in_checkpoint([](const RenderRequest& r) {
-            const geometry::Rect& w = r.sampling.window;
-            return fmt::format("{},{},{},{}", w.x0, w.y0, w.width(), w.height());
-          }),
-      sampling_option(
           "--aovs", [](auto& r) -> auto& { return r.sampling.channels; },
           "Also write channels of normals, albedo, ids, variance, samples and costs (.exr only)",
           "aovs", why_no_channels),
@@ -169,10 +141,6 @@ std::vector<RenderOption> sampling_options() {
 
 void complete_sampling(const CLI::App& command, RenderRequest& request) {
   SamplingOptions& sampling = request.sampling;
-  sampling.window = {0, 0, request.width, request.height};
-  if (!sampling.crop.empty()) {
-    sampling.window = parse_crop(sampling.crop, request.width, request.height);
-  }
   if (command.count("--spp") > 0) return;
   if (sampling.noise > 0.0) request.raytrace.samples = kMostForNoise;
   if (sampling.seconds > 0.0) request.raytrace.samples = kMostInTime;

@@ -21,18 +21,13 @@ struct SamplingOptions {
   std::string checkpoint;
   double checkpoint_every = 60.0;
   bool resume = false;
-  std::string crop;  // x,y,width,height
   bool channels = false, denoise = false;
   std::string show = "colour", tone = "linear";
   double exposure = 0.0;
   double aperture = 0.0, focus = 0.0;
-
-  // Set by check:
-  geometry::Rect window;  // of the frame
 };
 
-// Completes options that were not given: samples by noise or time, and the window by --crop. The
-// request's size is known. Throws UsageError.
+// Completes options that were not given: samples by noise or time.
 void complete_sampling(const CLI::App& command, RenderRequest& request);
 
 // Throws UsageError for what is missing.

@@ -20,21 +20,6 @@ const image::Image8& as_8bit(const image::ImageF& picture, image::Image8& conver
   return converted;
 }
 
-// A file must not tell where it was made, or how, unless its maker wants it.
-std::vector<image::Attribute> attributes_of(const Session& session, const std::string& path,
-                                            const Extras& extras) {
-  std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION}};
-  if (!session.metadata) return attributes;
-  const std::string suffix = image::picture_suffix(path);
-  const bool has_free_names = suffix == ".png" || suffix == ".exr";
-  attributes.push_back({has_free_names ? "CommandLine" : "ImageDescription", session.command_line});
-  if (extras.passes > 0) {
-    attributes.push_back({"delray:samples", extras.samples});
-    attributes.push_back({"delray:passes", static_cast<double>(extras.passes)});
-  }
-  return attributes;
-}
-
 }  // namespace
 
 void add_metadata_option(CLI::App& command, Session& session) {
@@ -55,14 +40,14 @@ bool shows_nothing(const RenderRequest& request, const Picture& picture) {
 }
 
 void put_background_behind(const RenderRequest& request, const Prepared& prepared,
-                           const scenes::Camera& camera, Picture& picture) {
+                           const scenes::Camera& camera, const geometry::Rect& window,
+                           Picture& picture) {
   const scenes::View view = scenes::make_view(camera, request.width, request.height);
   const SamplingOptions& sampling = request.sampling;
   if (sampling.show != "colour") return;
   std::visit(
       [&](auto& pixels) {
-        put_behind(pixels, prepared.background, prepared.shading(), view,
-                   {sampling.window.x0, sampling.window.y0});
+        put_behind(pixels, prepared.background, prepared.shading(), view, {window.x0, window.y0});
       },
       picture);
   if (sampling.exposure == 0.0 && sampling.tone == "linear") return;
@@ -71,9 +56,24 @@ void put_background_behind(const RenderRequest& request, const Prepared& prepare
                    image::tone_curve(sampling.tone));
 }
 
+// A file must not tell where it was made, or how, unless its maker wants it.
+std::vector<image::Attribute> picture_attributes(const Session& session, const std::string& path,
+                                                 const Extras& extras) {
+  std::vector<image::Attribute> attributes = {{"Software", "delray " DELRAY_VERSION}};
+  if (!session.metadata) return attributes;
+  const std::string suffix = image::picture_suffix(path);
+  const bool has_free_names = suffix == ".png" || suffix == ".exr";
+  attributes.push_back({has_free_names ? "CommandLine" : "ImageDescription", session.command_line});
+  if (extras.passes > 0) {
+    attributes.push_back({"delray:samples", extras.samples});
+    attributes.push_back({"delray:passes", static_cast<double>(extras.passes)});
+  }
+  return attributes;
+}
+
 std::string write_picture(const Session& session, const std::string& path, const Picture& picture,
                           const Extras& extras) {
-  const std::vector<image::Attribute> attributes = attributes_of(session, path, extras);
+  const std::vector<image::Attribute> attributes = picture_attributes(session, path, extras);
   image::WriteOptions options;
   options.channels = extras.channels;
   options.attributes = attributes;

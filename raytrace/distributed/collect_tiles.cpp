@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "comm/collectives.h"
 #include "loadbalance/deliver.h"
@@ -97,6 +98,14 @@ std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
     unpack(messages[rank], tiles, costs, image);
   }
   return costs;
+}
+
+void check_displays(std::span<const loadbalance::Region> displays, const Rect& window, int ranks) {
+  for (const loadbalance::Region& display : displays) {
+    if (display.rect.empty() || display.owner < 0 || display.owner >= ranks ||
+        geometry::intersection(display.rect, window) != display.rect)
+      throw std::invalid_argument("a display has pixels of the frame and a rank that shows it");
+  }
 }
 
 std::vector<image::ImageF> deliver_tiles(comm::Communicator& communicator,

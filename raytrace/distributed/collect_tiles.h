@@ -17,6 +17,11 @@ std::vector<TileCost> collect_tiles(comm::Communicator& communicator,
                                     const loadbalance::Blocks& tiles,
                                     std::span<const TilePixels> mine, image::ImageF& image);
 
+// Throws std::invalid_argument for a display that is empty, reaches beyond the window, or is no
+// rank's.
+void check_displays(std::span<const loadbalance::Region> displays, const geometry::Rect& window,
+                    int ranks);
+
 // Collective: the pictures of the displays that this rank owns, in their order, of everybody's
 // tiles.
 std::vector<image::ImageF> deliver_tiles(comm::Communicator& communicator,
