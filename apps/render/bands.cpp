@@ -32,8 +32,20 @@ std::vector<Rect> columns_of(const RenderRequest& request, const Rect& band) {
   return columns;
 }
 
+// The libraries that write the file, once they are loaded; what is seen at a sample of the band;
+// and a copy of a pixel.
+constexpr std::uint64_t kCodecBytes = 128 << 20, kSampleBytes = 8, kCopyBytes = 4;
+
+std::uint64_t bytes_in_the_making(const RenderRequest& request, int ranks) {
+  const auto n = static_cast<std::uint64_t>(request.raster.supersampling);
+  // What others draw is theirs, too, until rank 0 has it.
+  const std::uint64_t elsewhere = ranks > 1 ? picture_bytes_per_pixel(request, 1) : 0;
+  return elsewhere + kCopyBytes + (request.engine == Engine::raster ? kSampleBytes * n * n : 0);
+}
+
 template <class Image>
-Image cut(const Image& picture, const Rect& band, const std::vector<Rect>& columns, int width) {
+Image cut(Image&& picture, const Rect& band, const std::vector<Rect>& columns, int width) {
+  if (columns.size() == 1) return std::move(picture);
   Image result(width, band.height());
   std::size_t to = 0;
   for (int y = 0; y < band.height(); ++y) {
@@ -104,10 +116,12 @@ std::vector<Rect> choose_bands(comm::Communicator& communicator, const RenderReq
   std::vector<Rect> bands;
   if (communicator.rank() == 0) {
     const int ranks = std::max(1, request.launch.ranks);
-    const std::uint64_t row = static_cast<std::uint64_t>(request.picture_width()) *
-                              picture_bytes_per_pixel(request, ranks);
-    // Half of what is left: geometry that travels wants some, too.
-    const std::uint64_t fit = request.scene.file.limits.budget().left() / 2 / row;
+    const std::uint64_t row =
+        static_cast<std::uint64_t>(request.window.width()) *
+        (picture_bytes_per_pixel(request, ranks) + bytes_in_the_making(request, ranks));
+    const std::uint64_t left = request.scene.file.limits.budget().left();
+    // Half of it: what was freed is not all given back at once.
+    const std::uint64_t fit = (left - std::min(left, kCodecBytes)) / 2 / row;
     const auto rows = static_cast<int>(
         std::clamp<std::uint64_t>(fit / kLeastBand * kLeastBand, kLeastBand, 1 << 30));
     const bool in_bands = comes_in_bands(request);
@@ -157,7 +171,7 @@ BandedPicture render_bands(comm::Communicator& communicator, const Prepared& pre
       put_background_behind(request, prepared, prepared.camera, band, frame.picture);
       std::visit(
           [&](auto& picture) {
-            auto shown = cut(picture, band, columns_of(request, band), width);
+            auto shown = cut(std::move(picture), band, columns_of(request, band), width);
             picture = {};
             hash->append(as_codes(shown));
             if (rows)
