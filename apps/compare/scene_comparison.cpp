@@ -21,6 +21,7 @@ void check_scene(const CLI::App& command, const Session& session, SceneCompariso
     throw UsageError(fmt::format("compare {}: SCENE is missing", command.get_name()));
   check(session, options, options.render.scene.file.paths);
   parse_size(options.render);
+  complete_layout(options.render);
   options.render.behind = parse_background(options.render.background);
   if (session.under_mpi && command.count("--ranks") > 0)
     throw UsageError("--ranks: under mpirun the ranks are its processes");

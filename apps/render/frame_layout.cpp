@@ -107,7 +107,6 @@ std::vector<RenderOption> layout_options() {
           "ranks share the displays out, and a display is written by the rank that shows it, to "
           "IMAGE-COLUMN-ROW")
           .type_name("CxR")
-          .excludes("--crop")
           .reported("wall"),
       RenderOption::of(
           "--bezel", [](auto& r) -> auto& { return r.layout.bezel; }, group::kPicture,
@@ -140,6 +139,7 @@ void complete_layout(RenderRequest& request) {
   };
   const SamplingOptions& sampling = request.sampling;
   refuse(request.is_animation(), "an animation");
+  refuse(!layout.crop.empty(), "--crop");
   refuse(request.output == "-" && !layout.one_file, "-o -, unless with --one-file");
   refuse(sampling.noise > 0.0, "--noise, which looks at neighbouring pixels");
   refuse(sampling.denoise, "--denoise, which looks at neighbouring pixels");

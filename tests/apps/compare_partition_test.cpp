@@ -250,6 +250,29 @@ TEST(ComparePartition, CountsAlikeFromRunToRun) {
   }
 }
 
+// 12 displays of 60 x 40 pixels: rank 0 would be sent all but its own.
+TEST(ComparePartition, CountsPixelsOnTheirWayToAWall) {
+  const Folder folder;
+  const Ran ran =
+      run("delray compare partition gen:spheres:500 --wall 4x3 --size 60x40 --bezel 6x4 "
+          "--ranks 3,12 --regions 1 --partition mahd,interlaced --quick -o wall.html "
+          "--stats wall.json -q",
+          folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(folder.read("wall.json"));
+  ASSERT_EQ(json["wall"]["by_ranks"].size(), 2U);
+  for (const Json& row : json["wall"]["by_ranks"]) {
+    const int ranks = row["ranks"];
+    EXPECT_EQ(row["gathered_pixels_busiest"], 60 * 40 * (12 - 12 / ranks));
+    EXPECT_GE(row["at_home"]["predicted_over_share"], 1.0);
+  }
+  for (const Json& row : json["rows"]) {
+    EXPECT_GT(row["to_displays"]["pixels"], 0);
+    EXPECT_GE(row["to_displays"]["pixels"], row["to_displays"]["pixels_busiest"]);
+  }
+  EXPECT_NE(folder.read("wall.html").find("busiest rank sends and receives"), std::string::npos);
+}
+
 TEST(ComparePartition, RefusesWhatItCannotDo) {
   const Folder folder;
   for (const std::string arguments :

@@ -102,6 +102,8 @@ class PartitionRuns {
       draw_alone();
       for (const auto& [ranks, regions] : variants()) {
         spdlog::info("{} ranks, {} region{} each", ranks, regions, regions > 1 ? "s" : "");
+        if (request_.render.layout.wall && regions == request_.regions.front())
+          result_.walls.push_back(wall_of(ranks));
         for (const loadbalance::Partitioner* partitioner : partitions()) {
           steps_.stop_if_asked();
           compare(*partitioner, ranks, regions);
@@ -198,6 +200,22 @@ class PartitionRuns {
     return costs_;
   }
 
+  ComparedWall wall_of(int ranks) {
+    const loadbalance::Wall& wall = *request_.render.layout.wall;
+    const std::vector<loadbalance::Region> displays = loadbalance::displays_of(wall, ranks);
+    ComparedWall row;
+    row.ranks = ranks;
+    std::vector<loadbalance::Region> gathered = displays;
+    for (loadbalance::Region& display : gathered) display.owner = 0;
+    const loadbalance::Partition at_home = loadbalance::cut_by_displays(wall.frame(), displays);
+    row.gathered = loadbalance::pixel_traffic(at_home, gathered, ranks).busiest;
+    const loadbalance::Balance balance =
+        loadbalance::balance(at_home, costs(ranks * request_.regions.front()).boxes, ranks);
+    row.predicted_over_share = balance.over_share;
+    row.overlap = balance.overlap;
+    return row;
+  }
+
   void compare(const loadbalance::Partitioner& partitioner, int ranks, int regions) {
     const loadbalance::Costs& costs = this->costs(ranks * regions);
     ComparedPartition row;
@@ -215,6 +233,10 @@ class PartitionRuns {
       row.overlap = report.balance.overlap;
       row.predicted_imbalance = report.balance.imbalance;
       row.predicted_over_share = report.balance.over_share;
+      if (const auto& wall = request_.render.layout.wall) {
+        row.to_displays = loadbalance::pixel_traffic(report.partition,
+                                                     loadbalance::displays_of(*wall, ranks), ranks);
+      }
     }
     row.cut_seconds = spread_of(std::move(seconds));
     if (ranks <= kMostMeasuredRanks) {

@@ -12,6 +12,7 @@
 #include "apps/compare/spread.h"
 #include "image/image.h"
 #include "loadbalance/partition.h"
+#include "loadbalance/wall.h"
 
 namespace delray::apps {
 
@@ -53,6 +54,8 @@ struct ComparedPartition {
   Spread cut_seconds;
   double predicted_imbalance = 1, predicted_over_share = 1;  // of the costs that it was cut by
   std::optional<DrawnFrames> drawn;                          // sort-first
+  // Of a wall: pixels that are drawn by another rank than the one that shows them.
+  std::optional<loadbalance::PixelTraffic> to_displays;
   // Until the busiest rank is done if the screen is cut anew: what cutting takes and, predicted
   // from counts, the busiest rank.
   double finish_seconds = 0;
@@ -62,6 +65,16 @@ struct ComparedStrategy {
   std::string strategy;
   int ranks = 0;
   DrawnFrames drawn;
+};
+
+// A wall of displays shown by so many ranks. Pixels are counted, sent and received, of the rank
+// that has most of them, without those that bezels hide.
+struct ComparedWall {
+  int ranks = 0;
+  std::uint64_t gathered = 0;  // were all brought to rank 0, as without a wall
+  // Each display drawn by the rank that shows it (--draw-at-home): no pixel travels, and displays
+  // are as uneven as the scene makes them, as the costs foretell it.
+  double predicted_over_share = 1, overlap = 1;
 };
 
 // Lines that are drawn over the picture.
@@ -79,6 +92,7 @@ struct PartitionComparison {
   std::vector<ComparedPartition> rows;       // by ranks and regions
   std::vector<ComparedStrategy> strategies;  // with the first partition of the table
   StrategyScaling scaling;                   // of these and of more ranks
+  std::vector<ComparedWall> walls;           // by ranks, where there is a wall
   std::vector<ShownPartition> shown;         // of shown_ranks(request)
   image::Image8 picture;
   bool unfinished = false;

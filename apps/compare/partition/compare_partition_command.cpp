@@ -9,6 +9,7 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
+#include "apps/render/render_options.h"
 #include "comm/network.h"
 #include "raster/strategies.h"
 
@@ -50,6 +51,7 @@ void add_compare_partition(CLI::App& compare, Session& session) {
                                "(default: 2,4,8,16,32,64,256,1024, "
                                "the last not with --quick); of more than 64 work is "
                                "counted and times are predicted");
+  add_options({"--wall", "--bezel"}, *command, request->render);
   command
       ->add_option("--regions", request->regions,
                    "Numbers of regions per rank to compare, separated by commas (default: 1,2,4); "

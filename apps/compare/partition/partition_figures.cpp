@@ -52,7 +52,29 @@ Json row_of(const ComparedPartition& row) {
   one["predicted_finish_seconds"] = row.drawn ? Json(row.finish_seconds) : Json(nullptr);
   one["predicted"] = row.drawn ? frames_of(*row.drawn, row.ranks) : Json::array();
   one["image_hash"] = row.drawn ? Json(row.drawn->hash) : Json(nullptr);
+  if (row.to_displays) {
+    one["to_displays"] = {{"pixels", row.to_displays->pixels},
+                          {"pixels_busiest", row.to_displays->busiest}};
+  }
   return one;
+}
+
+Json walls_json(const PartitionRequest& request, const std::vector<ComparedWall>& walls) {
+  if (!request.render.layout.wall) return nullptr;
+  const loadbalance::Wall& wall = *request.render.layout.wall;
+  Json rows = Json::array();
+  for (const ComparedWall& row : walls) {
+    rows.push_back({{"ranks", row.ranks},
+                    {"gathered_pixels_busiest", row.gathered},
+                    {"at_home",
+                     {{"pixels", 0},
+                      {"predicted_over_share", row.predicted_over_share},
+                      {"overlap", row.overlap}}}});
+  }
+  return {{"columns", wall.columns},
+          {"rows", wall.rows},
+          {"bezel", {wall.bezel_x, wall.bezel_y}},
+          {"by_ranks", rows}};
 }
 
 Json row_of(const ComparedStrategy& row) {
@@ -85,6 +107,7 @@ Json partition_statistics(const PartitionRequest& request, const Prepared& prepa
           {"alone", {{"work", comparison.alone_work}, {"seconds", comparison.alone_seconds}}},
           {"rows", std::move(rows)},
           {"strategies", std::move(strategies)},
+          {"wall", walls_json(request, comparison.walls)},
           {"scaling", scaling_json(comparison.scaling)}};
 }
 
@@ -94,6 +117,9 @@ TextTable partition_table(const std::vector<ComparedPartition>& rows) {
                       "MB first", "MB next", "cut ms", "cut from..to ms", "busiest ms",
                       "busiest from..to ms", "time max/mean", "max/mean, predicted",
                       "over share, predicted"}};
+  const bool has_wall = !rows.empty() && rows.front().to_displays;
+  if (has_wall)
+    table.front().insert(table.front().end(), {"pixels to displays", "of the busiest rank"});
   for (const ComparedPartition& row : rows) {
     const auto of = [&](auto&& text) { return row.drawn ? text(*row.drawn) : std::string("-"); };
     const auto megabytes = [](std::uint64_t bytes) {
@@ -113,6 +139,9 @@ TextTable partition_table(const std::vector<ComparedPartition>& rows) {
          of([](const DrawnFrames& d) { return range_text(d.busiest); }),
          of([](const DrawnFrames& d) { return ratio_text(d.imbalance.median); }),
          ratio_text(row.predicted_imbalance), ratio_text(row.predicted_over_share)});
+    if (!has_wall) continue;
+    table.back().push_back(std::to_string(row.to_displays->pixels));
+    table.back().push_back(std::to_string(row.to_displays->busiest));
   }
   return table;
 }

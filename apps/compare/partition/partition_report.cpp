@@ -262,6 +262,32 @@ Html strategies(const PartitionComparison& comparison) {
              "core for each rank.");
 }
 
+Html wall(const PartitionRequest& request, const PartitionComparison& comparison) {
+  const PartitionRows rows = with_regions(comparison.rows, request.regions.front());
+  Table others;
+  others.columns = {{"ranks", true, true, Source::counted},
+                    {"gathered on rank 0, pixels", true, true, Source::counted},
+                    {"drawn at home: over share", true, true, Source::predicted},
+                    {"drawn at home: overlap", true, true, Source::predicted}};
+  for (const ComparedWall& row : comparison.walls) {
+    others.rows.push_back({std::to_string(row.ranks), std::to_string(row.gathered),
+                           fmt::format("{:.2f}", row.predicted_over_share),
+                           fmt::format("{:.2f}", row.overlap)});
+  }
+  return chart(rows, "Pixels that the busiest rank sends and receives", "ranks", "pixels",
+               Source::counted, Scale::logarithmic,
+               [](const ComparedPartition& row) -> std::optional<ChartPoint> {
+                 return point(ranks_of(row), static_cast<double>(row.to_displays->busiest));
+               }) +
+         table(others) +
+         paragraph(
+             "Regions are finer than displays and drawn wherever the partition says; each pixel "
+             "then "
+             "goes to the rank that shows it. Beside them: all pixels gathered on rank 0, and each "
+             "display drawn by the rank that shows it, where no pixel travels and the work is as "
+             "uneven as the scene.");
+}
+
 Html all_rows(const PartitionRequest& request, const PartitionRows& rows) {
   const TextTable text = partition_table(rows);
   Table result;
@@ -298,6 +324,7 @@ std::string partition_report(const Session& session, const PartitionRequest& req
   result.tabs.push_back({"Balance", balance(request, comparison)});
   if (!comparison.shown.empty()) result.tabs.push_back({"Regions", regions(request, comparison)});
   result.tabs.push_back({"Overlap and cutting", price(request, comparison)});
+  if (!comparison.walls.empty()) result.tabs.push_back({"Wall", wall(request, comparison)});
   result.tabs.push_back({"Strategies", strategies(comparison)});
   if (!comparison.scaling.rows.empty())
     result.tabs.push_back({"Beyond this machine", scaling_tab(comparison.scaling)});
