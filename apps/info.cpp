@@ -182,7 +182,8 @@ Json describe(const PointInput& asked, const OutputFile& output) {
   const std::string& path = asked.path;
   const InputLimits& limits = asked.limits;
   const files::MemoryBudget memory = limits.budget();
-  const InputKind kind = input_kind_of(asked);
+  // Several files are points, whatever else they have, as for triangulate.
+  const InputKind kind = asked.is_set() ? InputKind::points : input_kind_of(asked);
   if (kind != InputKind::scene) refuse_outside(path, limits);
   if (kind != InputKind::points && asked.choice.given()) {
     throw UsageError(fmt::format("options that choose points are not for {}", path));
@@ -191,6 +192,7 @@ Json describe(const PointInput& asked, const OutputFile& output) {
     case InputKind::picture:
       return describe_picture(path, memory);
     case InputKind::points:
+      tell_left_out(asked);
       return describe_summary(path, summarize(asked));
     case InputKind::mesh:
       if (delaunay::is_mesh_folder(path)) return describe_folder(path, memory);

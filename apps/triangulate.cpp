@@ -157,6 +157,22 @@ void require_distributed(const TriangulateOptions& options) {
   }
 }
 
+// Throws UsageError for what the method makes no use of.
+void require_used(const TriangulateOptions& options) {
+  const delaunay::Method& method = method_of(options.how);
+  const delaunay::Options defaults;
+  if (options.how.queue != defaults.queue && !method.queued) {
+    throw UsageError(fmt::format("--queue has no effect with method {}", method.name));
+  }
+  const bool by_areas =
+      options.distributed.empty() ||
+      find_entry(delaunay::distributed_methods(), options.distributed, "--distributed")
+          .triangulates_parts;
+  if (options.how.seed != defaults.seed && !method.seeded && by_areas) {
+    throw UsageError(fmt::format("--seed has no effect with method {}", method.name));
+  }
+}
+
 // Refuses what does not go together, and resolves every "auto".
 void check(const Session& session, TriangulateOptions& options) {
   if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
@@ -201,6 +217,8 @@ void check(const Session& session, TriangulateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
+  if (!options.max_error) require_used(options);
+  check_scratch(options.tiles);
   check_output_paths(options.output, options.statistics, options.input.paths);
 }
 
@@ -235,9 +253,7 @@ int run_tiled(Session& session, const TriangulateOptions& options) {
   Stopwatch watch;
   Seconds seconds;
   const delaunay::PointCloud points = load_points(options.input, options.how.dim);
-  if (!points.has_z && options.output.kind() == OutputKind::raster) {
-    throw UsageError("-o " + options.output.path + ": " + options.input.path + " has no z");
-  }
+  check_output_of(options.output, options.input, points);
   require_memory_to_triangulate(options.input, points.size(), options.how.dim);
   seconds.read = watch.lap();
   delaunay::TileOptions how;
@@ -339,6 +355,7 @@ int run(Session& session, TriangulateOptions options) {
     return kDone;
   }
   check(session, options);
+  tell_left_out(options.input);
   if (options.output.path == "-" && memory_beyond_limit(options.input, options.how.dim) > 0) {
     throw UsageError(
         "-o -: a mesh that is beyond --memory does not fit a stream; -o FOLDER/ takes it");
@@ -350,10 +367,10 @@ int run(Session& session, TriangulateOptions options) {
   Stopwatch watch;
   Seconds seconds;
   delaunay::PointCloud points = load_points(options.input, how.dim);
-  if (!points.has_z && (options.max_error || options.output.kind() == OutputKind::raster)) {
-    throw UsageError((options.max_error ? "--max-error: " : "-o " + options.output.path + ": ") +
-                     options.input.path + " has no z");
+  if (!points.has_z && options.max_error) {
+    throw UsageError("--max-error: " + options.input.path + " has no z");
   }
+  check_output_of(options.output, options.input, points);
   const std::size_t rows = points.size();
   require_memory_to_triangulate(options.input, rows, how.dim);
   seconds.read = watch.lap();
@@ -388,6 +405,7 @@ int run(Session& session, TriangulateOptions options) {
   }
   watch.lap();
   {
+    const parallel::AllowThreads allowed(how.threads);
     parallel::Arena arena(how.threads);
     add_output(arena.execute([&] {
       return write_triangulation(options.output, options.input, points, result, made.created_by);

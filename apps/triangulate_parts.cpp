@@ -20,6 +20,7 @@
 #include "delaunay/duplicates.h"
 #include "delaunay/open_points.h"
 #include "files/error.h"
+#include "files/memory_budget.h"
 #include "files/read_file.h"
 #include "parallel/arena.h"
 
@@ -48,6 +49,24 @@ std::string identity_of(const Session& session, const PartsTask& task) {
     identity += fmt::format("{} {}\n", option.what, option.value);
   }
   return identity;
+}
+
+// Throws FileError (memory) where ranks of this process would share its memory in parts of which
+// none does for a tile.
+void require_memory_of_ranks(const Session& session, const PartsTask& task) {
+  // What the program has, and what the smallest tiles take.
+  constexpr std::uint64_t kLeast = std::uint64_t{56} << 20;
+  const auto ranks = static_cast<std::uint64_t>(std::max(1, task.launch.ranks));
+  const std::uint64_t limit = task.input.limits.budget().limit();
+  const std::uint64_t least = files::resident_set() + kLeast;
+  if (session.under_mpi || ranks == 1 || limit / ranks >= least) return;
+  throw files::FileError(
+      files::Cause::memory, "--ranks", "",
+      fmt::format(
+          "{} ranks share the {} that are allowed (--memory), {} each, and a rank needs {}: "
+          "{} of them would do",
+          ranks, files::bytes_text(limit), files::bytes_text(limit / ranks),
+          files::bytes_text(least), std::max<std::uint64_t>(1, limit / least)));
 }
 
 // Large blocks go back to the system at once, so that what is resident is what is used.
@@ -106,11 +125,21 @@ std::uint64_t memory_beyond_limit(const PointInput& input, int dim) {
   return rows > left / bytes_per_point ? rows * bytes_per_point : 0;
 }
 
+void check_scratch(const TilesChoice& choice) {
+  std::error_code error;
+  if (choice.scratch.empty() || std::filesystem::is_directory(choice.scratch, error)) return;
+  const bool exists = std::filesystem::exists(choice.scratch, error);
+  throw files::FileError(
+      files::Cause::device, choice.scratch, "",
+      exists ? "is no folder (--scratch)" : "there is no such folder (--scratch)");
+}
+
 void triangulate_in_parts(Session& session, const PartsTask& task,
                           const std::function<void(const PartsMade&)>& done) {
   if (task.how.dim == 3 && !task.input.duplicates.empty()) {
     throw UsageError("--duplicates: points of 3D are equal only if their z is");
   }
+  require_memory_of_ranks(session, task);
   if (task.input.limits.memory > 0) return_memory_at_once();
   const std::string_view duplicates =
       task.input.duplicates.empty() ? "first" : task.input.duplicates.c_str();
@@ -131,6 +160,7 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
   if (task.to != nullptr) {
     options.memory -= std::min(options.memory / 2, task.kept_free);
     options.on_resume = [&](const auto& finished) { task.to->add_finished(finished); };
+    options.on_counted = [&](const delaunay::PointsFound& found) { task.to->check(found); };
     options.on_points = [&](comm::Communicator& communicator, const delaunay::PointsFound& found) {
       task.to->open(communicator, found);
     };
@@ -141,8 +171,11 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
   const parallel::AllowThreads allowed(std::max(1, task.launch.ranks) * task.how.threads);
   run_ranks(session, task.launch, {task.input.path}, [&](comm::Communicator& communicator) {
     Stopwatch watch;
-    const auto parts =
-        comm::all_or_none(communicator, comm::Phase::other, [&] { return open_parts(task.input); });
+    const auto parts = comm::all_or_none(communicator, comm::Phase::other, [&] {
+      auto opened = open_parts(task.input);
+      if (task.to != nullptr && opened->has_z() == false) task.to->require_heights(false);
+      return opened;
+    });
     delaunay::TileSink* const sink = task.to == nullptr ? nullptr : &task.to->sink();
     PartsMade made{triangulate_parts(communicator, *parts, options, sink), communicator.size(),
                    watch.lap(), 0, nullptr};

@@ -33,6 +33,9 @@ void add_tiles_options(CLI::App& command, TilesChoice& choice);
 // The folder for scratch files: the one that was named, that of the output, or the system's.
 std::string scratch_folder(const TilesChoice& choice, const std::string& output);
 
+// Throws FileError (device) where a folder was named that is not there.
+void check_scratch(const TilesChoice& choice);
+
 // What an input needs in memory to be triangulated in one piece, if that is more than it may have;
 // otherwise 0. As a rule without reading it.
 std::uint64_t memory_beyond_limit(const PointInput& input, int dim);

@@ -83,6 +83,8 @@ class MeshFolder {
   // and corners, if a coordinate is not finite or a corner is not one of its points; FileError
   // (memory). REQUIRES: piece < index().pieces.size().
   void read(std::size_t piece, PieceMesh& mesh) const;
+  // Throws FileError (input) unless each piece has the size that the index says. Opens all of them.
+  void check_sizes() const;
   // A piece by its file, for messages.
   std::string name(std::size_t piece) const;
 

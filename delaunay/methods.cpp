@@ -82,6 +82,7 @@ std::span<const Method> methods() {
        .locations = {},
        .splits = {},
        .orders = {},
+       .seeded = false,
        .triangulate = internal::divide_and_conquer,
        .mesh_2d = internal::divide_and_conquer_mesh},
       {.name = "cavity",
@@ -111,6 +112,7 @@ std::span<const Method> methods() {
        .locations = {"dag"},
        .splits = all_splits,
        .orders = {"brio", "random"},
+       .queued = true,
        .triangulate = internal::insert_in_batches},
       {.name = "pessimistic",
        .description =

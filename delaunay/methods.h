@@ -29,7 +29,9 @@ struct Method {
   // The choices that go with the method, the default first; empty if it leaves none.
   std::vector<std::string_view> locations, splits, orders;
   std::vector<std::string_view> deadlocks = {};
-  bool alone = false;  // works with one thread, whatever the options say
+  bool alone = false;   // works with one thread, whatever the options say
+  bool seeded = true;   // `seed` decides about something
+  bool queued = false;  // `queue` does
   // Leaves `created_by` empty where one thread made everything.
   // REQUIRES: options that resolve() returned.
   Result (*triangulate)(PointView<double> points, const Options& options);

@@ -12,11 +12,17 @@
 
 namespace delray::delaunay {
 
-// The files that `inputs` name, in the order given: files, folders (their files of points in the
-// order of their names, those of sub-folders left out) and, where there is no file of that name,
-// patterns with * and ? in the last name, as shells know them. "-" is standard input. Throws
-// FileError (input) for a folder without files of points and a pattern that nothing matches.
+// The files that `inputs` name, in the order given: files, folders (their files of points by
+// suffix, in the order of their names, without sub-folders and texts that do not begin as points)
+// and, where there is no file of that name, patterns with * and ? in the last name, as shells know
+// them. "-" is standard input. Throws FileError (input) for a folder without files of points and a
+// pattern that nothing matches.
 std::vector<std::filesystem::path> expand_inputs(std::span<const std::filesystem::path> inputs);
+
+// Of the folders among `inputs` the files with a suffix of points that expand_inputs() leaves out:
+// texts and JSON whose first rows are no points, such as notes beside them.
+std::vector<std::filesystem::path> left_out_of_folders(
+    std::span<const std::filesystem::path> inputs);
 
 // Opens files, folders and patterns as one input: rows are those of the points that `filter` keeps,
 // in the order of the input, as read_points() below gives them. Reads headers and tables only.

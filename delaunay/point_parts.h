@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "delaunay/points.h"
 
@@ -15,6 +16,8 @@ class PointParts {
  public:
   virtual ~PointParts() = default;
   virtual std::size_t parts() const = 0;
+  // Whether points have heights, where that is known without reading them.
+  virtual std::optional<bool> has_z() const { return std::nullopt; }
   // At least as many as read() gives: a bound for memory, not far off. REQUIRES: part < parts().
   virtual std::uint64_t most_rows(std::size_t part) const = 0;
   // Replaces `points` by those of the part, in the order of the input. Any thread, again and again,

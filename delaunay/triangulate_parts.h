@@ -46,6 +46,9 @@ struct PartsOptions {
   // the sink had all of them and does not get them again. On every rank, of that rank's regions.
   std::function<void(const std::function<bool(std::uint64_t region)>& finished)> on_resume =
       nullptr;
+  // Told by every rank once all points are counted, unless that was in an earlier run. Who throws
+  // ends the run before points go anywhere.
+  std::function<void(const PointsFound& points)> on_counted = nullptr;
   // Collective, once, after that and before the sink gets anything.
   std::function<void(comm::Communicator& communicator, const PointsFound& points)> on_points =
       nullptr;

@@ -28,6 +28,13 @@ std::vector<std::filesystem::path> named_files(const PointInput& input) {
   return {input.paths.begin(), input.paths.end()};
 }
 
+void tell_left_out(const PointInput& input) {
+  for (const std::filesystem::path& path : delaunay::left_out_of_folders(named_files(input))) {
+    spdlog::warn("{}: left out, as it does not begin with points (name the file to see why)",
+                 path.string());
+  }
+}
+
 bool is_picture_file(const std::filesystem::path& path, const files::MemoryBudget& memory) {
   // Of thousands of tiles four bytes each will do.
   constexpr std::string_view kLas = "LASF";

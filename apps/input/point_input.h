@@ -51,6 +51,8 @@ bool is_picture(const PointInput& input);
 
 // The files, folders and patterns as the user named them.
 std::vector<std::filesystem::path> named_files(const PointInput& input);
+// Says which files of folders are taken for notes beside the points.
+void tell_left_out(const PointInput& input);
 // Whether the file is a picture.
 bool is_picture_file(const std::filesystem::path& path, const files::MemoryBudget& memory);
 

@@ -32,6 +32,7 @@ class ElevationParts : public delaunay::PointParts {
     pixels_ = static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height);
   }
   std::size_t parts() const override { return 1; }
+  std::optional<bool> has_z() const override { return true; }
   std::uint64_t most_rows(std::size_t) const override { return pixels_; }
   void read(std::size_t, delaunay::PointCloud& points) const override {
     points = read_elevations(path_, options_, memory_);

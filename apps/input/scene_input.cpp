@@ -135,6 +135,7 @@ bool drawn_as_dots(const SceneInput& input, const delaunay::PointCloud& points, 
 }
 
 scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress) {
+  tell_left_out(input.file);
   const bool picture = is_picture(input.file);
   delaunay::PointCloud points = read_cloud(input.file);
   to_metres(points, input.file.path);
@@ -150,8 +151,33 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   return coloured(input, points, triangulation);
 }
 
+// Bytes that a triangle takes while its mesh becomes a scene, besides the mesh; measured.
+std::uint64_t bytes_of_scene(const SceneInput& input, std::uint64_t triangles) {
+  constexpr std::uint64_t kBytes = 160, kBytesApart = 230;  // that have vertices of their own
+  return triangles * (input.colour_by == "simplex" ? kBytesApart : kBytes);
+}
+
+// Asks for all that a folder will take before the first piece is read.
+void require_memory_for_folder(const SceneInput& input) {
+  const files::MemoryBudget memory = input.file.limits.budget();
+  const delaunay::MeshFolder folder(input.file.path, memory);
+  folder.check_sizes();  // so that the index can be believed
+  const delaunay::MeshIndex& index = folder.index();
+  const std::uint64_t corners = index.simplices * (static_cast<std::uint64_t>(index.dim) + 1);
+  const std::uint64_t triangles = index.dim == 2 ? index.simplices : index.hull_facets;
+  const std::uint64_t mesh = index.distinct * sizeof(glm::dvec3) + corners * sizeof(std::uint32_t);
+  memory.require(mesh + bytes_of_scene(input, triangles), input.file.path,
+                 fmt::format("a picture of {} simplices in memory", index.simplices));
+}
+
 scenes::Scene from_mesh(const SceneInput& input) {
-  delaunay::PointMesh mesh = delaunay::read_mesh(input.file.path, input.file.limits.budget());
+  const files::MemoryBudget memory = input.file.limits.budget();
+  if (delaunay::is_mesh_folder(input.file.path)) require_memory_for_folder(input);
+  delaunay::PointMesh mesh = delaunay::read_mesh(input.file.path, memory);
+  if (mesh.triangulation.dim == 2) {
+    memory.require(bytes_of_scene(input, mesh.triangulation.size()), input.file.path,
+                   fmt::format("scene of {} triangles", mesh.triangulation.size()));
+  }
   for (const std::string& warning : mesh.points.warnings) {
     spdlog::warn("{}: {}", input.file.path, warning);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/output/raster_output.h"
 #include "comm/agree_on_failure.h"
 
 namespace delray::apps {
@@ -17,12 +18,23 @@ void RanksOutput::add_finished(const std::function<bool(std::uint64_t tile)>& fi
   finished_.push_back(finished);
 }
 
+void RanksOutput::require_heights(bool has_z) const {
+  if (asked_.kind() != OutputKind::raster || has_z) return;
+  throw UsageError("-o " + asked_.path + ": the points have no z");
+}
+
+void RanksOutput::check(const delaunay::PointsFound& points) const {
+  require_heights(points.has_z);
+  if (asked_.kind() != OutputKind::raster) return;
+  OutputFacts facts = facts_;
+  facts.box = points.box;
+  raster_grid_of(asked_, facts);
+}
+
 void RanksOutput::open(comm::Communicator& communicator, const delaunay::PointsFound& points) {
   const bool first = communicator.rank() == 0;
   const auto open_here = [&] {
-    if (asked_.kind() == OutputKind::raster && !points.has_z) {
-      throw UsageError("-o " + asked_.path + ": the points have no z");
-    }
+    require_heights(points.has_z);
     OutputFacts facts = facts_;
     facts.box = points.box;
     facts.writer = communicator.rank();

@@ -25,7 +25,11 @@ class RanksOutput {
   // A rank of a resumed run tells which tiles of its own an earlier one has finished. Any thread,
   // before open(); `finished` must stay callable until then.
   void add_finished(const std::function<bool(std::uint64_t tile)>& finished);
-  // Collective, before the first simplex. Throws UsageError for a raster of points without heights.
+  // Throws what open() would, as far as that can be told of points that are counted.
+  void check(const delaunay::PointsFound& points) const;
+  // Throws UsageError for a raster of points without heights.
+  void require_heights(bool has_z) const;
+  // Collective, before the first simplex. Throws FileError and UsageError.
   void open(comm::Communicator& communicator, const delaunay::PointsFound& points);
   // Forwards to what was opened.
   delaunay::TileSink& sink() { return sink_; }

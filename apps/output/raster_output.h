@@ -8,7 +8,10 @@
 
 namespace delray::apps {
 
-// The raster that the output asks for, over all points. Throws UsageError.
+// The grid of the raster that the output asks for, over all points. Throws UsageError for more
+// cells than anybody needs, FileError (device) for more than the disk has room for.
+delaunay::RasterGrid raster_grid_of(const TriangulationOutput& output, const OutputFacts& facts);
+// The raster itself, without a height. Throws as above.
 std::unique_ptr<delaunay::TerrainRaster> make_raster(const TriangulationOutput& output,
                                                      const OutputFacts& facts);
 // Writes it, with its coordinate system. What statistics say of it.

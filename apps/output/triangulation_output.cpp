@@ -17,6 +17,7 @@
 #include "apps/output/raster_output.h"
 #include "delaunay/triangulation_pieces.h"
 #include "delaunay/write_mesh.h"
+#include "files/format.h"
 #include "files/output_path.h"
 
 namespace delray::apps {
@@ -27,6 +28,26 @@ constexpr const char* kNaturalNeighbour = "natural-neighbour";
 bool is_raster_name(const std::string& path) {
   constexpr std::array kSuffixes = {".tif", ".tiff"};
   return std::ranges::any_of(kSuffixes, [&](const char* suffix) { return path.ends_with(suffix); });
+}
+
+const delaunay::MeshWriter* mesh_writer_of(const std::string& path) {
+  const files::Format format = files::format_of_suffix(path);
+  const auto writers = delaunay::mesh_writers();
+  const auto found = std::ranges::find(writers, format, &delaunay::MeshWriter::format);
+  return found == writers.end() ? nullptr : &*found;
+}
+
+// Throws UsageError for a name that says nothing of what is wanted.
+void require_known_name(const std::string& path) {
+  if (path == "-" || mesh_writer_of(path) != nullptr) return;
+  std::string suffixes;
+  for (const delaunay::MeshWriter& writer : delaunay::mesh_writers()) {
+    suffixes += (suffixes.empty() ? "" : " ") + std::string(writer.suffixes);
+  }
+  throw UsageError(
+      fmt::format("-o {0}: the name ends neither as that of a mesh ({1}) nor as that of a raster "
+                  "of heights (.tif); -o {0}/ writes a folder of pieces",
+                  path, suffixes));
 }
 
 // Pieces and blocks that processes send to that of rank 0.
@@ -112,8 +133,11 @@ OutputFacts facts_of(const PointInput& input, const delaunay::PointCloud& points
 OutputKind TriangulationOutput::kind() const {
   if (path.empty()) return OutputKind::none;
   if (path == "-") return OutputKind::file;
-  if (delaunay::names_folder(path)) return OutputKind::folder;
-  return is_raster_name(path) ? OutputKind::raster : OutputKind::file;
+  if (path.ends_with('/')) return OutputKind::folder;
+  // A folder that is called as a file is none of ours, unless it is written with a slash.
+  if (is_raster_name(path)) return OutputKind::raster;
+  if (mesh_writer_of(path) != nullptr) return OutputKind::file;
+  return delaunay::names_folder(path) ? OutputKind::folder : OutputKind::file;
 }
 
 void add_output_options(CLI::App& command, TriangulationOutput& output) {
@@ -140,7 +164,7 @@ void add_output_options(CLI::App& command, TriangulationOutput& output) {
 
 void check_output(TriangulationOutput& output, PointInput& input, int dim) {
   const OutputKind kind = output.kind();
-  if (kind == OutputKind::file && output.path != "-") delaunay::mesh_writer_for(output.path);
+  if (kind == OutputKind::file) require_known_name(output.path);
   if (!output.pieces.empty() && kind != OutputKind::folder) {
     throw UsageError("--pieces: only a folder has pieces (-o FOLDER/)");
   }
@@ -165,6 +189,13 @@ void check_output_paths(const TriangulationOutput& output, const std::string& st
   check_outputs({{"--stats", statistics}}, inputs);
   // Whether an existing folder may be replaced is for its writer.
   [[maybe_unused]] const auto folder = files::output_folder(output.path);
+}
+
+void check_output_of(const TriangulationOutput& output, const PointInput& input,
+                     const delaunay::PointCloud& points) {
+  if (output.kind() != OutputKind::raster) return;
+  if (!points.has_z) throw UsageError("-o " + output.path + ": " + input.path + " has no z");
+  raster_grid_of(output, facts_of(input, points, 2));
 }
 
 std::unique_ptr<SimplexOutput> open_simplex_output(const TriangulationOutput& output,

@@ -46,6 +46,10 @@ void check_output(TriangulationOutput& output, PointInput& input, int dim);
 void check_output_paths(const TriangulationOutput& output, const std::string& statistics,
                         const std::vector<std::string>& inputs);
 
+// Throws what write_triangulation() would, as far as points tell: UsageError, FileError.
+void check_output_of(const TriangulationOutput& output, const PointInput& input,
+                     const delaunay::PointCloud& points);
+
 // Where simplices go as soon as they are final: the folder or the raster.
 class SimplexOutput {
  public:

@@ -232,6 +232,27 @@ TextLayout text_layout(const Input& start, bool with_counts) {
   return layout;
 }
 
+bool begins_as_points(const Input& start) {
+  for (const bool with_counts : {false, true}) {
+    try {
+      if (with_counts && !announced_counts(start)) continue;
+      const TextLayout layout = text_layout(start, with_counts);
+      const RowIndex first = index_rows(start, layout.begin, 1, is_data_row);
+      TextPlace place = first.blocks.at(0);
+      const std::size_t line = place.line;
+      Fields fields(start, take_line(start.content, place), line, layout.separator);
+      const TextRowParser parser(layout);
+      PointCloud cloud;
+      parser.resize(cloud, 1);
+      parser.parse(fields, 0, cloud);
+      return true;
+    } catch (const files::FileError&) {
+      continue;
+    }
+  }
+  return false;
+}
+
 TextRowParser::TextRowParser(const TextLayout& layout)
     : columns_(layout.columns), is_plane_(layout.is_plane) {
   while (!columns_.empty() && columns_.back() == kSkipped) columns_.pop_back();

@@ -35,6 +35,9 @@ std::optional<TextCounts> announced_counts(const Input& start);
 // or y, and where there is no row.
 TextLayout text_layout(const Input& start, bool with_counts);
 
+// Whether the first row of coordinates, or of counts, is one.
+bool begins_as_points(const Input& start);
+
 class TextRowParser {
  public:
   explicit TextRowParser(const TextLayout& layout);

@@ -80,6 +80,13 @@ class FileSource : public internal::ByteSource {
   std::uint64_t size_ = 0, at_ = 0;
 };
 
+void check_size(FileSource& source, const MeshPiece& entry, std::uint64_t bytes) {
+  if (source.size() == bytes) return;
+  source.fail("has " + std::to_string(source.size()) + " bytes; with " +
+              std::to_string(entry.points) + " points and " + std::to_string(entry.simplices) +
+              " simplices, as the index says, it would have " + std::to_string(bytes));
+}
+
 void check_content(const PieceMesh& mesh, const std::string& name) {
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const glm::dvec3& p = mesh.points[i].position;
@@ -100,7 +107,8 @@ MeshIndex read_index(const std::filesystem::path& folder, const files::MemoryBud
   const std::filesystem::path path = folder / kMeshIndex;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(path, ignored))) {
-    fail_file(folder.string(), "is a folder without an index, " + std::string(kMeshIndex));
+    fail_file(folder.string(),
+              "is a folder without " + std::string(kMeshIndex) + ", the index of a mesh in pieces");
   }
   const std::string text = files::read_file(path, memory);
   return parse_mesh_index({path.string(), text, memory});
@@ -142,16 +150,21 @@ std::string MeshFolder::name(std::size_t piece) const {
   return (path_ / index_.pieces[piece].file).string();
 }
 
+void MeshFolder::check_sizes() const {
+  const PieceCodec& codec = *internal::find_piece_codec(index_.format);
+  for (std::size_t piece = 0; piece < index_.pieces.size(); ++piece) {
+    const MeshPiece& entry = index_.pieces[piece];
+    FileSource source(descriptor_, entry.file, name(piece));
+    check_size(source, entry, codec.bytes({index_.dim, entry.points, entry.simplices}));
+  }
+}
+
 void MeshFolder::read(std::size_t piece, PieceMesh& mesh) const {
   const MeshPiece& entry = index_.pieces[piece];
   const PieceCodec& codec = *internal::find_piece_codec(index_.format);
   const PieceShape shape{index_.dim, entry.points, entry.simplices};
   FileSource source(descriptor_, entry.file, name(piece));
-  if (const std::uint64_t bytes = codec.bytes(shape); source.size() != bytes) {
-    source.fail("has " + std::to_string(source.size()) + " bytes; with " +
-                std::to_string(entry.points) + " points and " + std::to_string(entry.simplices) +
-                " simplices, as the index says, it would have " + std::to_string(bytes));
-  }
+  check_size(source, entry, codec.bytes(shape));
   const std::uint64_t needed = shape.points * sizeof(RowPoint) + shape.corners() * 4;
   const std::uint64_t held =
       mesh.points.capacity() * sizeof(RowPoint) + mesh.simplices.capacity() * 4;
@@ -166,15 +179,25 @@ PointMesh read_mesh_folder(const std::filesystem::path& path, const files::Memor
   const MeshFolder folder(path, memory);
   const MeshIndex& index = folder.index();
   const std::uint64_t corners = index.simplices * (static_cast<std::uint64_t>(index.dim) + 1);
+  // What the index says is believed of files that have the sizes for it.
+  folder.check_sizes();
+  std::uint64_t copies = 0, largest = 0;  // of points; bytes of a piece
+  for (const MeshPiece& each : index.pieces) {
+    copies += each.points;
+    largest = std::max(largest, each.points * sizeof(RowPoint) +
+                                    each.simplices * (static_cast<std::uint64_t>(index.dim) + 1) *
+                                        sizeof(std::uint32_t));
+  }
+  memory.require(
+      copies * (sizeof(RowPoint) + sizeof(glm::dvec3)) + corners * sizeof(std::uint32_t) + largest,
+      path.string(), "all pieces in memory");
   std::vector<RowPoint> points;
+  points.reserve(copies);
   PieceMesh piece;
-  // What the index says of sizes is true of the pieces that have been read.
   for (std::size_t i = 0; i < index.pieces.size(); ++i) {
     folder.read(i, piece);
-    memory.require(piece.points.size() * 2 * sizeof(RowPoint), path.string());
     points.insert(points.end(), piece.points.begin(), piece.points.end());
   }
-  memory.require(points.size() * sizeof(glm::dvec3) + corners * 4, path.string());
   std::ranges::sort(points, {}, &RowPoint::row);
   const auto same = [](const RowPoint& a, const RowPoint& b) { return a.row == b.row; };
   points.erase(std::unique(points.begin(), points.end(), same), points.end());

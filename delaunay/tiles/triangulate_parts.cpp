@@ -181,6 +181,9 @@ class PartsRun {
     expect_points(points_);
     comm::all_or_none(communicator_, comm::Phase::other, [&] {
       if (dim_ == 3 && !has_z_ && points_ > 0) throw std::invalid_argument("points have no z");
+      if (options_.on_counted && points_ > 0) {
+        options_.on_counted({points_, has_z_, counts_->grid.lattice().box()});
+      }
     });
     plan_ = comm::all_or_none(communicator_, comm::Phase::other,
                               [&] { return plan_memory(task(points_)); });

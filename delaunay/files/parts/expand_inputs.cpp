@@ -1,12 +1,16 @@
 // The files that inputs stand for: of folders those with a suffix of a reader of points, of
-// patterns those that match, both in the order of their names.
+// patterns those that match, both in the order of their names. Texts of a folder may be notes
+// beside the points: whether the first rows are points decides.
 #include <algorithm>
 #include <string>
 #include <string_view>
 
+#include "delaunay/files/line_ends.h"
 #include "delaunay/files/point_readers.h"
+#include "delaunay/files/text_layout.h"
 #include "delaunay/open_points.h"
 #include "files/error.h"
+#include "files/read_file.h"
 
 namespace delray::delaunay {
 namespace {
@@ -40,6 +44,30 @@ bool has_point_suffix(const fs::path& path) {
          std::ranges::find(kPointReaders, format, &PointReader::format) != kPointReaders.end();
 }
 
+// Whether a file whose format has no mark of its own begins as points do. One that cannot be read
+// does: its reader says why.
+bool begins_as_points(const fs::path& path) {
+  constexpr std::size_t kStart = 1 << 16;
+  const files::Format format = files::format_of_suffix(path);
+  if (format != files::Format::text && format != files::Format::json_points) return true;
+  std::string start;
+  try {
+    start = files::read_start(path, kStart);
+  } catch (const files::FileError&) {
+    return true;
+  }
+  if (start.empty()) return true;
+  if (format == files::Format::json_points) {
+    const std::size_t outer = start.find_first_not_of(" \t\r\n");
+    if (outer == std::string::npos || start[outer] != '[') return false;
+    const std::size_t inner = start.find_first_not_of(" \t\r\n", outer + 1);
+    return inner == std::string::npos || start[inner] == '[' || start[inner] == ']';
+  }
+  if (start.size() == kStart) start.resize(start.rfind('\n') + 1);
+  const std::string lines = with_line_feeds(format, std::move(start));
+  return begins_as_points(Input{path.string(), lines});
+}
+
 // The files of a folder that `wanted` holds for, by name; those that begin with a dot are hidden.
 template <class Wanted>
 void add_files(const fs::path& folder, const fs::path& shown, const Wanted& wanted,
@@ -60,16 +88,38 @@ void add_files(const fs::path& folder, const fs::path& shown, const Wanted& want
 
 }  // namespace
 
+std::vector<fs::path> left_out_of_folders(std::span<const fs::path> inputs) {
+  std::vector<fs::path> files;
+  for (const fs::path& input : inputs) {
+    std::error_code error;
+    if (input == "-" || !fs::is_directory(input, error)) continue;
+    add_files(
+        input, input,
+        [&](const fs::path& name) {
+          return has_point_suffix(name) && !begins_as_points(input / name);
+        },
+        files);
+  }
+  return files;
+}
+
 std::vector<fs::path> expand_inputs(std::span<const fs::path> inputs) {
   std::vector<fs::path> files;
   for (const fs::path& input : inputs) {
     const std::size_t before = files.size();
     std::error_code error;
     if (input != "-" && fs::is_directory(input, error)) {
-      add_files(input, input, has_point_suffix, files);
+      add_files(
+          input, input,
+          [&](const fs::path& name) {
+            return has_point_suffix(name) && begins_as_points(input / name);
+          },
+          files);
       if (files.size() == before) {
         throw files::FileError(files::Cause::input, input.string(), "",
-                               "the folder has no files of points");
+                               left_out_of_folders({&input, 1}).empty()
+                                   ? "the folder has no files of points"
+                                   : "the folder has texts, but none that begins with points");
       }
       continue;
     }

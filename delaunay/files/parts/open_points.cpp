@@ -47,6 +47,15 @@ class JoinedParts : public PointParts {
   explicit JoinedParts(std::vector<std::unique_ptr<PointParts>> inputs)
       : inputs_(std::move(inputs)), begins_(inputs_) {}
   std::size_t parts() const override { return begins_.parts(); }
+  std::optional<bool> has_z() const override {
+    bool known = true;
+    for (const auto& input : inputs_) {
+      const std::optional<bool> one = input->has_z();
+      if (one.value_or(false)) return true;
+      known = known && one.has_value();
+    }
+    return known ? std::optional(false) : std::nullopt;
+  }
   std::uint64_t most_rows(std::size_t part) const override {
     const auto [input, own] = begins_.find(part);
     return inputs_[input]->most_rows(own);
@@ -67,6 +76,9 @@ class FilesInParts : public PointParts {
       : files_(std::move(files)), begins_(files_), ranges_(files_.size()), filter_(filter) {}
 
   std::size_t parts() const override { return begins_.parts(); }
+  std::optional<bool> has_z() const override {
+    return std::ranges::any_of(files_, [](const auto& file) { return file->facts().has_z; });
+  }
 
   std::uint64_t most_rows(std::size_t part) const override {
     const auto [file, own] = begins_.find(part);
