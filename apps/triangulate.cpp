@@ -191,9 +191,6 @@ void check(const Session& session, TriangulateOptions& options) {
   if (output == OutputKind::raster && options.tiles.resume) {
     throw UsageError("--resume: a raster is made in one run");
   }
-  if (is_tiled(session, options) && options.output.interpolate == "natural-neighbour") {
-    throw UsageError("--interpolate natural-neighbour: not with several ranks or tiles");
-  }
   if (options.makers && (output != OutputKind::file || !options.output.path.ends_with(".vtu"))) {
     throw UsageError("--makers: only a mesh in a .vtu file can tell them");
   }
@@ -335,7 +332,7 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
 bool goes_in_parts(const Session& session, const TriangulateOptions& options) {
   const OutputKind output = options.output.kind();
   if (output == OutputKind::file || !options.distributed.empty() || options.makers ||
-      options.max_error || options.output.interpolate == "natural-neighbour") {
+      options.max_error) {
     return false;
   }
   if (is_tiled(session, options)) return true;

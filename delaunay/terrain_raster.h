@@ -33,6 +33,12 @@ RasterGrid raster_grid(const geometry::Box3d& box, double cell);
 // The grid that begins in the north-west corner of a box and covers it. Throws likewise.
 RasterGrid raster_grid_within(const geometry::Box3d& box, double cell);
 
+// A cell and its height.
+struct CellHeight {
+  std::uint64_t column, row;
+  float height;
+};
+
 // Where the cells of a raster are kept.
 struct TerrainRasterOptions {
   std::uint64_t memory = std::uint64_t{256} << 20;  // bytes of blocks that are in memory
@@ -57,8 +63,8 @@ class TerrainRaster : public TileSink {
   const RasterGrid& grid() const;
   // O(triangles + cells in them). Throws FileError (device). REQUIRES: piece.dim is 2.
   void take(const TilePiece& piece) override;
-  // The height of a cell.
-  void set(std::uint64_t column, std::uint64_t row, double height);
+  // Sets the heights of some cells, best of those that lie near each other. Any thread.
+  void set(std::span<const CellHeight> cells);
 
   // Calls f(block, its cells, NaN for those without a height) for blocks that have been touched,
   // and takes such cells of another raster over the same grid. Not while others take().
@@ -78,11 +84,5 @@ class TerrainRaster : public TileSink {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-// Sets every cell whose centre is in the triangulation to the weighted mean of its natural
-// neighbours' heights (Sibson 1981; interpolate.h). In parallel; the result does not depend on the
-// number of threads nor on the order of the simplices. O(n log n + cells).
-void fill_natural_neighbours(PointView<double> points, const Triangulation& triangulation,
-                             TerrainRaster& raster);
 
 }  // namespace delray::delaunay

@@ -70,6 +70,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/points", {"flip", "insertion", "mesh"}},
     {"delaunay/queries", {"mesh"}},
     {"delaunay/tiles", {"mesh"}},
+    {"delaunay/raster", {"mesh", "natural_neighbours", "tiles"}},
     {"delaunay/verify", {"files", "mesh"}},
     {"delaunay/distributed", {"insertion", "mesh", "predicates", "tiles"}},
     {"raster/shading", {"pipeline"}},

@@ -15,6 +15,7 @@
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
 #include "apps/output/raster_output.h"
+#include "delaunay/natural_neighbour_raster.h"
 #include "delaunay/triangulation_pieces.h"
 #include "delaunay/write_mesh.h"
 #include "files/format.h"
@@ -51,7 +52,7 @@ void require_known_name(const std::string& path) {
 }
 
 // Pieces and blocks that processes send to that of rank 0.
-enum OutputTag : comm::Tag { kTagPieces = 1, kTagBlock };
+enum OutputTag : comm::Tag { kTagPieces = 1, kTagBlock, kTagWaiting };
 
 class FolderOutput : public SimplexOutput {
  public:
@@ -84,11 +85,17 @@ class FolderOutput : public SimplexOutput {
 class RasterOutput : public SimplexOutput {
  public:
   RasterOutput(const TriangulationOutput& output, const OutputFacts& facts)
-      : output_(output), facts_(facts), raster_(make_raster(output, facts)) {}
-  delaunay::TileSink& sink() override { return *raster_; }
+      : output_(output), facts_(facts), raster_(make_raster(output, facts)) {
+    if (output.interpolate == kNaturalNeighbour) smooth_.emplace(*raster_);
+  }
+  delaunay::TileSink& sink() override {
+    if (smooth_) return *smooth_;
+    return *raster_;
+  }
   void keep_tiles(const std::function<bool(std::uint64_t tile)>&) override {}
   void keep_unfinished() override {}
-  // A message for each block: its number, then its cells; one that is empty ends them.
+  // A message for each block: its number, then its cells; one that is empty ends them. Then one of
+  // what waits for other processes' triangles.
   void send_to_first(comm::Communicator& communicator) override {
     raster_->for_blocks([&](std::uint64_t block, std::span<const float> cells) {
       comm::Buffer message(sizeof block + cells.size_bytes());
@@ -97,19 +104,27 @@ class RasterOutput : public SimplexOutput {
       communicator.send(0, kTagBlock, std::move(message));
     });
     communicator.send(0, kTagBlock, comm::Buffer());
+    if (!smooth_) return;
+    const std::vector<delaunay::WaitingTriangle> waiting = smooth_->give_waiting();
+    communicator.send(0, kTagWaiting,
+                      comm::Buffer::of(std::span<const delaunay::WaitingTriangle>(waiting)));
   }
   void receive(comm::Communicator& communicator, int from) override {
     std::vector<float> cells(delaunay::TerrainRaster::kBlock * delaunay::TerrainRaster::kBlock);
     for (;;) {
       const comm::Buffer message = communicator.receive(from, kTagBlock);
-      if (message.size() == 0) return;
+      if (message.size() == 0) break;
       std::uint64_t block = 0;
       std::memcpy(&block, message.data(), sizeof block);
       std::memcpy(cells.data(), message.data() + sizeof block, cells.size() * sizeof(float));
       raster_->merge(block, cells);
     }
+    if (!smooth_) return;
+    const comm::Buffer waiting = communicator.receive(from, kTagWaiting);
+    smooth_->add_waiting(waiting.as<delaunay::WaitingTriangle>());
   }
   Json commit(const delaunay::MeshFolderWriter::Counts&) override {
+    if (smooth_) smooth_->finish();
     return write_raster(output_, facts_, *raster_);
   }
 
@@ -117,6 +132,7 @@ class RasterOutput : public SimplexOutput {
   TriangulationOutput output_;
   OutputFacts facts_;
   std::unique_ptr<delaunay::TerrainRaster> raster_;
+  std::optional<delaunay::NaturalNeighbourRaster> smooth_;
 };
 
 OutputFacts facts_of(const PointInput& input, const delaunay::PointCloud& points, int dim) {

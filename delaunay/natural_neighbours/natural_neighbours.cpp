@@ -1,7 +1,7 @@
 // Natural neighbours of a place and their shares (Sibson 1981).
 //
 // The simplices whose circumspheres hold the place are collected from the one that contains it
-// outward (Bowyer 1981, Watson 1981). Their vertices are the neighbours, and shares_of_area() or
+// outward (Bowyer 1981, Watson 1981). Their vertices are the neighbours, and shares_in_plane() or
 // shares_of_volume() measure what each cell would lose, in doubles where an error bound allows it
 // and in wider numbers otherwise. The cost of the location, plus O(k log k) for k such simplices.
 //
@@ -20,6 +20,7 @@
 
 #include "delaunay/insertion/first_tetrahedron.h"
 #include "delaunay/natural_neighbours/natural_shares.h"
+#include "delaunay/natural_neighbours/plane_shares.h"
 #include "delaunay/predicates.h"
 
 namespace delray::delaunay {
@@ -28,7 +29,6 @@ namespace {
 using internal::kFacets;
 using internal::SpaceTriangle;
 using internal::Tetrahedron;
-using Triangle = internal::Triangle<double>;
 
 // The simplices whose spheres hold q, that of q first, and where each is among them.
 struct Cavity {
@@ -61,40 +61,22 @@ Cavity cavity_of(const Query& query, std::uint32_t first, const glm::dvec3& q) {
   return cavity;
 }
 
-// On an edge of the hull: what q is nearer to counts more.
-std::vector<NaturalNeighbour> shares_of_length(const Query& query, std::uint32_t a, std::uint32_t b,
-                                               const glm::dvec3& q) {
-  const glm::dvec3 start = query.position(a), end = query.position(b);
-  // Halves: a difference of doubles may be too large.
-  const glm::dvec3 length = glm::abs(0.5 * end - 0.5 * start);
-  const int k = length.x >= length.y && length.x >= length.z ? 0 : length.y >= length.z ? 1 : 2;
-  const double of_a =
-      std::clamp((0.5 * end[k] - 0.5 * q[k]) / (0.5 * end[k] - 0.5 * start[k]), 0.0, 1.0);
-  return {{a, of_a}, {b, 1 - of_a}};
-}
-
 std::vector<NaturalNeighbour> neighbours_in_plane(const Query& query, const Cavity& cavity,
                                                   const glm::dvec3& q) {
-  const glm::dvec2 place(q);
-  std::vector<Triangle> triangles;
+  std::vector<internal::CavityTriangle> triangles;
+  triangles.reserve(cavity.simplices.size());
   for (const std::uint32_t t : cavity.simplices) {
-    Triangle& triangle = triangles.emplace_back();
-    std::array<glm::dvec2, 3> p;
+    internal::CavityTriangle& triangle = triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
-      triangle.rows[k] = query.triangulation().vertices[3 * std::size_t{t} + k];
-      p[k] = glm::dvec2(query.position(triangle.rows[k]));
-      triangle.at[k] = internal::to_vector<double>(p[k]);
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (query.adjacency().neighbours[3 * std::size_t{t} + k] != Query::kNone) continue;
-      const std::size_t start = (k + 1) % 3, end = (k + 2) % 3;
-      if (orient2d(p[start], p[end], place) == 0) {
-        return shares_of_length(query, triangle.rows[start], triangle.rows[end], q);
+      const std::size_t corner = 3 * std::size_t{t} + k;
+      triangle.rows[k] = query.triangulation().vertices[corner];
+      triangle.at[k] = glm::dvec2(query.position(triangle.rows[k]));
+      if (query.adjacency().neighbours[corner] == Query::kNone) {
+        triangle.hull |= static_cast<std::uint8_t>(1U << k);
       }
     }
   }
-  auto shares = internal::shares_of_area<double>(triangles, internal::to_vector<double>(place));
-  return shares ? *std::move(shares) : internal::wide_shares_of_area(triangles, place);
+  return internal::shares_in_plane(triangles, glm::dvec2(q));
 }
 
 // The edge that is of one triangle only and on a line with q.
@@ -134,7 +116,10 @@ std::vector<NaturalNeighbour> neighbours_on_hull(const Query& query,
     }
   }
   if (const auto side = side_of(query, triangles, q)) {
-    return shares_of_length(query, side->first, side->second, q);
+    const auto vertex = [&](std::uint32_t row) {
+      return internal::PlacedVertex{row, query.position(row)};
+    };
+    return internal::shares_of_length(vertex(side->first), vertex(side->second), q);
   }
   return internal::wide_shares_in_plane(triangles, plane, q);
 }

@@ -1,55 +1,95 @@
-// Natural neighbours at the centres of cells. Sums of weights are rounded in the order in which
-// simplices are walked: they are sorted first, so that this depends on the triangulation alone.
-#include <algorithm>
-#include <array>
-#include <vector>
+// Natural neighbours at the centres of cells, of pieces and of what waits at their borders.
+#include "delaunay/natural_neighbour_raster.h"
 
-#include "delaunay/interpolate.h"
-#include "delaunay/query.h"
-#include "delaunay/terrain_raster.h"
-#include "parallel/parallel_for.h"
+#include <algorithm>
+#include <utility>
+
+#include "delaunay/raster/cavity_patch.h"
 
 namespace delray::delaunay {
 namespace {
 
-// The same triangles by their rows, each from its lowest row on.
-Triangulation sorted_triangles(const Triangulation& triangulation) {
-  std::vector<std::array<std::uint32_t, 3>> triangles(triangulation.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    std::copy_n(triangulation.vertices.data() + 3 * i, 3, triangles[i].begin());
-    std::rotate(triangles[i].begin(), std::ranges::min_element(triangles[i]), triangles[i].end());
+using internal::CavityPatch;
+using internal::PatchTriangles;
+
+PointView<double> view_of(std::span<const RowPoint> points) {
+  return {reinterpret_cast<const std::byte*>(points.data()), points.size(), sizeof(RowPoint)};
+}
+
+std::vector<WaitingTriangle> waiting_of(const CavityPatch& patch, std::span<const RowPoint> points,
+                                        std::span<const std::uint32_t> corners) {
+  std::vector<WaitingTriangle> waiting;
+  for (std::size_t t = 0; t < corners.size() / 3; ++t) {
+    if (!patch.is_needed(t)) continue;
+    WaitingTriangle& triangle = waiting.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) triangle.corners[k] = points[corners[3 * t + k]];
+    triangle.met = patch.met(t);
+    triangle.has_cells = patch.has_cells(t) ? 1 : 0;
   }
-  std::ranges::sort(triangles);
-  Triangulation sorted = triangulation;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    std::copy_n(triangles[i].begin(), 3, sorted.vertices.data() + 3 * i);
-  }
-  return sorted;
+  return waiting;
 }
 
 }  // namespace
 
+void NaturalNeighbourRaster::take(const TilePiece& piece) {
+  CavityPatch patch({view_of(piece.points), piece.points, piece.simplices}, {}, false);
+  patch.set_cells(raster_, {});
+  patch.mark_borders();
+  add_waiting(waiting_of(patch, piece.points, piece.simplices));
+}
+
+void NaturalNeighbourRaster::add_waiting(std::span<const WaitingTriangle> waiting) {
+  std::vector<WaitingTriangle> many;
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.insert(waiting_.end(), waiting.begin(), waiting.end());
+    if (waiting_.size() < most_waiting_) return;
+    many.swap(waiting_);
+  }
+  settle(std::move(many), false);
+}
+
+std::vector<WaitingTriangle> NaturalNeighbourRaster::give_waiting() {
+  return std::exchange(waiting_, {});
+}
+
+void NaturalNeighbourRaster::finish() { settle(give_waiting(), true); }
+
+void NaturalNeighbourRaster::settle(std::vector<WaitingTriangle> waiting, bool is_all) {
+  std::vector<RowPoint> points;
+  points.reserve(3 * waiting.size());
+  for (const WaitingTriangle& triangle : waiting) {
+    points.insert(points.end(), triangle.corners.begin(), triangle.corners.end());
+  }
+  std::ranges::sort(points, {}, &RowPoint::row);
+  const auto same_row = [](const RowPoint& a, const RowPoint& b) { return a.row == b.row; };
+  points.erase(std::unique(points.begin(), points.end(), same_row), points.end());
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint8_t> met, has_cells;
+  corners.reserve(3 * waiting.size());
+  for (const WaitingTriangle& triangle : waiting) {
+    for (const RowPoint& corner : triangle.corners) {
+      const auto at = std::ranges::lower_bound(points, corner.row, {}, &RowPoint::row);
+      corners.push_back(static_cast<std::uint32_t>(at - points.begin()));
+    }
+    met.push_back(static_cast<std::uint8_t>(triangle.met));
+    has_cells.push_back(static_cast<std::uint8_t>(triangle.has_cells));
+  }
+  waiting = {};
+  CavityPatch patch({view_of(points), points, corners}, std::move(met), is_all);
+  patch.set_cells(raster_, has_cells);
+  if (is_all) return;
+  patch.mark_borders();
+  const std::vector<WaitingTriangle> left = waiting_of(patch, points, corners);
+  const std::lock_guard lock(mutex_);
+  most_waiting_ = std::max(most_waiting_, 2 * left.size());
+  waiting_.insert(waiting_.end(), left.begin(), left.end());
+}
+
 void fill_natural_neighbours(PointView<double> points, const Triangulation& triangulation,
                              TerrainRaster& raster) {
-  if (triangulation.size() == 0) return;
-  const Triangulation sorted = sorted_triangles(triangulation);
-  const Query query(points, sorted);
-  std::vector<double> heights(points.size());
-  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = points(i, 2);
-  const RasterGrid& grid = raster.grid();
-  constexpr std::uint64_t kBlock = TerrainRaster::kBlock;
-  // Block by block, so that few of them are in memory at a time.
-  for (std::uint64_t block = 0; block < raster.block_columns() * raster.block_rows(); ++block) {
-    const std::uint64_t left = block % raster.block_columns() * kBlock;
-    const std::uint64_t top = block / raster.block_columns() * kBlock;
-    parallel::parallel_for(top, std::min(top + kBlock, grid.rows), 1, [&](std::uint64_t row) {
-      for (std::uint64_t column = left; column < std::min(left + kBlock, grid.columns); ++column) {
-        const auto height = interpolate_natural_neighbour(
-            query, heights, glm::dvec3(grid.x(column), grid.y(row), 0));
-        if (height) raster.set(column, row, *height);
-      }
-    });
-  }
+  CavityPatch patch({points, {}, triangulation.vertices}, {}, true);
+  patch.set_cells(raster, {});
 }
 
 }  // namespace delray::delaunay

@@ -131,12 +131,14 @@ void TerrainRaster::take(const TilePiece& piece) {
   }
 }
 
-void TerrainRaster::set(std::uint64_t column, std::uint64_t row, double height) {
+void TerrainRaster::set(std::span<const CellHeight> cells) {
   Pins pins(state_->store);
-  state_->for_run(pins, {row, column, column + 1},
-                  [&](BlockStore::Block& block, std::size_t cell, std::uint64_t) {
-                    block.set(cell, static_cast<float>(height));
-                  });
+  for (const CellHeight& each : cells) {
+    state_->for_run(pins, {each.row, each.column, each.column + 1},
+                    [&](BlockStore::Block& block, std::size_t cell, std::uint64_t) {
+                      block.set(cell, each.height);
+                    });
+  }
 }
 
 void TerrainRaster::for_blocks(

@@ -201,28 +201,5 @@ TEST(TerrainRaster, TakesTrianglesFarLargerThanItself) {
   for (const std::uint64_t at : {0U, 40U, 79U}) EXPECT_EQ(cell(raster, at, at), 5) << at;
 }
 
-TEST(TerrainRaster, NaturalNeighboursDoNotDependOnTheOrder) {
-  const PointCloud cloud = terrain("uniform", 200, 8);
-  Triangulation whole = triangulated(cloud);
-  const RasterGrid grid = raster_grid(box_of(cloud), 0.02);
-  TerrainRaster one(grid), other(grid);
-  parallel::Arena(1).execute([&] { fill_natural_neighbours(view(cloud.positions), whole, one); });
-  Random random(3);
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (std::size_t i = 0; i < whole.vertices.size(); i += 3) {
-    triangles.push_back({whole.vertices[i + 1], whole.vertices[i + 2], whole.vertices[i]});
-  }
-  std::ranges::shuffle(triangles, random);
-  whole.vertices.clear();
-  for (const auto& t : triangles) whole.vertices.insert(whole.vertices.end(), t.begin(), t.end());
-  parallel::Arena(3).execute([&] { fill_natural_neighbours(view(cloud.positions), whole, other); });
-  EXPECT_EQ(cells_of(one), cells_of(other));
-  const Query query(view(cloud.positions), whole);
-  std::vector<double> heights;
-  for (const glm::dvec3& p : cloud.positions) heights.push_back(p.z);
-  const auto expected = interpolate_natural_neighbour(query, heights, {grid.x(20), grid.y(20), 0});
-  EXPECT_NEAR(cell(one, 20, 20), *expected, 1e-5);
-}
-
 }  // namespace
 }  // namespace delray::delaunay

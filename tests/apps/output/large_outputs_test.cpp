@@ -150,6 +150,16 @@ TEST(Rasters, AreTheSameForEveryWayToTriangulate) {
   ASSERT_EQ(run(smooth + "2", folder.path()).exit_code, 0);
   EXPECT_TRUE(folder.read("c.tif") == one);
   EXPECT_FALSE(one == expected);
+  for (const std::string how : {"--tiles 1", "--tiles 7", "--ranks 3 --tiles 5", "--ranks 3",
+                                "--tiles 7 --memory 100MiB"}) {
+    ASSERT_EQ(run(smooth + "1 " + how, folder.path()).exit_code, 0) << how;
+    EXPECT_TRUE(folder.read("c.tif") == one) << how;
+  }
+  for (const std::string how : {"", " --tiles 7"}) {
+    const Ran ran = run(mpirun(3) + smooth + "1" + how, folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << how << ran.err;
+    EXPECT_TRUE(folder.read("c.tif") == one) << how;
+  }
   // It is an elevation picture, and so points again.
   const Ran info = run("delray info a.tif --stats -", folder.path());
   EXPECT_EQ(json::parse(info.out)["no_data"], -9999);
@@ -178,10 +188,8 @@ TEST(LargeOutputs, RefuseWhatDoesNotGoTogether) {
         "p.ply -o a.ply --interpolate linear", "p.ply -o a.tif --cell-size 1 --pieces vtu",
         "p.ply -o a.ply --pieces ply", "p.ply -o m/ --pieces obj",
         "p.ply -o m/ --pieces ply --dim 3", "p.ply -o m/ --max-error 1", "p.ply -o m/ --makers",
-        "p.ply -o a.tif --cell-size 1e-30",
-        "p.ply -o a.tif --cell-size 1 --interpolate natural-neighbour --tiles 3",
-        "p.ply -o a.ply --scratch .", "p.ply -o a.tif --cell-size 1 --resume",
-        "flat.xyz -o a.tif --cell-size 1"}) {
+        "p.ply -o a.tif --cell-size 1e-30", "p.ply -o a.ply --scratch .",
+        "p.ply -o a.tif --cell-size 1 --resume", "flat.xyz -o a.tif --cell-size 1"}) {
     const Ran ran = run("delray triangulate " + options, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << options << ": " << ran.err;
   }
