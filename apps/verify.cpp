@@ -8,29 +8,21 @@
 
 #include "apps/commands.h"
 #include "apps/input/point_input.h"
-#include "apps/input/point_parts_input.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
-#include "delaunay/cloud_parts.h"
+#include "apps/verify_folder.h"
 #include "delaunay/match_points.h"
 #include "delaunay/mesh_folder.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/simplify_terrain.h"
 #include "delaunay/verify.h"
-#include "delaunay/verify_pieces.h"
 #include "files/error.h"
+#include "parallel/arena.h"
 
 namespace delray::apps {
 namespace {
-
-struct VerifyOptions {
-  std::string mesh, statistics;
-  PointInput points;
-  int dim = 2;
-  bool canonical = false, complete = false;
-};
 
 // The way in which the vertices of the mesh were found among the points.
 struct Matched {
@@ -163,106 +155,7 @@ Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh
   };
 }
 
-Json statistics_of(const VerifyOptions& options, const delaunay::PiecesVerdict& verdict,
-                   const std::string& piece) {
-  return {
-      {"schema", "delray.verify/1"},
-      {"mesh", options.mesh},
-      {"points", options.points.path},
-      {"dim", options.dim},
-      {"result",
-       {{"points", verdict.points},
-        {"vertices", verdict.distinct},
-        {"matched", "rows"},
-        {"unused", 0},
-        {"heights", verdict.heights},
-        {"distinct", verdict.distinct},
-        {"simplices", verdict.simplices},
-        {"hash", to_string(verdict.hash)},
-        {"valid", verdict.valid},
-        {"delaunay", verdict.delaunay},
-        {"canonical", verdict.canonical},
-        {"piece", verdict.piece ? Json(piece) : Json(nullptr)},
-        {"simplex", verdict.simplex ? Json(*verdict.simplex) : Json(nullptr)},
-        {"reason", verdict.reason}}},
-  };
-}
-
-// What the index says of the mesh as a whole, which each of its pieces by itself does not show.
-std::string wrong_in_index(const delaunay::MeshIndex& index,
-                           const delaunay::PiecesVerdict& verdict) {
-  if (!verdict.valid) return {};
-  if (verdict.hash != index.hash) {
-    return fmt::format("the hash of its simplices is {}, not {} as its index says",
-                       to_string(verdict.hash), to_string(index.hash));
-  }
-  const auto differs = [](const char* what, std::uint64_t found, std::uint64_t told) {
-    return found == told
-               ? std::string()
-               : fmt::format("there are {} {}, not {} as its index says", found, what, told);
-  };
-  std::string wrong = differs("points", verdict.points, index.points);
-  if (wrong.empty()) wrong = differs("hull facets", verdict.hull_facets, index.hull_facets);
-  if (wrong.empty() && verdict.canonical && verdict.simplices > 0) {
-    wrong = differs("distinct points", verdict.distinct, index.distinct);
-  }
-  return wrong;
-}
-
-// A mesh in pieces, which are looked at one after the other.
-int run_folder(const VerifyOptions& options) {
-  if (options.complete) {
-    throw UsageError("--complete: a folder of pieces is always checked to have every point");
-  }
-  const delaunay::MeshFolder folder(options.mesh, options.points.limits.budget());
-  const delaunay::MeshIndex& index = folder.index();
-  if (index.dim != options.dim) {
-    throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,
-                                 options.mesh, index.dim));
-  }
-  const delaunay::PieceSource pieces{
-      index.dim, index.pieces.size(),
-      [&](std::size_t piece, delaunay::PieceMesh& mesh) { folder.read(piece, mesh); }};
-  const auto verify_with = [&](const delaunay::PointParts& points) {
-    return verify_pieces(pieces, points, options.mesh, options.points.limits.budget());
-  };
-  // Which of several heights counts is decided over all points; else they pass in parts.
-  const delaunay::PiecesVerdict verdict =
-      options.points.duplicates.empty() ? verify_with(*open_parts(options.points)) : [&] {
-        const delaunay::PointCloud points = load_points(options.points, options.dim);
-        return verify_with(delaunay::CloudParts(points));
-      }();
-  const std::string wrong = wrong_in_index(index, verdict);
-  const std::string piece = verdict.piece ? index.pieces[*verdict.piece].file : "";
-  const bool good = (options.canonical ? verdict.canonical : verdict.delaunay) && wrong.empty() &&
-                    verdict.other_height.empty();
-  write_statistics(options.statistics, statistics_of(options, verdict, piece));
-  if (!verdict.reason.empty()) {
-    const std::string where =
-        verdict.simplex ? fmt::format("{}: simplex {}: ", piece, *verdict.simplex) : "";
-    spdlog::log(good ? spdlog::level::info : spdlog::level::err, "{}: {}{}", options.mesh, where,
-                verdict.reason);
-  }
-  if (!wrong.empty()) spdlog::error("{}: {}", options.mesh, wrong);
-  if (!verdict.other_height.empty()) spdlog::error("{}: {}", options.mesh, verdict.other_height);
-  if (options.statistics != "-") {
-    fmt::print(
-        "valid: {}\ndelaunay: {}\ncanonical: {}\nchecked: {} simplices in {} pieces, {} points"
-        "{}\n",
-        verdict.valid ? "yes" : "no", verdict.delaunay ? "yes" : "no",
-        verdict.canonical ? "yes" : "no", verdict.simplices, index.pieces.size(), verdict.points,
-        verdict.heights.empty() ? "" : fmt::format("; heights are {}", verdict.heights));
-  }
-  return good ? kDone : kNotVerified;
-}
-
-int run(const VerifyOptions& options) {
-  if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
-  if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
-  std::vector<std::string> inputs = options.points.paths;
-  inputs.push_back(options.mesh);
-  check_outputs({{"--stats", options.statistics}}, inputs);
-  if (delaunay::is_mesh_folder(options.mesh)) return run_folder(options);
+int verify_file(const VerifyOptions& options) {
   delaunay::PointMesh mesh = delaunay::read_mesh(options.mesh, options.points.limits.budget());
   if (mesh.triangulation.dim != options.dim && mesh.triangulation.size() > 0) {
     throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,
@@ -310,6 +203,27 @@ int run(const VerifyOptions& options) {
   return good ? kDone : kNotVerified;
 }
 
+int run(Session& session, const VerifyOptions& options) {
+  if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
+  if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
+  std::vector<std::string> inputs = options.points.paths;
+  inputs.push_back(options.mesh);
+  check_outputs({{"--stats", options.statistics}}, inputs);
+  tell_left_out(options.points);
+  check(session, options.launch);
+  if (delaunay::is_mesh_folder(options.mesh)) return verify_folder(session, options);
+  refuse_parts_of_folders(options.mesh);
+  if (options.launch.ranks > 1 || session.processes > 1 || !options.scratch.empty()) {
+    throw UsageError(
+        "several ranks and --scratch: for a folder of pieces; a mesh in one file is looked at in "
+        "memory");
+  }
+  const int threads = threads_per_rank(options.launch, 1);
+  const parallel::AllowThreads allowed(threads);
+  parallel::Arena arena(threads);
+  return arena.execute([&] { return verify_file(options); });
+}
+
 }  // namespace
 
 void add_verify(CLI::App& program, Session& session) {
@@ -337,9 +251,16 @@ void add_verify(CLI::App& program, Session& session) {
                    "Verdict as JSON to this file; - for standard output")
       ->type_name("FILE")
       ->group(group::kOutput);
+  add_launch_options(*command, options->launch);
+  command
+      ->add_option("--scratch", options->scratch,
+                   "Folder for borders of pieces that memory does not hold (default: TMPDIR)")
+      ->group(group::kParallel)
+      ->type_name("DIR");
   add_point_options(*command, options->points);
   add_common_options(*command, session,
                      "verify mesh.ply --points points.las\n"
+                     "verify mesh/ --points tiles/*.laz --memory 2GiB\n"
                      "verify mesh.off --points points.csv --canonical --stats -\n"
                      "verify simplified.stl --points terrain.tif");
   command->callback([&session, options] {
@@ -350,7 +271,7 @@ void add_verify(CLI::App& program, Session& session) {
       points.pop_back();
       options->points.name_paths();
     }
-    session.run = [options] { return run(*options); };
+    session.run = [&session, options] { return run(session, *options); };
   });
 }
 

@@ -1,18 +1,28 @@
-// What a verifier keeps of the borders of pieces until their other sides come.
+// What lies on the borders of pieces, and what others have of it.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <set>
-#include <unordered_map>
-#include <utility>
+#include <span>
+#include <tuple>
+#include <vector>
 
+#include "delaunay/tiles.h"
 #include "delaunay/verify/findings.h"
 #include "delaunay/verify/local_checks.h"
 #include "delaunay/verify/place.h"
 
 namespace delray::delaunay::internal {
+
+template <int D>
+bool is_lower(const glm::vec<D, double>& a, const glm::vec<D, double>& b) {
+  for (int k = 0; k < D; ++k) {
+    if (a[k] != b[k]) return a[k] < b[k];
+  }
+  return false;
+}
 
 // A facet with nothing on its other side in its piece, and its simplex: the outward corners of the
 // facet (VerifiedMesh::outward()), then the corner opposite to it.
@@ -30,87 +40,87 @@ struct BorderFacet {
     if constexpr (D == 3) std::swap(p[0], p[1]);
     return p;
   }
+  // A sum, which does not depend on the order of the corners.
+  std::uint64_t key() const {
+    std::uint64_t sum = 0;
+    for (int k = 0; k < D; ++k) sum += bits_of_place<D>(corners[k]);
+    return mix_bits(sum);
+  }
 };
 
-// Facets until they are matched, by the places of their corners: whoever numbers the same place in
-// two ways has not made two of it.
-template <int D>
-class BorderFacets {
- public:
-  using Point = typename BorderFacet<D>::Point;
-  // Bytes of memory for each, measured.
-  static constexpr std::uint64_t kBytes = sizeof(BorderFacet<D>) + 48;
-
-  // The facet on the other side, which is forgotten with this one; none if it has not come. Facets
-  // with their simplex on the same side are kept side by side.
-  std::optional<BorderFacet<D>> match(const BorderFacet<D>& facet) {
-    const auto [key, odd] = key_of(facet);
-    const auto [begin, end] = facets_.equal_range(key);
-    for (auto at = begin; at != end; ++at) {
-      const Kept& kept = at->second;
-      if (kept.odd == odd || !same_places(kept.facet, facet)) continue;
-      const BorderFacet<D> found = kept.facet;
-      facets_.erase(at);
-      return found;
-    }
-    facets_.emplace(key, Kept{facet, odd});
-    return std::nullopt;
-  }
-  std::size_t size() const { return facets_.size(); }
-  template <class F>
-  void for_each(F&& f) const {
-    for (const auto& [key, kept] : facets_) f(kept.facet);
-  }
-
- private:
-  struct Kept {
-    BorderFacet<D> facet;
-    bool odd;
+// Pairs facets of the same places with their simplices on different sides: whoever numbers the same
+// place in two ways has not made two of it. Calls pair(first, second) for each, the first being
+// that of the simplex that comes first, and left(facet) for those that find none. Which are matched
+// where there are more than two depends on their simplices alone. O(n log n).
+template <int D, class Pair, class Left>
+void match_borders(std::span<const BorderFacet<D>> facets, Pair&& pair, Left&& left) {
+  struct Side {
+    std::array<typename BorderFacet<D>::Point, D> places;  // ascending
+    std::size_t facet;
+    bool odd;  // whether sorting has turned the facet round
   };
-  // A sum, which does not depend on the order; and whether sorting the corners turns the facet
-  // round.
-  static std::pair<std::uint64_t, bool> key_of(const BorderFacet<D>& facet) {
-    std::uint64_t key = 0;
-    for (int k = 0; k < D; ++k) key += bits_of_place<D>(facet.corners[k]);
-    bool odd = false;
-    for (int i = 0; i < D; ++i) {
-      for (int j = i + 1; j < D; ++j) odd ^= before(facet.corners[j], facet.corners[i]);
+  const auto order = [&](const Side& side) {
+    const BorderFacet<D>& facet = facets[side.facet];
+    return std::tie(facet.of.piece, facet.of.simplex, facet.rows);
+  };
+  std::vector<Side> sides(facets.size());
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    Side& side = sides[i];
+    std::copy_n(facets[i].corners.begin(), D, side.places.begin());
+    side.facet = i;
+    side.odd = false;
+    for (int a = 0; a < D; ++a) {
+      for (int b = a + 1; b < D; ++b) side.odd ^= is_lower<D>(side.places[b], side.places[a]);
     }
-    return {mix_bits(key), odd};
+    std::ranges::sort(side.places, is_lower<D>);
   }
-  static bool same_places(const BorderFacet<D>& a, const BorderFacet<D>& b) {
-    for (int i = 0; i < D; ++i) {
-      bool found = false;
-      for (int j = 0; j < D; ++j) found |= a.corners[i] == b.corners[j];
-      if (!found) return false;
+  std::ranges::sort(sides, [&](const Side& a, const Side& b) {
+    for (int k = 0; k < D; ++k) {
+      if (a.places[k] != b.places[k]) return is_lower<D>(a.places[k], b.places[k]);
     }
-    return true;
+    if (a.odd != b.odd) return b.odd;
+    return order(a) < order(b);
+  });
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    std::size_t odd = first;
+    while (last < sides.size() && sides[last].places == sides[first].places) {
+      odd += sides[last++].odd ? 0 : 1;
+    }
+    std::size_t even = first;
+    const std::size_t evens = odd;
+    for (; even < evens && odd < last; ++even, ++odd) {
+      const bool in_order = order(sides[even]) < order(sides[odd]);
+      const std::size_t one = sides[even].facet, other = sides[odd].facet;
+      pair(facets[in_order ? one : other], facets[in_order ? other : one]);
+    }
+    for (; even < evens; ++even) left(facets[sides[even].facet]);
+    for (; odd < last; ++odd) left(facets[sides[odd].facet]);
   }
+}
 
-  std::unordered_multimap<std::uint64_t, Kept> facets_;
+// A vertex on borders, which several pieces have, and a simplex that has it.
+struct BorderVertex {
+  RowPoint point;
+  PieceSimplex of;
 };
 
-// Vertices on borders, which several pieces have.
-template <int D>
-class BorderVertices {
- public:
+// Calls f(vertices) for those of each place, by ascending rows, heights and simplices. O(n log n).
+template <int D, class F>
+void for_places(std::span<BorderVertex> vertices, F&& f) {
   using Point = glm::vec<D, double>;
-  static constexpr std::uint64_t kBytes = sizeof(Point) + 48;
-
-  struct Known {
-    bool is_new;          // no piece had this row at this place
-    std::uint64_t first;  // the row that came first at the place
+  const auto place = [](const BorderVertex& vertex) {
+    return without_signed_zeros<D>(Point(vertex.point.position));
   };
-  Known add(const Point& place, std::uint64_t row) {
-    const auto [at, inserted] = rows_.try_emplace(place, row);
-    if (inserted || at->second == row) return {inserted, row};
-    return {others_.insert({row, at->second}).second, at->second};
+  std::ranges::sort(vertices, [&](const BorderVertex& a, const BorderVertex& b) {
+    const Point p = place(a), q = place(b);
+    if (p != q) return is_lower<D>(p, q);
+    return std::tie(a.point.row, a.point.position.z, a.of.piece, a.of.simplex) <
+           std::tie(b.point.row, b.point.position.z, b.of.piece, b.of.simplex);
+  });
+  for (std::size_t first = 0, last = 0; first < vertices.size(); first = last) {
+    while (last < vertices.size() && place(vertices[last]) == place(vertices[first])) ++last;
+    f(std::span<const BorderVertex>(vertices).subspan(first, last - first));
   }
-  std::size_t size() const { return rows_.size() + others_.size(); }
-
- private:
-  std::unordered_map<Point, std::uint64_t, PlaceHash<D>> rows_;
-  std::set<std::pair<std::uint64_t, std::uint64_t>> others_;  // further rows, with the first
-};
+}
 
 }  // namespace delray::delaunay::internal

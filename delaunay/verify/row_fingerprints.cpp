@@ -7,7 +7,11 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstring>
 #include <random>
+#include <span>
+
+#include "comm/collectives.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -16,7 +20,8 @@ constexpr int kRangeBits = 12;  // sums stay in the cache; the points of a range
 
 }  // namespace
 
-RowFingerprints::RowFingerprints(std::uint64_t rows, int first, int coordinates)
+RowFingerprints::RowFingerprints(comm::Communicator& communicator, std::uint64_t rows, int first,
+                                 int coordinates)
     : rows_(rows),
       shift_(std::max(0, static_cast<int>(std::bit_width(rows)) - kRangeBits)),
       first_(first),
@@ -25,6 +30,8 @@ RowFingerprints::RowFingerprints(std::uint64_t rows, int first, int coordinates)
     std::random_device device;
     for (std::uint8_t& byte : secret_) byte = static_cast<std::uint8_t>(device());
   }
+  const comm::Buffer shared = comm::broadcast(communicator, 0, comm::Buffer::of_value(secret_));
+  std::memcpy(secret_.data(), shared.data(), secret_.size());
   mesh_.resize((rows >> shift_) + 1);
   points_.resize(mesh_.size());
 }
@@ -40,6 +47,14 @@ void RowFingerprints::add(std::vector<Sum>& sums, const RowPoint& point) const {
   Sum& sum = sums[point.row >> shift_];
   std::atomic_ref(sum.low).fetch_add(hash.low64, std::memory_order_relaxed);
   std::atomic_ref(sum.high).fetch_add(hash.high64, std::memory_order_relaxed);
+}
+
+void RowFingerprints::add_up(comm::Communicator& communicator) {
+  for (std::vector<Sum>* const sums : {&mesh_, &points_}) {
+    comm::all_reduce(communicator, std::span(*sums), [](const Sum& a, const Sum& b) {
+      return Sum{a.low + b.low, a.high + b.high};
+    });
+  }
 }
 
 std::optional<RowFingerprints::Range> RowFingerprints::first_difference() const {
@@ -65,6 +80,34 @@ std::optional<std::uint64_t> RowMarks::next(std::uint64_t row) const {
     bits = words_[word];
   }
   return word * 64 + static_cast<std::uint64_t>(std::countr_zero(bits));
+}
+
+std::vector<std::uint64_t> RowMarks::words(std::uint64_t first, std::uint64_t last) const {
+  if (first >= last) return {};
+  std::vector<std::uint64_t> some(words_.begin() + static_cast<std::ptrdiff_t>(first / 64),
+                                  words_.begin() + static_cast<std::ptrdiff_t>((last + 63) / 64));
+  some.front() = some.front() >> first % 64 << first % 64;
+  if (last % 64 != 0) some.back() &= (std::uint64_t{1} << last % 64) - 1;
+  return some;
+}
+
+std::optional<std::uint64_t> RowMarks::merge(std::uint64_t first,
+                                             std::span<const std::uint64_t> words) {
+  std::optional<std::uint64_t> twice;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::uint64_t& mine = words_[first / 64 + i];
+    if (const std::uint64_t both = mine & words[i]; both != 0 && !twice) {
+      twice = (first / 64 + i) * 64 + static_cast<std::uint64_t>(std::countr_zero(both));
+    }
+    mine |= words[i];
+  }
+  return twice;
+}
+
+void RowMarks::keep(std::uint64_t first, std::uint64_t last) {
+  const std::vector<std::uint64_t> kept = words(first, last);
+  std::ranges::fill(words_, 0);
+  merge(first, kept);
 }
 
 }  // namespace delray::delaunay::internal

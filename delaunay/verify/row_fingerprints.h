@@ -8,8 +8,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "comm/communicator.h"
 #include "delaunay/tile_sink.h"
 #include "delaunay/triangulation.h"
 
@@ -17,12 +19,15 @@ namespace delray::delaunay::internal {
 
 class RowFingerprints {
  public:
-  // Of rows below `rows`; `coordinates` of places, from the one numbered `first`.
-  RowFingerprints(std::uint64_t rows, int first, int coordinates);
+  // Of rows below `rows`; `coordinates` of places, from the one numbered `first`. Collective: the
+  // secret is that of rank 0.
+  RowFingerprints(comm::Communicator& communicator, std::uint64_t rows, int first, int coordinates);
 
   // Adds a pair. Any thread.
   void add_mesh(const RowPoint& point) { add(mesh_, point); }
   void add_points(const RowPoint& point) { add(points_, point); }
+  // Collective: the sums of all ranks.
+  void add_up(comm::Communicator& communicator);
   // The first range of rows whose sums are different: from, and until before.
   struct Range {
     std::uint64_t first, last;
@@ -51,6 +56,13 @@ class RowMarks {
   bool is_marked(std::uint64_t row) const { return (words_[row / 64] >> row % 64 & 1) != 0; }
   // The first marked one from `row` on.
   std::optional<std::uint64_t> next(std::uint64_t row) const;
+
+  // The bits of rows [first, last), 64 to a word, those of row 64 i in word i, without others.
+  std::vector<std::uint64_t> words(std::uint64_t first, std::uint64_t last) const;
+  // Marks such bits as well, and returns the lowest row that was marked before, if any.
+  std::optional<std::uint64_t> merge(std::uint64_t first, std::span<const std::uint64_t> words);
+  // Forgets all but rows [first, last).
+  void keep(std::uint64_t first, std::uint64_t last);
 
  private:
   std::vector<std::uint64_t> words_;

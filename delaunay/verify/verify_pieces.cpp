@@ -1,11 +1,13 @@
-// Verification of a mesh in pieces, one after the other.
+// Verification of a mesh in pieces, one after the other, by one rank or by several.
 //
 // A piece is checked by itself as a whole mesh is: orientation, at most two simplices at a facet
-// and on opposite sides, empty balls across its inner facets. A facet that has no mate in its piece
-// waits in a table until a piece brings one of the same places with its simplex on the other side;
-// then the balls of the two are checked, and both are forgotten. What is left in the end is the
-// boundary, and must be one convex polygon or polyhedron (check_hull()). Rows are marked when they
-// become vertices, and sums of hashes show that the vertices are the points of their rows.
+// and on opposite sides, empty balls across its inner facets. Facets without a mate in their piece
+// are put together by the places of their corners when all pieces have been seen, and the balls of
+// those that meet are checked. What is left is the boundary, and must be one convex polygon or
+// polyhedron (check_hull()). Rows are marked when they become vertices, and sums of hashes show
+// that the vertices are the points of their rows. Ranks have runs of pieces; what lies on borders
+// goes to the rank of its hash. What is told is the first objection in the order of pieces, so that
+// it does not depend on ranks.
 //
 // Why that is enough.
 //
@@ -43,16 +45,22 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
+#include <optional>
 #include <thread>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "comm/agree_on_failure.h"
+#include "comm/collectives.h"
+#include "comm/threads.h"
 #include "delaunay/mesh/arguments.h"
 #include "delaunay/mesh/equal_points.h"
 #include "delaunay/verify/piece_borders.h"
 #include "delaunay/verify/vertex_rows.h"
+#include "parallel/arena.h"
 
 namespace delray::delaunay {
 namespace {
@@ -63,13 +71,16 @@ using internal::Findings;
 using internal::kAll;
 using internal::Objection;
 using internal::PieceSimplex;
+using internal::Share;
 using internal::VerifiedMesh;
 using internal::Words;
 
-// The pieces in their order, of which the next is read while one is looked at.
+// A rank's pieces in their order, of which the next is read while one is looked at.
 class PiecesAhead {
  public:
-  explicit PiecesAhead(const PieceSource& source) : source_(source) { start(0); }
+  PiecesAhead(const PieceSource& source, const Share& own) : source_(source), end_(own.end) {
+    start(own.begin);
+  }
   // The next piece, until the next call.
   const PieceMesh& next() {
     reader_.join();
@@ -84,30 +95,43 @@ class PiecesAhead {
     at_ = piece;
     reader_ = std::jthread([this, piece] {
       try {
-        if (piece < source_.pieces) source_.read(piece, coming_);
+        if (piece < end_) source_.read(piece, coming_);
       } catch (...) {
         error_ = std::current_exception();
       }
     });
   }
   const PieceSource& source_;
-  std::size_t at_ = 0;
+  std::size_t end_, at_ = 0;
   PieceMesh current_, coming_;
   std::exception_ptr error_;
   std::jthread reader_;  // ends before what it uses
 };
+
+// Half each for facets and vertices, of what ranks that are threads have together.
+internal::RecordsPlace place_of_borders(const comm::Communicator& communicator,
+                                        const VerifyPiecesOptions& options) {
+  constexpr std::uint64_t kShare = 16, kLeast = std::uint64_t{1} << 20;
+  const auto ranks = static_cast<std::uint64_t>(communicator.size());
+  return {std::max(options.memory.limit() / kShare / ranks, kLeast), options.scratch};
+}
 
 template <int D>
 class PiecesVerifier {
  public:
   using Point = glm::vec<D, double>;
 
-  PiecesVerifier(const PieceSource& pieces, const PointParts& points, const std::string& name,
-                 const files::MemoryBudget& memory)
-      : pieces_(pieces), name_(name), memory_(memory), rows_(pieces, points, name, memory) {}
+  PiecesVerifier(comm::Communicator& communicator, const PieceSource& pieces,
+                 const PointParts& points, const VerifyPiecesOptions& options)
+      : communicator_(communicator),
+        pieces_(pieces),
+        options_(options),
+        facets_(place_of_borders(communicator, options)),
+        rows_(communicator, pieces, points, options, place_of_borders(communicator, options)) {}
 
   PiecesVerdict run() {
     verdict_.valid = check();
+    findings_.agree(communicator_);
     verdict_.delaunay = verdict_.valid && !findings_.not_delaunay;
     verdict_.canonical = verdict_.delaunay && !findings_.not_canonical;
     const auto& objection = !verdict_.valid      ? findings_.invalid
@@ -115,6 +139,7 @@ class PiecesVerifier {
                                                  : findings_.not_canonical;
     if (objection) {
       verdict_.reason = objection->reason;
+      verdict_.unknown_vertex = objection->unknown_vertex;
       if (objection->of) {
         verdict_.piece = objection->of->piece;
         verdict_.simplex = objection->of->simplex;
@@ -124,14 +149,37 @@ class PiecesVerifier {
   }
 
  private:
-  // The table of contents. False as soon as the mesh is no triangulation of the points.
+  // The table of contents, of all ranks. False as soon as the mesh is no triangulation of the
+  // points.
   bool check() {
-    PiecesAhead ahead(pieces_);
-    for (std::size_t piece = 0; piece < pieces_.pieces; ++piece) {
-      if (!check_piece(static_cast<std::uint32_t>(piece), ahead.next())) return false;
-    }
+    if (!check_pieces()) return false;
     if (verdict_.simplices == 0) return rows_.check_flat(verdict_, findings_);
-    return check_boundary() && rows_.check_points(verdict_, findings_);
+    return rows_.put_together(findings_) && check_boundary(match_all_borders()) &&
+           rows_.check_points(verdict_, findings_);
+  }
+
+  // Each piece by itself, up to the first that is refused.
+  bool check_pieces() {
+    comm::all_or_none(communicator_, comm::Phase::other, [&] {
+      const Share own = internal::share_of(communicator_, pieces_.pieces);
+      PiecesAhead ahead(pieces_, own);
+      for (std::size_t piece = own.begin; piece < own.end; ++piece) {
+        if (!check_piece(static_cast<std::uint32_t>(piece), ahead.next())) return;
+      }
+    });
+    Findings refused;
+    refused.invalid = findings_.invalid;
+    refused.agree(communicator_);
+    findings_.invalid = refused.invalid;
+    // Up to the piece that is refused, as if one rank had looked at them.
+    const auto& at = findings_.invalid ? findings_.invalid->of : std::nullopt;
+    if (at && internal::share_of(communicator_, pieces_.pieces).begin > at->piece) {
+      verdict_.simplices = 0;
+      verdict_.hash = {};
+    }
+    verdict_.simplices = comm::all_reduce_value(communicator_, verdict_.simplices, std::plus<>());
+    verdict_.hash = comm::all_reduce_value(communicator_, verdict_.hash, std::plus<>());
+    return !findings_.invalid;
   }
 
   bool passes(std::uint32_t piece, const internal::Check& check) {
@@ -142,11 +190,11 @@ class PiecesVerifier {
     return findings_.refuse(of, check->reason);
   }
   void note_tie(PieceSimplex of, const std::string& row) {
-    Findings::note(findings_.not_canonical, of,
-                   row + " is on its " + Words<D>::ball + " and counts as inside");
+    Findings::note(findings_.not_canonical,
+                   {of, row + " is on its " + Words<D>::ball + " and counts as inside"});
   }
   void note_inside(PieceSimplex of, const std::string& row) {
-    Findings::note(findings_.not_delaunay, of, row + " is inside its " + Words<D>::ball);
+    Findings::note(findings_.not_delaunay, {of, row + " is inside its " + Words<D>::ball});
   }
 
   bool check_piece(std::uint32_t piece, const PieceMesh& content) {
@@ -169,7 +217,7 @@ class PiecesVerifier {
     note_facet(bad.inside, &PiecesVerifier::note_inside);
     note_facet(bad.tie, &PiecesVerifier::note_tie);
     add_hash(content);
-    match_border(piece, mesh);
+    add_border(piece, mesh);
     return rows_.add(piece, mesh, content.points, findings_);
   }
 
@@ -212,33 +260,70 @@ class PiecesVerifier {
     return border;
   }
 
-  void match_border(std::uint32_t piece, const VerifiedMesh<D>& mesh) {
+  void add_border(std::uint32_t piece, const VerifiedMesh<D>& mesh) {
     for (std::size_t facet = 0; facet < mesh.vertices.size(); ++facet) {
       if (mesh.facets.mates[facet] != FacetMates::kNone) continue;
       const BorderFacet<D> border = border_facet(piece, mesh, facet);
-      const auto mate = facets_.match(border);
-      if (!mate) {
-        memory_.require(internal::BorderFacets<D>::kBytes, name_, "borders of pieces");
-        continue;
-      }
-      // As seen from the one that came first.
-      const auto corners = mate->simplex();
-      const Point& opposite = border.corners[D];
-      const int sign = internal::in_ball(corners, opposite);
-      if (sign > 0) note_inside(mate->of, internal::row(border.rows[D]));
-      if (sign == 0 && internal::counts_as_inside(corners, opposite)) {
-        note_tie(mate->of, internal::row(border.rows[D]));
-      }
+      facets_.add(border.key(), border);
     }
   }
 
+  // As seen from the one that comes first.
+  void check_ball(const BorderFacet<D>& first, const BorderFacet<D>& second) {
+    const auto corners = first.simplex();
+    const Point& opposite = second.corners[D];
+    const int sign = internal::in_ball(corners, opposite);
+    if (sign > 0) note_inside(first.of, internal::row(second.rows[D]));
+    if (sign == 0 && internal::counts_as_inside(corners, opposite)) {
+      note_tie(first.of, internal::row(second.rows[D]));
+    }
+  }
+
+  // Collective: rank 0 gets the facets without a mate in any piece.
+  std::vector<BorderFacet<D>> match_all_borders() {
+    std::vector<BorderFacet<D>> left;
+    facets_.exchange(
+        communicator_,
+        [&](std::span<const BorderFacet<D>> some) {
+          internal::match_borders<D>(
+              some,
+              [&](const BorderFacet<D>& first, const BorderFacet<D>& second) {
+                check_ball(first, second);
+              },
+              [&](const BorderFacet<D>& facet) {
+                options_.memory.require(2 * sizeof facet, options_.name, "boundary of the mesh");
+                left.push_back(facet);
+              });
+        },
+        [] {});
+    verdict_.hull_facets =
+        comm::all_reduce_value(communicator_, std::uint64_t{left.size()}, std::plus<>());
+    if (communicator_.size() == 1) return left;
+    std::vector<BorderFacet<D>> all;
+    for (const comm::Buffer& some :
+         comm::gather(communicator_, 0, comm::Buffer::of(std::span<const BorderFacet<D>>(left)))) {
+      const auto received = some.template as<BorderFacet<D>>();
+      all.insert(all.end(), received.begin(), received.end());
+    }
+    return all;
+  }
+
+  // Collective.
+  bool check_boundary(std::vector<BorderFacet<D>>&& facets) {
+    Findings refused;
+    comm::all_or_none(communicator_, comm::Phase::other, [&] {
+      if (communicator_.rank() == 0) check_hull_of(std::move(facets), refused);
+    });
+    refused.agree(communicator_);
+    if (!refused.invalid) return true;
+    findings_.invalid = refused.invalid;
+    return false;
+  }
+
   // A mesh of the simplices at the boundary, whose other facets count as matched.
-  bool check_boundary() {
-    verdict_.hull_facets = facets_.size();
-    memory_.require(facets_.size() * (sizeof(BorderFacet<D>) + 64), name_, "boundary of the mesh");
-    std::vector<BorderFacet<D>> facets;
-    facets_.for_each([&](const BorderFacet<D>& facet) { facets.push_back(facet); });
-    // The table's own order is none to tell of the first by.
+  void check_hull_of(std::vector<BorderFacet<D>>&& facets, Findings& findings) {
+    options_.memory.require(facets.size() * (sizeof(BorderFacet<D>) + 64), options_.name,
+                            "boundary of the mesh");
     std::ranges::sort(facets, [](const BorderFacet<D>& a, const BorderFacet<D>& b) {
       return std::tie(a.of.piece, a.of.simplex, a.rows) <
              std::tie(b.of.piece, b.of.simplex, b.rows);
@@ -267,16 +352,16 @@ class PiecesVerifier {
       mesh.facets.mates[i * (D + 1) + D] = FacetMates::kNone;
     }
     const internal::Check check = check_hull(mesh);
-    if (!check) return true;
+    if (!check) return;
     std::optional<PieceSimplex> of;
     if (check->simplex != kAll) of = facets[check->simplex].of;
-    return findings_.refuse(of, check->reason);
+    findings.refuse(of, check->reason);
   }
 
+  comm::Communicator& communicator_;
   const PieceSource& pieces_;
-  const std::string& name_;
-  const files::MemoryBudget& memory_;
-  internal::BorderFacets<D> facets_;
+  const VerifyPiecesOptions& options_;
+  internal::BorderRecords<BorderFacet<D>> facets_;
   internal::VertexRows<D> rows_;
   PiecesVerdict verdict_;
   Findings findings_;
@@ -284,11 +369,20 @@ class PiecesVerifier {
 
 }  // namespace
 
+PiecesVerdict verify_pieces(comm::Communicator& communicator, const PieceSource& pieces,
+                            const PointParts& points, const VerifyPiecesOptions& options) {
+  internal::check_dim(pieces.dim);
+  return pieces.dim == 2 ? PiecesVerifier<2>(communicator, pieces, points, options).run()
+                         : PiecesVerifier<3>(communicator, pieces, points, options).run();
+}
+
 PiecesVerdict verify_pieces(const PieceSource& pieces, const PointParts& points,
                             const std::string& name, const files::MemoryBudget& memory) {
-  internal::check_dim(pieces.dim);
-  return pieces.dim == 2 ? PiecesVerifier<2>(pieces, points, name, memory).run()
-                         : PiecesVerifier<3>(pieces, points, name, memory).run();
+  PiecesVerdict verdict;
+  comm::run_threads(1, parallel::arena_threads(), [&](comm::Communicator& communicator) {
+    verdict = verify_pieces(communicator, pieces, points, {name, memory, {}});
+  });
+  return verdict;
 }
 
 }  // namespace delray::delaunay

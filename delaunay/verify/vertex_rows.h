@@ -2,15 +2,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "comm/communicator.h"
+#include "delaunay/verify/border_records.h"
 #include "delaunay/verify/findings.h"
 #include "delaunay/verify/piece_borders.h"
 #include "delaunay/verify/row_fingerprints.h"
@@ -18,21 +18,38 @@
 
 namespace delray::delaunay::internal {
 
+// The share of a rank in something that is counted: [begin, end).
+struct Share {
+  std::size_t begin = 0, end = 0;
+};
+inline Share share_of(const comm::Communicator& communicator, std::size_t n) {
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  const auto begin = [&](std::size_t i) { return n / ranks * i + std::min(i, n % ranks); };
+  return {begin(rank), begin(rank + 1)};
+}
+
 // Takes pieces first, all of them, then looks at the points. Why it suffices: 6. of
-// verify_pieces.cpp.
+// verify_pieces.cpp. Each rank keeps the rows of its own parts of the points once all ranks have
+// told what they have met.
 template <int D>
 class VertexRows {
  public:
   using Point = glm::vec<D, double>;
 
-  VertexRows(const PieceSource& pieces, const PointParts& points, const std::string& name,
-             const files::MemoryBudget& memory);
+  // Collective.
+  VertexRows(comm::Communicator& communicator, const PieceSource& pieces, const PointParts& points,
+             const VerifyPiecesOptions& options, const RecordsPlace& borders);
 
   // Takes the vertices of a piece, whose facets are matched within it. False where one of its rows
-  // is not one of the points, or a vertex of simplices elsewhere.
+  // is not one of the points.
   bool add(std::uint32_t piece, const VerifiedMesh<D>& mesh, std::span<const RowPoint> points,
            Findings& findings);
 
+  // Collective, all of these, with the same result on all ranks.
+  //
+  // Puts together what ranks have added. False where a row is a vertex of simplices apart.
+  bool put_together(Findings& findings);
   // Compares with the points, and counts them. False where a vertex is not the point of its row, or
   // a point is no vertex and equals none.
   bool check_points(PiecesVerdict& verdict, Findings& findings);
@@ -47,20 +64,30 @@ class VertexRows {
     RowPoint vertex;
     PieceSimplex of;
   };
+  static constexpr std::uint64_t kNoRow = ~std::uint64_t{0};
 
-  static std::uint64_t most_rows(const PointParts& points);
+  std::uint64_t most_rows() const;
   static std::vector<std::uint8_t> kinds_of_vertices(const VerifiedMesh<D>& mesh);
-  static PieceSimplex simplex_with(std::uint32_t piece, const VerifiedMesh<D>& mesh,
-                                   std::size_t vertex);
   void add_pair(const RowPoint& point);
+  void note_doubled(std::uint64_t row);
+  void find_own_rows();
+  void exchange_marks();
+  void take_places(std::span<BorderVertex> vertices, Findings& findings,
+                   std::vector<std::uint64_t>& rows);
+  void mark_rows(std::vector<std::uint64_t>& rows);
+  bool refuse_doubled(std::uint64_t row, Findings& findings);
+  std::uint64_t least_of_all(std::uint64_t row) const;
   bool check_unused(const std::vector<RowPoint>& unused, Findings& findings);
   void compare_heights(PiecesVerdict& verdict);
   std::optional<Found> find_different(const Range& range, int compared, std::string& reason);
   template <class F>
-  void for_points(F&& f) const;
+  void for_points(const Share& parts, std::uint64_t first_row, F&& f) const;
   template <class F>
   void for_vertices(F&& f) const;
+  template <class Wanted>
+  std::optional<Found> first_vertex(Wanted&& wanted) const;
 
+  comm::Communicator& communicator_;
   const PieceSource& pieces_;
   const PointParts& points_;
   const std::string& name_;
@@ -68,7 +95,10 @@ class VertexRows {
   std::uint64_t rows_;  // at least as many as there are points
   RowMarks marks_;
   RowFingerprints places_, heights_;
-  BorderVertices<D> border_;
+  BorderRecords<BorderVertex> border_;
+  std::atomic<std::uint64_t> doubled_{kNoRow};  // the lowest row that is met twice
+  std::vector<std::uint64_t> begins_;           // of the rows that each rank has, and the end
+  std::uint64_t own_first_ = 0;                 // row of the first own point
   std::atomic<bool> mesh_has_heights_{false};
   bool points_have_heights_ = false;
 };

@@ -137,5 +137,44 @@ TEST(VerifyCommand, TakesVerticesInAnyOrder) {
   EXPECT_EQ(run("delray verify h.off --points p.xyz", folder.path()).exit_code, 4);
 }
 
+// By threads and by processes, of good folders and of bad ones.
+TEST(VerifyCommand, RanksSayTheSameOfFolders) {
+  const Folder folder;
+  ASSERT_EQ(run("delray generate points uniform -n 3000 --dim 3 -o p.ply && "
+                "delray generate points uniform -n 3000 --dim 3 --seed 2 -o other.ply && "
+                "delray generate points uniform -n 2990 --dim 3 -o fewer.ply && "
+                "delray triangulate p.ply -o m/ --tiles 9 && "
+                "delray triangulate p.ply -o s/ --dim 3 --tiles 5 && "
+                "delray triangulate p.ply -o m.ply",
+                folder.path())
+                .exit_code,
+            0);
+  const struct {
+    std::string what;
+    int exit_code;
+  } cases[] = {{"m --points p.ply --canonical", 0}, {"s --points p.ply --dim 3", 0},
+               {"m --points other.ply", 3},         {"m --points fewer.ply", 3},
+               {"s --points other.ply --dim 3", 3}, {"m --points p.ply fewer.ply", 4}};
+  for (const auto& each : cases) {
+    const std::string command = "delray verify " + each.what;
+    const Ran one = run(command, folder.path());
+    EXPECT_EQ(one.exit_code, each.exit_code) << each.what << ": " << one.err;
+    const std::string numbers = run(command + " --stats -", folder.path()).out;
+    for (const std::string& how :
+         {command + " --ranks 3 --threads 1", mpirun(2) + command + " --threads 1 --scratch ."}) {
+      const Ran ran = run(how, folder.path());
+      EXPECT_EQ(ran.exit_code, each.exit_code) << how << ": " << ran.err;
+      EXPECT_EQ(ran.out, one.out) << how;
+      if (!how.starts_with("delray")) continue;
+      EXPECT_EQ(ran.err, one.err) << how;
+      EXPECT_EQ(run(how + " --stats -", folder.path()).out, numbers) << how;
+    }
+  }
+  // A vertex that is no point is bad input of a file, too.
+  EXPECT_EQ(run("delray verify m.ply --points other.ply", folder.path()).exit_code, 3);
+  EXPECT_EQ(run("delray verify m.ply --points p.ply --ranks 2", folder.path()).exit_code, 2);
+  EXPECT_EQ(run("delray verify m.ply --points p.ply --threads 2", folder.path()).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace delray::tests

@@ -1,11 +1,14 @@
 // Pieces of a mesh in memory, as tests make and spoil them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <map>
 #include <mutex>
 #include <vector>
 
+#include "comm/threads.h"
 #include "delaunay/mesh_folder.h"
 #include "delaunay/triangulate.h"
 #include "delaunay/triangulation_pieces.h"
@@ -49,6 +52,22 @@ inline delaunay::PiecesVerdict verify(const std::vector<delaunay::PieceMesh>& pi
   const delaunay::PieceSource source{
       dim, pieces.size(), [&](std::size_t i, delaunay::PieceMesh& mesh) { mesh = pieces[i]; }};
   return delaunay::verify_pieces(source, points, "mesh", files::MemoryBudget::unlimited());
+}
+
+// As above, by several ranks, which must all find the same.
+inline delaunay::PiecesVerdict verify_by_ranks(int ranks,
+                                               const std::vector<delaunay::PieceMesh>& pieces,
+                                               int dim, const delaunay::PointParts& points) {
+  const delaunay::PieceSource source{
+      dim, pieces.size(), [&](std::size_t i, delaunay::PieceMesh& mesh) { mesh = pieces[i]; }};
+  const delaunay::VerifyPiecesOptions options{"mesh", files::MemoryBudget::unlimited(), {}};
+  std::vector<delaunay::PiecesVerdict> verdicts(static_cast<std::size_t>(ranks));
+  comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+    verdicts[static_cast<std::size_t>(communicator.rank())] =
+        delaunay::verify_pieces(communicator, source, points, options);
+  });
+  for (const delaunay::PiecesVerdict& each : verdicts) EXPECT_EQ(each, verdicts[0]);
+  return verdicts[0];
 }
 
 }  // namespace delray::tests

@@ -65,6 +65,11 @@ TEST(VerifyPieces, AcceptsWhatTriangulationsGive) {
           EXPECT_TRUE(verdict.canonical) << verdict.reason;
           EXPECT_EQ(verdict.reason, "");
           EXPECT_EQ(verdict.points, cloud.size());
+          if (pieces == 7) {
+            EXPECT_EQ(tests::verify_by_ranks(3, tests::in_pieces(cloud, dim, pieces), dim,
+                                             SomeParts(cloud, 3)),
+                      verdict);
+          }
           if (whole.size() == 0) continue;
           EXPECT_EQ(verdict.distinct, whole.distinct);
           EXPECT_EQ(verdict.simplices, whole.size());
@@ -240,6 +245,10 @@ TEST(VerifyPieces, FindsAThousandOfAThousandFaultsAtSeams) {
       const PiecesVerdict verdict = tests::verify(bad, dim, SomeParts(cloud, 3));
       EXPECT_FALSE(verdict.canonical) << what << ", seed " << seed << ", fault " << fault;
       EXPECT_NE(verdict.reason, "") << what << ", seed " << seed;
+      // Several ranks find it, and say the same.
+      const int ranks = 2 + done % 4;
+      EXPECT_EQ(tests::verify_by_ranks(ranks, bad, dim, SomeParts(cloud, 3)), verdict)
+          << what << ", seed " << seed << ", fault " << fault << ", " << ranks << " ranks";
       ++kinds[what];
     }
   }
@@ -302,6 +311,42 @@ TEST(VerifyPieces, KeepsRowsAbove32Bits) {
   const PiecesVerdict verdict = tests::verify(pieces, 2, CloudParts(cloud));
   EXPECT_FALSE(verdict.valid);
   EXPECT_NE(verdict.reason.find("is not a row of the points"), std::string::npos);
+  EXPECT_TRUE(verdict.unknown_vertex);
+}
+
+TEST(VerifyPieces, TellsOfVerticesThatAreNoPoints) {
+  const PointCloud cloud = generate_points("uniform", 300, 2, 1);
+  Pieces pieces = tests::in_pieces(cloud, 2, 6);
+  for_copies(pieces, 7, 0, true, [](RowPoint& point) { point.position.x += 1e-9; });
+  const PiecesVerdict verdict = tests::verify(pieces, 2, CloudParts(cloud));
+  EXPECT_FALSE(verdict.valid);
+  EXPECT_TRUE(verdict.unknown_vertex) << verdict.reason;
+  EXPECT_NE(verdict.reason.find("row 7 is at "), std::string::npos) << verdict.reason;
+  EXPECT_EQ(tests::verify_by_ranks(4, pieces, 2, SomeParts(cloud, 7)), verdict);
+}
+
+// A copy of a vertex in another piece may not have a height of its own.
+TEST(VerifyPieces, ComparesHeightsOfAllCopies) {
+  const PointCloud cloud = generate_points("uniform", 200, 3, 1);
+  Pieces pieces = tests::in_pieces(cloud, 2, 5);
+  const Seam seam = seams(pieces, 2).front();
+  const auto rows = rows_of(pieces[seam.piece], 2, seam.simplex);
+  for (const std::uint64_t row : rows_of(pieces[seam.other_piece], 2, seam.other_simplex)) {
+    if (!rows.contains(row)) continue;
+    for_copies(pieces, row, seam.other_piece, false, [](RowPoint& p) { p.position.z += 1; });
+    break;
+  }
+  const PiecesVerdict verdict = tests::verify(pieces, 2, CloudParts(cloud));
+  EXPECT_EQ(verdict.heights, "different");
+  EXPECT_EQ(tests::verify_by_ranks(3, pieces, 2, SomeParts(cloud, 2)), verdict);
+}
+
+// More ranks than pieces, and than parts of points.
+TEST(VerifyPieces, TakesMoreRanksThanThereIsWork) {
+  const PointCloud cloud = generate_points("gauss", 100, 3, 1);
+  const Pieces pieces = tests::in_pieces(cloud, 3, 3);
+  EXPECT_EQ(tests::verify_by_ranks(9, pieces, 3, CloudParts(cloud)),
+            tests::verify(pieces, 3, CloudParts(cloud)));
 }
 
 }  // namespace
