@@ -2,6 +2,7 @@
 #include "apps/report/chart.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include <algorithm>
 #include <cmath>
@@ -260,6 +261,18 @@ Html line_chart(const LineChart& chart) {
           ? ""
           : fmt::format(" <span class=\"source\">{}</span>", name_of(chart.series[0].source)),
       plot.html(), plot.legend(mixed));
+}
+
+Html logarithmic_chart(const std::string& title, const std::string& x_label,
+                       const std::string& y_label, std::vector<Series> series) {
+  LineChart chart;
+  chart.title = title;
+  chart.x_label = x_label;
+  chart.y_label = y_label;
+  chart.x_scale = chart.y_scale = Scale::logarithmic;
+  chart.ticks_at_points = true;
+  chart.series = std::move(series);
+  return line_chart(chart);
 }
 
 }  // namespace delray::apps::report

@@ -45,4 +45,9 @@ std::vector<bool> strong_series(const LineChart& chart);
 // not above 0. O(points^2).
 Html line_chart(const LineChart& chart);
 
+// A chart with logarithmic axes and ticks where there are points: of what depends on ranks, threads
+// or points.
+Html logarithmic_chart(const std::string& title, const std::string& x_label,
+                       const std::string& y_label, std::vector<Series> series);
+
 }  // namespace delray::apps::report

@@ -17,15 +17,14 @@
 #include "parallel/progress.h"
 #include "tests/delaunay/hard_points.h"
 #include "tests/delaunay/hard_points_3d.h"
+#include "tests/delaunay/summed_parts.h"
 
 namespace delray::delaunay {
 namespace {
 
 using Run = std::function<void(int ranks, const std::function<void(comm::Communicator&)>&)>;
 
-struct AllParts {
-  Hash128 hash;
-  std::uint64_t distinct = 0, hull_facets = 0, simplices = 0;
+struct AllParts : tests::SummedParts {
   DistributedStatistics statistics;
 };
 
@@ -39,23 +38,8 @@ Run in_any_order(std::uint64_t seed) {
   };
 }
 
-// Ranks begin with runs of rows, or with every so-many-th point.
-std::vector<RowPoint> part_of(const std::vector<glm::dvec3>& positions, int rank, int ranks,
-                              bool runs) {
-  std::vector<RowPoint> points;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const std::size_t n = static_cast<std::size_t>(ranks);
-    const std::size_t owner = runs ? i * n / positions.size() : i % n;
-    if (owner == static_cast<std::size_t>(rank)) points.push_back({positions[i], i});
-  }
-  return points;
-}
-
 void add(const DistributedTriangulation& made, AllParts& all) {
-  all.hash = all.hash + hash(made.part.dim, made.part.vertices);
-  all.distinct += made.part.distinct;
-  all.hull_facets += made.part.hull_facets;
-  all.simplices += made.part.vertices.size() / (static_cast<std::size_t>(made.part.dim) + 1);
+  all.add(made.part);
   all.statistics.messages += made.statistics.messages;
   all.statistics.bytes += made.statistics.bytes;
   all.statistics.shared_simplices += made.statistics.shared_simplices;
@@ -65,9 +49,10 @@ AllParts triangulate_on(int ranks, const std::vector<glm::dvec3>& positions,
                         const DistributedOptions& options, const Run& run, bool runs = true) {
   AllParts all;
   std::mutex mutex;
+  const std::vector<RowPoint> points = tests::with_rows(positions);
   run(ranks, [&](comm::Communicator& communicator) {
     const DistributedTriangulation made = triangulate_distributed(
-        communicator, part_of(positions, communicator.rank(), ranks, runs), options);
+        communicator, tests::points_of_rank(points, communicator.rank(), ranks, runs), options);
     const std::lock_guard lock(mutex);
     add(made, all);
   });
@@ -78,10 +63,7 @@ void expect_as_in_core(const std::vector<glm::dvec3>& positions, int dim, const 
   Options in_core;
   in_core.dim = dim;
   const Triangulation expected = triangulate(view(positions), in_core).triangulation;
-  EXPECT_EQ(to_string(got.hash), to_string(hash(expected)));
-  EXPECT_EQ(got.simplices, expected.size());
-  EXPECT_EQ(got.distinct, expected.distinct);
-  EXPECT_EQ(got.hull_facets, expected.hull_facets);
+  tests::expect_equal(got, expected);
 }
 
 template <class F>

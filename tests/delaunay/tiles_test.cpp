@@ -15,22 +15,17 @@
 #include "delaunay/methods.h"
 #include "delaunay/triangulate.h"
 #include "loadbalance/partition.h"
+#include "tests/delaunay/summed_parts.h"
 
 namespace delray::delaunay {
 namespace {
 
-struct Whole {
-  Hash128 hash;
-  std::uint64_t distinct = 0, hull_facets = 0, simplices = 0;
+using tests::with_rows;
+
+struct Whole : tests::SummedParts {
   std::vector<TileStatistics> tiles;
   int rounds = 0;
 };
-
-std::vector<RowPoint> with_rows(const std::vector<glm::dvec3>& positions, std::uint64_t first) {
-  std::vector<RowPoint> points;
-  for (const glm::dvec3& position : positions) points.push_back({position, first + points.size()});
-  return points;
-}
 
 // Every rank has some of the points: runs of rows, or each so-many-th one.
 Whole triangulate_on(int ranks, const std::vector<RowPoint>& points, const TileOptions& options,
@@ -38,18 +33,10 @@ Whole triangulate_on(int ranks, const std::vector<RowPoint>& points, const TileO
   Whole whole;
   std::mutex mutex;
   comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
-    const auto rank = static_cast<std::size_t>(communicator.rank());
-    const auto size = static_cast<std::size_t>(ranks);
-    std::vector<RowPoint> mine;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if ((runs ? i * size / points.size() : i % size) == rank) mine.push_back(points[i]);
-    }
-    const TiledTriangulation part = triangulate_tiles(communicator, mine, options);
+    const TiledTriangulation part = triangulate_tiles(
+        communicator, tests::points_of_rank(points, communicator.rank(), ranks, runs), options);
     const std::lock_guard lock(mutex);
-    whole.hash = whole.hash + hash(part.dim, part.vertices);
-    whole.distinct += part.distinct;
-    whole.hull_facets += part.hull_facets;
-    whole.simplices += part.vertices.size() / (static_cast<std::size_t>(part.dim) + 1);
+    whole.add(part);
     whole.tiles.insert(whole.tiles.end(), part.tiles.begin(), part.tiles.end());
     whole.rounds = part.rounds;
   });
@@ -64,10 +51,7 @@ void expect_whole(const std::vector<glm::dvec3>& positions, int dim, int ranks,
   in_core.dim = dim;
   const Triangulation expected = triangulate(view(positions), in_core).triangulation;
   const Whole got = triangulate_on(ranks, with_rows(positions, 0), options, runs);
-  EXPECT_EQ(to_string(got.hash), to_string(hash(expected)));
-  EXPECT_EQ(got.simplices, expected.size());
-  EXPECT_EQ(got.distinct, expected.distinct);
-  EXPECT_EQ(got.hull_facets, expected.hull_facets);
+  tests::expect_equal(got, expected);
 }
 
 TEST(Tiles, GiveTheTriangulationOfAllPoints) {

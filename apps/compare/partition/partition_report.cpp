@@ -217,17 +217,12 @@ Html strategies(const PartitionComparison& comparison) {
   const std::vector<ComparedStrategy>& all = comparison.strategies;
   const auto lines = [&](const std::string& title, const std::string& label, Source source,
                          auto&& of) {
-    LineChart chart;
-    chart.title = title;
-    chart.x_label = "ranks";
-    chart.y_label = label;
-    chart.x_scale = chart.y_scale = Scale::logarithmic;
-    chart.ticks_at_points = true;
-    chart.series = series_by(
-        all, [](const ComparedStrategy& row) { return row.strategy; },
-        [](const std::string& name) { return look_of(Family::strategy, name); }, source,
-        [&](const ComparedStrategy& row) -> std::optional<ChartPoint> { return of(row); });
-    return line_chart(chart);
+    return logarithmic_chart(
+        title, "ranks", label,
+        series_by(
+            all, [](const ComparedStrategy& row) { return row.strategy; },
+            [](const std::string& name) { return look_of(Family::strategy, name); }, source,
+            [&](const ComparedStrategy& row) -> std::optional<ChartPoint> { return of(row); }));
   };
   const auto x = [](const ComparedStrategy& row) { return static_cast<double>(row.ranks); };
   if (all.empty()) return paragraph("No strategy was run.");

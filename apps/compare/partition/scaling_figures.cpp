@@ -48,20 +48,16 @@ std::vector<std::string> strategies_of(const StrategyScaling& scaling) {
 
 Html lines(const StrategyScaling& scaling, const std::string& title, const std::string& label,
            auto&& of) {
-  LineChart chart;
-  chart.title = title;
-  chart.x_label = "ranks";
-  chart.y_label = label;
-  chart.x_scale = chart.y_scale = Scale::logarithmic;
-  chart.ticks_at_points = true;
-  chart.series = series_by(
-      scaling.rows, [](const ScaledStrategy& row) { return row.strategy; },
-      [](const std::string& name) { return look_of(Family::strategy, name); }, Source::predicted,
-      [&](const ScaledStrategy& row) -> std::optional<ChartPoint> {
-        const double x = static_cast<double>(row.ranks), y = of(row);
-        return ChartPoint{x, y, y, y};
-      });
-  return line_chart(chart);
+  return logarithmic_chart(
+      title, "ranks", label,
+      series_by(
+          scaling.rows, [](const ScaledStrategy& row) { return row.strategy; },
+          [](const std::string& name) { return look_of(Family::strategy, name); },
+          Source::predicted,
+          [&](const ScaledStrategy& row) -> std::optional<ChartPoint> {
+            const double x = static_cast<double>(row.ranks), y = of(row);
+            return ChartPoint{x, y, y, y};
+          }));
 }
 
 Html charts(const StrategyScaling& scaling, const char* network) {

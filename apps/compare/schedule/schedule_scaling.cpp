@@ -27,20 +27,16 @@ std::vector<std::string> schedules_in(const ScheduleComparison& comparison) {
 
 Html lines(const ScheduleComparison& comparison, const std::string& title, const std::string& label,
            auto&& of) {
-  LineChart chart;
-  chart.title = title;
-  chart.x_label = "ranks";
-  chart.y_label = label;
-  chart.x_scale = chart.y_scale = Scale::logarithmic;
-  chart.ticks_at_points = true;
-  chart.series = series_by(
-      comparison.rows, [](const ComparedSchedule& row) { return row.schedule; },
-      [](const std::string& name) { return look_of(Family::schedule, name); }, Source::predicted,
-      [&](const ComparedSchedule& row) -> std::optional<ChartPoint> {
-        const double x = static_cast<double>(row.ranks), y = of(row);
-        return ChartPoint{x, y, y, y};
-      });
-  return line_chart(chart);
+  return logarithmic_chart(
+      title, "ranks", label,
+      series_by(
+          comparison.rows, [](const ComparedSchedule& row) { return row.schedule; },
+          [](const std::string& name) { return look_of(Family::schedule, name); },
+          Source::predicted,
+          [&](const ComparedSchedule& row) -> std::optional<ChartPoint> {
+            const double x = static_cast<double>(row.ranks), y = of(row);
+            return ChartPoint{x, y, y, y};
+          }));
 }
 
 // `limit(name, i)`: over the i-th network of `networks`.

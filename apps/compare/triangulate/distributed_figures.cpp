@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "apps/compare/triangulate/triangulate_figures.h"
 #include "comm/network.h"
 
 namespace delray::apps {
@@ -36,11 +37,7 @@ Json distributed_statistics(const TriangulateRequest& request,
     rows.push_back(std::move(one));
   }
   return {{"schema", "delray.compare.distributed/1"},
-          {"input",
-           {{"file", request.input.path},
-            {"points", comparison.points},
-            {"dim", comparison.dim},
-            {"duplicates", request.input.duplicates.empty() ? "first" : request.input.duplicates}}},
+          {"input", compared_input_json(request, comparison.points, comparison.dim)},
           {"options",
            {{"distributed", request.distributed},
             {"ranks", comparison.ranks},

@@ -6,14 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "apps/compare/triangulate/distributed_figures.h"
+#include "apps/compare/triangulate/triangulate_report.h"
 #include "apps/compare/variant_looks.h"
-#include "apps/provenance.h"
 #include "apps/report/chart.h"
 #include "apps/report/page.h"
 #include "apps/report/series.h"
@@ -34,20 +34,14 @@ report::Look look_of_distributed(const std::string& name) {
 Html distributed_chart(const std::vector<DistributedRow>& rows, const std::string& title,
                        const std::string& label, Source source, const RowQuantity& x,
                        const RowQuantity& y, const std::string& x_label) {
-  LineChart chart;
-  chart.title = title;
-  chart.x_label = x_label;
-  chart.y_label = label;
-  chart.x_scale = chart.y_scale = Scale::logarithmic;
-  chart.ticks_at_points = true;
-  chart.series = series_by(
+  std::vector<Series> series = series_by(
       rows, [](const DistributedRow& row) { return row.method; }, look_of_distributed, source,
       [&](const DistributedRow& row) -> std::optional<ChartPoint> {
         const auto at = x(row), value = y(row);
         if (!at || !value) return std::nullopt;
         return ChartPoint{*at, *value, *value, *value};
       });
-  return chart.series.empty() ? Html() : line_chart(chart);
+  return series.empty() ? Html() : logarithmic_chart(title, x_label, label, std::move(series));
 }
 
 // Over the ranks, with all points.
@@ -199,12 +193,10 @@ Html distributed_answer(const DistributedComparison& comparison) {
 std::string distributed_report(const Session& session, const TriangulateRequest& request,
                                const DistributedComparison& comparison) {
   const OverRanks over(comparison);
-  Page result;
-  const std::filesystem::path file(request.input.path);
-  result.title = fmt::format("Triangulating {} by ranks, {} points in {}D",
-                             file.filename().string(), comparison.points, comparison.dim);
+  Page result = page_of_triangulations(
+      session, request,
+      fmt::format(" by ranks, {} points in {}D", comparison.points, comparison.dim));
   result.unfinished = comparison.unfinished;
-  result.machine = machine_and_compiler();
   result.answer = distributed_answer(comparison);
   result.tabs.push_back({"Messages", messages_tab(over)});
   result.tabs.push_back({"Waiting", waiting_tab(over)});
@@ -212,8 +204,6 @@ std::string distributed_report(const Session& session, const TriangulateRequest&
   result.tabs.push_back({"Predictions", predictions_tab(over)});
   result.tabs.push_back({"All figures", all_figures_tab(comparison)});
   result.data = distributed_statistics(request, comparison);
-  result.provenance = provenance(session);
-  result.provenance.emplace_back("seed", std::to_string(request.seed));
   return page(result);
 }
 

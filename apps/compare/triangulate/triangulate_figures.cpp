@@ -45,17 +45,20 @@ std::string per_point(std::uint64_t count, const ComparedTriangulation& row) {
 
 }  // namespace
 
+Json compared_input_json(const TriangulateRequest& request, std::size_t points, int dim) {
+  return {{"file", request.input.path},
+          {"points", points},
+          {"dim", dim},
+          {"duplicates", request.input.duplicates.empty() ? "first" : request.input.duplicates}};
+}
+
 Json triangulate_statistics(const TriangulateRequest& request,
                             const TriangulateComparison& comparison) {
   Json rows = Json::array();
   for (const ComparedTriangulation& row : comparison.rows)
     rows.push_back(statistics_of(comparison, row));
   return {{"schema", "delray.compare.triangulate/1"},
-          {"input",
-           {{"file", request.input.path},
-            {"points", comparison.points},
-            {"dim", comparison.dim},
-            {"duplicates", request.input.duplicates.empty() ? "first" : request.input.duplicates}}},
+          {"input", compared_input_json(request, comparison.points, comparison.dim)},
           {"options",
            {{"methods", request.methods},
             {"threads", comparison.threads},

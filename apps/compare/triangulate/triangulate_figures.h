@@ -6,6 +6,8 @@
 
 namespace delray::apps {
 
+// What statistics say of the points that are compared.
+Json compared_input_json(const TriangulateRequest& request, std::size_t points, int dim);
 // `delray.compare.triangulate/1`.
 Json triangulate_statistics(const TriangulateRequest& request,
                             const TriangulateComparison& comparison);

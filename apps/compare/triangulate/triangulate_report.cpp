@@ -410,14 +410,22 @@ Html all_rows(const TriangulateComparison& comparison) {
 
 }  // namespace
 
-std::string triangulate_report(const Session& session, const TriangulateRequest& request,
-                               const TriangulateComparison& comparison) {
+report::Page page_of_triangulations(const Session& session, const TriangulateRequest& request,
+                                    const std::string& what) {
   Page result;
   const std::filesystem::path file(request.input.path);
-  result.title = fmt::format("Triangulating {}, {} points in {}D", file.filename().string(),
-                             comparison.points, comparison.dim);
-  result.unfinished = comparison.unfinished;
+  result.title = fmt::format("Triangulating {}{}", file.filename().string(), what);
   result.machine = machine_and_compiler();
+  result.provenance = provenance(session);
+  result.provenance.emplace_back("seed", std::to_string(request.seed));
+  return result;
+}
+
+std::string triangulate_report(const Session& session, const TriangulateRequest& request,
+                               const TriangulateComparison& comparison) {
+  Page result = page_of_triangulations(
+      session, request, fmt::format(", {} points in {}D", comparison.points, comparison.dim));
+  result.unfinished = comparison.unfinished;
   result.answer = triangulate_answer(comparison);
   result.tabs.push_back({"Times", times(comparison)});
   result.tabs.push_back({"Speed-up", speed_ups(comparison)});
@@ -427,8 +435,6 @@ std::string triangulate_report(const Session& session, const TriangulateRequest&
   result.tabs.push_back({"History", history(comparison)});
   result.tabs.push_back({"All figures", all_rows(comparison)});
   result.data = triangulate_statistics(request, comparison);
-  result.provenance = provenance(session);
-  result.provenance.emplace_back("seed", std::to_string(request.seed));
   return page(result);
 }
 
