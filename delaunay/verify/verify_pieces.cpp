@@ -198,6 +198,11 @@ class PiecesVerifier {
   }
 
   bool check_piece(std::uint32_t piece, const PieceMesh& content) {
+    // Measured, for a simplex: adjacency, what finds it, and the next piece.
+    constexpr std::uint64_t kBytesOfSimplex = D == 2 ? 90 : 200;
+    const std::size_t simplices = content.simplices.size() / (D + 1);
+    options_.memory.require(simplices * kBytesOfSimplex, options_.name,
+                            "a piece of " + std::to_string(simplices) + " simplices");
     const auto* const bytes = reinterpret_cast<const std::byte*>(content.points.data());
     const PointView<double> places{bytes, content.points.size(), sizeof(RowPoint)};
     VerifiedMesh<D> mesh{places, content.simplices, {}, content.simplices, 0, {}};
