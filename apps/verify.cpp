@@ -12,7 +12,7 @@
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
 #include "apps/statistics.h"
-#include "apps/verify_folder.h"
+#include "apps/verify/verify_folder.h"
 #include "delaunay/match_points.h"
 #include "delaunay/mesh_folder.h"
 #include "delaunay/read_mesh.h"

@@ -15,7 +15,7 @@
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
 #include "apps/output/raster_output.h"
-#include "delaunay/natural_neighbour_raster.h"
+#include "delaunay/terrain_raster.h"
 #include "delaunay/triangulation_pieces.h"
 #include "delaunay/write_mesh.h"
 #include "files/format.h"

@@ -1,5 +1,5 @@
 // Natural neighbours at the centres of cells, of pieces and of what waits at their borders.
-#include "delaunay/natural_neighbour_raster.h"
+#include "delaunay/terrain_raster.h"
 
 #include <algorithm>
 #include <utility>

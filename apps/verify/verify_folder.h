@@ -9,6 +9,7 @@
 
 namespace delray::apps {
 
+// What the command line says.
 struct VerifyOptions {
   std::string mesh, statistics;
   PointInput points;

@@ -1,4 +1,4 @@
-#include "delaunay/natural_neighbour_raster.h"
+#include "delaunay/terrain_raster.h"
 
 #include <gtest/gtest.h>
 

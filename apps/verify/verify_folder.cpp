@@ -1,5 +1,5 @@
 // Opens pieces and points on every rank; what they find is the same on all, and told by the first.
-#include "apps/verify_folder.h"
+#include "apps/verify/verify_folder.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
