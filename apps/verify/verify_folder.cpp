@@ -68,15 +68,15 @@ std::string wrong_in_index(const delaunay::MeshIndex& index,
 }
 
 // What there is to say of the mesh as a whole.
-struct Told {
+struct FolderReport {
   std::string piece;  // that the verdict is about
   std::string wrong;  // in the index
   bool good = false;
 };
 
-Told told_of(const VerifyOptions& options, const delaunay::MeshIndex& index,
-             const delaunay::PiecesVerdict& verdict) {
-  Told told;
+FolderReport report_of(const VerifyOptions& options, const delaunay::MeshIndex& index,
+                       const delaunay::PiecesVerdict& verdict) {
+  FolderReport told;
   if (verdict.piece) told.piece = index.pieces[*verdict.piece].file;
   if (verdict.unknown_vertex) {
     throw files::FileError(
@@ -90,8 +90,8 @@ Told told_of(const VerifyOptions& options, const delaunay::MeshIndex& index,
   return told;
 }
 
-void tell(const VerifyOptions& options, const delaunay::MeshIndex& index,
-          const delaunay::PiecesVerdict& verdict, const Told& told) {
+void tell_of_folder(const VerifyOptions& options, const delaunay::MeshIndex& index,
+                    const delaunay::PiecesVerdict& verdict, const FolderReport& told) {
   write_statistics(options.statistics, statistics_of(options, verdict, told.piece));
   if (!verdict.reason.empty()) {
     const std::string where =
@@ -160,8 +160,8 @@ int verify_folder(Session& session, const VerifyOptions& options) {
               const delaunay::PiecesVerdict verdict =
                   delaunay::verify_pieces(communicator, pieces, *points, how);
               comm::all_or_none(communicator, comm::Phase::other, [&] {
-                const Told told = told_of(options, index, verdict);
-                if (communicator.rank() == 0) tell(options, index, verdict, told);
+                const FolderReport told = report_of(options, index, verdict);
+                if (communicator.rank() == 0) tell_of_folder(options, index, verdict, told);
                 if (communicator.rank() == 0 || session.under_mpi) {
                   code = told.good ? kDone : kNotVerified;
                 }

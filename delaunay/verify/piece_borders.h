@@ -17,7 +17,7 @@
 namespace delray::delaunay::internal {
 
 template <int D>
-bool is_lower(const glm::vec<D, double>& a, const glm::vec<D, double>& b) {
+bool place_precedes(const glm::vec<D, double>& a, const glm::vec<D, double>& b) {
   for (int k = 0; k < D; ++k) {
     if (a[k] != b[k]) return a[k] < b[k];
   }
@@ -70,13 +70,13 @@ void match_borders(std::span<const BorderFacet<D>> facets, Pair&& pair, Left&& l
     side.facet = i;
     side.odd = false;
     for (int a = 0; a < D; ++a) {
-      for (int b = a + 1; b < D; ++b) side.odd ^= is_lower<D>(side.places[b], side.places[a]);
+      for (int b = a + 1; b < D; ++b) side.odd ^= place_precedes<D>(side.places[b], side.places[a]);
     }
-    std::ranges::sort(side.places, is_lower<D>);
+    std::ranges::sort(side.places, place_precedes<D>);
   }
   std::ranges::sort(sides, [&](const Side& a, const Side& b) {
     for (int k = 0; k < D; ++k) {
-      if (a.places[k] != b.places[k]) return is_lower<D>(a.places[k], b.places[k]);
+      if (a.places[k] != b.places[k]) return place_precedes<D>(a.places[k], b.places[k]);
     }
     if (a.odd != b.odd) return b.odd;
     return order(a) < order(b);
@@ -113,7 +113,7 @@ void for_places(std::span<BorderVertex> vertices, F&& f) {
   };
   std::ranges::sort(vertices, [&](const BorderVertex& a, const BorderVertex& b) {
     const Point p = place(a), q = place(b);
-    if (p != q) return is_lower<D>(p, q);
+    if (p != q) return place_precedes<D>(p, q);
     return std::tie(a.point.row, a.point.position.z, a.of.piece, a.of.simplex) <
            std::tie(b.point.row, b.point.position.z, b.of.piece, b.of.simplex);
   });

@@ -71,14 +71,14 @@ using internal::Findings;
 using internal::kAll;
 using internal::Objection;
 using internal::PieceSimplex;
-using internal::Share;
+using internal::RankShare;
 using internal::VerifiedMesh;
 using internal::Words;
 
 // A rank's pieces in their order, of which the next is read while one is looked at.
 class PiecesAhead {
  public:
-  PiecesAhead(const PieceSource& source, const Share& own) : source_(source), end_(own.end) {
+  PiecesAhead(const PieceSource& source, const RankShare& own) : source_(source), end_(own.end) {
     start(own.begin);
   }
   // The next piece, until the next call.
@@ -161,7 +161,7 @@ class PiecesVerifier {
   // Each piece by itself, up to the first that is refused.
   bool check_pieces() {
     comm::all_or_none(communicator_, comm::Phase::other, [&] {
-      const Share own = internal::share_of(communicator_, pieces_.pieces);
+      const RankShare own = internal::share_of_rank(communicator_, pieces_.pieces);
       PiecesAhead ahead(pieces_, own);
       for (std::size_t piece = own.begin; piece < own.end; ++piece) {
         if (!check_piece(static_cast<std::uint32_t>(piece), ahead.next())) return;
@@ -173,7 +173,7 @@ class PiecesVerifier {
     findings_.invalid = refused.invalid;
     // Up to the piece that is refused, as if one rank had looked at them.
     const auto& at = findings_.invalid ? findings_.invalid->of : std::nullopt;
-    if (at && internal::share_of(communicator_, pieces_.pieces).begin > at->piece) {
+    if (at && internal::share_of_rank(communicator_, pieces_.pieces).begin > at->piece) {
       verdict_.simplices = 0;
       verdict_.hash = {};
     }

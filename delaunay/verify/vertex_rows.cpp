@@ -51,7 +51,7 @@ class FlatFrame {
 template <int D>
 std::uint64_t VertexRows<D>::most_rows() const {
   std::uint64_t rows = comm::all_or_none(communicator_, comm::Phase::other, [&] {
-    const Share own = share_of(communicator_, points_.parts());
+    const RankShare own = share_of_rank(communicator_, points_.parts());
     std::uint64_t mine = 0;
     for (std::size_t part = own.begin; part < own.end; ++part) mine += points_.most_rows(part);
     return mine;
@@ -145,7 +145,7 @@ void VertexRows<D>::find_own_rows() {
   begins_.assign(static_cast<std::size_t>(ranks) + 1, 0);
   begins_.back() = rows_;
   if (ranks == 1) return;
-  const Share own = share_of(communicator_, points_.parts());
+  const RankShare own = share_of_rank(communicator_, points_.parts());
   const std::uint64_t mine = comm::all_or_none(communicator_, comm::Phase::other, [&] {
     std::uint64_t rows = 0;
     PointCloud part;
@@ -277,7 +277,7 @@ bool VertexRows<D>::refuse_doubled(std::uint64_t row, Findings& findings) {
 // Calls f(point, whether it has a height) for all points of some parts in the order of rows.
 template <int D>
 template <class F>
-void VertexRows<D>::for_points(const Share& parts, std::uint64_t first_row, F&& f) const {
+void VertexRows<D>::for_points(const RankShare& parts, std::uint64_t first_row, F&& f) const {
   PointCloud part;
   std::uint64_t row = first_row;
   for (std::size_t i = parts.begin; i < parts.end; ++i) {
@@ -291,7 +291,7 @@ template <int D>
 template <class F>
 void VertexRows<D>::for_vertices(F&& f) const {
   PieceMesh mesh;
-  const Share own = share_of(communicator_, pieces_.pieces);
+  const RankShare own = share_of_rank(communicator_, pieces_.pieces);
   for (std::size_t piece = own.begin; piece < own.end; ++piece) {
     pieces_.read(piece, mesh);
     for (std::size_t i = 0; i < mesh.simplices.size(); ++i) {
@@ -331,7 +331,7 @@ bool VertexRows<D>::check_points(PiecesVerdict& verdict, Findings& findings) {
   constexpr std::uint64_t kBytesOfUnused = 160;
   constexpr std::uint64_t kAlways = 4096;
   constexpr bool kUnknownVertex = true;
-  const Share parts = share_of(communicator_, points_.parts());
+  const RankShare parts = share_of_rank(communicator_, points_.parts());
   const std::uint64_t most = std::max(
       memory_.left() / 4 / kBytesOfUnused / static_cast<std::uint64_t>(communicator_.size()),
       kAlways);
@@ -438,7 +438,7 @@ auto VertexRows<D>::find_different(const Range& range, int compared, std::string
     -> std::optional<Found> {
   const std::vector<RowPoint> mine = comm::all_or_none(communicator_, comm::Phase::other, [&] {
     std::vector<RowPoint> some;
-    for_points(share_of(communicator_, points_.parts()), own_first_,
+    for_points(share_of_rank(communicator_, points_.parts()), own_first_,
                [&](const RowPoint& point, bool) {
                  if (point.row >= range.first && point.row < range.last) some.push_back(point);
                });

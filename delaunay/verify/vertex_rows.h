@@ -19,10 +19,10 @@
 namespace delray::delaunay::internal {
 
 // The share of a rank in something that is counted: [begin, end).
-struct Share {
+struct RankShare {
   std::size_t begin = 0, end = 0;
 };
-inline Share share_of(const comm::Communicator& communicator, std::size_t n) {
+inline RankShare share_of_rank(const comm::Communicator& communicator, std::size_t n) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const auto begin = [&](std::size_t i) { return n / ranks * i + std::min(i, n % ranks); };
@@ -81,7 +81,7 @@ class VertexRows {
   void compare_heights(PiecesVerdict& verdict);
   std::optional<Found> find_different(const Range& range, int compared, std::string& reason);
   template <class F>
-  void for_points(const Share& parts, std::uint64_t first_row, F&& f) const;
+  void for_points(const RankShare& parts, std::uint64_t first_row, F&& f) const;
   template <class F>
   void for_vertices(F&& f) const;
   template <class Wanted>

@@ -16,7 +16,7 @@ struct Refusal {
   std::vector<std::string> told;  // in the message
 };
 
-void expect(const Folder& folder, const std::vector<Refusal>& refusals) {
+void expect_refusals(const Folder& folder, const std::vector<Refusal>& refusals) {
   const std::vector<std::string> before = folder.files();
   for (const Refusal& refusal : refusals) {
     const Ran ran = run("delray " + refusal.command, folder.path());
@@ -28,21 +28,21 @@ void expect(const Folder& folder, const std::vector<Refusal>& refusals) {
   }
 }
 
-void make_points(const Folder& folder) {
+void generate_few_points(const Folder& folder) {
   ASSERT_EQ(run("delray generate points uniform -n 2000 --dim 3 -o p.ply", folder.path()).exit_code,
             0);
 }
 
 TEST(EarlyRefusals, OfOptionsThatMethodsMakeNoUseOf) {
   const Folder folder;
-  make_points(folder);
+  generate_few_points(folder);
   std::vector<Refusal> refusals;
   for (const std::string how : {"-o m.ply", "--stats - --tiles 3", "--stats - --ranks 2",
                                 "--stats - --distributed chen --ranks 2"}) {
     refusals.push_back({"triangulate p.ply --queue 9 " + how, 2, {"--queue"}});
     refusals.push_back({"triangulate p.ply --seed 9 " + how, 2, {"--seed"}});
   }
-  expect(folder, refusals);
+  expect_refusals(folder, refusals);
   for (const std::string options :
        {"--dim 3 --seed 9 --tiles 3", "--method batch --queue 9 --seed 9 --tiles 3",
         "--method insertion --seed 9", "--distributed interface-workers --ranks 2 --seed 9"}) {
@@ -53,24 +53,24 @@ TEST(EarlyRefusals, OfOptionsThatMethodsMakeNoUseOf) {
 
 TEST(EarlyRefusals, OfNamesThatSayNothing) {
   const Folder folder;
-  make_points(folder);
+  generate_few_points(folder);
   std::filesystem::create_directory(folder / "dtm.tif");
   ASSERT_EQ(run("delray triangulate p.ply -o m/", folder.path()).exit_code, 0);
   std::filesystem::create_directory(folder / "empty");
-  expect(folder,
-         {{"triangulate p.ply -o x", 2, {"-o x/", ".tif", ".ply"}},
-          {"triangulate p.ply -o dtm.tif --cell-size 1", 1, {"dtm.tif", "directory"}},
-          {"triangulate p.ply --stats - --tiles 2 --scratch none", 1, {"none", "--scratch"}},
-          {"verify empty/ --points p.ply", 3, {"empty", "mesh.json", "-o FOLDER/"}},
-          {"verify m/mesh.json --points p.ply", 3, {"name its folder, m"}},
-          {"verify m/mesh.pvtu --points p.ply", 3, {"name its folder, m"}}});
+  expect_refusals(
+      folder, {{"triangulate p.ply -o x", 2, {"-o x/", ".tif", ".ply"}},
+               {"triangulate p.ply -o dtm.tif --cell-size 1", 1, {"dtm.tif", "directory"}},
+               {"triangulate p.ply --stats - --tiles 2 --scratch none", 1, {"none", "--scratch"}},
+               {"verify empty/ --points p.ply", 3, {"empty", "mesh.json", "-o FOLDER/"}},
+               {"verify m/mesh.json --points p.ply", 3, {"name its folder, m"}},
+               {"verify m/mesh.pvtu --points p.ply", 3, {"name its folder, m"}}});
   const Ran one = run("delray verify m --points p.ply", folder.path());
   EXPECT_NE(one.out.find(" in 1 piece,"), std::string::npos) << one.out;
 }
 
 TEST(EarlyRefusals, OfRastersThatNobodyHasRoomFor) {
   const Folder folder;
-  make_points(folder);
+  generate_few_points(folder);
   folder.write("flat.xyz", "0 0\n1 0\n0 1\n");
   std::vector<Refusal> refusals;
   for (const std::string how : {"", " --tiles 3", " --ranks 2"}) {
@@ -79,7 +79,7 @@ TEST(EarlyRefusals, OfRastersThatNobodyHasRoomFor) {
     refusals.push_back({"triangulate p.ply -o a.tif --cell-size 1.1e-6" + how, 1, {"TiB", "free"}});
     refusals.push_back({"triangulate flat.xyz -o a.tif --cell-size 1" + how, 2, {"no z"}});
   }
-  expect(folder, refusals);
+  expect_refusals(folder, refusals);
 }
 
 TEST(EarlyRefusals, OfMeshFoldersThatMemoryDoesNotHold) {
@@ -99,15 +99,15 @@ TEST(EarlyRefusals, OfMeshFoldersThatMemoryDoesNotHold) {
 
 TEST(EarlyRefusals, OfRanksWhoseSharesOfMemoryAreNothing) {
   const Folder folder;
-  make_points(folder);
-  expect(folder, {{"triangulate p.ply --stats - --ranks 64 --memory 500MiB",
-                   1,
-                   {"--ranks", "64 ranks share the 500 MiB", "would do"}}});
+  generate_few_points(folder);
+  expect_refusals(folder, {{"triangulate p.ply --stats - --ranks 64 --memory 500MiB",
+                            1,
+                            {"--ranks", "64 ranks share the 500 MiB", "would do"}}});
 }
 
 TEST(EarlyRefusals, ManyThreadsAreNone) {
   const Folder folder;
-  make_points(folder);
+  generate_few_points(folder);
   const Ran ran = run("delray triangulate p.ply -o m.ply --threads 4096", folder.path());
   EXPECT_EQ(ran.exit_code, 0);
   EXPECT_EQ(ran.err.find("TBB"), std::string::npos) << ran.err;
