@@ -184,9 +184,15 @@ void check(const Session& session, TriangulateOptions& options) {
   if (options.max_error && output == OutputKind::folder) {
     throw UsageError("--max-error: a simplified terrain goes to one file");
   }
-  if (output == OutputKind::file && (!options.tiles.scratch.empty() || options.tiles.resume)) {
+  const bool takes_parts =
+      output == OutputKind::none || options.output.takes_parts(options.how.dim);
+  if (!takes_parts && (!options.tiles.scratch.empty() || options.tiles.resume)) {
     throw UsageError(
-        "--scratch and --resume: a mesh in one file is made in memory; -o FOLDER/ is not");
+        "--scratch and --resume: such a mesh in one file is made in memory; -o "
+        "FOLDER/, .vtu and triangles as .ply are not");
+  }
+  if (output == OutputKind::file && options.tiles.resume) {
+    throw UsageError("--resume: a mesh in one file is made in one run; -o FOLDER/ is not");
   }
   if (output == OutputKind::raster && options.tiles.resume) {
     throw UsageError("--resume: a raster is made in one run");
@@ -297,14 +303,24 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
     facts.memory = std::min(facts.memory, options.input.limits.budget().limit() / 8);
     facts.scratch = scratch_folder(options.tiles, options.output.path);
     facts.resume = options.tiles.resume;
+    facts.file.dim = options.how.dim;
+    facts.file.scratch = facts.scratch;
+    facts.file.memory = options.input.limits.budget().limit();
+    facts.file.threads = options.how.threads;
+    facts.file.ranks = session.under_mpi ? 1 : std::max(1, options.launch.ranks);
     output.emplace(
         options.output, facts,
         session.processes > 1 ? RanksOutput::Ranks::processes : RanksOutput::Ranks::threads);
     task.to = &*output;
+    task.disk = options.output.disk_use(options.how.dim);
+    constexpr std::uint64_t kBytesOfThread = std::max(delaunay::MeshFolderWriter::kBytesOfThread,
+                                                      delaunay::MeshFileWriter::kBytesOfThread);
+    // Small tiles take little to write.
     task.kept_free =
         options.output.kind() == OutputKind::raster
             ? facts.memory
-            : delaunay::MeshFolderWriter::kBytesOfThread * std::uint64_t(options.how.threads);
+            : std::min(kBytesOfThread * static_cast<std::uint64_t>(options.how.threads),
+                       options.input.limits.budget().limit() / 8);
   }
   triangulate_in_parts(session, task, [&](const PartsMade& made) {
     const delaunay::PartsResult& result = made.result;
@@ -331,10 +347,10 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
 // Whether the input goes through memory in parts, which it says where nobody asked for it.
 bool goes_in_parts(const Session& session, const TriangulateOptions& options) {
   const OutputKind output = options.output.kind();
-  if (output == OutputKind::file || !options.distributed.empty() || options.makers ||
-      options.max_error) {
+  if (!options.distributed.empty() || options.makers || options.max_error) {
     return false;
   }
+  if (output != OutputKind::none && !options.output.takes_parts(options.how.dim)) return false;
   if (is_tiled(session, options)) return true;
   const std::uint64_t needed = memory_beyond_limit(options.input, options.how.dim);
   if (needed == 0) return false;
@@ -353,9 +369,11 @@ int run(Session& session, TriangulateOptions options) {
   }
   check(session, options);
   tell_left_out(options.input);
-  if (options.output.path == "-" && memory_beyond_limit(options.input, options.how.dim) > 0) {
+  if (options.output.path == "-" && options.how.dim == 3 &&
+      memory_beyond_limit(options.input, options.how.dim) > 0) {
     throw UsageError(
-        "-o -: a mesh that is beyond --memory does not fit a stream; -o FOLDER/ takes it");
+        "-o -: the hull of a mesh that is beyond --memory does not fit a stream; -o FOLDER/ takes "
+        "the mesh");
   }
   if (goes_in_parts(session, options)) return run_in_parts(session, options);
   if (is_tiled(session, options)) return run_tiled(session, options);

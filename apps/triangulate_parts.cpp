@@ -158,6 +158,7 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
       find_entry(delaunay::duplicates_policies(), duplicates, "--duplicates").policy;
   options.say = [](const std::string& what) { spdlog::info("{}", what); };
   if (task.to != nullptr) {
+    options.sink = task.disk;
     options.memory -= std::min(options.memory / 2, task.kept_free);
     options.on_resume = [&](const auto& finished) { task.to->add_finished(finished); };
     options.on_counted = [&](const delaunay::PointsFound& found) { task.to->check(found); };
@@ -179,7 +180,7 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
     delaunay::TileSink* const sink = task.to == nullptr ? nullptr : &task.to->sink();
     PartsMade made{triangulate_parts(communicator, *parts, options, sink), communicator.size(),
                    watch.lap(), 0, nullptr};
-    if (task.to != nullptr) made.output = task.to->commit(communicator, made.result);
+    if (task.to != nullptr) made.output = task.to->commit(communicator, *parts, made.result);
     made.write = watch.lap();
     comm::all_or_none(communicator, comm::Phase::other, [&] {
       if (communicator.rank() != 0) return;

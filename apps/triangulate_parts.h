@@ -54,9 +54,10 @@ struct PartsTask {
   const Launch& launch;
   delaunay::Options how;
   TilesChoice tiles;
-  std::string output;           // beside which scratch files may go; may be empty
-  RanksOutput* to = nullptr;    // where simplices go; null: nowhere
-  std::uint64_t kept_free = 0;  // of --memory, for what `to` takes
+  std::string output;               // beside which scratch files may go; may be empty
+  RanksOutput* to = nullptr;        // where simplices go; null: nowhere
+  std::uint64_t kept_free = 0;      // of --memory, for what `to` takes
+  delaunay::SinkDiskUse disk = {};  // of `to`
 };
 
 // Runs all ranks; `done` is called on rank 0 within their run. Throws what triangulate_parts()

@@ -1,4 +1,5 @@
-// Adjacency of a triangulation: the neighbours of each simplex, and the simplices at each vertex.
+// Adjacency of a triangulation: the neighbours of each simplex, the simplices at each vertex, and
+// the convex hull that it ends at.
 #pragma once
 
 #include <cstdint>
@@ -35,5 +36,11 @@ std::vector<std::uint32_t> simplices_around(const Triangulation& triangulation,
 // The rows that share an edge with a vertex, ascending.
 std::vector<std::uint32_t> vertices_around(const Triangulation& triangulation,
                                            const Adjacency& adjacency, std::uint32_t row);
+
+// The vertices on the convex hull, those within its edges and faces included. In 2D
+// counterclockwise from the lowest row; in 3D ascending. None without simplices. O(n) expected.
+//
+// The facets themselves are what hull_facets() of write_mesh.h gives.
+std::vector<std::uint32_t> hull_vertices(const Triangulation& triangulation);
 
 }  // namespace delray::delaunay

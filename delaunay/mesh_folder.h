@@ -120,6 +120,9 @@ class MeshFolderWriter : public TileSink {
   MeshFolderWriter(const std::filesystem::path& path, const MeshFolderOptions& options);
   ~MeshFolderWriter() override;
 
+  // Bytes of all pieces for each point, as uniform points have them.
+  static std::uint64_t bytes_of_point(const std::string& format, int dim);
+
   // A file for the piece, written in large blocks by the calling thread; points that no simplex has
   // are left out. Nothing for a piece without simplices.
   void take(const TilePiece& piece) override;

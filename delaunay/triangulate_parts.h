@@ -20,11 +20,32 @@
 
 namespace delray::delaunay {
 
+// What all points have.
+struct PointAttributes {
+  bool colours = true, intensity = true, classification = true;
+};
+
+// The parts of the input that a rank reads: `first` and those behind it. first_rows has the row of
+// the first point of each, and one more; it is empty in a run that was resumed.
+struct PartRows {
+  std::size_t first = 0;
+  std::vector<std::uint64_t> first_rows;
+};
+
 // What is known of all points before the first simplex is.
 struct PointsFound {
   std::uint64_t points = 0;
   bool has_z = false;
   geometry::Box3d box;  // z is 0 in 2D; empty without points
+  PointAttributes attributes;
+  PartRows rows;  // of this rank
+};
+
+// What a sink writes, in bytes for each point, as far as that can be told before.
+struct SinkDiskUse {
+  std::filesystem::path folder;     // where the result grows
+  std::uint64_t result_bytes = 0;   // there
+  std::uint64_t scratch_bytes = 0;  // in the folder of scratch files, until the end
 };
 
 // How points in parts are triangulated, and where they wait.
@@ -36,6 +57,7 @@ struct PartsOptions {
   // Where points go that do not fit, each rank's in a folder of its own that is removed in the end.
   std::filesystem::path scratch;
   bool to_disk = false;  // whether they go there even if they fit
+  SinkDiskUse sink;      // for which there has to be room, too
   // Goes on from the last tile that an earlier run with the same `identity` finished and did not
   // live to tell. `identity` says what is triangulated: inputs, their sizes and ages, options.
   bool resume = false;

@@ -23,6 +23,9 @@ struct MeshView {
   std::size_t size() const { return simplices.size() / static_cast<std::size_t>(corners); }
 };
 
+struct MeshShape;
+struct MeshLayout;
+
 // An entry of the table of mesh formats that are written.
 struct MeshWriter {
   files::Format format;
@@ -31,6 +34,9 @@ struct MeshWriter {
   std::string_view suffixes;     // ".node .ele"
   bool tetrahedra;               // otherwise a tetrahedral mesh is written as its hull
   void (*write)(const std::filesystem::path& path, const MeshView& mesh);
+  // Where each byte lies, for meshes that are written in parts; null where that does not follow
+  // from counts.
+  MeshLayout (*layout)(const MeshShape& shape) = nullptr;
 };
 
 std::span<const MeshWriter> mesh_writers();

@@ -2,6 +2,8 @@
 // processes have.
 #include "apps/output/ranks_output.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -33,11 +35,25 @@ void RanksOutput::check(const delaunay::PointsFound& points) const {
 
 void RanksOutput::open(comm::Communicator& communicator, const delaunay::PointsFound& points) {
   const bool first = communicator.rank() == 0;
+  {
+    const std::lock_guard lock(mutex_);
+    rows_[communicator.rank()] = points.rows;
+  }
   const auto open_here = [&] {
     require_heights(points.has_z);
+    if (asked_.kind() == OutputKind::file &&
+        points.points > delaunay::MeshFileOptions::kMostPoints) {
+      throw UsageError(
+          fmt::format("-o {}: {} points are more than one file has numbers for; -o "
+                      "FOLDER/ takes them",
+                      asked_.path, points.points));
+    }
     OutputFacts facts = facts_;
     facts.box = points.box;
-    facts.writer = communicator.rank();
+    facts.writer = facts.file.writer = communicator.rank();
+    facts.file.points = points.points;
+    facts.file.has_z = points.has_z;
+    facts.file.attributes = points.attributes;
     output_ = open_simplex_output(asked_, facts);
     if (!facts.resume) return;
     output_->keep_tiles([this](std::uint64_t tile) {
@@ -57,12 +73,19 @@ void RanksOutput::keep_unfinished() {
   if (output_) output_->keep_unfinished();
 }
 
-Json RanksOutput::commit(comm::Communicator& communicator, const delaunay::PartsResult& made) {
+Json RanksOutput::commit(comm::Communicator& communicator, const delaunay::PointParts& parts,
+                         const delaunay::PartsResult& made) {
   if (processes_) {
     for (int rank = 1; rank < communicator.size(); ++rank) {
       if (communicator.rank() == rank) output_->send_to_first(communicator);
       if (communicator.rank() == 0) output_->receive(communicator, rank);
     }
+  }
+  {
+    std::unique_lock lock(mutex_);
+    const delaunay::PartRows rows = rows_[communicator.rank()];
+    lock.unlock();
+    output_->write(communicator, {parts, rows, !processes_});
   }
   return comm::all_or_none(communicator, comm::Phase::other, [&]() -> Json {
     if (communicator.rank() != 0) return nullptr;

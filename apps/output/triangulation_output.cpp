@@ -82,6 +82,28 @@ class FolderOutput : public SimplexOutput {
   delaunay::MeshFolderWriter writer_;
 };
 
+class FileOutput : public SimplexOutput {
+ public:
+  FileOutput(const TriangulationOutput& output, const OutputFacts& facts)
+      : writer_(output.path, facts.file) {}
+  delaunay::TileSink& sink() override { return writer_; }
+  void keep_tiles(const std::function<bool(std::uint64_t tile)>&) override {}
+  void keep_unfinished() override {}
+  void send_to_first(comm::Communicator&) override {}
+  void receive(comm::Communicator&, int) override {}
+  void write(comm::Communicator& communicator,
+             const delaunay::MeshFileWriter::Source& points) override {
+    writer_.write(communicator, points);
+  }
+  Json commit(const delaunay::MeshFolderWriter::Counts&) override {
+    writer_.commit();
+    return nullptr;
+  }
+
+ private:
+  delaunay::MeshFileWriter writer_;
+};
+
 class RasterOutput : public SimplexOutput {
  public:
   RasterOutput(const TriangulationOutput& output, const OutputFacts& facts)
@@ -156,6 +178,26 @@ OutputKind TriangulationOutput::kind() const {
   return delaunay::names_folder(path) ? OutputKind::folder : OutputKind::file;
 }
 
+bool TriangulationOutput::takes_parts(int dim) const {
+  return kind() != OutputKind::file || delaunay::can_write_in_parts(path, dim);
+}
+
+delaunay::SinkDiskUse TriangulationOutput::disk_use(int dim) const {
+  delaunay::SinkDiskUse use;
+  if (kind() == OutputKind::folder) {
+    use.folder = std::filesystem::absolute(files::output_folder(path)).parent_path();
+    use.result_bytes =
+        delaunay::MeshFolderWriter::bytes_of_point(pieces.empty() ? "vtu" : pieces, dim);
+  } else if (kind() == OutputKind::file && path != "-") {
+    const files::OutputPath target = files::output_path(path);
+    const delaunay::MeshFileBytes bytes = delaunay::mesh_file_bytes_of_point(path, dim);
+    if (!target.in_place) {
+      use = {std::filesystem::absolute(target.path).parent_path(), bytes.file, bytes.scratch};
+    }
+  }
+  return use;
+}
+
 void add_output_options(CLI::App& command, TriangulationOutput& output) {
   command
       .add_option("-o,--output", output.path,
@@ -217,6 +259,7 @@ void check_output_of(const TriangulationOutput& output, const PointInput& input,
 std::unique_ptr<SimplexOutput> open_simplex_output(const TriangulationOutput& output,
                                                    const OutputFacts& facts) {
   if (output.kind() == OutputKind::folder) return std::make_unique<FolderOutput>(output, facts);
+  if (output.kind() == OutputKind::file) return std::make_unique<FileOutput>(output, facts);
   return std::make_unique<RasterOutput>(output, facts);
 }
 

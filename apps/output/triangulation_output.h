@@ -11,6 +11,7 @@
 #include "apps/input/point_input.h"
 #include "apps/statistics.h"
 #include "comm/communicator.h"
+#include "delaunay/mesh_file_writer.h"
 #include "delaunay/mesh_folder.h"
 #include "delaunay/points.h"
 #include "delaunay/tile_sink.h"
@@ -34,6 +35,11 @@ struct TriangulationOutput {
   double cell_size = 0;     // of the raster
 
   OutputKind kind() const;
+  // Whether simplices can go there as soon as they are final: to any folder and raster, and to
+  // files whose format allows that.
+  bool takes_parts(int dim) const;
+  // What it takes on disk where it does, but for rasters.
+  delaunay::SinkDiskUse disk_use(int dim) const;
 };
 
 // Adds -o, --pieces and --interpolate.
@@ -50,7 +56,7 @@ void check_output_paths(const TriangulationOutput& output, const std::string& st
 void check_output_of(const TriangulationOutput& output, const PointInput& input,
                      const delaunay::PointCloud& points);
 
-// Where simplices go as soon as they are final: the folder or the raster.
+// Where simplices go as soon as they are final: the folder, the raster or the file.
 class SimplexOutput {
  public:
   virtual ~SimplexOutput() = default;
@@ -61,6 +67,9 @@ class SimplexOutput {
   // From another process to that of rank 0, which takes it all in.
   virtual void send_to_first(comm::Communicator& communicator) = 0;
   virtual void receive(comm::Communicator& communicator, int from) = 0;
+  // Collective, of all ranks, threads or processes, after that: what they write together.
+  virtual void write(comm::Communicator& /*communicator*/,
+                     const delaunay::MeshFileWriter::Source& /*points*/) {}
   // Completes what is written; a raster is written here, from its blocks. The statistics of it, or
   // null.
   virtual Json commit(const delaunay::MeshFolderWriter::Counts& counts) = 0;
@@ -74,11 +83,12 @@ struct OutputFacts {
   files::CoordinateSystem coordinate_system;
   std::uint64_t memory = std::uint64_t{256} << 20;  // for blocks of a raster
   std::string scratch;                              // a folder for others; empty: the system's
+  delaunay::MeshFileOptions file;  // of a mesh in one file; its numbers are those of the points
   bool resume = false;
   int writer = 0;  // of several processes
 };
 
-// REQUIRES: the kind is folder or raster. Throws FileError and UsageError.
+// REQUIRES: the output takes parts. Throws FileError and UsageError.
 std::unique_ptr<SimplexOutput> open_simplex_output(const TriangulationOutput& output,
                                                    const OutputFacts& facts);
 

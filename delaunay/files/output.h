@@ -1,6 +1,7 @@
 // A file being written: whole or not at all, in order, formatted in parallel.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -40,9 +41,9 @@ void append_bytes(std::string& bytes, T value) {
   bytes.append(raw.data(), raw.size());
 }
 
-// Writes what format(i, text) appends to `text` for every i of [0, n), in order.
+// Writes what format(first, last, text) appends to `text` for runs of [0, n), in order.
 template <class F>
-void write_rows(Output& output, std::size_t n, F&& format) {
+void write_runs(Output& output, std::size_t n, F&& format) {
   constexpr std::size_t kBlock = 4096;  // rows: about 1 ms of formatting
   constexpr std::size_t kBlocks = 64;   // held in memory at a time
   std::vector<std::string> blocks(kBlocks);
@@ -50,10 +51,18 @@ void write_rows(Output& output, std::size_t n, F&& format) {
     parallel::parallel_for(0, kBlocks, 1, [&](std::size_t block) {
       blocks[block].clear();
       const std::size_t first = begin + block * kBlock;
-      for (std::size_t i = first; i < n && i < first + kBlock; ++i) format(i, blocks[block]);
+      if (first < n) format(first, std::min(n, first + kBlock), blocks[block]);
     });
     for (const std::string& block : blocks) output.write(block);
   }
+}
+
+// Writes what format(i, text) appends to `text` for every i of [0, n), in order.
+template <class F>
+void write_rows(Output& output, std::size_t n, F&& format) {
+  write_runs(output, n, [&](std::size_t first, std::size_t last, std::string& text) {
+    for (std::size_t i = first; i < last; ++i) format(i, text);
+  });
 }
 
 }  // namespace delray::delaunay

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "delaunay/files/mesh_layout.h"
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/mesh/arguments.h"
 #include "delaunay/mesh/facets.h"
@@ -17,13 +18,13 @@ using files::Format;
 
 constexpr std::array kMeshWriters = {
     MeshWriter{Format::ply, "PLY", "binary, coordinates as double, with colours", ".ply", false,
-               &write_ply},
+               &write_ply, &ply_layout},
     MeshWriter{Format::obj, "OBJ", "Wavefront, text", ".obj", false, &write_obj},
     MeshWriter{Format::off, "OFF", "object file, text", ".off", false, &write_off},
     MeshWriter{Format::stl, "STL", "binary, coordinates as 32-bit float", ".stl", false,
                &write_stl},
     MeshWriter{Format::vtu, "VTU", "VTK unstructured grid, binary, with all attributes", ".vtu",
-               true, &write_vtu},
+               true, &write_vtu, &vtu_layout},
     MeshWriter{Format::node, "NODE+ELE", "two text files, as Triangle and TetGen write them",
                ".node .ele", true, &write_node},
 };

@@ -2,41 +2,57 @@
 // written without z.
 #include <limits>
 
+#include "delaunay/files/mesh_layout.h"
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
 #include "files/format.h"
 
 namespace delray::delaunay {
+namespace {
 
-void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
-  const PointCloud& points = mesh.points;
+// A mesh needs z for every viewer; points in the plane stay so.
+bool writes_z(const MeshShape& shape) { return shape.has_z || shape.simplices > 0; }
+
+std::string ply_mesh_header(const MeshShape& shape) {
   // Many readers know signed indices only.
-  const bool large = points.size() > std::numeric_limits<std::int32_t>::max();
+  const bool large = shape.points > std::numeric_limits<std::int32_t>::max();
   std::string header = "ply\nformat binary_little_endian 1.0\n";
   header += "comment " + std::string(files::kWrittenByDelray) + "\n";
-  header += "element vertex " + std::to_string(points.size()) + "\n";
+  header += "element vertex " + std::to_string(shape.points) + "\n";
   header += "property double x\nproperty double y\n";
-  // A mesh needs z for every viewer; points in the plane stay so.
-  const bool write_z = points.has_z || mesh.size() > 0;
-  if (write_z) header += "property double z\n";
-  const bool colours = !points.colours.empty();
-  if (colours) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  header += "element face " + std::to_string(mesh.size()) + "\n";
+  if (writes_z(shape)) header += "property double z\n";
+  if (shape.colours) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  header += "element face " + std::to_string(shape.simplices) + "\n";
   header += std::string("property list uchar ") + (large ? "uint" : "int") + " vertex_indices\n";
-  header += "end_header\n";
+  return header + "end_header\n";
+}
 
-  Output output(path);
-  output.write(header);
-  write_rows(output, points.size(), [&](std::size_t i, std::string& row) {
-    for (int k = 0; k < (write_z ? 3 : 2); ++k) append_bytes(row, points.positions[i][k]);
-    for (int k = 0; colours && k < 3; ++k) append_bytes(row, points.colours[i][k]);
-  });
-  write_rows(output, mesh.size(), [&](std::size_t i, std::string& row) {
-    append_bytes(row, std::uint8_t{3});
-    for (std::size_t k = 0; k < 3; ++k) append_bytes(row, mesh.simplices[i * 3 + k]);
-  });
-  output.close();
-  output.commit();
+}  // namespace
+
+MeshLayout ply_layout(const MeshShape& shape) {
+  const int coordinates = writes_z(shape) ? 3 : 2;
+  MeshArray vertices, faces;
+  vertices.row_bytes = static_cast<std::uint64_t>(coordinates) * 8 + (shape.colours ? 3 : 0);
+  vertices.of_points = [coordinates, colours = shape.colours](const PointCloud& points,
+                                                              std::size_t first, std::size_t last,
+                                                              std::string& rows) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (int k = 0; k < coordinates; ++k) append_bytes(rows, points.positions[i][k]);
+      for (int k = 0; colours && k < 3; ++k) append_bytes(rows, points.colours[i][k]);
+    }
+  };
+  faces.row_bytes = 13;
+  faces.of_simplices = [](const SimplexRun& run, std::string& rows) {
+    for (std::size_t i = 0; i < run.corners.size(); i += 3) {
+      append_bytes(rows, std::uint8_t{3});
+      for (std::size_t k = 0; k < 3; ++k) append_bytes(rows, run.corners[i + k]);
+    }
+  };
+  return {ply_mesh_header(shape), {vertices, faces}, ""};
+}
+
+void write_ply(const std::filesystem::path& path, const MeshView& mesh) {
+  write_in_layout(path, ply_layout(shape_of(mesh)), mesh);
 }
 
 }  // namespace delray::delaunay

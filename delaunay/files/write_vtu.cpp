@@ -1,5 +1,9 @@
 // VTU: the XML format of VTK for unstructured grids, with the arrays appended as raw bytes, each
 // after its length in 64 bits.
+#include <string_view>
+#include <utility>
+
+#include "delaunay/files/mesh_layout.h"
 #include "delaunay/files/mesh_writers.h"
 #include "delaunay/files/output.h"
 
@@ -23,9 +27,9 @@ class Arrays {
   std::size_t offset_ = 0;
 };
 
-std::string describe(const MeshView& mesh) {
-  const PointCloud& points = mesh.points;
-  const std::size_t n = points.size(), cells = mesh.size();
+std::string vtu_mesh_header(const MeshShape& shape) {
+  const std::uint64_t n = shape.points, cells = shape.simplices;
+  const auto corners = static_cast<std::uint64_t>(shape.corners);
   Arrays arrays;
   std::string xml =
       "<?xml version=\"1.0\"?>\n"
@@ -34,60 +38,87 @@ std::string describe(const MeshView& mesh) {
   xml += "<Piece NumberOfPoints=\"" + std::to_string(n) + "\" NumberOfCells=\"" +
          std::to_string(cells) + "\">\n";
   xml += "<Points>\n" + arrays.add("Float64", "Points", 3, n * 24) + "</Points>\n<Cells>\n";
-  xml += arrays.add("Int64", "connectivity", 1, mesh.simplices.size() * 8);
+  xml += arrays.add("Int64", "connectivity", 1, cells * corners * 8);
   xml += arrays.add("Int64", "offsets", 1, cells * 8);
   xml += arrays.add("UInt8", "types", 1, cells) + "</Cells>\n<PointData>\n";
-  if (!points.colours.empty()) xml += arrays.add("UInt8", "colour", 4, n * 4);
-  if (!points.intensity.empty()) xml += arrays.add("Float32", "intensity", 1, n * 4);
-  if (!points.classification.empty()) xml += arrays.add("UInt8", "classification", 1, n);
+  if (shape.colours) xml += arrays.add("UInt8", "colour", 4, n * 4);
+  if (shape.intensity) xml += arrays.add("Float32", "intensity", 1, n * 4);
+  if (shape.classification) xml += arrays.add("UInt8", "classification", 1, n);
   xml += "</PointData>\n";
-  if (!mesh.created_by.empty()) {
+  if (shape.created_by) {
     xml += "<CellData>\n" + arrays.add("UInt16", "thread", 1, cells * 2) + "</CellData>\n";
   }
   return xml + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
 }
 
-// Writes an array of n rows whose bytes `append` adds one row at a time.
-template <class F>
-void write_array(Output& output, std::size_t n, std::size_t bytes_per_row, F&& append) {
-  std::string length;
-  append_bytes(length, std::uint64_t{n * bytes_per_row});
-  output.write(length);
-  write_rows(output, n, append);
+// An array without its rows.
+MeshArray array_of(std::uint64_t rows, std::uint64_t row_bytes) {
+  MeshArray array;
+  append_bytes(array.before, rows * row_bytes);
+  array.row_bytes = row_bytes;
+  return array;
 }
 
+// An array that is a member of the points.
 template <class T>
-void write_values(Output& output, const std::vector<T>& values) {
-  write_array(output, values.size(), sizeof(T),
-              [&](std::size_t i, std::string& row) { append_bytes(row, values[i]); });
+MeshArray values_of_points(std::uint64_t points, std::vector<T> PointCloud::*member) {
+  MeshArray array = array_of(points, sizeof(T));
+  array.of_points = [member](const PointCloud& cloud, std::size_t first, std::size_t last,
+                             std::string& rows) {
+    rows.append(reinterpret_cast<const char*>((cloud.*member).data() + first),
+                (last - first) * sizeof(T));
+  };
+  return array;
+}
+
+// An array of which append(run, i, rows) adds the row of the i-th simplex of a run.
+template <class Append>
+MeshArray values_of_simplices(const MeshShape& shape, std::uint64_t row_bytes, Append append) {
+  MeshArray array = array_of(shape.simplices, row_bytes);
+  const auto corners = static_cast<std::size_t>(shape.corners);
+  array.of_simplices = [corners, append](const SimplexRun& run, std::string& rows) {
+    for (std::size_t i = 0; i < run.corners.size() / corners; ++i) append(run, i, rows);
+  };
+  return array;
 }
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& path, const MeshView& mesh) {
-  Output output(path);
-  output.write(describe(mesh));
-  const PointCloud& points = mesh.points;
-  write_values(output, points.positions);
-  write_array(output, mesh.simplices.size(), 8, [&](std::size_t i, std::string& row) {
-    append_bytes(row, std::int64_t{mesh.simplices[i]});
-  });
-  write_array(output, mesh.size(), 8, [&](std::size_t i, std::string& row) {
-    append_bytes(row, static_cast<std::int64_t>(i + 1) * mesh.corners);
-  });
-  write_array(output, mesh.size(), 1, [&](std::size_t, std::string& row) {
-    append_bytes(row, mesh.corners == 3 ? kTriangle : kTetrahedron);
-  });
-  if (!points.colours.empty()) write_values(output, points.colours);
-  if (!points.intensity.empty()) write_values(output, points.intensity);
-  if (!points.classification.empty()) write_values(output, points.classification);
-  if (!mesh.created_by.empty()) {
-    write_array(output, mesh.size(), 2,
-                [&](std::size_t i, std::string& row) { append_bytes(row, mesh.created_by[i]); });
+MeshLayout vtu_layout(const MeshShape& shape) {
+  const auto corners = static_cast<std::uint64_t>(shape.corners);
+  MeshLayout layout{vtu_mesh_header(shape), {}, "\n</AppendedData>\n</VTKFile>\n"};
+  std::vector<MeshArray>& arrays = layout.arrays;
+  arrays.push_back(values_of_points(shape.points, &PointCloud::positions));
+  arrays.push_back(values_of_simplices(
+      shape, corners * 8, [corners](const SimplexRun& run, std::size_t i, std::string& rows) {
+        for (std::size_t k = 0; k < corners; ++k) {
+          append_bytes(rows, std::int64_t{run.corners[i * corners + k]});
+        }
+      }));
+  arrays.push_back(values_of_simplices(
+      shape, 8, [corners](const SimplexRun& run, std::size_t i, std::string& rows) {
+        append_bytes(rows, (run.first + i + 1) * corners);
+      }));
+  arrays.push_back(
+      values_of_simplices(shape, 1, [corners](const SimplexRun&, std::size_t, std::string& rows) {
+        append_bytes(rows, corners == 3 ? kTriangle : kTetrahedron);
+      }));
+  if (shape.colours) arrays.push_back(values_of_points(shape.points, &PointCloud::colours));
+  if (shape.intensity) arrays.push_back(values_of_points(shape.points, &PointCloud::intensity));
+  if (shape.classification) {
+    arrays.push_back(values_of_points(shape.points, &PointCloud::classification));
   }
-  output.write("\n</AppendedData>\n</VTKFile>\n");
-  output.close();
-  output.commit();
+  if (shape.created_by) {
+    arrays.push_back(
+        values_of_simplices(shape, 2, [](const SimplexRun& run, std::size_t i, std::string& rows) {
+          append_bytes(rows, run.created_by[i]);
+        }));
+  }
+  return layout;
+}
+
+void write_vtu(const std::filesystem::path& path, const MeshView& mesh) {
+  write_in_layout(path, vtu_layout(shape_of(mesh)), mesh);
 }
 
 }  // namespace delray::delaunay

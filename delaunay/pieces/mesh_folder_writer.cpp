@@ -88,6 +88,7 @@ class FileSink : public internal::ByteSink {
 struct PiecePart {
   std::span<const RowPoint> points;
   std::span<const std::uint32_t> corners;
+  std::optional<Hash128> hash = std::nullopt;  // of the simplices, where it is known
 };
 
 // Leaves out points that no simplex has. `part` stands for itself if there are none.
@@ -221,7 +222,7 @@ void MeshFolderWriter::State::write(std::uint64_t tile, const PiecePart& given) 
   piece.points = part.points.size();
   piece.simplices = part.corners.size() / (static_cast<std::size_t>(options.dim) + 1);
   for (const RowPoint& point : part.points) piece.box.include(point.position);
-  piece.hash = hash_of_part(options.dim, part);
+  piece.hash = given.hash ? *given.hash : hash_of_part(options.dim, part);
   {
     const std::lock_guard lock(mutex);
     piece.file = internal::piece_name(tile, begun[tile]++, codec.suffix);
@@ -276,11 +277,20 @@ MeshFolderWriter::MeshFolderWriter(const std::filesystem::path& path,
 
 MeshFolderWriter::~MeshFolderWriter() = default;
 
+std::uint64_t MeshFolderWriter::bytes_of_point(const std::string& format, int dim) {
+  constexpr std::uint64_t kPoints = 1 << 20;  // of a piece
+  const PieceCodec* codec = internal::find_piece_codec(format);
+  if (codec == nullptr) return 0;
+  return codec->bytes({dim, kPoints, kPoints * internal::simplices_of_point(dim)}) / kPoints;
+}
+
 void MeshFolderWriter::take(const TilePiece& piece) {
   const std::size_t most = internal::kMostCorners / 12 * 12;  // whole simplices
   for (std::size_t first = 0; first < piece.simplices.size(); first += most) {
     const std::size_t n = std::min(most, piece.simplices.size() - first);
-    state_->write(piece.tile, {piece.points, piece.simplices.subspan(first, n)});
+    const bool whole = n == piece.simplices.size();
+    state_->write(piece.tile, {piece.points, piece.simplices.subspan(first, n),
+                               whole ? piece.hash : std::nullopt});
   }
 }
 

@@ -18,6 +18,9 @@ struct PieceShape {
   std::uint64_t corners() const { return simplices * (static_cast<std::uint64_t>(dim) + 1); }
 };
 
+// Of uniform points, about.
+constexpr std::uint64_t simplices_of_point(int dim) { return dim == 2 ? 2 : 7; }
+
 // Pieces have signed indices of 32 bits.
 inline constexpr std::uint64_t kMostCorners = (std::uint64_t{1} << 31) - 1;
 

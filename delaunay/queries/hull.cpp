@@ -1,6 +1,6 @@
 // Takes the vertices of the facets that belong to one simplex only: sorted in 3D, and in 2D chained
 // from edge to edge.
-#include "delaunay/hull.h"
+#include "delaunay/adjacency.h"
 
 #include <algorithm>
 #include <unordered_map>

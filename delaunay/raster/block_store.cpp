@@ -2,17 +2,10 @@
 // again. The file ends with the process, however that ends.
 #include "delaunay/raster/block_store.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <limits>
-#include <string>
+#include <span>
 #include <utility>
-
-#include "files/error.h"
 
 namespace delray::delaunay::internal {
 
@@ -24,10 +17,6 @@ BlockStore::BlockStore(std::uint64_t blocks, std::size_t cells, std::size_t most
       most_(std::max<std::size_t>(most, 1)),
       scratch_(std::move(scratch)),
       touched_(blocks) {}
-
-BlockStore::~BlockStore() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
 
 BlockStore::Pin BlockStore::pin(std::uint64_t block) {
   const std::lock_guard lock(mutex_);
@@ -57,36 +46,12 @@ void BlockStore::make_room() {
   }
 }
 
-void BlockStore::open_scratch() {
-  std::error_code ignored;
-  if (scratch_.empty()) scratch_ = std::filesystem::temp_directory_path(ignored);
-  descriptor_ = ::open(scratch_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == ENOENT)) {
-    // Not every file system makes files without names.
-    std::string name = (scratch_ / ".delray-raster-XXXXXX").string();
-    descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-    if (descriptor_ >= 0) ::unlink(name.c_str());
-  }
-}
-
 void BlockStore::transfer(std::uint64_t block, std::vector<float>& cells, bool out) {
-  if (descriptor_ < 0) open_scratch();
-  auto* at = reinterpret_cast<char*>(cells.data());
-  std::size_t left = cells.size() * sizeof(float);
-  auto offset = static_cast<off_t>(block * left);
-  while (descriptor_ >= 0 && left > 0) {
-    const ssize_t moved =
-        out ? ::pwrite(descriptor_, at, left, offset) : ::pread(descriptor_, at, left, offset);
-    if (moved < 0 && errno == EINTR) continue;
-    if (moved <= 0) break;
-    at += moved;
-    left -= static_cast<std::size_t>(moved);
-    offset += moved;
-  }
-  if (left == 0) return;
-  throw files::FileError(
-      files::Cause::device, scratch_.string(), "scratch file of the raster",
-      std::string("cannot ") + (out ? "write: " : "read: ") + std::strerror(errno));
+  if (!file_) file_.emplace(scratch_, "scratch file of the raster");
+  const std::span<float> all(cells);
+  const std::uint64_t offset = block * all.size_bytes();
+  if (out) return file_->write(offset, std::as_bytes(all));
+  file_->read(offset, std::as_writable_bytes(all));
 }
 
 }  // namespace delray::delaunay::internal

@@ -7,8 +7,11 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <vector>
+
+#include "files/unnamed_file.h"
 
 namespace delray::delaunay::internal {
 
@@ -48,7 +51,6 @@ class BlockStore {
   // pinned at a time.
   BlockStore(std::uint64_t blocks, std::size_t cells, std::size_t most,
              std::filesystem::path scratch);
-  ~BlockStore();
   BlockStore(const BlockStore&) = delete;
   BlockStore& operator=(const BlockStore&) = delete;
 
@@ -64,12 +66,11 @@ class BlockStore {
     Order::iterator place;
   };
   void make_room();
-  void open_scratch();
   void transfer(std::uint64_t block, std::vector<float>& cells, bool out);
 
   std::size_t cells_, most_;
   std::filesystem::path scratch_;
-  int descriptor_ = -1;
+  std::optional<files::UnnamedFile> file_;
   std::mutex mutex_;
   std::unordered_map<std::uint64_t, Entry> blocks_;
   Order order_;  // of those in memory, the latest first

@@ -58,6 +58,13 @@ void share_parts(std::size_t begin, std::size_t end, const Work& work) {
   });
 }
 
+// A bit for each attribute that some of the points do not have.
+unsigned missing_attributes(const PointCloud& cloud) {
+  const auto missing = [&](const auto& values) { return values.size() < cloud.size() ? 1U : 0U; };
+  return missing(cloud.colours) | missing(cloud.intensity) << 1 |
+         missing(cloud.classification) << 2;
+}
+
 void advance(parallel::Progress* progress, std::uint64_t steps) {
   if (progress != nullptr) progress->advance(steps);
 }
@@ -129,10 +136,11 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t begin = share_begin(parts.parts(), rank, ranks);
   const std::size_t end = share_begin(parts.parts(), rank + 1, ranks);
-  PartCounts counts{CountGrid(dim, cells_along_axis), 0, false, begin, {}};
+  PartCounts counts{CountGrid(dim, cells_along_axis), 0, false, begin, {}, {}};
   std::vector<std::uint64_t> sizes(end - begin);
   std::atomic<std::size_t> bad_part{end};
   std::atomic<bool> has_z{false};
+  std::atomic<unsigned> missing{0};
   comm::all_or_none(communicator, comm::Phase::other, [&] {
     std::mutex mutex;
     share_parts(begin, end, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -142,6 +150,7 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
         parts.read(part, cloud);
         sizes[part - begin] = cloud.size();
         if (cloud.has_z) has_z = true;
+        missing |= missing_attributes(cloud);
         double sum = 0;
         const geometry::Box3d box = box_of_places(cloud.positions, dim, sum);
         if (sum != 0) {
@@ -171,10 +180,12 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
     parts.read(bad_part, cloud);
     refuse_place(cloud.positions, dim, counts.first_rows[bad_part - begin]);
   });
-  std::uint64_t sums[] = {before, has_z ? 1U : 0U};
+  const unsigned bits = missing;
+  std::uint64_t sums[] = {before, has_z ? 1U : 0U, bits & 1, bits >> 1 & 1, bits >> 2};
   comm::all_reduce(communicator, std::span<std::uint64_t>(sums), std::plus<>());
   counts.points = sums[0];
   counts.has_z = sums[1] > 0;
+  counts.attributes = {sums[2] == 0, sums[3] == 0, sums[4] == 0};
   add_up(communicator, counts.grid);
   return counts;
 }

@@ -14,6 +14,7 @@
 #include "delaunay/tiles/tile_boxes.h"
 #include "delaunay/tiles/tile_cut.h"
 #include "delaunay/tiles/tile_store.h"
+#include "delaunay/triangulate_parts.h"
 #include "parallel/progress.h"
 
 namespace delray::delaunay {
@@ -27,6 +28,7 @@ struct PartCounts {
   // one more.
   std::size_t first_part = 0;
   std::vector<std::uint64_t> first_rows;
+  PointAttributes attributes = {};
 };
 
 // Collective: counts the points of all parts, of which each rank reads a run. Threads are those of

@@ -2,6 +2,8 @@
 // a journal on disk, a later run goes on from the last tile that was finished.
 #include "delaunay/triangulate_parts.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <atomic>
 #include <functional>
@@ -177,6 +179,8 @@ class PartsRun {
         count_parts(communicator_, parts_, {dim_, cells, options_.first_row}, progress_));
     points_ = counts_->points;
     has_z_ = counts_->has_z;
+    attributes_ = counts_->attributes;
+    rows_ = {counts_->first_part, counts_->first_rows};
     format_.with_z = dim_ == 3 || has_z_;
     expect_points(points_);
     comm::all_or_none(communicator_, comm::Phase::other, [&] {
@@ -266,15 +270,31 @@ class PartsRun {
   void require_disk() const {
     // Ranks of one machine share its disk; what tiles leave comes besides, and is less.
     const std::uint64_t needed = points_ * format_.bytes() + points_ * format_.bytes() / 8;
+    const std::uint64_t result = points_ * options_.sink.result_bytes;
     const auto space = std::filesystem::space(journal_->folder());
     say(std::to_string(points_) + " points, " + std::to_string(plan_.tiles) +
         " tiles: " + files::bytes_text(needed) + " of the " + files::bytes_text(space.available) +
-        " that are free go to " + options_.scratch.string());
-    if (needed > space.available) {
-      throw files::FileError(files::Cause::device, options_.scratch.string(), "",
-                             files::bytes_text(needed) + " are needed, " +
-                                 files::bytes_text(space.available) + " are free");
-    }
+        " that are free go to " + options_.scratch.string() +
+        (result > 0 ? ", and about " + files::bytes_text(result) + " to the output" : ""));
+    require_free(options_.scratch, needed);
+    if (result == 0) return;
+    // A tile's points go as its simplices come.
+    const std::uint64_t waiting = points_ * options_.sink.scratch_bytes;
+    const bool is_one_disk = device_of(options_.sink.folder) == device_of(options_.scratch);
+    require_free(options_.sink.folder, result + (is_one_disk ? waiting : 0));
+    if (!is_one_disk) require_free(options_.scratch, waiting);
+  }
+
+  static dev_t device_of(const std::filesystem::path& folder) {
+    struct stat status {};
+    return ::stat(folder.c_str(), &status) == 0 ? status.st_dev : 0;
+  }
+  static void require_free(const std::filesystem::path& folder, std::uint64_t bytes) {
+    const std::uint64_t available = std::filesystem::space(folder).available;
+    if (bytes <= available) return;
+    throw files::FileError(
+        files::Cause::device, folder.string(), "",
+        files::bytes_text(bytes) + " are needed, " + files::bytes_text(available) + " are free");
   }
 
   Region points_of(std::size_t tile) {
@@ -286,7 +306,7 @@ class PartsRun {
       throw;
     }
     if (dim_ == 2 && has_z_) {
-      const DuplicatesCount merged = merge_heights(points, options_.duplicates);
+      const DuplicatesCount merged = merge_heights(points);
       const std::lock_guard lock(mutex_);
       if (merged.places > 0) duplicates_[tile] = merged;
     }
@@ -295,14 +315,20 @@ class PartsRun {
   }
 
   // Points in one place are in one tile.
-  static DuplicatesCount merge_heights(std::vector<RowPoint>& points, Duplicates policy) {
+  DuplicatesCount merge_heights(std::vector<RowPoint>& points) const {
     PointCloud cloud;
     cloud.has_z = true;
     cloud.positions.reserve(points.size());
     for (const RowPoint& point : points) cloud.positions.push_back(point.position);
-    const DuplicatesCount merged = merge_duplicates(cloud, policy);
+    const DuplicatesCount merged = merge_duplicates(cloud, options_.duplicates);
     if (merged.places == 0) return merged;
-    for (std::size_t i = 0; i < points.size(); ++i) points[i].position = cloud.positions[i];
+    std::vector<RowPoint> changed;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (points[i].position.z == cloud.positions[i].z) continue;
+      points[i].position.z = cloud.positions[i].z;
+      changed.push_back(points[i]);
+    }
+    if (sink_ != nullptr && !changed.empty()) sink_->take_heights(changed);
     return merged;
   }
 
@@ -316,7 +342,8 @@ class PartsRun {
       sink_->take({dim_,
                    settled.is_last ? 2 * tiles + region : region,
                    {settled.finals.points.data(), settled.finals.points.size()},
-                   {settled.finals.simplices.data(), settled.finals.simplices.size()}});
+                   {settled.finals.simplices.data(), settled.finals.simplices.size()},
+                   record.count.hash});
     }
     settled.finals = {};
     {
@@ -357,7 +384,7 @@ class PartsRun {
     tally_.emplace(first_own(), own_tiles(), static_cast<std::size_t>(plan_.tiles));
     const std::vector<TileSummary> summaries = share_summaries(communicator_, own_);
     if (options_.on_points) {
-      PointsFound found{points_, has_z_, {}};
+      PointsFound found{points_, has_z_, {}, attributes_, rows_};
       for (const TileSummary& summary : summaries) found.box.include(summary.box);
       options_.on_points(communicator_, found);
     }
@@ -418,6 +445,8 @@ class PartsRun {
   MemoryPlan plan_;
   RecordFormat format_;
   bool has_z_ = false;
+  PointAttributes attributes_;
+  PartRows rows_;
   std::uint64_t points_ = 0, scratch_bytes_ = 0;
   std::optional<PartCounts> counts_;
   TileCut cut_;

@@ -63,6 +63,72 @@ TEST(MeshFolders, AreWrittenTileByTile) {
   }
 }
 
+// One file by tiles, ranks and processes: the same bytes each time, streamed, too.
+TEST(MeshFiles, AreWrittenByAllRanksAtATime) {
+  const Folder folder;
+  ASSERT_EQ(
+      run("delray generate points cluster -n 60000 --dim 2 -o p.ply", folder.path()).exit_code, 0);
+  const Ran whole = run("delray triangulate p.ply --stats -", folder.path());
+  for (const std::string name : {"m.ply", "m.vtu"}) {
+    std::string expected;
+    for (const std::string& command :
+         {std::string("delray triangulate p.ply --ranks 3 --tiles 8"),
+          mpirun(2) + "delray triangulate p.ply --tiles 6 --scratch ."}) {
+      SCOPED_TRACE(command);
+      const Ran made = run(command + " --stats s.json -o " + name, folder.path());
+      ASSERT_EQ(made.exit_code, 0) << made.err;
+      EXPECT_EQ(json::parse(folder.read("s.json"))["result"]["hash"], result_hash(whole));
+      const std::string written = folder.read(name);
+      if (expected.empty()) expected = written;
+      EXPECT_TRUE(written == expected);
+      EXPECT_EQ(folder.files(), (std::vector<std::string>{name, "p.ply", "s.json"}));
+    }
+    const Ran verified =
+        run("delray verify " + name + " --points p.ply --canonical --stats -", folder.path());
+    EXPECT_EQ(verified.exit_code, 0) << verified.err;
+    EXPECT_EQ(result_hash(verified), result_hash(whole));
+    if (name == "m.ply") {
+      const Ran streamed =
+          run(mpirun(2) + "delray triangulate p.ply -o - | cmp - m.ply", folder.path());
+      EXPECT_EQ(streamed.exit_code, 0) << streamed.err << streamed.out;
+    }
+    fs::remove(folder / name);
+  }
+  // A disk that takes no more.
+  const Ran full =
+      run("trap '' XFSZ; ulimit -f 4000; true | delray triangulate p.ply --tiles 9 -o m.ply",
+          folder.path());
+  EXPECT_EQ(full.exit_code, 1) << full.err;
+  EXPECT_NE(full.err.find("m.ply"), std::string::npos) << full.err;
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"p.ply", "s.json"}));
+}
+
+TEST(MeshFiles, AreWrittenWithinMemory) {
+  const Folder folder;
+  ASSERT_EQ(
+      run("delray generate points uniform -n 1000000 --dim 2 -o p.ply", folder.path()).exit_code,
+      0);
+  const std::string command = "delray triangulate p.ply --memory 95MiB";
+  const Ran made = run(command + " -o m.ply --stats -", folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const json statistics = json::parse(made.out);
+  EXPECT_LE(statistics["memory"]["peak_rss"].get<std::uint64_t>(), std::uint64_t{95} << 20);
+  EXPECT_GT(statistics["tiles"].size(), 1U);
+  const Ran verified =
+      run("delray verify m.ply --points p.ply --canonical --stats -", folder.path());
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+  EXPECT_EQ(result_hash(verified), result_hash(made));
+  const Ran streamed = run(command + " -o - | cmp - m.ply", folder.path());
+  EXPECT_EQ(streamed.exit_code, 0) << streamed.err << streamed.out;
+  // A hull and formats of text are made in memory, which does not do here.
+  const Ran hull = run(command + " --dim 3 -o -", folder.path());
+  EXPECT_EQ(hull.exit_code, 2);
+  EXPECT_NE(hull.err.find("-o FOLDER/"), std::string::npos) << hull.err;
+  EXPECT_EQ(hull.out, "");
+  EXPECT_EQ(run(command + " -o m.obj", folder.path()).exit_code, 1);
+  EXPECT_EQ(folder.files(), (std::vector<std::string>{"m.ply", "p.ply"}));
+}
+
 TEST(MeshFolders, AreResumedAfterAKill) {
   const Folder folder;
   ASSERT_EQ(run("delray generate points uniform -n 400000 -o p.ply", folder.path()).exit_code, 0);
@@ -188,7 +254,10 @@ TEST(LargeOutputs, RefuseWhatDoesNotGoTogether) {
         "p.ply -o a.ply --interpolate linear", "p.ply -o a.tif --cell-size 1 --pieces vtu",
         "p.ply -o a.ply --pieces ply", "p.ply -o m/ --pieces obj",
         "p.ply -o m/ --pieces ply --dim 3", "p.ply -o m/ --max-error 1", "p.ply -o m/ --makers",
-        "p.ply -o a.tif --cell-size 1e-30", "p.ply -o a.ply --scratch .",
+        "p.ply -o a.tif --cell-size 1e-30",
+        "p.ply -o a.tif --cell-size 1 --interpolate natural-neighbour --tiles 3",
+        "p.ply -o a.obj --scratch .", "p.ply -o a.ply --dim 3 --scratch .",
+        "p.ply -o a.ply --resume", "p.ply -o - --dim 3 --scratch .",
         "p.ply -o a.tif --cell-size 1 --resume", "flat.xyz -o a.tif --cell-size 1"}) {
     const Ran ran = run("delray triangulate " + options, folder.path());
     EXPECT_EQ(ran.exit_code, 2) << options << ": " << ran.err;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "delaunay/generate.h"
-#include "delaunay/hull.h"
 #include "delaunay/quality.h"
 #include "delaunay/triangulate.h"
 

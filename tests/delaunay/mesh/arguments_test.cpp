@@ -10,7 +10,6 @@
 #include "delaunay/adjacency.h"
 #include "delaunay/dynamic.h"
 #include "delaunay/generate.h"
-#include "delaunay/hull.h"
 #include "delaunay/insertion/insertion_order.h"
 #include "delaunay/insertion/plan.h"
 #include "delaunay/interpolate.h"
