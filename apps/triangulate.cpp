@@ -307,6 +307,7 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
     facts.file.scratch = facts.scratch;
     facts.file.memory = options.input.limits.budget().limit();
     facts.file.threads = options.how.threads;
+    facts.file.progress = &session.progress;
     facts.file.ranks = session.under_mpi ? 1 : std::max(1, options.launch.ranks);
     output.emplace(
         options.output, facts,

@@ -16,6 +16,7 @@
 #include "delaunay/point_parts.h"
 #include "delaunay/tile_sink.h"
 #include "delaunay/triangulate_parts.h"
+#include "parallel/progress.h"
 
 namespace delray::delaunay {
 
@@ -43,6 +44,7 @@ struct MeshFileOptions {
   int ranks = 1;                             // of this process
   // Of several processes that write one file, each with simplices of its own: 0 makes it.
   int writer = 0;
+  parallel::Progress* progress = nullptr;  // may stop write()
 };
 
 // Writes the file, which appears whole or not at all (files::AtomicFile).
@@ -66,7 +68,7 @@ class MeshFileWriter : public TileSink {
   // Collective, after the last take(): writes points and simplices, each rank a share of them; the
   // first rank all of them to a stream, which comes in its order. Memory: some of the runs that
   // simplices wait in, a part of the points for each thread. O(n). Throws FileError: device; memory
-  // where one of the runs has too many simplices.
+  // where one of the runs has too many simplices. Throws parallel::Interrupted.
   void write(comm::Communicator& communicator, const Source& source);
   // Gives the file its name. Writer 0 only, after write().
   void commit();

@@ -1,5 +1,6 @@
 // PLY (Turk 1994), binary little-endian, coordinates as double. Bare points in the plane are
 // written without z.
+#include <cstring>
 #include <limits>
 
 #include "delaunay/files/mesh_layout.h"
@@ -36,16 +37,24 @@ MeshLayout ply_layout(const MeshShape& shape) {
   vertices.of_points = [coordinates, colours = shape.colours](const PointCloud& points,
                                                               std::size_t first, std::size_t last,
                                                               std::string& rows) {
+    if (coordinates == 3 && !colours) {
+      rows.append(reinterpret_cast<const char*>(points.positions.data() + first),
+                  (last - first) * sizeof(glm::dvec3));
+      return;
+    }
     for (std::size_t i = first; i < last; ++i) {
       for (int k = 0; k < coordinates; ++k) append_bytes(rows, points.positions[i][k]);
       for (int k = 0; colours && k < 3; ++k) append_bytes(rows, points.colours[i][k]);
     }
   };
-  faces.row_bytes = 13;
+  constexpr std::size_t kFaceBytes = 13;  // how many corners, and these
+  faces.row_bytes = kFaceBytes;
   faces.of_simplices = [](const SimplexRun& run, std::string& rows) {
-    for (std::size_t i = 0; i < run.corners.size(); i += 3) {
-      append_bytes(rows, std::uint8_t{3});
-      for (std::size_t k = 0; k < 3; ++k) append_bytes(rows, run.corners[i + k]);
+    std::size_t at = rows.size();
+    rows.resize(at + run.corners.size() / 3 * kFaceBytes);
+    for (std::size_t i = 0; i < run.corners.size(); i += 3, at += kFaceBytes) {
+      rows[at] = 3;
+      std::memcpy(&rows[at + 1], &run.corners[i], kFaceBytes - 1);
     }
   };
   return {ply_mesh_header(shape), {vertices, faces}, ""};

@@ -1,6 +1,6 @@
 // VTU: the XML format of VTK for unstructured grids, with the arrays appended as raw bytes, each
 // after its length in 64 bits.
-#include <string_view>
+#include <cstring>
 #include <utility>
 
 #include "delaunay/files/mesh_layout.h"
@@ -71,13 +71,19 @@ MeshArray values_of_points(std::uint64_t points, std::vector<T> PointCloud::*mem
   return array;
 }
 
-// An array of which append(run, i, rows) adds the row of the i-th simplex of a run.
-template <class Append>
-MeshArray values_of_simplices(const MeshShape& shape, std::uint64_t row_bytes, Append append) {
-  MeshArray array = array_of(shape.simplices, row_bytes);
+// An array of `each` values for each simplex, of which value(run, i) is the i-th of a run.
+template <class T, class Value>
+MeshArray values_of_simplices(const MeshShape& shape, std::size_t each, Value value) {
+  MeshArray array = array_of(shape.simplices, each * sizeof(T));
   const auto corners = static_cast<std::size_t>(shape.corners);
-  array.of_simplices = [corners, append](const SimplexRun& run, std::string& rows) {
-    for (std::size_t i = 0; i < run.corners.size() / corners; ++i) append(run, i, rows);
+  array.of_simplices = [corners, each, value](const SimplexRun& run, std::string& rows) {
+    const std::size_t n = run.corners.size() / corners * each;
+    std::size_t at = rows.size();
+    rows.resize(at + n * sizeof(T));
+    for (std::size_t i = 0; i < n; ++i, at += sizeof(T)) {
+      const T number = value(run, i);
+      std::memcpy(&rows[at], &number, sizeof(T));
+    }
   };
   return array;
 }
@@ -89,30 +95,23 @@ MeshLayout vtu_layout(const MeshShape& shape) {
   MeshLayout layout{vtu_mesh_header(shape), {}, "\n</AppendedData>\n</VTKFile>\n"};
   std::vector<MeshArray>& arrays = layout.arrays;
   arrays.push_back(values_of_points(shape.points, &PointCloud::positions));
-  arrays.push_back(values_of_simplices(
-      shape, corners * 8, [corners](const SimplexRun& run, std::size_t i, std::string& rows) {
-        for (std::size_t k = 0; k < corners; ++k) {
-          append_bytes(rows, std::int64_t{run.corners[i * corners + k]});
-        }
-      }));
-  arrays.push_back(values_of_simplices(
-      shape, 8, [corners](const SimplexRun& run, std::size_t i, std::string& rows) {
-        append_bytes(rows, (run.first + i + 1) * corners);
-      }));
-  arrays.push_back(
-      values_of_simplices(shape, 1, [corners](const SimplexRun&, std::size_t, std::string& rows) {
-        append_bytes(rows, corners == 3 ? kTriangle : kTetrahedron);
-      }));
+  arrays.push_back(values_of_simplices<std::int64_t>(
+      shape, corners,
+      [](const SimplexRun& run, std::size_t i) { return std::int64_t{run.corners[i]}; }));
+  arrays.push_back(values_of_simplices<std::uint64_t>(
+      shape, 1,
+      [corners](const SimplexRun& run, std::size_t i) { return (run.first + i + 1) * corners; }));
+  const std::uint8_t type = corners == 3 ? kTriangle : kTetrahedron;
+  arrays.push_back(values_of_simplices<std::uint8_t>(
+      shape, 1, [type](const SimplexRun&, std::size_t) { return type; }));
   if (shape.colours) arrays.push_back(values_of_points(shape.points, &PointCloud::colours));
   if (shape.intensity) arrays.push_back(values_of_points(shape.points, &PointCloud::intensity));
   if (shape.classification) {
     arrays.push_back(values_of_points(shape.points, &PointCloud::classification));
   }
   if (shape.created_by) {
-    arrays.push_back(
-        values_of_simplices(shape, 2, [](const SimplexRun& run, std::size_t i, std::string& rows) {
-          append_bytes(rows, run.created_by[i]);
-        }));
+    arrays.push_back(values_of_simplices<std::uint16_t>(
+        shape, 1, [](const SimplexRun& run, std::size_t i) { return run.created_by[i]; }));
   }
   return layout;
 }

@@ -3,6 +3,7 @@
 #include "delaunay/mesh_file_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <functional>
 #include <string>
@@ -63,8 +64,8 @@ struct MeshFileWriter::State {
         writer(mesh_writer_for(path)),
         target(path, given.writer == 0) {}
 
+  template <std::size_t Corners>
   void take(const TilePiece& piece, std::size_t first, std::size_t last);
-  std::uint64_t row_bytes() const { return corners * sizeof(std::uint32_t); }
 
   MeshFileOptions options;
   std::size_t corners;
@@ -75,33 +76,28 @@ struct MeshFileWriter::State {
 };
 
 // Sorts simplices by buckets first, so that each bucket is asked for once.
+template <std::size_t Corners>
 void MeshFileWriter::State::take(const TilePiece& piece, std::size_t first, std::size_t last) {
-  std::vector<std::uint32_t> rows, sorted((last - first) * corners);
-  rows.reserve(sorted.size());
-  std::vector<std::uint32_t> ends(simplices.size() + 1);
-  for (std::size_t i = first; i < last; ++i) {
-    for (std::size_t k = 0; k < corners; ++k) {
-      const std::uint64_t row = piece.points[piece.simplices[i * corners + k]].row;
+  using Simplex = std::array<std::uint32_t, Corners>;
+  std::vector<Simplex> given(last - first), sorted(last - first);
+  std::vector<std::uint32_t> bucket_of(last - first), ends(simplices.size() + 1);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    for (std::size_t k = 0; k < Corners; ++k) {
+      const std::uint64_t row = piece.points[piece.simplices[(first + i) * Corners + k]].row;
       assert(row < options.points);
-      rows.push_back(static_cast<std::uint32_t>(row));
+      given[i][k] = static_cast<std::uint32_t>(row);
     }
-    const std::span<std::uint32_t> simplex(&rows[rows.size() - corners], corners);
-    internal::turn_to_lowest(simplex);
-    ++ends[simplex[0] / bucket_rows];
+    internal::turn_to_lowest(given[i]);
+    bucket_of[i] = static_cast<std::uint32_t>(given[i][0] / bucket_rows);
+    ++ends[bucket_of[i]];
   }
   std::uint32_t sum = 0;
   for (std::uint32_t& end : ends) sum += std::exchange(end, sum);
-  for (std::size_t i = 0; i < rows.size(); i += corners) {
-    const std::size_t to = ends[rows[i] / bucket_rows]++;
-    std::copy_n(&rows[i], corners, &sorted[to * corners]);
-  }
+  for (std::size_t i = 0; i < given.size(); ++i) sorted[ends[bucket_of[i]]++] = given[i];
   std::size_t at = 0;
   for (std::size_t bucket = 0; bucket < simplices.size(); ++bucket) {
     const std::size_t end = ends[bucket];
-    if (end > at) {
-      simplices.add(bucket,
-                    std::as_bytes(std::span(sorted).subspan(at * corners, (end - at) * corners)));
-    }
+    if (end > at) simplices.add(bucket, std::as_bytes(std::span(sorted).subspan(at, end - at)));
     at = end;
   }
 }
@@ -157,6 +153,10 @@ class MeshFileRun {
   template <class F>
   void all_or_none(F&& f) {
     comm::all_or_none(communicator_, comm::Phase::other, std::forward<F>(f));
+  }
+
+  void stop_if_asked() const {
+    if (options_.progress != nullptr) options_.progress->advance(0);
   }
 
   // The first simplex of each bucket, over all ranks.
@@ -230,6 +230,7 @@ class MeshFileRun {
       const std::vector<std::uint64_t>& rows = source_.rows.first_rows;
       const std::size_t parts = rows.empty() ? 0 : rows.size() - 1;
       parallel::parallel_for(0, parts, 1, [&](std::size_t part) {
+        stop_if_asked();
         PointCloud points;
         source_.parts.read(source_.rows.first + part, points);
         check_unchanged(points, rows[part + 1] - rows[part], source_.rows.first + part);
@@ -286,6 +287,7 @@ class MeshFileRun {
       const std::size_t parts = source_.parts.parts();
       std::vector<PointCloud> clouds(threads_);
       for (std::size_t first = 0; first < parts; first += threads_) {
+        stop_if_asked();
         const std::size_t n = std::min(threads_, parts - first);
         parallel::parallel_for(0, n, 1,
                                [&](std::size_t i) { source_.parts.read(first + i, clouds[i]); });
@@ -340,12 +342,13 @@ class MeshFileRun {
     if (writes) buckets.resize(threads_);
     std::vector<comm::Parcel> parcels;
     all_or_none([&] {
+      stop_if_asked();
       std::uint64_t most = 0;
       for (std::size_t thread = 0; thread < buckets.size(); ++thread) {
         const std::size_t bucket = bucket_of(round, communicator_.rank(), thread);
         if (bucket < of_.simplices.size()) most += firsts_[bucket + 1] - firsts_[bucket];
       }
-      constexpr std::uint64_t kCopies = 2;
+      constexpr std::uint64_t kCopies = 3;
       files::MemoryBudget(options_.memory)
           .require(kCopies * most * corners_ * sizeof(std::uint32_t), "--memory",
                    "simplices of a run of rows");
@@ -444,7 +447,12 @@ MeshFileWriter::~MeshFileWriter() = default;
 void MeshFileWriter::take(const TilePiece& piece) {
   const std::size_t n = piece.simplices.size() / state_->corners;
   for (std::size_t first = 0; first < n; first += kSlice) {
-    state_->take(piece, first, std::min(n, first + kSlice));
+    const std::size_t last = std::min(n, first + kSlice);
+    if (state_->corners == 3) {
+      state_->take<3>(piece, first, last);
+    } else {
+      state_->take<4>(piece, first, last);
+    }
   }
 }
 

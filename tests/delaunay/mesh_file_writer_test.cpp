@@ -57,6 +57,7 @@ struct Ways {
   std::size_t part_rows = 1000;
   Duplicates duplicates = Duplicates::first;
   std::uint64_t memory = std::uint64_t{1} << 40;
+  parallel::Progress* progress = nullptr;  // of writing
 };
 
 // Triangulates tile by tile into a file.
@@ -87,10 +88,17 @@ PartsResult write(const fs::path& path, const PointCloud& cloud, int dim, const 
     options.duplicates = ways.duplicates;
     options.on_points = [&](comm::Communicator& all, const PointsFound& found) {
       rows = found.rows;
-      const MeshFileOptions file{
-          dim,       found.points, found.has_z,  found.attributes,
-          scratch,   ways.memory,  ways.threads, ways.is_shared ? ways.ranks : 1,
-          all.rank()};
+      MeshFileOptions file;
+      file.dim = dim;
+      file.points = found.points;
+      file.has_z = found.has_z;
+      file.attributes = found.attributes;
+      file.scratch = scratch;
+      file.memory = ways.memory;
+      file.threads = ways.threads;
+      file.ranks = ways.is_shared ? ways.ranks : 1;
+      file.writer = all.rank();
+      file.progress = ways.progress;
       if (all.rank() == 0 || !ways.is_shared) writer = std::make_unique<MeshFileWriter>(path, file);
       comm::barrier(all);
     };
@@ -212,6 +220,17 @@ TEST(MeshFileWriter, KnowsWhatItCanWrite) {
   EXPECT_FALSE(can_write_in_parts("a.ply", 3));
   EXPECT_FALSE(can_write_in_parts("a.obj", 2));
   EXPECT_THROW(can_write_in_parts("a.xyzw", 2), std::invalid_argument);
+}
+
+TEST(MeshFileWriter, CanBeStopped) {
+  const tests::TemporaryFolder folder;
+  const PointCloud cloud = generate_points("uniform", 2000, 2, 1);
+  parallel::Progress progress;
+  progress.request_stop();
+  Ways ways{3, 2};
+  ways.progress = &progress;
+  EXPECT_THROW(write(folder / "m.ply", cloud, 2, ways, folder / "."), parallel::Interrupted);
+  EXPECT_EQ(folder.entries(), 0U);
 }
 
 TEST(MeshFileWriter, LeavesNothingAfterAFailure) {

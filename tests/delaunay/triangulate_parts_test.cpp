@@ -300,6 +300,32 @@ TEST(TriangulateParts, SaysWhereMemoryDoesNotDo) {
   });
 }
 
+// Before points go to disk, and for what the sink is going to write, too.
+TEST(TriangulateParts, LooksForRoomOnTheDisk) {
+  const tests::TemporaryFolder folder;
+  const PointCloud cloud = generate_points("uniform", 300, 2, 1);
+  const CloudParts parts(cloud);
+  for (const bool is_result : {true, false}) {
+    comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+      PartsOptions options;
+      options.scratch = folder.path();
+      options.to_disk = true;
+      options.sink = {folder.path(), 1, 1};
+      (is_result ? options.sink.result_bytes : options.sink.scratch_bytes) = std::uint64_t{1} << 50;
+      CountingSink sink;
+      try {
+        triangulate_parts(communicator, parts, options, &sink);
+        ADD_FAILURE() << "no error";
+      } catch (const files::FileError& error) {
+        EXPECT_EQ(error.cause(), files::Cause::device);
+        EXPECT_NE(std::string(error.what()).find("are needed"), std::string::npos) << error.what();
+      }
+      EXPECT_TRUE(sink.tiles.empty());
+    });
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(TriangulateParts, RefusesWhatCannotBe) {
   PointCloud cloud = generate_points("uniform", 300, 2, 1);
   cloud.positions[217].y = std::nan("");
