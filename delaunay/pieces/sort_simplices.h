@@ -26,8 +26,7 @@ inline void turn_to_lowest(std::array<std::uint32_t, 4>& t) {
     std::swap(t[0], t[lowest]);
     std::swap(t[lowest == 1 ? 2 : 1], t[lowest == 3 ? 2 : 3]);
   }
-  const auto rest = std::span(t).subspan(1);
-  std::ranges::rotate(rest, std::ranges::min_element(rest));
+  std::rotate(t.begin() + 1, std::min_element(t.begin() + 1, t.end()), t.end());
 }
 
 // Sorts turned simplices of `corners` rows each by their rows. Lowest rows are in [first, first +

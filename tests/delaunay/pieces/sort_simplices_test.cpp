@@ -38,7 +38,7 @@ void expect_one_turn() {
       EXPECT_EQ(simplex[1], start[1]);
     }
     turned.insert(simplex);
-  } while (std::ranges::next_permutation(order).found);
+  } while (std::next_permutation(order.begin(), order.end()));
   EXPECT_EQ(turned.size(), 2U);  // one for each orientation
 }
 
