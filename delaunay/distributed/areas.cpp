@@ -1,5 +1,5 @@
-// Areas are the tiles of delaunay/tiles/tile_cut.h: a grid of counts (the report's bucketing) that
-// a partition of loadbalance/ cuts (its Mueller's algorithm is `mahd`).
+// Areas are the tiles of delaunay/tiles/tile_cut.h: grids of counts (the report's bucketing) that a
+// partition of loadbalance/ cuts (its Mueller's algorithm is `mahd`).
 #include "delaunay/distributed/areas.h"
 
 #include <algorithm>

@@ -23,9 +23,8 @@ class Areas {
   Areas(comm::Communicator& communicator, std::span<const RowPoint> points,
         const DistributedOptions& options, int spared = 0);
 
-  // The rank whose area has the point. Points beyond the box of the first ones belong to the area
-  // at the border there.
-  int rank_of(const glm::dvec3& position) const { return spared_ + cut_.nearest_tile_of(position); }
+  // The rank whose area has the point, which may be none of the first ones.
+  int rank_of(const glm::dvec3& position) const { return spared_ + cut_.tile_of(position); }
 
   // Collective: the distinct points of this rank's area, of those that all ranks give.
   std::vector<RowPoint> own_points(comm::Communicator& communicator,

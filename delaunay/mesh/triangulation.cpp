@@ -2,15 +2,12 @@
 // vertices, are summed modulo 2^128 by a parallel reduction. O(simplices).
 #include "delaunay/triangulation.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <span>
-#include <tuple>
-#include <utility>
 
+#include "delaunay/mesh/simplex_hash.h"
 #include "parallel/parallel_for.h"
 
 namespace delray::delaunay {
@@ -21,19 +18,13 @@ constexpr std::size_t kSimplicesPerBlock = 4096;
 
 template <std::size_t Corners, class Row>
 Hash128 hash_of_range(std::span<const Row> vertices, std::size_t first, std::size_t last) {
-  Hash128 sum;
+  internal::HashSum sum;
   for (std::size_t t = first; t < last; ++t) {
     std::array<std::uint64_t, Corners> rows;
     std::copy_n(&vertices[t * Corners], Corners, rows.begin());
-    for (std::size_t i = 1; i < Corners; ++i) {
-      for (std::size_t j = i; j > 0; --j) {
-        std::tie(rows[j - 1], rows[j]) = std::minmax({rows[j - 1], rows[j]});
-      }
-    }
-    const XXH128_hash_t simplex = XXH3_128bits(rows.data(), sizeof rows);
-    sum = sum + Hash128{simplex.high64, simplex.low64};
+    sum.add(rows);
   }
-  return sum;
+  return sum.sum();
 }
 
 template <class Row>

@@ -1,13 +1,13 @@
-// Counts points on a grid, cuts it, and sends each point to the rank of its tile.
+// Cuts space by a sample of the points, and sends each point to the rank of its tile.
 #include "delaunay/tiles/distribute_points.h"
 
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <utility>
 
+#include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "delaunay/tiles/point_records.h"
+#include "delaunay/tiles/point_sample.h"
 #include "delaunay/tiles/tile_cut.h"
 #include "delaunay/tiles/tile_store.h"
 #include "loadbalance/partition.h"
@@ -15,33 +15,17 @@
 
 namespace delray::delaunay {
 
-void add_up(comm::Communicator& communicator, CountGrid& grid) {
-  if (communicator.size() == 1) return;
-  std::array<double, 6> bounds;
-  for (int k = 0; k < 3; ++k) {
-    bounds[k] = -grid.box().low[k];
-    bounds[3 + k] = grid.box().high[k];
-  }
-  comm::all_reduce(communicator, std::span<double>(bounds),
-                   [](double a, double b) { return std::max(a, b); });
-  geometry::Box3d box;
-  for (int k = 0; k < 3; ++k) {
-    box.low[k] = -bounds[k];
-    box.high[k] = bounds[3 + k];
-  }
-  grid.cover(box);
-  comm::all_reduce(communicator, grid.counts(), std::plus<>());
-}
-
 TileCut cut_points(comm::Communicator& communicator, std::span<const RowPoint> points, int dim,
                    int tiles, const loadbalance::Partitioner& partitioner) {
-  CountGrid grid(dim, cells_along_axis(dim, static_cast<std::uint64_t>(tiles)));
-  geometry::Box3d box;
-  for (const RowPoint& point : points) box.include(point.position);
-  grid.cover(box);
-  for (const RowPoint& point : points) grid.add(point.position);
-  add_up(communicator, grid);
-  return TileCut(grid.lattice(), grid.counts(), tiles, partitioner);
+  if (tiles == 1) return {};
+  PointSample sample(sample_for_tiles(static_cast<std::uint64_t>(tiles)));
+  for (const RowPoint& point : points) sample.add(point.row, point.position);
+  std::vector<glm::dvec3> places = std::move(sample).gather(communicator);
+  const TileCut cut = comm::all_or_none(communicator, comm::Phase::redistribute, [&] {
+    return communicator.rank() == 0 ? cut_places(std::move(places), dim, tiles, partitioner)
+                                    : TileCut();
+  });
+  return share_cut(communicator, cut);
 }
 
 std::vector<std::vector<RowPoint>> distribute_points(comm::Communicator& communicator,

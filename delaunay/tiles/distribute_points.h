@@ -16,11 +16,9 @@ std::vector<std::vector<RowPoint>> distribute_points(comm::Communicator& communi
                                                      std::span<const RowPoint> points,
                                                      const TileOptions& options, int tiles);
 
-// Collective: cuts space into `tiles` of about as many points. O(points of the rank + tiles).
+// Collective: cuts space into `tiles` of about as many points. O(points of the rank + tiles), on
+// rank 0 cut_places() besides.
 TileCut cut_points(comm::Communicator& communicator, std::span<const RowPoint> points, int dim,
                    int tiles, const loadbalance::Partitioner& partitioner);
-
-// Collective: the common grid of all ranks' boxes, and the counts on it of all of them.
-void add_up(comm::Communicator& communicator, CountGrid& grid);
 
 }  // namespace delray::delaunay

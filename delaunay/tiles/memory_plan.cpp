@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "delaunay/tiles/tile_cut.h"
 #include "files/error.h"
 #include "files/memory_budget.h"
 
@@ -21,7 +22,8 @@ constexpr std::uint64_t kLargeTile2D = std::uint64_t{1} << 20;
 constexpr std::uint64_t kSmallTile = 200000, kSmallestTile = 4000;
 // Tiles come out uneven by as much, unless points cluster in few cells of the grid.
 constexpr double kUneven = 1.15;
-constexpr std::uint64_t kBytesToRead = 120;  // of a point, and its copy sorted by tiles
+constexpr std::uint64_t kBytesToRead = 120;    // of a point, and its copy sorted by tiles
+constexpr std::uint64_t kBytesToSample = 120;  // with the copies on the way
 constexpr std::uint64_t kMostRows = std::uint64_t{1} << 20;
 
 }  // namespace
@@ -37,6 +39,10 @@ MemoryPlan plan_memory(const Task& task) {
   MemoryPlan plan;
   plan.threads = std::max(1, task.threads);
   plan.batch_rows = kMostRows;
+  const auto use_sample = [&](std::uint64_t most) {
+    plan.sample =
+        std::min<std::uint64_t>(sample_for_tiles(static_cast<std::uint64_t>(plan.tiles)), most);
+  };
   const std::uint64_t bytes = bytes_to_triangulate(task.dim);
   const std::uint64_t share = task.points / static_cast<std::uint64_t>(task.ranks) + 1;
   plan.tiles = task.tiles > 0 ? task.tiles : task.ranks;
@@ -52,6 +58,7 @@ MemoryPlan plan_memory(const Task& task) {
   };
   if (task.memory == 0) {
     plan.tile_points = ~std::uint64_t{0};
+    use_sample(~std::uint64_t{0});
     use_workers(static_cast<std::uint64_t>(std::max(1, task.threads)));
     return plan;
   }
@@ -81,6 +88,7 @@ MemoryPlan plan_memory(const Task& task) {
         kUneven * static_cast<double>(task.points) / static_cast<double>(wanted) + 1;
     plan.tiles = static_cast<int>(std::clamp(tiles, double(task.ranks), 1e6));
   }
+  use_sample(std::max(left / 8 / kBytesToSample, kSmallestTile));
   use_workers(static_cast<std::uint64_t>(workers));
   return plan;
 }

@@ -21,6 +21,7 @@ struct MemoryPlan {
   int threads = 1;                // of each worker
   std::uint64_t tile_points = 0;  // of the largest tile that there is memory for
   std::uint64_t batch_rows = 0;   // points that a thread reads at a time
+  std::uint64_t sample = 0;       // points by which space is cut
 };
 
 // Bytes that triangulating a point takes at most, besides those that hold it in its tile's file.

@@ -17,7 +17,7 @@ namespace delray::delaunay {
 struct RecordFormat {
   bool with_z = true;
 
-  std::size_t bytes() const { return with_z ? sizeof(RowPoint) : 3 * sizeof(double); }
+  constexpr std::size_t bytes() const { return with_z ? sizeof(RowPoint) : 3 * sizeof(double); }
   void write(std::byte* to, const glm::dvec3& place, std::uint64_t row) const {
     std::memcpy(to, &place, bytes() - sizeof row);
     std::memcpy(to + bytes() - sizeof row, &row, sizeof row);

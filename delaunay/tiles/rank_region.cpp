@@ -31,6 +31,7 @@ RankRegion::RankRegion(Region&& region, const OtherTiles& others, const SettleOp
       progress_(options.triangulate.progress),
       options_(options.triangulate),
       require_(options.require),
+      finals_(options.finals),
       tiles_(tiles) {
   options_.threads *= std::max(options.workers, 1);
   if (!tiles_.is_one && options_.progress != nullptr) options_.progress = &progress_;
@@ -68,8 +69,8 @@ std::vector<RankMessage> RankRegion::look(Settled& settled) {
   if (region_.own == 0 || !changed_) return {};
   if (require_ && !(tiles_.is_one && !settled_)) require_(region_.points.size());
   if (!settled_) {
-    settled =
-        settle(std::move(region_), others_, options_, {.is_tile = tiles_.is_one, .messages = true});
+    settled = settle(std::move(region_), others_, options_,
+                     {.is_tile = tiles_.is_one, .messages = true, .finals = finals_});
     settled_ = true;
     if (options_.progress != nullptr) options_.progress = &progress_;
     region_ = std::move(settled.rest);
@@ -92,7 +93,7 @@ Settled RankRegion::finish() {
     mesh_ = std::make_unique<Mesh>(region_, options_);
     mesh_->visit([&](auto& mesh) { settled.simplices = mesh.simplices(); });
   }
-  settled.finals = mesh_->visit([](auto& mesh) { return mesh.take_own(); });
+  settled.finals = mesh_->visit([&](auto& mesh) { return mesh.take_own(finals_); });
   mesh_.reset();
   return settled;
 }

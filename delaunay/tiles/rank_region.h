@@ -57,6 +57,7 @@ class RankRegion {
   parallel::Progress progress_;  // of what was triangulated before
   Options options_;
   std::function<void(std::uint64_t points)> require_;
+  FinalsWish finals_;
   RankTiles tiles_;
   std::unordered_set<std::uint64_t> halo_rows_;
   std::vector<std::pair<int, std::uint64_t>> told_;  // ranks, and rows of points; ascending

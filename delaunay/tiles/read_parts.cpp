@@ -48,6 +48,12 @@ void refuse_place(std::span<const glm::dvec3> places, int dim, std::uint64_t fir
   }
 }
 
+// Of a point whose row is not known yet.
+std::uint64_t number_of(std::size_t part, std::size_t place) {
+  constexpr int kPlaceBits = 40;
+  return (static_cast<std::uint64_t>(part) << kPlaceBits) + place;
+}
+
 // Runs work(thread, first, last) for runs of the parts [begin, end), one for each thread.
 template <class Work>
 void share_parts(std::size_t begin, std::size_t end, const Work& work) {
@@ -104,17 +110,16 @@ std::vector<comm::Parcel> read_batch(const PointParts& parts, const PartCounts& 
 // Takes messages in for the rank's own tiles.
 class Receiver {
  public:
-  Receiver(const Destination& to, int dim, std::size_t first_tile)
-      : to_(to), dim_(dim), first_(first_tile) {}
+  Receiver(const Destination& to, std::size_t first_tile) : to_(to), first_(first_tile) {}
 
   void take(comm::Buffer&& message) {
     for (const TileRecords& run : tiles_of(message, to_.format)) {
       TileSummary summary;
       for (std::uint64_t i = 0; i < run.count; ++i) {
-        summary.include(to_.format.read(run.records + i * to_.format.bytes()), dim_);
+        summary.include(to_.format.read(run.records + i * to_.format.bytes()), to_.dim);
       }
       const std::lock_guard lock(mutex_);
-      to_.own[run.tile - first_].include(summary, dim_);
+      to_.own[run.tile - first_].include(summary, to_.dim);
       to_.own_points[run.tile - first_] += run.count;
     }
     to_.store.add(std::move(message));
@@ -122,7 +127,6 @@ class Receiver {
 
  private:
   const Destination& to_;
-  int dim_;
   std::size_t first_;
   std::mutex mutex_;
 };
@@ -131,12 +135,13 @@ class Receiver {
 
 PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts,
                        const CountOptions& options, parallel::Progress* progress) {
-  const int dim = options.dim, cells_along_axis = options.cells_along_axis;
+  const int dim = options.dim;
+  const auto most = static_cast<std::size_t>(options.sample);
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t begin = share_begin(parts.parts(), rank, ranks);
   const std::size_t end = share_begin(parts.parts(), rank + 1, ranks);
-  PartCounts counts{CountGrid(dim, cells_along_axis), 0, false, begin, {}, {}};
+  PartCounts counts{PointSample(most), 0, false, {}, begin, {}, {}};
   std::vector<std::uint64_t> sizes(end - begin);
   std::atomic<std::size_t> bad_part{end};
   std::atomic<bool> has_z{false};
@@ -144,7 +149,8 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
   comm::all_or_none(communicator, comm::Phase::other, [&] {
     std::mutex mutex;
     share_parts(begin, end, [&](std::size_t, std::size_t first, std::size_t last) {
-      CountGrid grid(dim, cells_along_axis);
+      PointSample sample(most);
+      geometry::Box3d around;
       PointCloud cloud;
       for (std::size_t part = first; part < last; ++part) {
         parts.read(part, cloud);
@@ -159,12 +165,15 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
           }
           break;
         }
-        grid.cover(box);
-        for (const glm::dvec3& place : cloud.positions) grid.add(place);
+        around.include(box);
+        for (std::size_t i = 0; i < cloud.size(); ++i) {
+          sample.add(number_of(part, i), cloud.positions[i]);
+        }
         advance(progress, cloud.size());
       }
       const std::lock_guard lock(mutex);
-      counts.grid.add(grid);
+      counts.sample.add(sample);
+      counts.box.include(around);
     });
   });
   std::uint64_t before = 0;
@@ -186,7 +195,11 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
   counts.points = sums[0];
   counts.has_z = sums[1] > 0;
   counts.attributes = {sums[2] == 0, sums[3] == 0, sums[4] == 0};
-  add_up(communicator, counts.grid);
+  double ends[] = {counts.box.low.x,   counts.box.low.y,   counts.box.low.z,
+                   -counts.box.high.x, -counts.box.high.y, -counts.box.high.z};
+  comm::all_reduce(communicator, std::span<double>(ends),
+                   [](double a, double b) { return std::min(a, b); });
+  counts.box = {{ends[0], ends[1], ends[2]}, {-ends[3], -ends[4], -ends[5]}};
   return counts;
 }
 
@@ -195,8 +208,7 @@ void distribute_parts(comm::Communicator& communicator, const PointParts& parts,
                       parallel::Progress* progress) {
   const int ranks = communicator.size(), rank = communicator.rank();
   const std::size_t begin = counts.first_part, end = begin + counts.first_rows.size() - 1;
-  Receiver receiver(to, counts.grid.dim(),
-                    static_cast<std::size_t>(first_tile(rank, ranks, to.tiles)));
+  Receiver receiver(to, static_cast<std::size_t>(first_tile(rank, ranks, to.tiles)));
   const auto points_of = [&](std::size_t first, std::size_t last) {
     return counts.first_rows[last - begin] - counts.first_rows[first - begin];
   };

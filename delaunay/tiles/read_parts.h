@@ -8,9 +8,9 @@
 
 #include "comm/communicator.h"
 #include "delaunay/point_parts.h"
-#include "delaunay/tiles/count_grid.h"
 #include "delaunay/tiles/memory_plan.h"
 #include "delaunay/tiles/point_records.h"
+#include "delaunay/tiles/point_sample.h"
 #include "delaunay/tiles/tile_boxes.h"
 #include "delaunay/tiles/tile_cut.h"
 #include "delaunay/tiles/tile_store.h"
@@ -21,9 +21,10 @@ namespace delray::delaunay {
 
 // What the first pass finds, of all ranks.
 struct PartCounts {
-  CountGrid grid;
+  PointSample sample;  // of the rank's points
   std::uint64_t points = 0;
   bool has_z = false;
+  geometry::Box3d box;  // of all ranks' points
   // Of the rank's parts, of which the first is first_part: the row of the first point of each, and
   // one more.
   std::size_t first_part = 0;
@@ -36,7 +37,7 @@ struct PartCounts {
 // finite; those of reading.
 struct CountOptions {
   int dim = 2;
-  int cells_along_axis = 1;  // of the grid, at most
+  std::uint64_t sample = 1;  // points of all ranks' sample, at most
   std::uint64_t first_row = 0;
 };
 PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts,
@@ -45,6 +46,7 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
 // Where points go.
 struct Destination {
   const TileCut& cut;
+  int dim = 2;
   int tiles = 1;
   RecordFormat format;
   TileStore& store;               // of the rank's own tiles

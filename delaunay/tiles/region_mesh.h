@@ -11,14 +11,23 @@
 #include "delaunay/tiles.h"
 #include "delaunay/tiles/region.h"
 #include "delaunay/tiles/tile_boxes.h"
+#include "delaunay/triangulation.h"
 
 namespace delray::delaunay {
 
 // Simplices that can change no more.
 struct FinalSimplices {
-  Array<RowPoint> points;
-  Array<std::uint32_t> simplices;  // dim + 1 places in `points` each
+  Array<RowPoint> points;          // if simplices were asked for
+  Array<std::uint32_t> simplices;  // likewise: dim + 1 places in `points` each
+  std::uint64_t count = 0;         // of simplices
   std::uint64_t hull_facets = 0;
+  Hash128 hash = {};  // by the rows of points, if it was asked for
+};
+
+// What is wanted of them.
+struct FinalsWish {
+  bool simplices = true;  // and not only their number
+  bool hash = true;
 };
 
 // A point for a tile.
@@ -27,9 +36,8 @@ struct TileMessage {
   RowPoint point;
 };
 
-// Points that are all own and have no walls take little more than triangulating them; the test of
-// balls is a few multiplications for each simplex that lies well within the region's box.
-// Memory: 80 bytes a point in 2D and 300 in 3D while triangulating, besides the points.
+// Points without walls take little more than triangulating them: only balls along the border are
+// looked at. Memory: 80 bytes a point in 2D and 300 in 3D while triangulating, besides the points.
 template <int D>
 class RegionMesh {
  public:
@@ -54,19 +62,21 @@ class RegionMesh {
   // If all own points lie on one line or plane anything may be a neighbour, and each is for all.
   std::vector<TileMessage> find_messages(const OtherTiles& others) const;
   // What is not open, without what was given away before. Ends the mesh; rest() before it.
-  FinalSimplices take_settled();
+  FinalSimplices take_settled(const FinalsWish& wish);
   // What is open, with all of the halo, and the walls around it.
   Region rest() const;
 
   // The simplices whose vertex with the lowest row is an own one, without what was given away
   // before. Ends the mesh.
-  FinalSimplices take_own();
+  FinalSimplices take_own(const FinalsWish& wish);
 
  private:
   using Point = glm::vec<D, double>;
   using Facet = std::array<VertexNumber, D>;
   using Corners = std::array<VertexNumber, D + 1>;
-  enum State : std::uint8_t { kNone, kOutside, kSettled, kOpen };
+  // Of a slot: no simplex or one behind walls; one that nothing is known of yet, which is settled
+  // in the end; one on its way from there; one that is open.
+  enum State : std::uint8_t { kNone, kSettled, kTested, kOpen };
   struct HullFacet {
     Facet corners;
     SimplexNumber simplex;  // that has it, or kNoSimplex for a wall with nothing beyond
@@ -75,6 +85,10 @@ class RegionMesh {
   static constexpr SimplexNumber kNoSimplex = 0xffffffffU;
 
   void find_outside(const std::vector<Facet>& walls);
+  std::vector<SimplexNumber> border() const;
+  bool is_open(SimplexNumber simplex, const OtherTiles& others,
+               const geometry::Box<Point>& box) const;
+  void spread_open(const OtherTiles& others, const geometry::Box<Point>& box);
   Corners corners(SimplexNumber simplex) const;
   Facet facet(SimplexNumber simplex, unsigned opposite) const;
   bool is_flat() const { return simplices_ == 0 && !has_walls_; }
@@ -82,23 +96,30 @@ class RegionMesh {
   template <std::size_t N>
   bool has_own(const std::array<VertexNumber, N>& vertices) const;
   template <std::size_t N>
+  bool all_own(const std::array<VertexNumber, N>& vertices) const;
+  template <std::size_t N>
   bool lowest_is_own(const std::array<VertexNumber, N>& vertices) const;
   template <std::size_t N>
   std::array<Point, N> positions(const std::array<VertexNumber, N>& vertices) const;
+  RowPoint point(VertexNumber vertex) const { return known_[place_of(vertex)]; }
+  std::size_t place_of(VertexNumber vertex) const {
+    return rows_.size() == 0 ? vertex : rows_[vertex];
+  }
   template <class Wanted>
-  FinalSimplices take(const Wanted& wanted);
+  FinalSimplices take(const Wanted& wanted, const FinalsWish& wish);
   Region flat_rest() const;
 
   Options options_;
   Mesh<D> mesh_;
-  Array<RowPoint> points_;            // of the mesh's vertices
+  std::vector<RowPoint> known_;       // its own points first
+  std::size_t known_own_ = 0;         // how many these are
+  std::size_t vertices_ = 0;          // of the mesh
+  Array<std::uint32_t> rows_;         // of vertices the place in known_; empty if it is the number
   std::vector<std::uint8_t> is_own_;  // of vertices; empty if all are
   std::uint64_t distinct_ = 0, simplices_ = 0;
   bool has_walls_ = false;
   std::vector<std::uint8_t> states_;  // of the mesh's slots
   std::vector<HullFacet> hull_;
-  std::vector<RowPoint> flat_;  // all that it knows, own points first, where there are no simplices
-  std::size_t flat_own_ = 0;
 };
 
 extern template class RegionMesh<2>;

@@ -21,7 +21,7 @@ Settled settle_in(Region&& region, const OtherTiles& others, const Options& opti
   mesh.find_open(others);
   if (wish.messages) settled.messages = mesh.find_messages(others);
   settled.rest = mesh.rest();
-  settled.finals = mesh.take_settled();
+  settled.finals = mesh.take_settled(wish.finals);
   return settled;
 }
 

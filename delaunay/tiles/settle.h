@@ -25,6 +25,7 @@ struct Settled {
 struct SettleWish {
   bool is_tile = false;   // nobody has triangulated its points yet
   bool messages = false;  // are wanted
+  FinalsWish finals = {};
 };
 Settled settle(Region&& region, const OtherTiles& others, const Options& options,
                const SettleWish& wish);

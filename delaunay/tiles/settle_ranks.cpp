@@ -84,7 +84,7 @@ Exchanges settle_ranks(comm::Communicator& communicator, std::span<const TileSum
   exchanges.halo = region.halo();
   comm::all_or_none(communicator, comm::Phase::other, [&] {
     Settled settled = region.finish();
-    if (settled.finals.simplices.size() > 0 || settled.finals.hull_facets > 0) {
+    if (settled.finals.count > 0 || settled.finals.hull_facets > 0) {
       take(settled);
     }
   });

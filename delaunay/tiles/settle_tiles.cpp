@@ -67,7 +67,7 @@ class TileTree {
     Region rest;
     if (!restored(tile, rest)) {
       Settled settled = settle(work_.points(tile), {all_.boxes, tile, tile + 1},
-                               options_.triangulate, {.is_tile = true});
+                               options_.triangulate, {.is_tile = true, .finals = options_.finals});
       work_.take(tile, settled);
       rest = std::move(settled.rest);
     }
@@ -120,7 +120,7 @@ class TileTree {
       if (options_.require) options_.require(sum);
       parallel::Progress part(options_.triangulate.progress);
       Settled settled = settle(put_together(std::move(rests)), {all_.boxes, node.first, node.last},
-                               options_.again(part), {});
+                               options_.again(part), {.finals = options_.finals});
       work_.take(region, settled);
       rest = std::move(settled.rest);
     }

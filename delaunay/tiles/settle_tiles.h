@@ -33,6 +33,8 @@ struct SettleOptions {
   // Throws where so many points are too many to triangulate at once; not asked about tiles.
   std::function<void(std::uint64_t points)> require = nullptr;
 
+  FinalsWish finals = {};  // what `take` needs of what is final
+
   // The options for what was triangulated before: that makes no progress, but can be interrupted.
   Options again(parallel::Progress& part) const {
     Options options = triangulate;

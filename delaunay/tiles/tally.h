@@ -22,9 +22,7 @@ struct RegionCount {
   Hash128 hash = {};  // of what it gave away
 };
 
-RegionCount count_of(std::uint64_t region, const Settled& settled, int dim);
-// Of what is final, by rows of points. Parallel, in the caller's arena.
-Hash128 hash(const FinalSimplices& finals, int dim);
+RegionCount count_of(std::uint64_t region, const Settled& settled);
 
 // Sums. Any thread.
 class Tally {

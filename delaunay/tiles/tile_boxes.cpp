@@ -29,8 +29,8 @@ bool comes_before(const RowPoint& a, const RowPoint& b, int axis, int dim, bool 
 
 void TileSummary::include(const RowPoint& point, int dim) {
   const glm::dvec3 place = dim == 2 ? glm::dvec3(glm::dvec2(point.position), 0) : point.position;
-  const bool inside = extreme_count > 0 && glm::all(glm::lessThan(box.low, place)) &&
-                      glm::all(glm::lessThan(place, box.high));
+  bool inside = extreme_count > 0;
+  for (int k = 0; k < dim; ++k) inside &= box.low[k] < place[k] && place[k] < box.high[k];
   if (inside) return;
   box.include(place);
   const bool first = extreme_count == 0;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
+#include "delaunay/mesh/array.h"
 #include "delaunay/tiles/scratch_file.h"
 
 namespace delray::delaunay {
@@ -21,13 +23,24 @@ struct BlockHead {
   }
 };
 
-void read_records(const std::byte* from, std::uint64_t count, RecordFormat format, RowPoint* to) {
+std::vector<RowPoint> room_for(std::size_t points) {
+  std::vector<RowPoint> room;
+  room.reserve(points);
+  prefer_huge_pages(room.data(), points * sizeof(RowPoint));
+  return room;
+}
+
+void append_records(const std::byte* from, std::uint64_t count, RecordFormat format,
+                    std::vector<RowPoint>& to) {
+  const auto append = [&](auto with_z) {
+    constexpr RecordFormat kFormat{decltype(with_z)::value};
+    for (std::uint64_t i = 0; i < count; ++i)
+      to.push_back(kFormat.read(from + i * kFormat.bytes()));
+  };
   if (format.with_z) {
-    std::memcpy(to, from, count * sizeof(RowPoint));
-    return;
-  }
-  for (std::uint64_t i = 0; i < count; ++i) {
-    to[i] = RecordFormat{false}.read(from + i * RecordFormat{false}.bytes());
+    append(std::true_type());
+  } else {
+    append(std::false_type());
   }
 }
 
@@ -47,12 +60,8 @@ std::vector<RowPoint> MemoryStore::read(std::size_t tile) {
                     [&](const TileRecords& run) { return format_.read(run.records).row; });
   std::size_t size = 0;
   for (const TileRecords& run : runs) size += run.count;
-  std::vector<RowPoint> points(size);
-  RowPoint* to = points.data();
-  for (const TileRecords& run : runs) {
-    read_records(run.records, run.count, format_, to);
-    to += run.count;
-  }
+  std::vector<RowPoint> points = room_for(size);
+  for (const TileRecords& run : runs) append_records(run.records, run.count, format_, points);
   return points;
 }
 
@@ -107,14 +116,12 @@ std::vector<RowPoint> ScratchStore::read(std::size_t tile) {
     blocks.push_back(block);
   }
   std::ranges::sort(blocks, {}, [](const Block& block) { return block.head.first_row; });
-  std::vector<RowPoint> points(size);
-  RowPoint* to = points.data();
+  std::vector<RowPoint> points = room_for(size);
   std::vector<std::byte> bytes;
   for (const Block& block : blocks) {
     bytes.resize(block.head.count * format_.bytes());
     if (!file.read(block.offset, bytes) || check_sum(bytes) != block.head.check) damaged();
-    read_records(bytes.data(), block.head.count, format_, to);
-    to += block.head.count;
+    append_records(bytes.data(), block.head.count, format_, points);
   }
   return points;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -171,12 +172,13 @@ class PartsRun {
 
   void count_and_cut() {
     const Task guess = task(most_rows());
-    const int cells = comm::all_or_none(communicator_, comm::Phase::other, [&] {
-      return cells_along_axis(dim_, static_cast<std::uint64_t>(plan_memory(guess).tiles));
-    });
+    std::uint64_t sample = comm::all_or_none(communicator_, comm::Phase::other,
+                                             [&] { return plan_memory(guess).sample; });
+    sample = comm::all_reduce_value(
+        communicator_, sample, [](std::uint64_t a, std::uint64_t b) { return std::min(a, b); });
     communicator_.mark(comm::Phase::redistribute, 0);
     counts_.emplace(
-        count_parts(communicator_, parts_, {dim_, cells, options_.first_row}, progress_));
+        count_parts(communicator_, parts_, {dim_, sample, options_.first_row}, progress_));
     points_ = counts_->points;
     has_z_ = counts_->has_z;
     attributes_ = counts_->attributes;
@@ -186,20 +188,19 @@ class PartsRun {
     comm::all_or_none(communicator_, comm::Phase::other, [&] {
       if (dim_ == 3 && !has_z_ && points_ > 0) throw std::invalid_argument("points have no z");
       if (options_.on_counted && points_ > 0) {
-        options_.on_counted({points_, has_z_, counts_->grid.lattice().box()});
+        options_.on_counted({points_, has_z_, counts_->box});
       }
     });
     plan_ = comm::all_or_none(communicator_, comm::Phase::other,
                               [&] { return plan_memory(task(points_)); });
     agree_on_plan();
-    const auto& partitioner = *loadbalance::find_partitioner(options_.tiles.partition);
-    for (;;) {
-      cut_ = TileCut(counts_->grid.lattice(), counts_->grid.counts(), plan_.tiles, partitioner);
-      const auto points = cut_.points_of_tiles(counts_->grid.counts());
-      const std::uint64_t largest = *std::ranges::max_element(points);
-      if (largest <= plan_.tile_points) break;
-      grow_tiles(largest, points_ / static_cast<std::uint64_t>(plan_.tiles));
-    }
+    const std::vector<glm::dvec3> sampled = std::move(counts_->sample).gather(communicator_);
+    comm::all_or_none(communicator_, comm::Phase::other, [&] {
+      if (communicator_.rank() == 0 && plan_.tiles > 1) cut(sampled);
+    });
+    plan_.tiles = comm::all_reduce_value(communicator_, plan_.tiles,
+                                         [](int a, int b) { return std::max(a, b); });
+    cut_ = share_cut(communicator_, cut_);
     own_.assign(own_tiles(), {});
     own_points_.assign(own_tiles(), 0);
   }
@@ -215,7 +216,22 @@ class PartsRun {
     plan_.tile_points = ~most[2];
   }
 
-  // Every rank comes to the same, as their grids and plans are the same.
+  // Of rank 0: tiles that memory allows for, by a sample.
+  void cut(const std::vector<glm::dvec3>& sampled) {
+    const auto& partitioner = *loadbalance::find_partitioner(options_.tiles.partition);
+    const double each = sampled.empty() ? 0 : double(points_) / static_cast<double>(sampled.size());
+    for (;;) {
+      cut_ = cut_places(sampled, dim_, plan_.tiles, partitioner);
+      if (plan_.tile_points == ~std::uint64_t{0}) return;
+      const auto counts = cut_.count(sampled, plan_.tiles);
+      const auto most = static_cast<double>(*std::ranges::max_element(counts));
+      // A tile of which so many points are in the sample hardly has more than that.
+      const double chance = each > 1 ? 3 * std::sqrt(most) : 0;
+      const auto largest = static_cast<std::uint64_t>(each * (most + chance));
+      if (largest <= plan_.tile_points) return;
+      grow_tiles(largest, points_ / static_cast<std::uint64_t>(plan_.tiles));
+    }
+  }
   void grow_tiles(std::uint64_t largest, std::uint64_t mean) {
     constexpr int kMostTiles = 1 << 20;
     constexpr double kGrowth = 1.25;
@@ -248,7 +264,8 @@ class PartsRun {
       }
     });
     distribute_parts(communicator_, parts_, *counts_,
-                     {cut_, plan_.tiles, format_, *store_, own_, own_points_}, plan_, progress_);
+                     {cut_, dim_, plan_.tiles, format_, *store_, own_, own_points_}, plan_,
+                     progress_);
     counts_.reset();
     cut_ = {};
     if (!to_disk) return;
@@ -334,8 +351,7 @@ class PartsRun {
 
   void take(std::size_t region, Settled& settled) {
     RegionRecord record;
-    record.count = count_of(region, settled, dim_);
-    record.count.hash = hash(settled.finals, dim_);
+    record.count = count_of(region, settled);
     if (sink_ != nullptr && record.count.own_simplices > 0) {
       // What is not journaled has numbers of its own, which no later run takes for finished.
       const auto tiles = static_cast<std::uint64_t>(plan_.tiles);
@@ -392,6 +408,7 @@ class PartsRun {
     how.triangulate = options_.tiles.triangulate;
     how.triangulate.threads = plan_.threads;
     how.workers = plan_.workers;
+    how.finals.simplices = sink_ != nullptr;
     how.put_together = plan_.tile_points / kRestsPerTile;
     how.require = [&](std::uint64_t points) {
       require_memory_for_rest(points, dim_, options_.memory);

@@ -73,13 +73,14 @@ TiledTriangulation triangulate_tiles(comm::Communicator& communicator,
           },
       .take =
           [&](std::size_t region, Settled& settled) {
-            tally.add(count_of(region, settled, result.dim));
+            tally.add(count_of(region, settled));
             const std::lock_guard lock(mutex);
             append_rows(settled.finals, result.vertices);
           },
   };
   SettleOptions how;
   how.triangulate = options.triangulate;
+  how.finals.hash = false;
   const Exchanges exchanges = settle_ranks(communicator, summaries, how, work);
   TileStatistics& told = exchanges.of_tile ? tally.tiles.front() : tally.shared;
   told.halo = exchanges.halo;

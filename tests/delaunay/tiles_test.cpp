@@ -154,6 +154,28 @@ TEST(Tiles, TellFewOfUniformPoints) {
   EXPECT_LT(halo, 2U * 16U * 4U * 50U);
 }
 
+// Counted: all simplices that a rank's triangulations have, those of its halo and of what is made
+// again included.
+TEST(Tiles, RanksCreateAboutAsManySimplices) {
+  constexpr int kRanks = 16;
+  for (const char* kind : {"cluster", "uniform"}) {
+    const auto points = with_rows(generate_points(kind, 100000, 2, 1).positions, 0);
+    std::vector<std::uint64_t> created(kRanks);
+    comm::run_threads(kRanks, 1, [&](comm::Communicator& communicator) {
+      const auto rank = static_cast<std::size_t>(communicator.rank());
+      std::vector<RowPoint> mine;
+      for (std::size_t i = rank; i < points.size(); i += kRanks) mine.push_back(points[i]);
+      const TiledTriangulation made = triangulate_tiles(communicator, mine, {});
+      created[rank] = made.shared.simplices;
+      for (const TileStatistics& tile : made.tiles) created[rank] += tile.simplices;
+    });
+    std::uint64_t sum = 0;
+    for (const std::uint64_t each : created) sum += each;
+    EXPECT_GE(sum, 199000U);
+    EXPECT_LE(*std::ranges::max_element(created), sum / kRanks * 5 / 4) << kind;
+  }
+}
+
 TEST(Tiles, RefuseWhatCannotBe) {
   const std::vector<RowPoint> points = {{{0, 0, 0}, 7}, {{1, std::nan(""), 0}, 8}};
   comm::run_threads(2, 1, [&](comm::Communicator& communicator) {

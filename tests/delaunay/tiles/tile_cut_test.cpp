@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -11,52 +13,93 @@
 namespace delray::delaunay {
 namespace {
 
-struct Cut {
-  std::vector<std::uint64_t> points;  // of each tile, by where they fall
-  std::vector<std::uint64_t> counted;
-};
+std::vector<std::uint64_t> cut_evenly(const std::vector<glm::dvec3>& places, int dim, int tiles,
+                                      const char* partition = "kd-split") {
+  return cut_places(places, dim, tiles, *loadbalance::find_partitioner(partition))
+      .count(places, tiles);
+}
 
-Cut cut(const std::vector<glm::dvec3>& places, int dim, int tiles, const char* partition) {
-  CountGrid grid(dim, cells_along_axis(dim, static_cast<std::uint64_t>(tiles)));
-  geometry::Box3d box;
-  for (const glm::dvec3& place : places) box.include(place);
-  grid.cover(box);
-  for (const glm::dvec3& place : places) grid.add(place);
-  const TileCut made(grid.lattice(), grid.counts(), tiles,
-                     *loadbalance::find_partitioner(partition));
-  Cut result{std::vector<std::uint64_t>(static_cast<std::size_t>(tiles)),
-             made.points_of_tiles(grid.counts())};
-  for (const glm::dvec3& place : places) {
-    ++result.points.at(static_cast<std::size_t>(made.tile_of(place)));
-  }
-  return result;
+std::uint64_t sum_of(const std::vector<std::uint64_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
 TEST(TileCut, GivesTilesAboutAsManyPoints) {
   for (const int dim : {2, 3}) {
-    for (const char* kind : {"uniform", "gauss"}) {
-      const auto places = generate_points(kind, 60000, dim, 1).positions;
+    for (const char* kind : {"uniform", "gauss", "cluster", "grid", "arc", "spiral", "two-lines",
+                             "collinear", "parabola", "far", "large", "small"}) {
+      const auto places = generate_points(kind, 20000, dim, 1).positions;
       for (const int tiles : {1, 2, 7, 16, 64}) {
         SCOPED_TRACE(std::string(kind) + ", " + std::to_string(dim) + "D, " +
                      std::to_string(tiles) + " tiles");
-        const Cut made = cut(places, dim, tiles, "kd-split");
-        EXPECT_EQ(made.points, made.counted);
-        EXPECT_EQ(std::accumulate(made.points.begin(), made.points.end(), std::uint64_t{0}),
-                  60000U);
-        const double mean = 60000.0 / tiles;
-        EXPECT_LE(static_cast<double>(*std::ranges::max_element(made.points)), 1.35 * mean);
+        const auto counts = cut_evenly(places, dim, tiles);
+        EXPECT_EQ(sum_of(counts), 20000U);
+        // Of a lattice whole rows are on a side of a plane, of two lines in space a whole one.
+        const double most = std::string(kind) == "grid"        ? 1.35
+                            : std::string(kind) == "two-lines" ? 1.8
+                                                               : 1.1;
+        EXPECT_LE(static_cast<double>(*std::ranges::max_element(counts)), most * 20000 / tiles);
       }
     }
   }
+}
+
+TEST(TileCut, CutsManyTilesEvenly) {
+  const auto places = generate_points("cluster", 100000, 2, 3).positions;
+  const auto counts = cut_evenly(places, 2, 1024);
+  EXPECT_EQ(sum_of(counts), 100000U);
+  EXPECT_LE(*std::ranges::max_element(counts), 120U);
+  EXPECT_GE(*std::ranges::min_element(counts), 78U);
 }
 
 TEST(TileCut, TakesEveryPartition) {
   const auto places = generate_points("cluster", 5000, 3, 1).positions;
   for (const loadbalance::Partitioner& partitioner : loadbalance::partitioners()) {
     for (const int dim : {2, 3}) {
-      const Cut made = cut(places, dim, 9, partitioner.name);
-      EXPECT_EQ(std::accumulate(made.points.begin(), made.points.end(), std::uint64_t{0}), 5000U)
-          << partitioner.name;
+      for (const int tiles : {2, 9}) {
+        const auto counts = cut_evenly(places, dim, tiles, partitioner.name);
+        EXPECT_EQ(sum_of(counts), 5000U) << partitioner.name;
+        // Some cut cells to patterns that know nothing of what lies in them.
+        EXPECT_LT(*std::ranges::max_element(counts), 5000U) << partitioner.name;
+      }
+    }
+  }
+}
+
+TEST(TileCut, TakesDegeneratePlaces) {
+  constexpr double kLargest = std::numeric_limits<double>::max(),
+                   kLeast = std::numeric_limits<double>::denorm_min();
+  for (const auto& [low, high] : {std::pair(0.0, 0.0),
+                                  {-kLargest, kLargest},
+                                  {-kLeast, kLeast},
+                                  {0.0, kLeast},
+                                  {kLargest, kLargest},
+                                  {1e300, std::nextafter(1e300, 2e300)},
+                                  {-1.0, 1.0}}) {
+    for (const int dim : {2, 3}) {
+      for (const int tiles : {1, 2, 5}) {
+        const std::vector<glm::dvec3> places = {glm::dvec3(low), glm::dvec3(high), glm::dvec3(low)};
+        const auto counts = cut_evenly(places, dim, tiles);
+        EXPECT_EQ(sum_of(counts), 3U) << low << " " << high;
+        if (tiles > 1 && low * 0.5 < high * 0.5) {
+          EXPECT_LE(*std::ranges::max_element(counts), 2U) << low << " " << high;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(sum_of(cut_evenly({}, 2, 4)), 0U);
+}
+
+// Equal points and rows of a lattice lie in one tile, whatever that does to the counts.
+TEST(TileCut, PutsEqualPlacesInOneTile) {
+  for (const char* kind : {"duplicates", "equal", "cocircular"}) {
+    auto places = generate_points(kind, 3000, 2, 1).positions;
+    const TileCut made = cut_places(places, 2, 8, *loadbalance::find_partitioner("kd-split"));
+    std::ranges::sort(places, [](const glm::dvec3& a, const glm::dvec3& b) {
+      return a.x != b.x ? a.x < b.x : a.y < b.y;
+    });
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      if (places[i].x != places[i - 1].x || places[i].y != places[i - 1].y) continue;
+      ASSERT_EQ(made.tile_of(places[i]), made.tile_of(places[i - 1])) << kind << " " << i;
     }
   }
 }
