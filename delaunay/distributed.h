@@ -70,7 +70,7 @@ struct DistributedMethod {
   std::string_view description;
   std::vector<int> dims;
   int ranks_without_area = 0;  // where there are more ranks
-  // Whether space is cut into areas by a grid of counts, 1024 cells an area, that every rank has.
+  // Whether space is cut into areas, all of whose planes and boxes every rank has.
   bool cuts_areas = true;
   // Whether ranks triangulate parts on their own, by DistributedOptions::triangulate.
   bool triangulates_parts = false;

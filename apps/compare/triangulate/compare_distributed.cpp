@@ -2,7 +2,7 @@
 // own time (comm/charged.h), so that what ranks wait for is what they would wait for there.
 //
 // Methods whose ranks wait much take long to simulate. Where a run took longer than a limit, or the
-// grids of all ranks would not fit the memory, more ranks of the method are left out, which the
+// areas of all ranks would not fit the memory, more ranks of the method are left out, which the
 // page says.
 #include "apps/compare/triangulate/compare_distributed.h"
 
@@ -60,10 +60,10 @@ SimulatedTriangulation simulate_method(const delaunay::PointCloud& points,
   return result;
 }
 
-// Whether the ranks of a method, which share this process's memory, may have their grids at a time.
+// Whether the ranks of a method, which share this process's memory, may have all areas at a time.
 bool fits_memory(std::string_view method, int ranks) {
   if (!files::find_named(delaunay::distributed_methods(), method)->cuts_areas) return true;
-  constexpr std::uint64_t kBytesPerArea = 1024 * 48;  // counts on their way, costs, owners
+  constexpr std::uint64_t kBytesPerArea = 1024;  // planes, boxes, extreme points, on their way too
   const auto areas = static_cast<std::uint64_t>(ranks);
   return areas * areas * kBytesPerArea <= files::MemoryBudget().left();
 }
