@@ -9,8 +9,17 @@
 #include <algorithm>
 
 #include "parallel/stack.h"
+#include "parallel/threads/plain_threads.h"
 
 namespace delray::parallel {
+
+#ifdef DELRAY_PLAIN_THREADS
+namespace {
+// Loops run on plain threads; what libraries do in oneTBB's tasks, as Embree does, stays on the
+// thread that waits for it. ThreadSanitizer sees nothing of what orders the tasks of several.
+const tbb::global_control no_workers(tbb::global_control::max_allowed_parallelism, 1);
+}  // namespace
+#endif
 
 struct Arena::Threads {
   tbb::task_arena arena;
