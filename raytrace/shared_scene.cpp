@@ -20,6 +20,7 @@
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
 #include "parallel/processor_time.h"
+#include "raytrace/distributed/kept_clusters.h"
 
 namespace delray::raytrace {
 namespace {
@@ -41,9 +42,12 @@ constexpr double kRayBytes = 200;
 // A new measurement counts so much.
 constexpr double kNew = 0.25;
 
-// What became of rays that wanted a cluster from one frame to the next. Clusters at hand are
-// forgotten slowly, as rays that meet them in the resident scene are not counted.
+// What became of rays that wanted a cluster from one frame to the next. Resident clusters are
+// forgotten slowly, as rays that meet them are not counted.
 constexpr double kStillWanted = 0.5, kStillWantedAtHand = 0.9;
+
+// Of the cache, for clusters that come and go: one part in so many.
+constexpr std::uint64_t kShareOfOthers = 4;
 
 // A cluster takes another one's place if it is so many times as much wanted.
 constexpr double kMuchMoreWanted = 2.0;
@@ -240,7 +244,8 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   for (std::size_t i = 0; i < owners_.size(); ++i)
     bytes_of_others += owners_[i] == communicator.rank() ? 0 : packed_bytes_[i];
   has_room_for_all_ = options.cache_bytes >= kBytesWithStructure * bytes_of_others;
-  make_resident(false);
+  is_kept_.assign(owners_.size(), 0);
+  gather(Joined::none);
   const std::uint64_t all_bytes = comm::all_reduce_value(communicator, bytes(), std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
   degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
@@ -266,14 +271,29 @@ std::shared_ptr<const ClusterScene> SharedScene::alone(
   return std::make_shared<const ClusterScene>(std::vector{cluster}, quickly, device_);
 }
 
-void SharedScene::make_resident(bool with_cached) {
+// Between frames.
+void SharedScene::gather(Joined joined) {
+  std::vector<std::uint8_t> joining(owners_.size());
+  for (const auto& [number, cached] : cached_) joining[number] = joins(number, joined) ? 1 : 0;
+  make_resident(joining);
+  joined_ = joined;
+}
+
+// Of the cache, what is not kept.
+void SharedScene::give_up_resident() {
+  std::vector<std::uint8_t> staying(is_resident_);
+  for (const std::uint32_t cluster : uses_) staying[cluster] = 0;
+  make_resident(staying);
+  joined_ = Joined::kept;
+}
+
+void SharedScene::make_resident(const std::vector<std::uint8_t>& joins) {
   // In the order of their numbers, so that a scene is the same in every run.
   std::map<std::uint32_t, std::shared_ptr<const Cluster>> clusters(owned_.begin(), owned_.end());
-  if (with_cached) {
-    for (auto& [number, cached] : cached_) {
-      clusters.emplace(number, cached.cluster);
-      cached.scene = nullptr;
-    }
+  for (auto& [number, cached] : cached_) {
+    if (joins[number] == 0) continue;
+    clusters.emplace(number, cached.cluster);
+    cached.scene = nullptr;
   }
   std::fill(is_resident_.begin(), is_resident_.end(), std::uint8_t{0});
   std::vector<std::shared_ptr<const Cluster>> resident;
@@ -293,17 +313,16 @@ void SharedScene::make_resident(bool with_cached) {
   std::copy_if(boxes_.begin(), boxes_.end(), std::back_inserter(elsewhere),
                [&](const ClusterBox& box) { return is_resident_[box.cluster] == 0; });
   elsewhere_ = ClusterTree(std::move(elsewhere));
-  has_resident_cached_ = with_cached;
   given_bytes_ = 0;
   tests_ = 0;
   note_bytes();
 }
 
-// Of clusters in the cache that are not resident.
-std::uint64_t SharedScene::missing_triangles() const {
+// Of clusters in the cache that would become resident.
+std::uint64_t SharedScene::missing_triangles(Joined joined) const {
   std::uint64_t triangles = 0;
   for (const auto& [number, cached] : cached_)
-    triangles += is_resident(number) ? 0 : cached.cluster->triangles();
+    if (joins(number, joined) && !is_resident(number)) triangles += cached.cluster->triangles();
   return triangles;
 }
 
@@ -358,29 +377,30 @@ void SharedScene::note_travel(std::uint64_t rays, double seconds) {
 void SharedScene::begin_frame(bool chooses) {
   const bool settled = evicted_ == std::exchange(evicted_before_, evicted_);
   for (std::uint32_t i = 0; i < wanted_.size(); ++i)
-    wanted_[i] *= cached_.contains(i) ? kStillWantedAtHand : kStillWanted;
+    wanted_[i] *= is_resident(i) ? kStillWantedAtHand : kStillWanted;
   const bool dropped = chooses && drop_least_wanted();
+  if (!chooses && !settled) keep_what_rays_met();
   std::uint64_t owned_triangles = 0;
   bool took_over = false;
   for (const auto& [number, cluster] : owned_) {
     owned_triangles += cluster->triangles();
     took_over = took_over || !is_resident(number);
   }
-  const std::uint64_t missing = settled ? missing_triangles() : 0;
+  const Joined joined = settled ? Joined::all : Joined::kept;
+  const std::uint64_t missing = missing_triangles(joined);
   const std::uint64_t cost = missing + (build_.changing ? 0 : owned_triangles);
   // Most of what is seen comes in the first frame.
   const bool at_once = has_room_for_all_ && (build_.changing || 4 * missing >= owned_triangles);
   const bool gathers = missing > 0 && (at_once || tests_ * triangles_per_test_ >= cost);
   const bool holds_too_much = given_bytes_ > (build_.changing ? 0 : bytes() / 8);
-  if (took_over || gathers || holds_too_much || dropped)
-    make_resident(gathers || has_resident_cached_);
+  if (took_over || gathers || holds_too_much || dropped) gather(gathers ? joined : joined_);
 }
 
 std::shared_ptr<const ClusterScene> SharedScene::find(std::uint32_t cluster) {
   const auto at = cached_.find(cluster);
   if (at == cached_.end()) return nullptr;
   Cached& cached = at->second;
-  uses_.splice(uses_.begin(), uses_, cached.use);
+  if (is_kept_[cluster] == 0) uses_.splice(uses_.begin(), uses_, cached.use);
   if (cached.scene == nullptr) cached.scene = alone(cached.cluster);
   return cached.scene;
 }
@@ -396,8 +416,8 @@ std::shared_ptr<const ClusterScene> SharedScene::put(std::uint32_t cluster, Clus
       kNew * ((processor_seconds() - begin) / packed + kSecondsPerByte - costs_.cluster_byte);
   bytes_with_structure_ = std::max(bytes_with_structure_, static_cast<double>(bytes) / packed);
   cached_bytes_ += bytes;
-  uses_.push_front(cluster);
-  cached_.emplace(cluster, Cached{std::move(ready), scene, bytes, uses_.begin()});
+  const auto use = is_kept_[cluster] != 0 ? uses_.end() : uses_.insert(uses_.begin(), cluster);
+  cached_.emplace(cluster, Cached{std::move(ready), scene, bytes, use});
   drop_old();
   note_bytes();
   return scene;
@@ -414,20 +434,49 @@ void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
   note_bytes();
 }
 
-void SharedScene::drop_old() {
-  if (cached_bytes_ <= cache_limit_) return;
-  if (has_resident_cached_) {
-    // Memory comes back only when the scene is made without them, which should not happen often.
-    triangles_per_test_ = std::max<std::uint64_t>(1, triangles_per_test_ / 2);
-    make_resident(false);
+// Most of the cache is for clusters that most rays met, until the next frame.
+void SharedScene::keep_what_rays_met() {
+  std::vector<MetCluster> met;
+  std::uint64_t largest = 0;
+  for (std::uint32_t i = 0; i < wanted_.size(); ++i) {
+    if (owned_.contains(i) || wanted_[i] <= 0.0) continue;
+    const auto at = cached_.find(i);
+    const std::uint64_t bytes = at != cached_.end() ? at->second.bytes : bytes_in_cache(i);
+    largest = std::max(largest, bytes);
+    met.push_back({i, wanted_[i], bytes, is_kept_[i] != 0});
   }
-  while (cached_bytes_ > cache_limit_ && uses_.size() > 1) drop(uses_.back());
+  const std::uint64_t for_others = std::max(largest, cache_limit_ / kShareOfOthers);
+  is_kept_.assign(is_kept_.size(), 0);
+  for (const std::uint32_t cluster :
+       choose_kept(std::move(met), cache_limit_ - std::min(cache_limit_, for_others)))
+    is_kept_[cluster] = 1;
+  for (auto& [number, cached] : cached_) {
+    const bool listed = cached.use != uses_.end();
+    if (is_kept_[number] != 0 && listed) {
+      uses_.erase(cached.use);
+      cached.use = uses_.end();
+    } else if (is_kept_[number] == 0 && !listed) {
+      cached.use = uses_.insert(uses_.end(), number);
+    }
+  }
+}
+
+void SharedScene::drop_old() {
+  while (cached_bytes_ > cache_limit_ && uses_.size() > 1) {
+    if (is_resident(uses_.back())) {
+      // Memory comes back only when the scene is made without them, which should not happen often.
+      if (joined_ == Joined::all)
+        triangles_per_test_ = std::max<std::uint64_t>(1, triangles_per_test_ / 2);
+      give_up_resident();
+    }
+    drop(uses_.back());
+  }
 }
 
 void SharedScene::drop(std::uint32_t cluster) {
   const auto at = cached_.find(cluster);
   cached_bytes_ -= at->second.bytes;
-  uses_.erase(at->second.use);
+  if (at->second.use != uses_.end()) uses_.erase(at->second.use);
   cached_.erase(at);
   ++evicted_;
 }

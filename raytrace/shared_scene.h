@@ -71,8 +71,9 @@ class SharedScene {
   // resident scene, and those of the cache while it has room for all that is used: at once where it
   // has room for the whole scene, else when rays have spent as much on them one by one as building
   // will take.
-  // `chooses`: clusters that are worth less than others, which rays were sent for lately, leave the
-  // cache before.
+  // Where clusters had to be dropped in the last frame, those that most rays met stay until the
+  // next one, and become resident in the same way. With `chooses` clusters that are worth less than
+  // others, which rays were sent for lately, leave the cache before.
   void begin_frame(bool chooses = false);
   // Most of what is at hand, as one scene.
   const ClusterScene& resident() const { return *resident_; }
@@ -88,7 +89,7 @@ class SharedScene {
   // What `find` found has been intersected with so many rays.
   void note_tests(std::uint64_t rays) { tests_ += rays; }
   // Parallel. Makes what came from another rank ready for rays, and drops what was not used for
-  // longest while there is too much.
+  // longest, and is not kept, while there is too much.
   std::shared_ptr<const ClusterScene> put(std::uint32_t cluster, ClusterData&& data);
   // Rays have been sent to the owner of a cluster instead of fetching it.
   void note_wanted(std::uint32_t cluster, std::uint64_t rays) {
@@ -119,6 +120,7 @@ class SharedScene {
   std::uint64_t bytes() const;
   std::uint64_t most_bytes() const { return most_bytes_; }
   std::uint64_t cache_bytes() const { return cache_limit_; }
+  std::uint64_t cached_bytes() const { return cached_bytes_; }
   // Whether the cache is large enough for all clusters of other ranks.
   bool has_room_for_all() const { return has_room_for_all_; }
   std::uint64_t evicted() const { return evicted_; }
@@ -130,8 +132,17 @@ class SharedScene {
  private:
   void note_bytes();
   void drop_old();
-  void make_resident(bool with_cached);
-  std::uint64_t missing_triangles() const;
+  // Clusters of the cache that are resident beside those that this rank owns. Within a frame none
+  // may join: rays that have been intersected with what is resident would pass it by.
+  enum class Joined : std::uint8_t { none, kept, all };
+  void gather(Joined joined);
+  void give_up_resident();
+  void make_resident(const std::vector<std::uint8_t>& joins);  // by cluster of the cache
+  void keep_what_rays_met();
+  bool joins(std::uint32_t cluster, Joined joined) const {
+    return joined == Joined::all || (joined == Joined::kept && is_kept_[cluster] != 0);
+  }
+  std::uint64_t missing_triangles(Joined joined) const;
   bool drop_least_wanted();
   void drop(std::uint32_t cluster);
   // An estimate, before it is there.
@@ -145,7 +156,7 @@ class SharedScene {
     std::shared_ptr<const Cluster> cluster;
     std::shared_ptr<const ClusterScene> scene;  // null while it is resident
     std::uint64_t bytes = 0;                    // with its own structure, whether it has one or not
-    std::list<std::uint32_t>::iterator use;
+    std::list<std::uint32_t>::iterator use;     // of those that are not kept
   };
   shading::Shader shader_;
   std::vector<LeastAlpha> alphas_;  // of its textures
@@ -161,17 +172,17 @@ class SharedScene {
   std::vector<std::uint64_t> packed_bytes_;  // by cluster
   std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>> owned_;
   std::unordered_map<std::uint32_t, Cached> cached_;
-  std::list<std::uint32_t> uses_;  // cached clusters, what was used last at the front
+  std::list<std::uint32_t> uses_;  // clusters that may be dropped, what was used last at the front
   std::uint64_t cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
-  std::uint64_t given_bytes_ = 0;     // of clusters that are resident, but not owned any more
-  bool has_resident_cached_ = false;  // whether clusters of the cache are resident
+  std::uint64_t given_bytes_ = 0;  // of clusters that are resident, but not owned any more
+  Joined joined_ = Joined::none;
+  std::vector<std::uint8_t> is_kept_;  // by cluster: stays in the cache until the next frame
   bool has_room_for_all_ = false;
   int builds_ = 0;  // of a resident scene as a whole
   // Rays against single clusters since the resident scene changed, how many triangles are worth
   // one, and what had been evicted when the last frame began.
   std::uint64_t tests_ = 0, triangles_per_test_ = 4, evicted_before_ = 0;
-  // By cluster: see wanted(); of those in the cache what they were worth when they came, and rays
-  // that have been intersected with them alone since.
+  // By cluster: see wanted(), and rays that have been intersected with it alone.
   std::vector<double> wanted_;
   std::uint64_t expected_bytes_ = 0;
   double bytes_with_structure_ = 3.0;  // of clusters in the cache, for each byte of their geometry

@@ -3,12 +3,14 @@
 // measured, and the simulated machine predicts the same frames, in turns in one run; medians.
 //
 // Last, 64 ranks that only count, at prices of 4 to 16, beside 64 that are timed: how far the model
-// of more ranks than anybody times is from that of fewer.
+// of more ranks than anybody times is from that of fewer, with the parts of the busiest rank's
+// time.
 //
 // The model of this machine, measured first: a message costs what it takes round a ring of as many
 // ranks, its bytes nothing; ranks at work at the same time slow each other down as so many
 // renderers on their own do; more ranks than cores take turns on them (Network::shared_cores).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -141,6 +143,25 @@ double tell(const std::string& name, const Row& row, const char* kind,
   return std::abs(error);
 }
 
+// Where the busiest rank's time goes in turning frames.
+struct Parts {
+  std::vector<std::array<double, raster::kParts>> timed, counted;
+};
+
+void tell(const Parts& parts) {
+  std::printf("    turning:");
+  for (std::size_t p = 0; p < raster::kParts; ++p) {
+    const auto of = [&](const std::vector<std::array<double, raster::kParts>>& frames) {
+      std::vector<double> seconds;
+      for (const auto& frame : frames) seconds.push_back(frame[p]);
+      return bench::median(seconds) * 1e3;
+    };
+    std::printf(" %s %.2f %.2f;", raster::name(static_cast<raster::Part>(p)), of(parts.timed),
+                of(parts.counted));
+  }
+  std::printf("\n");
+}
+
 // Ranks that only count, at prices of fewer, beside as many that are timed; over InfiniBand, where
 // messages hide least.
 void extrapolate(const std::string& name, const View& view) {
@@ -155,9 +176,11 @@ void extrapolate(const std::string& name, const View& view) {
   const composite::LayerCosts costs =
       composite::measure_layer_costs(*composite::find_codec("active"));
   std::vector<Row> rows;
+  std::vector<Parts> parts;  // of the rows
   for (const raster::Strategy& strategy : raster::strategies()) {
     raster::RenderOptions options = options_of(strategy.name);
     Row& row = rows.emplace_back(Row{strategy.name, kMany, {}, {}});
+    Parts& split = parts.emplace_back();
     std::vector<raster::SimulatedFrame> at_rest, turning;
     for (const int ranks : kFew) {
       std::vector<raster::SimulatedFrame> frames = simulated(options, ranks);
@@ -171,22 +194,29 @@ void extrapolate(const std::string& name, const View& view) {
     std::vector<raster::SimulatedFrame> counted = simulated(options, kMany);
     for (std::size_t i = 1; i < timed.size(); ++i) {
       raster::apply_prices(i > view.at_rest ? moving : still, primitives, counted[i]);
-      row.measured.add(view, i, raster::predict(timed[i], network).seconds);
-      row.predicted.add(view, i, raster::predict(counted[i], network).seconds);
+      const raster::PredictedFrame of_timed = raster::predict(timed[i], network);
+      const raster::PredictedFrame of_counted = raster::predict(counted[i], network);
+      row.measured.add(view, i, of_timed.seconds);
+      row.predicted.add(view, i, of_counted.seconds);
+      if (i <= view.at_rest) continue;
+      split.timed.push_back(of_timed.parts);
+      split.counted.push_back(of_counted.parts);
     }
   }
   std::printf("  %d ranks over InfiniBand, timed and counted:\n", kMany);
-  for (const Row& row : rows) {
-    std::printf("  %d ranks %-12s", row.ranks, row.strategy);
-    tell(name, row, "at rest", &Times::at_rest);
-    tell(name, row, "turning", &Times::turning);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    std::printf("  %d ranks %-12s", rows[k].ranks, rows[k].strategy);
+    tell(name, rows[k], "at rest", &Times::at_rest);
+    tell(name, rows[k], "turning", &Times::turning);
     std::printf("\n");
+    tell(parts[k]);
   }
 }
 
 void compare(const std::string& name, int turns, std::size_t frames) {
   const View view = load(name, frames);
   std::printf("%s\n", name.c_str());
+  if (turns == 0) return extrapolate(name, view);
   std::map<int, comm::Network> machines;  // by ranks
   for (const int ranks : kRanks) {
     const double slower = ranks > 1 ? contention(view, ranks) : 1;
@@ -225,7 +255,8 @@ void compare(const std::string& name, int turns, std::size_t frames) {
 
 }  // namespace
 
-// [--turns N] [--frames N] [SCENE ...], scenes as delray render takes them.
+// [--turns N] [--frames N] [SCENE ...], scenes as delray render takes them. No turns: only the
+// last.
 int main(int argc, char** argv) {
   std::vector<std::string> names;
   int turns = 3, frames = 5;

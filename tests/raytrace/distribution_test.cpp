@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
+#include <random>
 
 #include "comm/simulated.h"
 #include "comm/threads.h"
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
+#include "raytrace/distributed/cluster.h"
 #include "raytrace/render.h"
+#include "scenes/camera_path.h"
 #include "scenes/generate.h"
 #include "tests/raytrace/small_scenes.h"
 
@@ -254,6 +258,114 @@ TEST(SharedScene, ASmallCacheGivesTheSamePictureFrameAfterFrame) {
       }
     });
   }
+}
+
+// Within a frame clusters may leave the resident scene, but none may join it: rays that have been
+// intersected with it before would pass it by.
+TEST(SharedScene, NothingBecomesResidentWithinAFrame) {
+  const scenes::Scene scene = completed("gen:terrain:8000");
+  std::random_device device;
+  const unsigned seed = device();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::optional<SharedScene> ranks[2];
+  ShareOptions share;
+  share.cache_bytes = 200'000;
+  comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
+    ranks[communicator.rank()].emplace(SharedScene::make(communicator, scene, share));
+  });
+  SharedScene& mine = *ranks[0];
+  std::vector<std::uint32_t> others;
+  for (const auto& [number, cluster] : ranks[1]->owned()) others.push_back(number);
+  std::sort(others.begin(), others.end());
+  std::size_t joined = 0, left = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    if (frame % 4 == 0) std::shuffle(others.begin(), others.end(), random);  // another view
+    mine.begin_frame();
+    std::vector<std::uint8_t> resident(mine.clusters());
+    for (std::uint32_t i = 0; i < mine.clusters(); ++i) resident[i] = mine.is_resident(i) ? 1 : 0;
+    for (int use = 0; use < 40; ++use) {
+      // The first ones most.
+      const std::uint32_t cluster = others[random() % (1 + random() % others.size())];
+      if (mine.is_resident(cluster)) continue;
+      if (mine.find(cluster) == nullptr) {
+        mine.expect(cluster);
+        mine.put(cluster,
+                 unpack_cluster(pack(ranks[1]->owned().at(cluster)->data()).as<std::byte>()));
+      }
+      mine.note_wanted(cluster, 1000);
+      mine.note_tests(1000);
+    }
+    EXPECT_LE(mine.cached_bytes(), mine.cache_bytes());
+    for (const std::uint32_t i : others) {
+      ASSERT_LE(mine.is_resident(i), resident[i] != 0) << frame;
+      joined += resident[i];
+      left += resident[i] != 0 && !mine.is_resident(i) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(joined, 0U);
+  EXPECT_GT(left, 0U);
+}
+
+// Clusters come and go while the camera turns, and no ray passes one that goes or has just come.
+TEST(SharedScene, ASmallCacheGivesTheSamePictureWhileTheCameraTurns) {
+  const scenes::Scene scene = completed("gen:spheres:20000");
+  RenderOptions options = small(96, 64);
+  options.tile = 16;
+  options.integrator = "path";
+  constexpr int kFrames = 6;
+  const std::vector<scenes::Camera> cameras = scenes::turntable(scene.cameras[0], 2 * kFrames);
+  std::vector<Result> whole;
+  for (int frame = 0; frame < kFrames; ++frame)
+    whole.push_back(render_alone(scene, cameras[7 * frame % (2 * kFrames)], options));
+  for (const std::uint64_t cache : {200'000, 500'000}) {
+    comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
+      ShareOptions share;
+      share.cache_bytes = cache;
+      SharedScene mine = SharedScene::make(communicator, scene, share);
+      Renderer renderer(mine, *find_distribution("object"));
+      for (int frame = 0; frame < kFrames; ++frame) {
+        const Result one =
+            renderer.render(communicator, cameras[7 * frame % (2 * kFrames)], options);
+        if (communicator.rank() == 0) {
+          EXPECT_EQ(different(one, whole[frame]), 0U) << cache << ' ' << frame;
+        }
+      }
+    });
+  }
+}
+
+// From frame to frame clusters that most rays meet become resident, so that fewer rays are
+// intersected with clusters one by one, and the cache stays within its limit.
+TEST(SharedScene, ASmallCacheKeepsWhatMostRaysMeet) {
+  const scenes::Scene scene = completed("gen:spheres:20000");
+  RenderOptions options = small(192, 128);
+  options.tile = 16;
+  options.integrator = "path";
+  std::uint64_t all_bytes = 0;
+  comm::run_threads(1, 1, [&](comm::Communicator& communicator) {
+    all_bytes = SharedScene::make(communicator, scene, {}).bytes();
+  });
+  std::vector<std::uint64_t> tests, dropped;
+  comm::run_threads(2, 1, [&](comm::Communicator& communicator) {
+    ShareOptions share;
+    share.cache_bytes = all_bytes / 3;
+    SharedScene mine = SharedScene::make(communicator, scene, share);
+    Renderer renderer(mine, *find_distribution("object"));
+    for (int frame = 0; frame < 6; ++frame) {
+      const Result one = renderer.render(communicator, scene.cameras[0], options);
+      EXPECT_LE(mine.cached_bytes(), mine.cache_bytes()) << frame;
+      if (communicator.rank() != 0) continue;
+      tests.push_back(0);
+      dropped.push_back(0);
+      for (const RankStatistics& rank : one.statistics.ranks) {
+        tests.back() += rank.tests;
+        dropped.back() += rank.clusters_dropped;
+      }
+    }
+  });
+  EXPECT_GT(dropped.front(), 0U);
+  EXPECT_LT(tests.back() * 10, tests.front() * 9);
 }
 
 TEST(SharedScene, NoRankHoldsMoreThanItsPartAndTheCache) {
