@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
+#include <utility>
 
 #include "comm/collectives.h"
 
@@ -19,6 +20,10 @@ using geometry::Rect;
 // Cells and boxes for each part of a partition: of pieces much larger than a thousandth of its
 // share a part gets some too many or too few.
 constexpr std::int64_t kPiecesPerPart = 1000;
+
+// Boxes that one rank gathers: with more parts each has fewer of them. A hundred boxes for each of
+// a thousand parts still leave cuts within a tenth of a part's side.
+constexpr std::int64_t kMostBoxes = std::int64_t{1} << 17;
 
 // The first pixel of cell i of `cells` over `pixels` pixels.
 int border(int i, int cells, int pixels) {
@@ -63,7 +68,7 @@ Rect Costs::cells_of(const Rect& pixels) const {
           cell_of(pixels.y1 - 1 - frame.y0, rows, frame.height()) + 1};
 }
 
-Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox> boxes) {
+Costs make_costs(Rect frame, int columns, int rows, std::vector<WeightedBox> boxes) {
   if (columns < 1 || rows < 1) throw std::invalid_argument("a grid of costs has at least one cell");
   Costs costs;
   costs.frame = frame;
@@ -74,8 +79,8 @@ Costs make_costs(Rect frame, int columns, int rows, std::span<const WeightedBox>
   costs.cells.resize(size);
   costs.cross_right.resize(size);
   costs.cross_down.resize(size);
-  costs.boxes.assign(boxes.begin(), boxes.end());
-  for (const WeightedBox& box : boxes) {
+  costs.boxes = std::move(boxes);
+  for (const WeightedBox& box : costs.boxes) {
     if (!(std::isfinite(box.cost) && 0 <= box.setup && box.setup <= box.cost))
       throw std::invalid_argument("a cost is negative, not finite or less than its setup");
     add(costs, box);
@@ -92,15 +97,18 @@ int cost_cell_side(Rect frame, int parts) {
 
 int primitives_per_box(std::uint64_t primitives, int parts) {
   if (parts < 1) throw std::invalid_argument("a partition has at least one part");
-  const auto pieces =
-      static_cast<std::uint64_t>(kPiecesPerPart) * static_cast<std::uint64_t>(parts);
+  const auto pieces = static_cast<std::uint64_t>(std::min(kPiecesPerPart * parts, kMostBoxes));
   return static_cast<int>(std::clamp<std::uint64_t>(primitives / pieces, 1, 256));
 }
 
 std::vector<WeightedBox> gather_boxes(std::span<const WeightedBox> boxes,
                                       comm::Communicator& communicator) {
   std::vector<WeightedBox> all;
-  for (const comm::Buffer& from : comm::gather(communicator, 0, comm::Buffer::of(boxes))) {
+  const std::vector<comm::Buffer> gathered = comm::gather(communicator, 0, comm::Buffer::of(boxes));
+  std::size_t count = 0;
+  for (const comm::Buffer& from : gathered) count += from.size() / sizeof(WeightedBox);
+  all.reserve(count);
+  for (const comm::Buffer& from : gathered) {
     const auto some = from.as<WeightedBox>();
     all.insert(all.end(), some.begin(), some.end());
   }

@@ -39,17 +39,19 @@ struct Costs {
 };
 
 // Each box adds its cost, split evenly, to the cells that it overlaps (Mueller 1995), so that it
-// counts once; boxes outside the frame add nothing. The boxes are kept. A frame with fewer pixels
+// counts once; boxes outside the frame add nothing. The boxes are kept: many of them are best moved
+// in, since a copy that large is new memory in every frame. A frame with fewer pixels
 // than `columns` or `rows` gets a grid of so many cells, at least one. O(boxes + cells touched).
 // Throws std::invalid_argument unless columns, rows >= 1, costs are finite, 0 <= setup <= cost.
-Costs make_costs(geometry::Rect frame, int columns, int rows, std::span<const WeightedBox> boxes);
+Costs make_costs(geometry::Rect frame, int columns, int rows, std::vector<WeightedBox> boxes);
 
 // A side of square cells, in pixels, that leaves partitions into so many parts fine cuts: about a
 // thousand cells for each part. A power of two from 2 to 16. REQUIRES: parts >= 1.
 int cost_cell_side(geometry::Rect frame, int parts);
 
 // The number of primitives to take together in a box, given how many are in the frame: about a
-// thousand boxes for each part, so that a small scene gives each primitive its own. From 1 to 256.
+// thousand boxes for each part, so that a small scene gives each primitive its own, but no more
+// than one rank can look at in a few milliseconds, however many parts there are. From 1 to 256.
 // REQUIRES: parts >= 1.
 int primitives_per_box(std::uint64_t primitives, int parts);
 

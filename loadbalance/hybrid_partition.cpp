@@ -3,8 +3,8 @@
 // The ranks are halved again and again. Boxes, sorted by where they end and where they begin, go
 // one by one to the half with less work, from either end of the screen, until all are assigned; the
 // screen is then cut where fewest covered pixels lie on the wrong side. If halving along the other
-// axis leaves clearly fewer, that is taken. O(boxes + sides of the frame) per halving: counting
-// sorts replace comparisons.
+// axis leaves clearly fewer, that is taken. O(boxes + sides of their part of the screen) per
+// halving: counting sorts replace comparisons.
 //
 // Degenerate: boxes outside the frame have no owner, boxes above a share of the cost are
 // everybody's. With an empty part of the screen or without boxes the recursion goes on, and ranks
@@ -42,10 +42,17 @@ struct Axis {
   int across(const Rect& r) const { return along_x ? r.height() : r.width(); }
 };
 
-// Numbers of items by ascending position, within [begin, begin + length], then by number.
+// Numbers of items by ascending position, then by number. O(items + range of positions).
 template <class Position>
-std::vector<std::uint32_t> order_by(std::size_t items, int begin, int length, Position&& position) {
-  std::vector<std::uint32_t> next(static_cast<std::size_t>(length) + 2), order(items);
+std::vector<std::uint32_t> order_by(std::size_t items, Position&& position) {
+  std::vector<std::uint32_t> order(items);
+  if (items == 0) return order;
+  int begin = position(0), last = begin;
+  for (std::size_t i = 1; i < items; ++i) {
+    begin = std::min(begin, position(i));
+    last = std::max(last, position(i));
+  }
+  std::vector<std::uint32_t> next(static_cast<std::size_t>(last - begin) + 2);
   for (std::size_t i = 0; i < items; ++i) ++next[position(i) - begin + 1];
   for (std::size_t k = 1; k < next.size(); ++k) next[k] += next[k - 1];
   for (std::size_t i = 0; i < items; ++i)
@@ -55,14 +62,16 @@ std::vector<std::uint32_t> order_by(std::size_t items, int begin, int length, Po
 
 class Sweep {
  public:
-  Sweep(Rect frame, double pixel_cost, std::vector<PlacedBox> everybodys, HybridPartition& result)
-      : frame_(frame),
-        pixel_cost_(pixel_cost),
-        everybodys_(std::move(everybodys)),
-        result_(result) {}
+  Sweep(double pixel_cost, HybridPartition& result) : pixel_cost_(pixel_cost), result_(result) {}
 
-  // `screen` may be empty.
-  void split(const Rect& screen, std::vector<PlacedBox> items, int owner, int ranks, int depth) {
+  // The boxes of a part of the screen.
+  struct Boxes {
+    std::vector<PlacedBox> items, everybodys;
+  };
+
+  // `screen` may be empty. Boxes that are everybody's count where they touch it.
+  void split(const Rect& screen, Boxes boxes, int owner, int ranks, int depth) {
+    const std::vector<PlacedBox>& items = boxes.items;
     if (ranks == 1) {
       if (!screen.empty()) result_.regions.regions.push_back({screen, owner});
       for (const PlacedBox& item : items) result_.owners[item.index] = owner;
@@ -70,20 +79,25 @@ class Sweep {
     }
     const int low_ranks = internal::first_half(ranks, depth), high_ranks = ranks - low_ranks;
     const Axis longer{screen.width() >= screen.height()}, shorter{!longer.along_x};
-    Halves halves = halve(screen, items, longer, low_ranks, high_ranks);
+    std::erase_if(boxes.everybodys, [&](const PlacedBox& box) {
+      return geometry::intersection(box.box, screen).empty();
+    });
+    Halves halves = halve(screen, boxes, longer, low_ranks, high_ranks);
     if (halves.misplaced > kNoDifference) {
-      Halves others = halve(screen, items, shorter, low_ranks, high_ranks);
+      Halves others = halve(screen, boxes, shorter, low_ranks, high_ranks);
       if (others.misplaced < kWorthASliver * halves.misplaced) halves = std::move(others);
     }
     Rect low = screen, high = screen;
     (halves.axis.along_x ? low.x1 : low.y1) = halves.border;
     (halves.axis.along_x ? high.x0 : high.y0) = halves.border;
-    std::vector<PlacedBox> low_items, high_items;
+    Boxes low_boxes, high_boxes;
     for (std::size_t i = 0; i < items.size(); ++i)
-      (halves.is_low[i] ? low_items : high_items).push_back(items[i]);
-    items = {};
-    split(low, std::move(low_items), owner, low_ranks, depth + 1);
-    split(high, std::move(high_items), owner + low_ranks, high_ranks, depth + 1);
+      (halves.is_low[i] ? low_boxes : high_boxes).items.push_back(items[i]);
+    low_boxes.everybodys = boxes.everybodys;
+    high_boxes.everybodys = std::move(boxes.everybodys);
+    boxes = {};
+    split(low, std::move(low_boxes), owner, low_ranks, depth + 1);
+    split(high, std::move(high_boxes), owner + low_ranks, high_ranks, depth + 1);
   }
 
  private:
@@ -101,17 +115,19 @@ class Sweep {
   // In pixels: what rounding may make of none.
   static constexpr double kNoDifference = 1e-3;
 
-  Halves halve(const Rect& screen, const std::vector<PlacedBox>& items, Axis axis, int low_ranks,
+  Halves halve(const Rect& screen, const Boxes& boxes, Axis axis, int low_ranks,
                int high_ranks) const {
-    Halves halves = assign(screen, items, axis, low_ranks, high_ranks);
-    find_border(screen, items, halves);
+    Halves halves = assign(screen, boxes, axis, low_ranks, high_ranks);
+    find_border(screen, boxes.items, halves);
     return halves;
   }
 
   // The cost of everybody's boxes before each line of the screen, and of all of it.
-  std::vector<double> everybodys_before(const Rect& screen, Axis axis) const {
+  static std::vector<double> everybodys_before(const Rect& screen,
+                                               const std::vector<PlacedBox>& everybodys,
+                                               Axis axis) {
     std::vector<double> before(static_cast<std::size_t>(axis.length(screen)) + 1);
-    for (const PlacedBox& item : everybodys_) {
+    for (const PlacedBox& item : everybodys) {
       const Rect inside = geometry::intersection(item.box, screen);
       if (inside.empty()) continue;
       const double per_line =
@@ -123,19 +139,19 @@ class Sweep {
     return before;
   }
 
-  Halves assign(const Rect& screen, const std::vector<PlacedBox>& items, Axis axis, int low_ranks,
+  Halves assign(const Rect& screen, const Boxes& boxes, Axis axis, int low_ranks,
                 int high_ranks) const {
-    const int begin = axis.low(frame_), length = axis.length(frame_);
-    const auto by_end = order_by(items.size(), begin, length,
-                                 [&](std::size_t i) { return axis.high(items[i].box); });
-    const auto by_begin = order_by(items.size(), begin, length,
-                                   [&](std::size_t i) { return axis.low(items[i].box); });
+    const std::vector<PlacedBox>& items = boxes.items;
+    const auto by_end =
+        order_by(items.size(), [&](std::size_t i) { return axis.high(items[i].box); });
+    const auto by_begin =
+        order_by(items.size(), [&](std::size_t i) { return axis.low(items[i].box); });
     const auto work = [&](const PlacedBox& item) {
       const auto outside =
           static_cast<double>(item.box.area() - geometry::intersection(item.box, screen).area());
       return item.cost + pixel_cost_ * outside * item.covered;
     };
-    const std::vector<double> before = everybodys_before(screen, axis);
+    const std::vector<double> before = everybodys_before(screen, boxes.everybodys, axis);
     const auto clamped = [&](int line) {
       return std::clamp(line, axis.low(screen), axis.high(screen));
     };
@@ -221,9 +237,7 @@ class Sweep {
     halves.misplaced += least;
   }
 
-  Rect frame_;
   double pixel_cost_;
-  std::vector<PlacedBox> everybodys_;
   HybridPartition& result_;
 };
 
@@ -253,8 +267,8 @@ HybridPartition hybrid_partition(std::span<const WeightedBox> boxes, Rect frame,
     });
   }
   if (!frame.empty()) {
-    Sweep(frame, options.pixel_cost, std::move(everybodys), result)
-        .split(frame, std::move(items), 0, ranks, 0);
+    Sweep(options.pixel_cost, result)
+        .split(frame, {std::move(items), std::move(everybodys)}, 0, ranks, 0);
   }
   return result;
 }

@@ -20,6 +20,8 @@ namespace {
 
 // A group costs a rank about as much as a pixel by being told of; smaller ones spare pixels.
 constexpr std::uint64_t kGroupsPerRank = 250;
+// Of all ranks, as each looks at all of them.
+constexpr std::uint64_t kMostGroups = std::uint64_t{1} << 16;
 constexpr std::uint64_t kLargestGroup = 256;  // triangles
 
 // The ranges of everybody's groups on all ranks. A message only where there are any.
@@ -46,9 +48,9 @@ std::vector<PrimitiveRange> find_everybodys(const RankContext& rank, const Coste
 
 const CostedGroups& cost_groups(RankContext& rank) {
   const std::uint64_t all = rank.prepared.first_primitives.back();
-  const std::uint64_t triangles =
-      std::clamp(all / (kGroupsPerRank * static_cast<std::uint64_t>(rank.ranks())),
-                 std::uint64_t{1}, kLargestGroup);
+  const std::uint64_t triangles = std::clamp(
+      all / std::min(kGroupsPerRank * static_cast<std::uint64_t>(rank.ranks()), kMostGroups),
+      std::uint64_t{1}, kLargestGroup);
   const auto [first, last] = rank.own_primitives();
   return rank.memory.screen.groups(rank, {first, last, static_cast<std::uint32_t>(triangles)},
                                    true);

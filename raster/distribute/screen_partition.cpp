@@ -35,10 +35,10 @@ constexpr double kDrawnPixelPrice = 0.05;
 
 // On a grid fine enough for so many regions.
 loadbalance::Costs costs_of(const geometry::Rect& frame, int regions,
-                            std::span<const loadbalance::WeightedBox> boxes) {
+                            std::vector<loadbalance::WeightedBox> boxes) {
   const int side = loadbalance::cost_cell_side(frame, regions);
   return loadbalance::make_costs(frame, (frame.width() + side - 1) / side,
-                                 (frame.height() + side - 1) / side, boxes);
+                                 (frame.height() + side - 1) / side, std::move(boxes));
 }
 
 }  // namespace
@@ -238,7 +238,7 @@ const loadbalance::Partition& ScreenPartition::cut(RankContext& rank, int parts,
   all.insert(all.end(), large_.begin(), large_.end());
   const bool cuts_here = rank.number() == 0;
   loadbalance::Costs costs;
-  if (cuts_here) costs = costs_of(frame, parts * options.regions_per_rank, all);
+  if (cuts_here) costs = costs_of(frame, parts * options.regions_per_rank, std::move(all));
   if (cuts_here && !samples_.empty() && kept_->last().frame == frame) {
     std::vector<double> seconds;
     for (int k = 0; k < parts; ++k) seconds.push_back(samples_[first_rank + k].seconds);
@@ -279,7 +279,7 @@ loadbalance::Costs ScreenPartition::costs(RankContext& rank, int regions) {
       groups(rank, {begin, end, group_triangles(rank.prepared.first_primitives.back(), regions)})
           .boxes;
   boxes.insert(boxes.end(), large_.begin(), large_.end());
-  return costs_of(rank.frame(), regions, boxes);
+  return costs_of(rank.frame(), regions, std::move(boxes));
 }
 
 void ScreenPartition::measure(const RankContext& rank) {

@@ -51,7 +51,7 @@ inline std::vector<WeightedBox> boxes(Scenery scenery, const geometry::Rect& fra
 // Costs with cells of so many pixels.
 inline Costs costs_of(const geometry::Rect& frame, int side, std::span<const WeightedBox> boxes) {
   return make_costs(frame, (frame.width() + side - 1) / side, (frame.height() + side - 1) / side,
-                    boxes);
+                    {boxes.begin(), boxes.end()});
 }
 
 }  // namespace delray::loadbalance::testing

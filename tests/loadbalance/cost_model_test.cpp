@@ -53,7 +53,8 @@ TEST(RasterCostModel, KeepsTheRatioWhereSamplesDoNotTell) {
 }
 
 TEST(ScaleToMeasured, MakesThePredictionAgree) {
-  const WeightedBox boxes[] = {{{0, 0, 2, 2}, 8, 2}, {{2, 0, 4, 2}, 8, 2}, {{5, 0, 6, 1}, 4}};
+  const std::vector<WeightedBox> boxes = {
+      {{0, 0, 2, 2}, 8, 2}, {{2, 0, 4, 2}, 8, 2}, {{5, 0, 6, 1}, 4}};
   Costs costs = make_costs({0, 0, 8, 2}, 8, 2, boxes);
   const Partition last{
       costs.frame, {{{0, 0, 2, 2}, 0}, {{2, 0, 4, 2}, 1}, {{4, 0, 6, 2}, 0}, {{6, 0, 8, 2}, 2}}};

@@ -41,7 +41,7 @@ TEST(Costs, CellsCoverTheFrameExactlyOnce) {
 }
 
 TEST(Costs, ABoxIsSplitEvenlyOverItsCells) {
-  const WeightedBox boxes[] = {{{9, 0, 21, 11}, 6}};  // columns 0 to 2, rows 0 and 1
+  const std::vector<WeightedBox> boxes = {{{9, 0, 21, 11}, 6}};  // columns 0 to 2, rows 0 and 1
   const Costs costs = make_costs({0, 0, 40, 20}, 4, 2, boxes);
   EXPECT_EQ(costs.cells, (std::vector<double>{1, 1, 1, 0, 1, 1, 1, 0}));
   EXPECT_EQ(costs.cross_right, (std::vector<double>{3, 3, 0, 0, 3, 3, 0, 0}));
@@ -50,17 +50,17 @@ TEST(Costs, ABoxIsSplitEvenlyOverItsCells) {
 }
 
 TEST(Costs, BoxesOutsideAddNothingAndThoseAcrossTheBorderAddAll) {
-  const WeightedBox boxes[] = {{{-10, -10, 0, 20}, 1},
-                               {{40, 0, 50, 20}, 2},
-                               {{5, 5, 5, 9}, 4},
-                               {{-1000, -1000, 5, 5}, 8},
-                               {{-1000000000, 3, 1000000000, 4}, 16}};
+  const std::vector<WeightedBox> boxes = {{{-10, -10, 0, 20}, 1},
+                                          {{40, 0, 50, 20}, 2},
+                                          {{5, 5, 5, 9}, 4},
+                                          {{-1000, -1000, 5, 5}, 8},
+                                          {{-1000000000, 3, 1000000000, 4}, 16}};
   const Costs costs = make_costs({0, 0, 40, 20}, 4, 2, boxes);
   EXPECT_EQ(costs.cells, (std::vector<double>{12, 4, 4, 4, 0, 0, 0, 0}));
 }
 
 TEST(Costs, OfAnEmptyFrame) {
-  const WeightedBox boxes[] = {{{0, 0, 5, 5}, 1}};
+  const std::vector<WeightedBox> boxes = {{{0, 0, 5, 5}, 1}};
   const Costs costs = make_costs({3, 3, 3, 9}, 8, 8, boxes);
   EXPECT_EQ(costs.columns, 1);
   EXPECT_EQ(total(costs.cells), 0);
@@ -78,6 +78,17 @@ TEST(Costs, AreFineEnoughForTheNumberOfParts) {
   EXPECT_EQ(primitives_per_box(32000, 64), 1);
 }
 
+TEST(Costs, BoxesOfAFrameStopGrowingInNumberWithTheParts) {
+  for (const std::uint64_t primitives : {10'000'000ULL, 30'000'000ULL}) {
+    const auto boxes = [&](int parts) {
+      return primitives / static_cast<std::uint64_t>(primitives_per_box(primitives, parts));
+    };
+    EXPECT_GE(boxes(128), boxes(16));
+    EXPECT_EQ(boxes(1024), boxes(256));
+    EXPECT_LE(boxes(1 << 20), 140'000U);
+  }
+}
+
 // Which pixels a cell has, and which cells a box overlaps, must agree.
 TEST(Costs, EachBoxTouchesExactlyTheCellsItOverlaps) {
   const unsigned seed = 31;
@@ -90,7 +101,7 @@ TEST(Costs, EachBoxTouchesExactlyTheCellsItOverlaps) {
     const Rect frame{-5, 3, -5 + number(1, 50), 3 + number(1, 50)};
     const int x = number(-10, 50), y = number(-10, 60);
     const WeightedBox box{{x, y, x + number(1, 20), y + number(1, 20)}, 1};
-    const Costs costs = make_costs(frame, number(1, 60), number(1, 60), {&box, 1});
+    const Costs costs = make_costs(frame, number(1, 60), number(1, 60), {box});
     int touched = 0;
     for (int j = 0; j < costs.rows; ++j) {
       for (int i = 0; i < costs.columns; ++i) {

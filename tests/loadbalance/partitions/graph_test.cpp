@@ -19,10 +19,10 @@ Partition graph(const Costs& costs, int parts) {
 // Two boxes beside each other and a third below the first make an L that nothing crosses; any
 // rectangle of half the cost would cut through a box.
 TEST(Graph, FindsARegionThatIsNotARectangle) {
-  const WeightedBox boxes[] = {{{0, 0, 8, 4}, 32, 8},
-                               {{0, 4, 4, 8}, 16, 4},  // the L, of 48
-                               {{8, 0, 12, 8}, 32, 8},
-                               {{4, 4, 8, 8}, 16, 4}};  // the rest
+  const std::vector<WeightedBox> boxes = {{{0, 0, 8, 4}, 32, 8},
+                                          {{0, 4, 4, 8}, 16, 4},  // the L, of 48
+                                          {{8, 0, 12, 8}, 32, 8},
+                                          {{4, 4, 8, 8}, 16, 4}};  // the rest
   const Costs costs = make_costs({0, 0, 12, 8}, 12, 8, boxes);
   const Partition partition = graph(costs, 2);
   const Balance result = balance(partition, boxes, 2);

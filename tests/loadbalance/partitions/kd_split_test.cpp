@@ -30,7 +30,7 @@ TEST(KdSplit, CutsWhereTheCurvesCross) {
 }
 
 TEST(KdSplit, CutsThroughAreaWherePixelsCost) {
-  const WeightedBox boxes[] = {{{0, 0, 100, 10}, 1000}, {{80, 0, 100, 10}, 600}};
+  const std::vector<WeightedBox> boxes = {{{0, 0, 100, 10}, 1000}, {{80, 0, 100, 10}, 600}};
   const Costs costs = make_costs({0, 0, 100, 10}, 1, 1, boxes);  // cells do not matter
   const Partition partition = kd_split(costs, 2);
   EXPECT_EQ(partition.regions[0].rect, (Rect{0, 0, 80, 10}));

@@ -30,8 +30,9 @@ std::vector<int> centroids(const Partition& partition, std::span<const WeightedB
 }
 
 TEST(Whelan, CutsTheLongerSideAtTheMedianWhateverTheSizes) {
-  const WeightedBox boxes[] = {{{10, 0, 12, 2}, 1},     {{14, 0, 16, 2}, 1}, {{30, 0, 32, 2}, 1000},
-                               {{40, 0, 80, 20}, 9000}, {{90, 0, 92, 2}, 1}, {{94, 0, 96, 2}, 1}};
+  const std::vector<WeightedBox> boxes = {{{10, 0, 12, 2}, 1},    {{14, 0, 16, 2}, 1},
+                                          {{30, 0, 32, 2}, 1000}, {{40, 0, 80, 20}, 9000},
+                                          {{90, 0, 92, 2}, 1},    {{94, 0, 96, 2}, 1}};
   const Partition partition = whelan(make_costs({0, 0, 100, 20}, 5, 1, boxes), 2);
   ASSERT_EQ(partition.regions.size(), 2U);
   EXPECT_EQ(centroids(partition, boxes), (std::vector<int>{3, 3}));
@@ -39,7 +40,7 @@ TEST(Whelan, CutsTheLongerSideAtTheMedianWhateverTheSizes) {
 }
 
 TEST(Whelan, AGroupCountsAsItsPrimitives) {
-  const WeightedBox boxes[] = {
+  const std::vector<WeightedBox> boxes = {
       {{0, 0, 2, 2}, 1, 0, 6}, {{50, 0, 52, 2}, 1, 0, 3}, {{90, 0, 92, 2}, 1, 0, 3}};
   const Partition partition = whelan(make_costs({0, 0, 100, 20}, 5, 1, boxes), 2);
   EXPECT_EQ(centroids(partition, boxes), (std::vector<int>{6, 6}));

@@ -46,11 +46,11 @@ TEST(Whitman, DividesWhereThePrimitivesAre) {
 
 // A primitive over four cells counts four times, so its owner gets nothing of the rest.
 TEST(Whitman, CountsLargePrimitivesInEveryCell) {
-  const WeightedBox boxes[] = {{{0, 0, 2, 2}, 1},
-                               {{2, 0, 3, 1}, 1},
-                               {{3, 0, 4, 1}, 1},
-                               {{2, 1, 3, 2}, 1},
-                               {{3, 1, 4, 2}, 1}};
+  const std::vector<WeightedBox> boxes = {{{0, 0, 2, 2}, 1},
+                                          {{2, 0, 3, 1}, 1},
+                                          {{3, 0, 4, 1}, 1},
+                                          {{2, 1, 3, 2}, 1},
+                                          {{3, 1, 4, 2}, 1}};
   const Partition partition = whitman(make_costs({0, 0, 4, 2}, 4, 2, boxes), 2);
   double left[2] = {0, 0}, right[2] = {0, 0};
   for (const Region& region : partition.regions) {
