@@ -18,6 +18,7 @@ namespace delray::scenes {
 namespace {
 
 using files::Format;
+using internal::finish;
 using internal::Source;
 
 constexpr std::size_t kStart = std::size_t{1} << 20;  // bytes; enough to know any format by
@@ -28,7 +29,7 @@ constexpr std::array kReaders = {
                 &internal::read_obj},
     SceneReader{Format::ply, "PLY",
                 "surface of triangles, polygons or strips, with colours and normals",
-                &internal::read_ply},
+                &internal::read_ply, true},
     SceneReader{Format::stl, "STL", "surface of triangles, text or binary", &internal::read_stl},
     SceneReader{Format::gltf, "glTF", "scene with materials, lights and cameras, as JSON",
                 &internal::load_gltf},
@@ -54,10 +55,35 @@ std::string join_continued_lines(std::string text) {
   return text;
 }
 
-Scene read(Format format, const Source& source) {
+const SceneReader* reader_of(Format format) {
   const auto reader = std::ranges::find(kReaders, format, &SceneReader::format);
-  if (reader == kReaders.end()) source.fail("", no_scene());
-  return reader->read(source);
+  return reader == kReaders.end() ? nullptr : reader;
+}
+
+// `start` is the first megabyte of the file.
+Scene read(Format format, std::string_view start, const Source& source,
+           parallel::Progress* progress) {
+  const SceneReader* const reader = reader_of(format);
+  if (reader == nullptr) source.fail("", no_scene());
+  Scene scene = reader->read(source);
+  scene.files = std::move(source.named);
+  std::ranges::sort(scene.files);
+  scene.files.erase(std::unique(scene.files.begin(), scene.files.end()), scene.files.end());
+  if (progress) progress->advance();
+  finish(source, scene);
+  const bool says_up = format == Format::gltf || format == Format::glb;  // y
+  // Exporters of glTF order triangles for renderers.
+  if (!says_up) {
+    for (Mesh& mesh : scene.meshes) {
+      source.require_memory(mesh.triangles.size() * kOrderingBytes);
+      internal::order_for_locality(mesh);
+    }
+  }
+  const char up = files::up_axis(start);
+  scene.z_up =
+      !says_up && (up == '\0' ? internal::guess_z_up(scene, format == Format::stl) : up == 'z');
+  if (progress) progress->advance();
+  return scene;
 }
 
 }  // namespace
@@ -71,34 +97,29 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   const Format format = files::identify(start, content.size(), path).format;
   if (format == Format::obj) content = join_continued_lines(std::move(content));
   const Source source{path, content, warnings, options.memory, options.outside};
-  Scene scene = read(format, source);
-  scene.files = std::move(source.named);
-  std::ranges::sort(scene.files);
-  scene.files.erase(std::unique(scene.files.begin(), scene.files.end()), scene.files.end());
-  if (options.progress) options.progress->advance();
-  finish(source, scene);
-  const bool says_up = format == Format::gltf || format == Format::glb;  // y
-  // Exporters of glTF order triangles for renderers.
-  if (!says_up) {
-    for (Mesh& mesh : scene.meshes) {
-      source.require_memory(mesh.triangles.size() * kOrderingBytes);
-      order_for_locality(mesh);
-    }
-  }
-  const char up = files::up_axis(start);
-  scene.z_up = !says_up && (up == '\0' ? guess_z_up(scene, format == Format::stl) : up == 'z');
-  if (options.progress) options.progress->advance();
-  return scene;
+  return read(format, std::string_view(content).substr(0, kStart), source, options.progress);
 }
 
 Scene load(const std::filesystem::path& path, std::vector<std::string>& warnings,
            const LoadOptions& options) {
   if (options.progress) options.progress->start(3);
   // A stream that is nothing that is known need not be read to its end, if it has one.
-  if (files::is_stream(path)) {
+  const bool stream = files::is_stream(path);
+  if (stream) {
     const bool empty = files::read_start(path, 1, options.memory).empty();
     if (!empty && files::identify_format(path, options.memory) == Format::unknown) {
       Source{path, "", warnings}.fail("", no_scene());
+    }
+  }
+  if (!stream) {
+    const std::string start = files::read_start(path, kStart, options.memory);
+    const Source source{path, "", warnings, options.memory, options.outside, false};
+    const std::uint64_t size = source.bytes().size();
+    const Format format = files::identify(start, size, path).format;
+    const SceneReader* const reader = reader_of(format);
+    if (!start.empty() && reader != nullptr && reader->in_parts) {
+      if (options.progress) options.progress->advance();
+      return read(format, start, source, options.progress);
     }
   }
   std::string content = files::read_file(path, options.memory);

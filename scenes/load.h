@@ -33,6 +33,7 @@ struct SceneReader {
   std::string_view name;         // "OBJ"
   std::string_view description;  // one line
   Scene (*read)(const internal::Source& source);
+  bool in_parts = false;  // reads ranges of a file, which need not be in memory as a whole
 };
 
 std::span<const SceneReader> scene_readers();

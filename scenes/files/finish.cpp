@@ -3,19 +3,33 @@
 #include "scenes/files/finish.h"
 
 #include <algorithm>
+#include <functional>
 
+#include "parallel/parallel_for.h"
 #include "scenes/geometry/origin.h"
 
 namespace delray::scenes::internal {
 namespace {
 
+constexpr std::size_t kTrianglesPerBlock = 1 << 14;  // tens of microseconds
+
 std::uint64_t drop_degenerate(Mesh& mesh) {
   const auto same = [&mesh](std::uint32_t a, std::uint32_t b) {
     return a == b || mesh.positions[a] == mesh.positions[b];
   };
-  return std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
+  const auto degenerate = [&](const glm::uvec3& t) {
     return same(t.x, t.y) || same(t.y, t.z) || same(t.z, t.x);
-  });
+  };
+  const auto count = parallel::parallel_reduce(
+      0, mesh.triangles.size(), kTrianglesPerBlock, std::uint64_t{0},
+      [&](std::size_t first, std::size_t last) {
+        const glm::uvec3* const triangles = mesh.triangles.data();
+        return static_cast<std::uint64_t>(
+            std::count_if(triangles + first, triangles + last, degenerate));
+      },
+      std::plus<>());
+  if (count > 0) std::erase_if(mesh.triangles, degenerate);
+  return count;
 }
 
 void drop_empty_meshes(Scene& scene) {

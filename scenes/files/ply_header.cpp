@@ -23,7 +23,8 @@ constexpr std::array kPlyTypes = {
 // Reads the header line by line.
 class PlyHeaderReader {
  public:
-  explicit PlyHeaderReader(const Source& source) : source_(source), lines_(source.content) {}
+  PlyHeaderReader(const Source& source, std::string_view start)
+      : source_(source), start_(start), lines_(start) {}
 
   PlyHeader run() {
     std::string_view line;
@@ -43,7 +44,7 @@ class PlyHeaderReader {
         read_comment(words);
       } else if (key == "end_header") {
         if (!has_format_) source_.fail(lines_.place(), "the header has no format");
-        const auto end = static_cast<std::size_t>(line.data() - source_.content.data());
+        const auto end = static_cast<std::size_t>(line.data() - start_.data());
         header_.size = end + line.size() + std::min(end_of(line).size(), line_end.size());
         header_.lines = lines_.number();
         return std::move(header_);
@@ -58,8 +59,8 @@ class PlyHeaderReader {
  private:
   // The end that separates `line` from the next.
   std::string_view end_of(std::string_view line) const {
-    const auto at = static_cast<std::size_t>(line.data() - source_.content.data()) + line.size();
-    const std::string_view rest = source_.content.substr(at);
+    const auto at = static_cast<std::size_t>(line.data() - start_.data()) + line.size();
+    const std::string_view rest = start_.substr(at);
     return rest.substr(0, rest.starts_with("\r\n") ? 2 : 1);
   }
 
@@ -124,13 +125,14 @@ class PlyHeaderReader {
   }
 
   const Source& source_;
+  std::string_view start_;
   Lines lines_;
   PlyHeader header_;
   bool has_format_ = false, has_vertices_ = false;
 };
 
-void check_counts(const Source& source, const PlyHeader& header) {
-  const std::uint64_t size = source.content.size() - header.size;
+void check_counts(const Source& source, const PlyHeader& header, std::uint64_t bytes) {
+  const std::uint64_t size = bytes - header.size;
   for (const PlyElement& element : header.elements) {
     std::uint64_t each = 0;
     for (const PlyProperty& p : element.properties) {
@@ -157,9 +159,9 @@ double full_scale(PlyType type) {
   return kScales[static_cast<std::size_t>(type)];
 }
 
-PlyHeader read_ply_header(const Source& source) {
-  PlyHeader header = PlyHeaderReader(source).run();
-  check_counts(source, header);
+PlyHeader read_ply_header(const Source& source, std::string_view start, std::uint64_t bytes) {
+  PlyHeader header = PlyHeaderReader(source, start).run();
+  check_counts(source, header, bytes);
   return header;
 }
 

@@ -42,7 +42,8 @@ struct PlyHeader {
 
 // Fails where the header is malformed or claims more elements than the file has room for. The body
 // begins right after the end of the line "end_header", which is "\n", "\r\n" or "\r" as it is after
-// the first line.
-PlyHeader read_ply_header(const Source& source);
+// the first line. Names are views of `start`, which has all of the header, of a file of so many
+// bytes.
+PlyHeader read_ply_header(const Source& source, std::string_view start, std::uint64_t bytes);
 
 }  // namespace delray::scenes::internal

@@ -1,17 +1,22 @@
 // PLY (Turk 1994): elements of any properties in any order.
 //
-// Values are read one after the other, from text or binary, into the slots that their properties'
-// names stand for. Faces are kept as lists until all vertices are known.
+// Runs of rows are read at the same time, from text or binary: of vertices into the slots that
+// their properties' names stand for, of faces as lists that are kept until all vertices are known.
+// Where all faces are triangles, as the first one is, their corners need no lists. O(bytes).
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 #include <span>
 
-#include "scenes/files/growth_watch.h"
+#include "parallel/grow.h"
+#include "parallel/parallel_for.h"
+#include "scenes/files/for_each_block.h"
+#include "scenes/files/ply_blocks.h"
 #include "scenes/files/ply_header.h"
+#include "scenes/files/ply_rows.h"
 #include "scenes/files/readers.h"
 #include "scenes/files/texture_files.h"
 #include "scenes/files/vertex_values.h"
@@ -41,225 +46,116 @@ constexpr std::array kSlotNames = {
     SlotName{"texture_u", kU}, SlotName{"texture_v", kV}, SlotName{"texture_s", kU},
     SlotName{"texture_t", kV}};
 
-template <class T>
-double decoded(const char* data, bool swap) {
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), data, sizeof(T));
-  if (swap) std::reverse(bytes.begin(), bytes.end());
-  return static_cast<double>(std::bit_cast<T>(bytes));
-}
+// How the values of a vertex become attributes.
+struct VertexLayout {
+  std::vector<Slot> slots;  // of each property; kSlots: none
+  std::array<bool, kSlots> has{};
+  std::array<double, kSlots> scale{};
+  std::array<PlyType, kSlots> type{};
+  std::array<std::size_t, kSlots> offset{};  // in a binary row without lists
+  std::size_t stride = 0;                    // 0 with lists
 
-double decoded(const char* data, PlyType type, bool swap) {
-  switch (type) {
-    case PlyType::i8:
-      return decoded<std::int8_t>(data, swap);
-    case PlyType::u8:
-      return decoded<std::uint8_t>(data, swap);
-    case PlyType::i16:
-      return decoded<std::int16_t>(data, swap);
-    case PlyType::u16:
-      return decoded<std::uint16_t>(data, swap);
-    case PlyType::i32:
-      return decoded<std::int32_t>(data, swap);
-    case PlyType::u32:
-      return decoded<std::uint32_t>(data, swap);
-    case PlyType::f32:
-      return decoded<float>(data, swap);
-    default:
-      return decoded<double>(data, swap);
-  }
-}
-
-// Hands out the values of the body one after the other, from text or binary.
-class PlyBody {
- public:
-  PlyBody(const Source& source, const PlyHeader& header)
-      : source_(source),
-        header_(header),
-        is_text_(header.coding == PlyCoding::text),
-        swap_((header.coding == PlyCoding::big) == (std::endian::native == std::endian::little)),
-        rest_(source.content.substr(header.size)),
-        lines_(rest_) {}
-
-  void start_item() {
-    watch_.step();
-    if (!is_text_) return;
-    std::string_view line;
-    if (!lines_.next_with_words(line, '\0')) fail("the file ends before its last element");
-    words_ = Words(line);
-  }
-  double next(PlyType type) {
-    if (is_text_) {
-      double value = 0;
-      const std::string_view word = words_.next();
-      if (word.empty()) fail("the line has too few values");
-      if (!parse(word, value)) fail("'" + std::string(word.substr(0, 40)) + "' is not a number");
-      return value;
-    }
-    const std::size_t size = size_of(type);
-    if (rest_.size() < size) fail("the file ends before its last element");
-    const double value = decoded(rest_.data(), type, swap_);
-    rest_.remove_prefix(size);
-    return value;
-  }
-  void next_list(const PlyProperty& property, std::vector<double>& values) {
-    const double length = next(property.length);
-    const std::size_t room =
-        is_text_ ? source_.content.size() : rest_.size() / size_of(property.value);
-    if (!(length >= 0) || length != std::floor(length) || length > static_cast<double>(room)) {
-      fail("a list is longer than the file");
-    }
-    values.clear();
-    for (double i = 0; i < length; ++i) {
-      watch_.step();
-      values.push_back(next(property.value));
-    }
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    if (is_text_) source_.fail("line " + std::to_string(header_.lines + lines_.number()), what);
-    source_.fail("byte " + std::to_string(source_.content.size() - rest_.size()), what);
-  }
-
- private:
-  const Source& source_;
-  GrowthWatch watch_{source_};
-  const PlyHeader& header_;
-  bool is_text_, swap_;
-  std::string_view rest_;
-  Lines lines_;
-  Words words_{""};
-};
-
-class PlyReader {
- public:
-  explicit PlyReader(const Source& source)
-      : source_(source), header_(read_ply_header(source)), body_(source, header_) {
-    if (header_.vertices >= kNone) source.fail("header", "a mesh is too large");
-  }
-
-  Scene run() {
-    for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty()) continue;
-      if (element.name == "vertex") {
-        read_vertices(element);
-      } else {
-        read_lists(element);
-      }
-    }
-    if (!has_polygons_) source_.fail("", kNoTriangles);
-    const glm::dvec3 origin = place_vertices();
-    if (left_out_ > 0) source_.warn(std::to_string(left_out_) + " points and lines left out");
-    normalize_or_clear(mesh_.normals);
-    if (!corner_uvs_.empty()) give_corners_their_uvs();
-    const std::uint32_t* corner = corners_.data();
-    for (const std::uint32_t size : sizes_) {
-      triangulate_polygon({corner, size}, mesh_.positions, mesh_.triangles);
-      corner += size;
-    }
-    Scene scene = scene_of(std::move(mesh_), origin);
-    add_texture(scene);
-    return scene;
-  }
-
- private:
-  void read_vertices(const PlyElement& element) {
-    std::vector<Slot> slots;
-    std::array<bool, kSlots> has{};
-    std::array<double, kSlots> scale{};
+  explicit VertexLayout(const PlyElement& element) {
+    bool lists = false;
     for (const PlyProperty& property : element.properties) {
       const auto* known =
           std::find_if(kSlotNames.begin(), kSlotNames.end(),
                        [&](const SlotName& s) { return s.name == property.name && !has[s.slot]; });
       const bool used = known != kSlotNames.end() && !property.is_list();
       slots.push_back(used ? known->slot : kSlots);
-      if (!used) continue;
-      has[known->slot] = true;
-      scale[known->slot] = 1 / full_scale(property.value);
-      single_precision_ |=
-          known->slot == kX && property.value == PlyType::f32 && header_.coding != PlyCoding::text;
-    }
-    if (!has[kX] || !has[kY]) source_.fail("header", "the vertices have no x or no y");
-    const bool normals = has[kNx] && has[kNy] && has[kNz], uvs = has[kU] && has[kV];
-    const bool colours = has[kR] && has[kG] && has[kB];
-    std::array<double, kSlots + 1> v{};
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      body_.start_item();
-      for (std::size_t k = 0; k < slots.size(); ++k) {
-        const PlyProperty& property = element.properties[k];
-        if (property.is_list()) {
-          body_.next_list(property, values_);
-        } else {
-          v[slots[k]] = body_.next(property.value);
-        }
+      if (used) {
+        has[known->slot] = true;
+        scale[known->slot] = 1 / full_scale(property.value);
+        type[known->slot] = property.value;
+        offset[known->slot] = stride;
       }
-      const glm::dvec3 p(v[kX], v[kY], v[kZ]);
-      if (const char* wrong = wrong_with(p)) body_.fail(wrong);
-      places_.push_back(p);
-      if (normals) mesh_.normals.emplace_back(v[kNx], v[kNy], v[kNz]);
-      if (uvs) mesh_.uvs.push_back(usable_uv(v[kU], v[kV]));
-      if (colours) {
-        mesh_.colours.push_back(
-            linear_colour({v[kR] * scale[kR], v[kG] * scale[kG], v[kB] * scale[kB],
-                           has[kA] ? v[kA] * scale[kA] : 1.0}));
-      }
+      lists |= property.is_list();
+      stride += size_of(property.value);
     }
+    if (lists) stride = 0;
   }
 
-  // Returns the origin.
-  glm::dvec3 place_vertices() {
-    source_.require_memory(places_.size() * sizeof(glm::vec3));
-    const geometry::Box3d box = box_of(places_);
-    if (single_precision_) warn_if_coarse(source_, reach_of(box), glm::length(box.size()));
-    const glm::dvec3 origin = origin_of(box);
-    mesh_.positions = relative_to(origin, places_);
-    std::vector<glm::dvec3>().swap(places_);
-    return origin;
+  bool normals() const { return has[kNx] && has[kNy] && has[kNz]; }
+  bool uvs() const { return has[kU] && has[kV]; }
+  bool colours() const { return has[kR] && has[kG] && has[kB]; }
+  // Positions that single precision holds as they are.
+  bool single() const {
+    return type[kX] == PlyType::f32 && type[kY] == PlyType::f32 &&
+           (!has[kZ] || type[kZ] == PlyType::f32);
+  }
+  // Three floats behind each other, and nothing else of interest.
+  bool bare() const {
+    return stride > 0 && has[kZ] && single() && offset[kY] == offset[kX] + sizeof(float) &&
+           offset[kZ] == offset[kY] + sizeof(float) && !normals() && !uvs() && !colours();
+  }
+};
+
+// v of PLY grows upwards.
+glm::vec2 usable_uv(double u, double v) {
+  const glm::vec2 uv(u, 1 - v);
+  return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0);
+}
+
+// The polygons of a block.
+struct Polygons {
+  std::vector<std::uint32_t> corners, sizes;
+  std::vector<glm::vec2> uvs;  // of corners, if any face has them
+  std::uint64_t left_out = 0;  // points and lines
+  bool any = false;            // has polygons
+
+  // Corners without have (0, 0).
+  void complete_uvs() { uvs.resize(corners.size(), glm::vec2(0)); }
+};
+
+// Reads faces, strips, and whatever else has properties.
+class PolygonRows {
+ public:
+  PolygonRows(const PlyFile& file, const PlyElement& element, const PlyBlock& block)
+      : element_(element),
+        rows_(file, block),
+        row_count_(block.rows),
+        vertices_(file.header.vertices),
+        is_face_(element.name == "face"),
+        is_strip_(element.name == "tristrips") {}
+
+  Polygons run() {
+    for (std::uint64_t i = 0; i < row_count_; ++i) read_row();
+    return std::move(to_);
   }
 
-  // v of PLY grows upwards.
-  static glm::vec2 usable_uv(double u, double v) {
-    const glm::vec2 uv(u, 1 - v);
-    return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : glm::vec2(0);
-  }
-
-  // Faces, strips, and whatever else has properties.
-  void read_lists(const PlyElement& element) {
-    const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      body_.start_item();
-      const std::size_t before = corners_.size();
-      std::vector<double>& uvs = face_uvs_;
-      uvs.clear();
-      for (const PlyProperty& property : element.properties) {
-        if (!property.is_list()) {
-          body_.next(property.value);
-          continue;
-        }
-        const bool is_uv = is_face && property.name == "texcoord";
-        body_.next_list(property, is_uv ? uvs : values_);
-        const bool is_index = property.name == "vertex_indices" || property.name == "vertex_index";
-        if (is_index && is_face) add_face();
-        if (is_index && is_strip) add_strips();
+ private:
+  void read_row() {
+    rows_.start_row();
+    const std::size_t before = to_.corners.size();
+    face_uvs_.clear();
+    for (const PlyProperty& property : element_.properties) {
+      if (!property.is_list()) {
+        rows_.next(property.value);
+        continue;
       }
-      if (is_face) add_corner_uvs(before);
+      const bool is_uv = is_face_ && property.name == "texcoord";
+      rows_.next_list(property, is_uv ? face_uvs_ : values_);
+      const bool is_index = property.name == "vertex_indices" || property.name == "vertex_index";
+      if (is_index && is_face_) add_face();
+      if (is_index && is_strip_) add_strips();
     }
+    if (is_face_) add_corner_uvs(before);
   }
 
   std::uint32_t vertex(double value) const {
-    if (!(value >= 0 && value < static_cast<double>(header_.vertices)) ||
-        value != std::floor(value)) {
+    if (!(value >= 0 && value < static_cast<double>(vertices_)) || value != std::floor(value)) {
       const double shown = std::isfinite(value) ? std::clamp(value, -1e18, 1e18) : -1;
-      body_.fail("there is no vertex " + std::to_string(static_cast<std::int64_t>(shown)) + " (" +
-                 std::to_string(header_.vertices) + " vertices, from 0)");
+      rows_.fail("there is no vertex " + std::to_string(static_cast<std::int64_t>(shown)) + " (" +
+                 std::to_string(vertices_) + " vertices, from 0)");
     }
     return static_cast<std::uint32_t>(value);
   }
 
   void add_face() {
-    for (const double value : values_) corners_.push_back(vertex(value));
-    sizes_.push_back(static_cast<std::uint32_t>(values_.size()));
-    if (values_.size() < 3) ++left_out_;
-    has_polygons_ |= values_.size() >= 3;
+    for (const double value : values_) to_.corners.push_back(vertex(value));
+    to_.sizes.push_back(static_cast<std::uint32_t>(values_.size()));
+    if (values_.size() < 3) ++to_.left_out;
+    to_.any |= values_.size() >= 3;
   }
 
   // Every second triangle of a strip has the other sense. -1 begins the next strip; where two
@@ -274,40 +170,310 @@ class PlyReader {
       }
       last = {last[1], last[2], vertex(value)};
       if (++length < 3) continue;
-      has_polygons_ = true;
+      to_.any = true;
       if (last[0] == last[1] || last[1] == last[2] || last[2] == last[0]) continue;
       const std::size_t odd = (length - 3) % 2;
-      corners_.insert(corners_.end(), {last[odd], last[1 - odd], last[2]});
-      sizes_.push_back(3);
+      to_.corners.insert(to_.corners.end(), {last[odd], last[1 - odd], last[2]});
+      to_.sizes.push_back(3);
     }
   }
 
   // `before`: where the corners of the face begin.
   void add_corner_uvs(std::size_t before) {
-    const std::size_t corners = corners_.size() - before;
-    if (corners == 0 || (face_uvs_.empty() && corner_uvs_.empty())) return;
-    corner_uvs_.resize(before, glm::vec2(0));
+    const std::size_t corners = to_.corners.size() - before;
+    if (corners == 0 || (face_uvs_.empty() && to_.uvs.empty())) return;
+    to_.uvs.resize(before, glm::vec2(0));
     for (std::size_t k = 0; k < corners; ++k) {
       const bool given = 2 * k + 1 < face_uvs_.size();
-      corner_uvs_.push_back(given ? usable_uv(face_uvs_[2 * k], face_uvs_[2 * k + 1])
-                                  : glm::vec2(0));
+      to_.uvs.push_back(given ? usable_uv(face_uvs_[2 * k], face_uvs_[2 * k + 1]) : glm::vec2(0));
     }
+  }
+
+  const PlyElement& element_;
+  PlyRows rows_;
+  std::uint64_t row_count_, vertices_;
+  bool is_face_, is_strip_;
+  Polygons to_;
+  std::vector<double> values_, face_uvs_;  // of a list
+};
+
+// Headers are rarely longer than the first megabyte.
+PlyHeader read_header(const Source& source, const files::FileBytes& bytes, std::string& buffer) {
+  for (std::uint64_t limit = std::uint64_t{1} << 20;; limit *= 8) {
+    const bool all = limit >= bytes.size();
+    const std::string_view start = bytes.read(0, all ? bytes.size() : limit, buffer);
+    try {
+      PlyHeader header = read_ply_header(source, start, bytes.size());
+      if (all || header.size + 1 < start.size()) return header;
+    } catch (const files::FileError&) {
+      if (all) throw;
+    }
+  }
+}
+
+class PlyReader {
+ public:
+  explicit PlyReader(const Source& source)
+      : source_(source),
+        bytes_(source.bytes()),
+        header_(read_header(source, bytes_, start_)),
+        blocks_(file_) {
+    if (header_.vertices >= kNone) source.fail("header", "a mesh is too large");
+  }
+
+  Scene run() {
+    for (const PlyElement& element : header_.elements) {
+      if (element.properties.empty()) continue;
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (!read_even_triangles(element)) {
+        read_polygons(element);
+      }
+    }
+    if (!has_polygons_) source_.fail("", kNoTriangles);
+    const glm::dvec3 origin = place_vertices();
+    if (left_out_ > 0) source_.warn(std::to_string(left_out_) + " points and lines left out");
+    normalize_or_clear(mesh_.normals);
+    if (has_corner_uvs_) give_corners_their_uvs();
+    triangulate();
+    Scene scene = scene_of(std::move(mesh_), origin);
+    add_texture(scene);
+    return scene;
+  }
+
+ private:
+  void read_vertices(const PlyElement& element) {
+    const VertexLayout layout(element);
+    if (!layout.has[kX] || !layout.has[kY]) {
+      source_.fail("header", "the vertices have no x or no y");
+    }
+    const std::vector<PlyBlock> blocks = blocks_.next(element);
+    const bool binary = !file_.is_text();
+    single_precision_ = binary && layout.type[kX] == PlyType::f32;
+    const bool direct = binary && layout.single();
+    allocate_vertices(layout, element.count, direct);
+    boxes_.resize(blocks.size());
+    for_each_block(blocks.size(), [&](std::size_t i) {
+      if (!direct || !layout.bare() || !read_bare(layout, blocks[i], boxes_[i])) {
+        read_vertices(element, layout, blocks[i], boxes_[i]);
+      }
+    });
+  }
+
+  void allocate_vertices(const VertexLayout& layout, std::uint64_t count, bool direct) {
+    const bool normals = layout.normals(), uvs = layout.uvs(), colours = layout.colours();
+    source_.require_memory(count *
+                           (sizeof(glm::vec3) + (direct ? 0 : sizeof(glm::dvec3)) +
+                            (normals ? sizeof(glm::vec3) : 0) + (uvs ? sizeof(glm::vec2) : 0) +
+                            (colours ? sizeof(glm::vec4) : 0)));
+    if (direct) {
+      parallel::grow(mesh_.positions, count);
+    } else {
+      parallel::grow(places_, count);
+    }
+    if (normals) parallel::grow(mesh_.normals, count);
+    if (uvs) parallel::grow(mesh_.uvs, count);
+    if (colours) parallel::grow(mesh_.colours, count);
+  }
+
+  // False where a coordinate is wrong; whoever reads the block row by row says which.
+  bool read_bare(const VertexLayout& layout, const PlyBlock& block, geometry::Box3d& all) {
+    thread_local std::string buffer;
+    const std::string_view bytes = bytes_.read(block.begin, block.bytes, buffer);
+    if (bytes.size() != block.rows * layout.stride) return false;
+    const bool swap = file_.swap();
+    glm::vec3* const to = mesh_.positions.data() + block.first;
+    const char* from = bytes.data() + layout.offset[kX];
+    geometry::Box3 box;
+    bool good = true;
+    for (std::uint64_t i = 0; i < block.rows; ++i, from += layout.stride) {
+      glm::vec3 p;
+      if (swap) {
+        for (int k = 0; k < 3; ++k) {
+          p[k] = static_cast<float>(ply_value(from + k * sizeof(float), PlyType::f32, true));
+        }
+      } else {
+        std::memcpy(&p, from, sizeof p);
+      }
+      constexpr auto kLargest = static_cast<float>(kLargestCoordinate);
+      good &= std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
+      box.include(p);
+      to[i] = p;
+    }
+    if (good) all = {box.low, box.high};
+    return good;
+  }
+
+  void read_vertices(const PlyElement& element, const VertexLayout& layout, const PlyBlock& block,
+                     geometry::Box3d& box) {
+    PlyRows rows(file_, block);
+    const bool direct = places_.empty();
+    const auto& has = layout.has;
+    const auto& scale = layout.scale;
+    std::array<double, kSlots + 1> v{};
+    std::vector<double> values;
+    for (std::uint64_t i = block.first; i < block.first + block.rows; ++i) {
+      rows.start_row();
+      for (std::size_t k = 0; k < layout.slots.size(); ++k) {
+        const PlyProperty& property = element.properties[k];
+        if (property.is_list()) {
+          rows.next_list(property, values);
+        } else {
+          v[layout.slots[k]] = rows.next(property.value);
+        }
+      }
+      const glm::dvec3 p(v[kX], v[kY], v[kZ]);
+      if (const char* wrong = wrong_with(p)) rows.fail(wrong);
+      box.include(p);
+      if (direct) {
+        mesh_.positions[i] = p;
+      } else {
+        places_[i] = p;
+      }
+      if (!mesh_.normals.empty()) mesh_.normals[i] = glm::vec3(v[kNx], v[kNy], v[kNz]);
+      if (!mesh_.uvs.empty()) mesh_.uvs[i] = usable_uv(v[kU], v[kV]);
+      if (!mesh_.colours.empty()) {
+        mesh_.colours[i] = linear_colour({v[kR] * scale[kR], v[kG] * scale[kG], v[kB] * scale[kB],
+                                          has[kA] ? v[kA] * scale[kA] : 1.0});
+      }
+    }
+  }
+
+  // Returns the origin.
+  glm::dvec3 place_vertices() {
+    geometry::Box3d box;
+    for (const geometry::Box3d& part : boxes_) box.include(part);
+    if (single_precision_) warn_if_coarse(source_, reach_of(box), glm::length(box.size()));
+    const glm::dvec3 origin = origin_of(box);
+    if (places_.empty()) {
+      make_relative_to(origin, mesh_.positions);
+    } else {
+      mesh_.positions = relative_to(origin, places_);
+      std::vector<glm::dvec3>().swap(places_);
+    }
+    return origin;
+  }
+
+  // Where there is nothing but faces that are triangles. False where there is, or where something
+  // is wrong, of which whoever reads row by row tells what.
+  bool read_even_triangles(const PlyElement& element) {
+    const auto is_polygons = [](const PlyElement& e) {
+      return (e.name == "face" || e.name == "tristrips") && !e.properties.empty();
+    };
+    if (element.name != "face" || element.count == 0 || file_.is_text() ||
+        std::ranges::count_if(header_.elements, is_polygons) != 1 ||
+        std::ranges::count_if(element.properties, &PlyProperty::is_list) != 1) {
+      return false;
+    }
+    std::size_t offset = 0;
+    const auto list = std::ranges::find_if(element.properties, &PlyProperty::is_list);
+    for (auto p = element.properties.begin(); p != list; ++p) offset += size_of(p->value);
+    if (list->name != "vertex_indices" && list->name != "vertex_index") return false;
+    const std::vector<PlyBlock> blocks = blocks_.even(element);
+    if (blocks.empty()) return false;
+    source_.require_memory(element.count * sizeof(glm::uvec3));
+    parallel::grow(mesh_.triangles, element.count);
+    std::atomic<bool> good{true};
+    parallel::parallel_for(0, blocks.size(), 1, [&](std::size_t i) {
+      if (good && !read_even_triangles(*list, offset, blocks[i])) good = false;
+    });
+    if (!good) {
+      std::vector<glm::uvec3>().swap(mesh_.triangles);
+      return false;
+    }
+    blocks_.move_to(blocks.back().begin + blocks.back().bytes);
+    return has_polygons_ = true;
+  }
+
+  bool read_even_triangles(const PlyProperty& list, std::size_t offset, const PlyBlock& block) {
+    thread_local std::string buffer;
+    const std::string_view bytes = bytes_.read(block.begin, block.bytes, buffer);
+    const std::size_t stride = bytes.size() / block.rows;
+    const std::size_t each = size_of(list.value), length = size_of(list.length);
+    const bool swap = file_.swap();
+    const bool plain = !swap && (list.value == PlyType::i32 || list.value == PlyType::u32);
+    const auto count = static_cast<std::uint32_t>(header_.vertices);
+    glm::uvec3* const to = mesh_.triangles.data() + block.first;
+    bool good = true;
+    const char* row = bytes.data() + offset;
+    for (std::uint64_t i = 0; i < block.rows; ++i, row += stride) {
+      good &= length == 1 ? *row == 3 : ply_value(row, list.length, swap) == 3;
+      glm::uvec3 t;
+      if (plain) {
+        std::memcpy(&t, row + length, sizeof t);  // negative ones become large
+      } else {
+        for (int k = 0; k < 3; ++k) {
+          const double v = ply_value(row + length + k * each, list.value, swap);
+          good &= v >= 0 && v < count && v == std::floor(v);
+          t[k] = v >= 0 && v < count ? static_cast<std::uint32_t>(v) : 0;
+        }
+      }
+      good &= t.x < count && t.y < count && t.z < count;
+      to[i] = t;
+    }
+    return good;
+  }
+
+  void read_polygons(const PlyElement& element) {
+    const std::vector<PlyBlock> blocks = blocks_.next(element);
+    const std::size_t before = polygons_.size();
+    polygons_.resize(before + blocks.size());
+    for_each_block(blocks.size(), [&](std::size_t i) {
+      polygons_[before + i] = PolygonRows(file_, element, blocks[i]).run();
+    });
+    for (std::size_t i = before; i < polygons_.size(); ++i) {
+      left_out_ += polygons_[i].left_out;
+      has_polygons_ |= polygons_[i].any;
+      has_corner_uvs_ |= !polygons_[i].uvs.empty();
+    }
+  }
+
+  // Each block by itself, and then all behind each other.
+  void triangulate() {
+    if (polygons_.empty()) return;
+    std::vector<std::vector<glm::uvec3>> parts(polygons_.size());
+    for_each_block(parts.size(), [&](std::size_t i) {
+      std::vector<glm::uvec3>& triangles = parts[i];
+      triangles.reserve(polygons_[i].corners.size() / 3);
+      const std::uint32_t* corner = polygons_[i].corners.data();
+      for (const std::uint32_t size : polygons_[i].sizes) {
+        triangulate_polygon({corner, size}, mesh_.positions, triangles);
+        corner += size;
+      }
+      polygons_[i] = {};
+    });
+    std::vector<std::size_t> begins = {0};
+    for (const auto& part : parts) begins.push_back(begins.back() + part.size());
+    source_.require_memory(begins.back() * sizeof(glm::uvec3));
+    parallel::grow(mesh_.triangles, begins.back());
+    parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) {
+      std::ranges::copy(parts[i], mesh_.triangles.begin() + static_cast<std::ptrdiff_t>(begins[i]));
+      std::vector<glm::uvec3>().swap(parts[i]);
+    });
   }
 
   // Every corner gets a vertex of its own; equal ones are joined again.
   void give_corners_their_uvs() {
-    if (corners_.size() >= kNone) source_.fail("", "a mesh is too large");
+    Polygons all;
+    for (Polygons& part : polygons_) {
+      part.complete_uvs();
+      all.corners.insert(all.corners.end(), part.corners.begin(), part.corners.end());
+      all.sizes.insert(all.sizes.end(), part.sizes.begin(), part.sizes.end());
+      all.uvs.insert(all.uvs.end(), part.uvs.begin(), part.uvs.end());
+      part = {};
+    }
+    if (all.corners.size() >= kNone) source_.fail("", "a mesh is too large");
     Mesh mesh;
-    mesh.uvs = std::move(corner_uvs_);
-    mesh.uvs.resize(corners_.size(), glm::vec2(0));
-    for (const std::uint32_t v : corners_) {
+    mesh.uvs = std::move(all.uvs);
+    for (const std::uint32_t v : all.corners) {
       mesh.positions.push_back(mesh_.positions[v]);
       if (!mesh_.normals.empty()) mesh.normals.push_back(mesh_.normals[v]);
       if (!mesh_.colours.empty()) mesh.colours.push_back(mesh_.colours[v]);
     }
-    const std::vector<std::uint32_t> number = weld(mesh);
-    corners_ = number;
+    all.corners = weld(mesh);
     mesh_ = std::move(mesh);
+    polygons_.clear();
+    polygons_.push_back(std::move(all));
   }
 
   void add_texture(Scene& scene) const {
@@ -321,16 +487,18 @@ class PlyReader {
   }
 
   const Source& source_;
+  files::FileBytes bytes_;
+  std::string start_;  // the header is in it
   PlyHeader header_;
-  PlyBody body_;
-  std::vector<glm::dvec3> places_;  // positions as the file gives them
-  bool single_precision_ = false;   // of these
+  PlyFile file_{source_, bytes_, header_};
+  PlyBlocks blocks_;
+  std::vector<geometry::Box3d> boxes_;  // of blocks of vertices
+  std::vector<glm::dvec3> places_;      // positions as the file gives them, where floats do not do
+  bool single_precision_ = false;       // of these
   Mesh mesh_;
-  std::vector<std::uint32_t> corners_, sizes_;  // of all polygons
-  std::vector<glm::vec2> corner_uvs_;           // of corners_, if any face has them
-  std::vector<double> values_, face_uvs_;       // of a list
+  std::vector<Polygons> polygons_;  // of blocks, in the order of the file
   std::uint64_t left_out_ = 0;
-  bool has_polygons_ = false;
+  bool has_polygons_ = false, has_corner_uvs_ = false;
 };
 
 }  // namespace

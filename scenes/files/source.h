@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "files/error.h"
+#include "files/file_bytes.h"
 #include "files/memory_budget.h"
 #include "files/resolve.h"
 
@@ -26,6 +27,13 @@ struct Source {
   std::vector<std::string>& warnings;
   files::MemoryBudget memory{};
   files::Outside outside = files::Outside::refused;
+  // Whether `content` is all of the file, or nothing, and bytes() reads ranges of it.
+  bool whole = true;
+
+  files::FileBytes bytes() const {
+    return whole ? files::FileBytes(path.string(), content, memory)
+                 : files::FileBytes(path, memory);
+  }
 
   // Every file that the content names, whether it is read or not, from the folder of this one.
   mutable std::vector<std::string> named{};

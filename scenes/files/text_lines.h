@@ -9,6 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "files/decimal.h"
+
 namespace delray::scenes::internal {
 
 // The words of one line, separated by blanks.
@@ -43,15 +45,18 @@ class Words {
 
 class Lines {
  public:
-  explicit Lines(std::string_view text) : rest_(text) {}
+  explicit Lines(std::string_view text) : text_(text) {}
 
   // The next line without its end ("\n", "\r\n" or "\r"); false after the last.
   bool next(std::string_view& line) {
-    if (rest_.empty()) return false;
-    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-    line = rest_.substr(0, end);
-    const bool pair = end + 1 < rest_.size() && rest_[end] == '\r' && rest_[end + 1] == '\n';
-    rest_.remove_prefix(std::min(rest_.size(), end + (pair ? 2 : 1)));
+    if (at_ == text_.size()) return false;
+    // Looked for once, however many "\r" come before.
+    if (line_feed_ < at_ || at_ == 0) line_feed_ = std::min(text_.find('\n', at_), text_.size());
+    const std::string_view rest = text_.substr(at_, line_feed_ - at_);
+    line = rest.substr(0, rest.find('\r'));
+    std::size_t end = at_ + line.size();
+    if (end < line_feed_ && end + 1 == line_feed_ && line_feed_ < text_.size()) ++end;
+    at_ = std::min(text_.size(), end + 1);
     ++number_;
     return true;
   }
@@ -68,7 +73,8 @@ class Lines {
   std::string place() const { return "line " + std::to_string(number_); }
 
  private:
-  std::string_view rest_;
+  std::string_view text_;
+  std::size_t at_ = 0, line_feed_ = 0;  // where the next line and the next "\n" are
   std::uint64_t number_ = 0;
 };
 
@@ -77,6 +83,10 @@ class Lines {
 template <class T>
 bool parse(std::string_view word, T& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
+  if constexpr (std::is_same_v<T, double>) {
+    const char* const last = word.data() + word.size();
+    if (files::read_short_decimal(word.data(), last, value) == last) return !word.empty();
+  }
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || word.empty()) return false;
   if constexpr (std::is_floating_point_v<T>) {

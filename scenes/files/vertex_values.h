@@ -1,10 +1,12 @@
 // Coordinates, directions and colours as files give them, made fit for a mesh.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "parallel/parallel_for.h"
 #include "scenes/files/source.h"
 #include "scenes/files/text_lines.h"
 #include "scenes/scene.h"
@@ -27,16 +29,25 @@ void warn_if_coarse(const Source& source, double reach, double diagonal);
 // Values that are not finite become 0, or alpha 1.
 glm::vec4 linear_colour(const glm::dvec4& srgb);
 
-// Directions of unit length; all or none, as normals that are missing can be computed.
+// Directions of unit length; all or none, as normals that are missing can be computed. Parallel.
 template <class T>
 void normalize_or_clear(std::vector<T>& directions) {
-  for (T& d : directions) {
-    const float length = glm::length(glm::vec3(d));
-    if (!(length > 1e-6F) || !std::isfinite(length)) return directions.clear();
-    // Normals of unit length keep their bits.
-    if (std::abs(length - 1.0F) < 1e-6F) continue;
-    for (int k = 0; k < 3; ++k) d[k] /= length;
-  }
+  constexpr std::size_t kBlock = 1 << 14;  // tens of microseconds
+  std::atomic<bool> usable{true};
+  parallel::parallel_blocks(0, directions.size(), kBlock, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      T& d = directions[i];
+      const float length = glm::length(glm::vec3(d));
+      if (!(length > 1e-6F) || !std::isfinite(length)) {
+        usable.store(false, std::memory_order_relaxed);
+        return;
+      }
+      // Normals of unit length keep their bits.
+      if (std::abs(length - 1.0F) < 1e-6F) continue;
+      for (int k = 0; k < 3; ++k) d[k] /= length;
+    }
+  });
+  if (!usable) directions.clear();
 }
 
 // The material of things that have none: grey, or white under the colours of vertices.

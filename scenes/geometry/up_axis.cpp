@@ -6,42 +6,68 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parallel/parallel_for.h"
+
 namespace delray::scenes::internal {
 namespace {
 
-constexpr double kLowest = 0.01;        // part of the height that counts as the base
-constexpr double kFootprint = 1.0 / 7;  // part of the footprint that a base covers
-constexpr double kFacing = 0.9;         // cosine to the axis of a triangle that faces along it
+constexpr double kLowest = 0.01;                     // part of the height that counts as the base
+constexpr double kFootprint = 1.0 / 7;               // part of the footprint that a base covers
+constexpr std::size_t kTrianglesPerBlock = 1 << 14;  // tens of microseconds
+constexpr double kFacing = 0.9;  // cosine to the axis of a triangle that faces along it
 
-// The part of the box's footprint that lies flat at the low end of `axis`. Triangles that face up
-// count too: not every file winds them the same way.
-double flat_base(const Scene& scene, const geometry::Box3& box, int axis) {
-  const glm::dvec3 size(box.size());
-  const double limit = static_cast<double>(box.low[axis]) + kLowest * size[axis];
-  double area = 0;
-  for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    for (const glm::uvec3& t : mesh.triangles) {
-      glm::dvec3 p[3];
-      for (int k = 0; k < 3; ++k) {
-        p[k] = instance.transform * glm::vec4(mesh.positions[t[k]], 1.0F);
-      }
-      if (std::max({p[0][axis], p[1][axis], p[2][axis]}) > limit) continue;
-      const glm::dvec3 twice = glm::cross(p[1] - p[0], p[2] - p[0]);
-      const double along = std::abs(twice[axis]);
-      if (along >= kFacing * glm::length(twice)) area += 0.5 * along;
-    }
-  }
+// The area of triangles that lie flat at the low end of y and of z.
+struct FlatAreas {
+  double y = 0, z = 0;
+};
+
+// Triangles that face up count too: not every file winds them the same way.
+FlatAreas flat_areas(const Scene& scene, const Instance& instance, double low_y, double low_z) {
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  return parallel::parallel_reduce(
+      0, mesh.triangles.size(), kTrianglesPerBlock, FlatAreas{},
+      [&](std::size_t first, std::size_t last) {
+        FlatAreas areas;
+        for (std::size_t t = first; t < last; ++t) {
+          glm::dvec3 p[3];
+          for (int k = 0; k < 3; ++k) {
+            const glm::vec3& position = mesh.positions[mesh.triangles[t][k]];
+            p[k] = instance.transform * glm::vec4(position, 1.0F);
+          }
+          const bool on_y = std::max({p[0].y, p[1].y, p[2].y}) <= low_y;
+          const bool on_z = std::max({p[0].z, p[1].z, p[2].z}) <= low_z;
+          if (!on_y && !on_z) continue;
+          const glm::dvec3 twice = glm::cross(p[1] - p[0], p[2] - p[0]);
+          const double least = kFacing * glm::length(twice);
+          if (on_y && std::abs(twice.y) >= least) areas.y += 0.5 * std::abs(twice.y);
+          if (on_z && std::abs(twice.z) >= least) areas.z += 0.5 * std::abs(twice.z);
+        }
+        return areas;
+      },
+      [](const FlatAreas& a, const FlatAreas& b) {
+        return FlatAreas{a.y + b.y, a.z + b.z};
+      });
+}
+
+// Whether so much area at the low end of `axis` is a base.
+bool is_base(double area, const glm::dvec3& size, int axis) {
   const double footprint = size[(axis + 1) % 3] * size[(axis + 2) % 3];
-  return footprint > 0 && size[axis] > 0 ? area / footprint : 0;
+  return footprint > 0 && size[axis] > 0 && area / footprint > kFootprint;
 }
 
 }  // namespace
 
 bool guess_z_up(const Scene& scene, bool usual) {
   const geometry::Box3 box = bounds(scene);
-  const bool on_y = flat_base(scene, box, 1) > kFootprint;
-  const bool on_z = flat_base(scene, box, 2) > kFootprint;
+  const glm::dvec3 low(box.low), size(box.size());
+  FlatAreas areas;
+  for (const Instance& instance : scene.instances) {
+    const FlatAreas more =
+        flat_areas(scene, instance, low.y + kLowest * size.y, low.z + kLowest * size.z);
+    areas.y += more.y;
+    areas.z += more.z;
+  }
+  const bool on_y = is_base(areas.y, size, 1), on_z = is_base(areas.z, size, 2);
   return on_y == on_z ? usual : on_z;
 }
 

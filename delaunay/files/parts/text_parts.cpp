@@ -1,10 +1,7 @@
-// Cuts a text into ranges of bytes: a line belongs to the range that it begins in. Whoever reads a
-// range begins one byte before it, to see whether a line begins with it, and reads on to the end of
-// its last line.
+// Parses ranges of lines by the layout that the first megabyte of the text tells.
 #include "delaunay/files/parts/text_parts.h"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
 #include "delaunay/files/text_layout.h"
@@ -14,10 +11,6 @@ namespace delray::delaunay {
 namespace {
 
 constexpr std::uint64_t kTextStart = std::uint64_t{1} << 20;  // tells the layout
-
-std::uint64_t count_line_feeds(std::string_view text) {
-  return static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
-}
 
 class TextParts : public FileParts {
  public:
@@ -77,31 +70,8 @@ std::uint64_t count_rows(const LineRanges& lines) {
 
 }  // namespace
 
-std::uint64_t LineRanges::lines(std::size_t range) const {
-  std::string buffer;
-  const std::uint64_t begin = begin_of(range), end = end_of(range);
-  if (range == 0) return 1 + count_line_feeds(source_.read(begin, end - 1 - begin, buffer));
-  return count_line_feeds(source_.read(begin - 1, end - begin, buffer));
-}
-
-std::string_view LineRanges::read(std::size_t range, std::string& buffer) const {
-  const std::uint64_t begin = begin_of(range) - (range > 0 ? 1 : 0), end = end_of(range);
-  // The last line that begins in the range ends behind it.
-  for (std::uint64_t more = 4096;; more *= 8) {
-    const std::uint64_t read_end = more > source_.size() - end ? source_.size() : end + more;
-    std::string_view text = source_.read(begin, read_end - begin, buffer);
-    const std::size_t in_range = static_cast<std::size_t>(end - begin);
-    const std::size_t line_end = text.find('\n', in_range - 1);
-    if (line_end == text.npos && read_end < source_.size()) continue;
-    text = text.substr(0, line_end == text.npos ? text.npos : line_end + 1);
-    if (range == 0) return text;
-    const std::size_t before = text.find('\n');
-    return before >= in_range - 1 ? std::string_view() : text.substr(before + 1);
-  }
-}
-
 std::size_t LineRanges::first_line(std::size_t range) const {
-  std::uint64_t line = begin_.line;
+  std::uint64_t line = first_line_;
   for (std::size_t i = 0; i < range; ++i) line += lines(i);
   return static_cast<std::size_t>(line);
 }

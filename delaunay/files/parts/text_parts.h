@@ -1,7 +1,6 @@
 // Text of points in parts: ranges of bytes, each with the lines that begin in it.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -9,42 +8,26 @@
 #include "delaunay/files/parts/byte_source.h"
 #include "delaunay/files/parts/file_parts.h"
 #include "delaunay/files/text_rows.h"
+#include "files/line_ranges.h"
 
 namespace delray::delaunay {
 
-// The lines of a text that begin in byte ranges of equal size.
-class LineRanges {
+// The lines of a text that begin in byte ranges of equal size, with their numbers.
+class LineRanges : public files::LineRanges {
  public:
-  static constexpr std::uint64_t kUsual = std::uint64_t{1} << 21;  // some 6 ms of parsing
-
-  // Lines from byte `begin` on, where one begins, which is the line of that number.
-  //
-  // REQUIRES: range_bytes >= 1.
+  // Lines from `begin` on, where one begins, which is the line of that number.
   LineRanges(ByteSource source, TextPlace begin, std::uint64_t range_bytes = kUsual)
-      : source_(std::move(source)), begin_(begin), range_bytes_(range_bytes) {}
+      : files::LineRanges(source, begin.byte, range_bytes),
+        source_(std::move(source)),
+        first_line_(begin.line) {}
 
   const ByteSource& source() const { return source_; }
-  std::size_t ranges() const {
-    return static_cast<std::size_t>((source_.size() - begin_.byte + range_bytes_ - 1) /
-                                    range_bytes_);
-  }
-  std::uint64_t bytes(std::size_t range) const { return end_of(range) - begin_of(range); }
-  // How many lines begin in the range: reads it.
-  std::uint64_t lines(std::size_t range) const;
-  // The lines that begin in the range, whole, in `buffer` or in the source's memory.
-  std::string_view read(std::size_t range, std::string& buffer) const;
   // The number of the first line that begins in the range: reads all before it, for messages.
   std::size_t first_line(std::size_t range) const;
 
  private:
-  std::uint64_t begin_of(std::size_t range) const { return begin_.byte + range * range_bytes_; }
-  std::uint64_t end_of(std::size_t range) const {
-    return std::min(source_.size(), begin_of(range) + range_bytes_);
-  }
-
   ByteSource source_;
-  TextPlace begin_;
-  std::uint64_t range_bytes_;
+  std::size_t first_line_;
 };
 
 // Calls f(Fields&) for each row of a range, in order; of a FileError that it throws, the line
