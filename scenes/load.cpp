@@ -32,8 +32,8 @@ constexpr std::array kReaders = {
                 &internal::read_ply, true},
     SceneReader{Format::stl, "STL", "surface of triangles, text or binary", &internal::read_stl},
     SceneReader{Format::gltf, "glTF", "scene with materials, lights and cameras, as JSON",
-                &internal::load_gltf},
-    SceneReader{Format::glb, "GLB", "glTF as one binary file", &internal::load_gltf},
+                &internal::load_gltf, true},
+    SceneReader{Format::glb, "GLB", "glTF as one binary file", &internal::load_gltf, true},
     SceneReader{Format::off, "OFF", "surface of polygons", &internal::read_off},
 };
 

@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <span>
+
+#include "parallel/grow.h"
+#include "parallel/parallel_for.h"
 
 #include "scenes/gltf/gltf_document.h"
 
@@ -14,6 +18,8 @@ namespace {
 // Elements of an accessor without data are zeros but for those that a sparse part replaces. There
 // may be this many, or one for each byte of the file: more would fill the memory with nothing.
 constexpr std::uint64_t kFewZeros = 1U << 16;
+// Bytes that are read at once: less than a millisecond of work, and they stay in the cache.
+constexpr std::size_t kBlockBytes = std::size_t{1} << 18;
 
 struct Component {
   std::uint64_t code;
@@ -47,7 +53,7 @@ int components_of(const JsonView& accessor) {
 // Elements at regular distances within some bytes.
 struct Elements {
   const char* data = nullptr;
-  std::size_t stride = 0, count = 0;
+  std::size_t stride = 0;
   Component component{};
   bool normalized = false;
 
@@ -72,23 +78,38 @@ struct Elements {
   }
 };
 
-Elements elements_at(const GltfDocument& document, const JsonView& where, std::uint64_t count,
-                     const Component& component, std::size_t element_size) {
+// Where elements are, of which as many as wanted are read at a time.
+struct ElementRange {
+  GltfBytes bytes;
+  std::uint64_t offset = 0, stride = 0, element_size = 0;
+  Component component{};
+  bool normalized = false;
+
+  // Elements [first, last). REQUIRES: first < last.
+  Elements read(std::uint64_t first, std::uint64_t last, std::string& buffer) const {
+    const std::uint64_t size = (last - first - 1) * stride + element_size;
+    return {bytes.read(offset + first * stride, size, buffer).data(), stride, component,
+            normalized};
+  }
+};
+
+ElementRange elements_at(const GltfDocument& document, const JsonView& where, std::uint64_t count,
+                         const Component& component, std::size_t element_size) {
   const JsonView views = document.root()["bufferViews"];
   const std::uint32_t number = where["bufferView"].reference(views.size());
   if (number == kNone) where["bufferView"].fail("is missing");
-  const std::string_view bytes = buffer_view(document, number);
+  const GltfBytes bytes = buffer_view(document, number);
   const std::uint64_t offset = where["byteOffset"].whole(0);
   const std::uint64_t stride = views[number]["byteStride"].whole(element_size);
   if (stride < component.size || stride > 4096) views[number]["byteStride"].fail("is out of range");
-  const bool fits = offset <= bytes.size() &&
-                    (count == 0 || (bytes.size() - offset >= element_size &&
-                                    (bytes.size() - offset - element_size) / stride >= count - 1));
+  const bool fits = offset <= bytes.size &&
+                    (count == 0 || (bytes.size - offset >= element_size &&
+                                    (bytes.size - offset - element_size) / stride >= count - 1));
   if (!fits) {
     where.fail("its " + std::to_string(count) + " elements reach beyond bufferViews[" +
-               std::to_string(number) + "] of " + std::to_string(bytes.size()) + " bytes");
+               std::to_string(number) + "] of " + std::to_string(bytes.size) + " bytes");
   }
-  return {bytes.data() + offset, stride, count, component, false};
+  return {bytes, offset, stride, element_size, component, false};
 }
 
 struct Accessor {
@@ -109,37 +130,83 @@ Accessor accessor_at(const GltfDocument& document, std::size_t number) {
   if (json["bufferView"]) {
     // Before anything is allocated for as many elements.
     elements_at(document, json, accessor.count, accessor.component, accessor.element_size());
-  } else if (accessor.count > std::max<std::uint64_t>(kFewZeros, document.source.content.size())) {
+  } else if (accessor.count > std::max(kFewZeros, document.source.bytes().size())) {
     json.fail("has no data for its " + std::to_string(accessor.count) + " elements");
   }
   return accessor;
 }
 
-// Calls store(element, its place in the source, the source) for the dense part and then for the
-// elements that the sparse part replaces.
+// Calls store(first, last, elements) for blocks of the dense part in parallel, where `elements`
+// begin with the first, and then for each element that the sparse part replaces.
 template <class Store>
-void for_each_element(const GltfDocument& document, const Accessor& accessor, Store&& store) {
-  if (accessor.json["bufferView"]) {
-    Elements dense = elements_at(document, accessor.json, accessor.count, accessor.component,
-                                 accessor.element_size());
+void for_each_block(const GltfDocument& document, const Accessor& accessor, Store&& store) {
+  if (accessor.json["bufferView"] && accessor.count > 0) {
+    ElementRange dense = elements_at(document, accessor.json, accessor.count, accessor.component,
+                                     accessor.element_size());
     dense.normalized = accessor.normalized;
-    for (std::size_t i = 0; i < accessor.count; ++i) store(i, i, dense);
+    const auto block =
+        static_cast<std::size_t>(std::max<std::uint64_t>(kBlockBytes / dense.stride, 1));
+    parallel::parallel_blocks(0, accessor.count, block, [&](std::size_t first, std::size_t last) {
+      thread_local std::string buffer;
+      store(first, last, dense.read(first, last, buffer));
+    });
   }
   const JsonView sparse = accessor.json["sparse"];
   if (!sparse) return;
   const std::uint64_t count = sparse["count"].whole();
   const Component& index_type = component_of(sparse["indices"]["componentType"]);
   if (index_type.is_signed) sparse["indices"].fail("must be unsigned");
-  const Elements indices =
+  const ElementRange index_range =
       elements_at(document, sparse["indices"], count, index_type, index_type.size);
-  Elements values =
+  ElementRange values =
       elements_at(document, sparse["values"], count, accessor.component, accessor.element_size());
   values.normalized = accessor.normalized;
-  for (std::size_t i = 0; i < count; ++i) {
+  if (count == 0) return;
+  std::string index_buffer, value_buffer;
+  const Elements indices = index_range.read(0, count, index_buffer);
+  Elements value = values.read(0, count, value_buffer);
+  for (std::size_t i = 0; i < count; ++i, value.data += value.stride) {
     const std::uint32_t target = indices.whole(i, 0);
     if (target >= accessor.count) sparse["indices"].fail("an index is out of range");
-    store(target, i, values);
+    store(target, target + 1, value);
   }
+}
+
+// Copies elements that are as they are to be. False where they are not.
+template <class T>
+bool copy_as_they_are(const Elements& elements, bool same_type, std::span<T> to) {
+  if (!same_type || elements.stride != sizeof(T)) return false;
+  std::memcpy(to.data(), elements.data, to.size_bytes());
+  return true;
+}
+
+Accessor index_accessor_at(const GltfDocument& document, std::size_t number) {
+  const Accessor accessor = accessor_at(document, number);
+  if (accessor.components != 1 || accessor.component.is_signed) {
+    accessor.json.fail("indices must be unsigned scalars");
+  }
+  document.source.require_memory(accessor.count * sizeof(std::uint32_t), accessor.json.place());
+  return accessor;
+}
+
+// REQUIRES: as many as the accessor has.
+void read_indices(const GltfDocument& document, const Accessor& accessor, std::uint32_t* indices) {
+  for_each_block(document, accessor,
+                 [&](std::size_t first, std::size_t last, const Elements& elements) {
+                   const std::span<std::uint32_t> to(indices + first, last - first);
+                   if (copy_as_they_are(elements, elements.component.size == 4, to)) return;
+                   for (std::size_t i = 0; i < to.size(); ++i) to[i] = elements.whole(i, 0);
+                 });
+}
+
+template <int N>
+std::size_t first_not_finite(std::span<const glm::vec<N, float>> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    float sum = 0;  // not a number if one of them is not finite
+    for (int k = 0; k < N; ++k) sum += values[i][k] * 0.0F;
+    if (sum != 0) return i;
+  }
+  return values.size();
 }
 
 }  // namespace
@@ -162,17 +229,26 @@ std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::
   }
   document.source.require_memory(accessor.count * sizeof(glm::vec<N, float>),
                                  accessor.json.place());
-  std::vector<glm::vec<N, float>> values(accessor.count, glm::vec<N, float>(0));
-  for_each_element(document, accessor,
-                   [&](std::size_t target, std::size_t i, const Elements& elements) {
-                     for (int k = 0; k < N; ++k) values[target][k] = elements.real(i, k);
-                   });
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (int k = 0; k < N; ++k) {
-      if (!std::isfinite(values[i][k])) {
-        accessor.json.fail("element " + std::to_string(i) + " is not finite");
-      }
-    }
+  std::vector<glm::vec<N, float>> values;
+  parallel::grow(values, accessor.count);
+  for_each_block(document, accessor,
+                 [&](std::size_t first, std::size_t last, const Elements& elements) {
+                   const std::span<glm::vec<N, float>> to(values.data() + first, last - first);
+                   if (copy_as_they_are(elements, elements.component.is_real, to)) return;
+                   for (std::size_t i = 0; i < to.size(); ++i) {
+                     for (int k = 0; k < N; ++k) to[i][k] = elements.real(i, k);
+                   }
+                 });
+  const std::size_t wrong = parallel::parallel_reduce(
+      0, values.size(), kBlockBytes / sizeof(values[0]), values.size(),
+      [&](std::size_t first, std::size_t last) {
+        const std::span<const glm::vec<N, float>> block(values.data() + first, last - first);
+        const std::size_t at = first_not_finite(block);
+        return at < block.size() ? first + at : values.size();
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+  if (wrong < values.size()) {
+    accessor.json.fail("element " + std::to_string(wrong) + " is not finite");
   }
   return values;
 }
@@ -182,17 +258,24 @@ template std::vector<glm::vec3> read_vectors<3>(const GltfDocument&, std::size_t
 template std::vector<glm::vec4> read_vectors<4>(const GltfDocument&, std::size_t);
 
 std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_t number) {
-  const Accessor accessor = accessor_at(document, number);
-  if (accessor.components != 1 || accessor.component.is_signed) {
-    accessor.json.fail("indices must be unsigned scalars");
-  }
-  document.source.require_memory(accessor.count * sizeof(std::uint32_t), accessor.json.place());
-  std::vector<std::uint32_t> values(accessor.count, 0);
-  for_each_element(document, accessor,
-                   [&](std::size_t target, std::size_t i, const Elements& elements) {
-                     values[target] = elements.whole(i, 0);
-                   });
+  const Accessor accessor = index_accessor_at(document, number);
+  std::vector<std::uint32_t> values;
+  parallel::grow(values, accessor.count);
+  read_indices(document, accessor, values.data());
   return values;
+}
+
+std::vector<glm::uvec3> read_index_triples(const GltfDocument& document, std::size_t number) {
+  const Accessor accessor = index_accessor_at(document, number);
+  static_assert(sizeof(glm::uvec3) == 3 * sizeof(std::uint32_t));
+  std::vector<glm::uvec3> values;
+  parallel::grow(values, (accessor.count + 2) / 3);
+  if (!values.empty()) read_indices(document, accessor, &values[0].x);
+  return values;
+}
+
+std::uint64_t element_count(const GltfDocument& document, std::size_t number) {
+  return document.root()["accessors"][number]["count"].whole();
 }
 
 }  // namespace delray::scenes::internal

@@ -1,12 +1,14 @@
 // Splits the binary container into chunks, parses the JSON within the memory budget, refuses
-// unknown required extensions, and reads buffers from the container, from files or from base64.
+// unknown required extensions, and finds buffers in the container, in files or as base64. Of files
+// no more is read here than the JSON.
 #include "scenes/gltf/gltf_document.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
-#include "files/read_file.h"
+#include "files/error.h"
 #include "scenes/gltf/gltf_material.h"
 
 namespace delray::scenes::internal {
@@ -23,44 +25,47 @@ bool is_supported(std::string_view extension) {
          std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
 }
 
-std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
+std::uint32_t word_at(const files::FileBytes& bytes, std::uint64_t offset) {
   std::uint32_t value = 0;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  std::string buffer;
+  std::memcpy(&value, bytes.read(offset, sizeof value, buffer).data(), sizeof value);
   return value;
 }
 
 struct Chunks {
-  std::string_view json, binary;
+  GltfBytes json, binary;
   bool has_binary = false;
 };
 
 Chunks split_chunks(const Source& source) {
-  const std::string_view content = source.content;
-  if (!content.starts_with(kMagic)) return {content, {}, false};
-  if (content.size() < 20) source.fail("byte 0", "the file ends within its header");
-  if (word_at(content, 4) != 2) {
-    source.fail("byte 4", "this is version " + std::to_string(word_at(content, 4)) +
+  const files::FileBytes bytes = source.bytes();
+  std::string buffer;
+  const std::uint64_t start = std::min<std::uint64_t>(bytes.size(), kMagic.size());
+  Chunks chunks{{bytes, 0, bytes.size()}, {bytes, 0, 0}, false};
+  if (bytes.read(0, start, buffer) != kMagic) return chunks;
+  if (bytes.size() < 20) source.fail("byte 0", "the file ends within its header");
+  if (word_at(bytes, 4) != 2) {
+    source.fail("byte 4", "this is version " + std::to_string(word_at(bytes, 4)) +
                               " of glTF; only 2 can be read");
   }
-  const std::uint32_t length = word_at(content, 8);
-  if (length > content.size()) {
+  const std::uint32_t length = word_at(bytes, 8);
+  if (length > bytes.size()) {
     source.fail("byte 8", "the header says " + std::to_string(length) + " bytes; the file has " +
-                              std::to_string(content.size()));
+                              std::to_string(bytes.size()));
   }
-  Chunks chunks;
-  for (std::size_t at = 12; at + 8 <= length;) {
-    const std::size_t size = word_at(content, at);
-    const std::uint32_t type = word_at(content, at + 4);
+  chunks.json.size = 0;
+  for (std::uint64_t at = 12; at + 8 <= length;) {
+    const std::uint64_t size = word_at(bytes, at);
+    const std::uint32_t type = word_at(bytes, at + 4);
     if (size > length - at - 8) source.fail("byte " + std::to_string(at), "a chunk is cut short");
-    const std::string_view data = content.substr(at + 8, size);
-    if (type == kJsonChunk && chunks.json.empty()) chunks.json = data;
+    if (type == kJsonChunk && chunks.json.size == 0) chunks.json = {bytes, at + 8, size};
     if (type == kBinaryChunk && !chunks.has_binary) {
-      chunks.binary = data;
+      chunks.binary = {bytes, at + 8, size};
       chunks.has_binary = true;
     }
     at += 8 + size;
   }
-  if (chunks.json.empty()) source.fail("byte 12", "the file has no JSON chunk");
+  if (chunks.json.size == 0) source.fail("byte 12", "the file has no JSON chunk");
   return chunks;
 }
 
@@ -111,36 +116,40 @@ void note_images(const GltfDocument& document) {
   }
 }
 
-void read_buffers(GltfDocument& document, const Chunks& chunks) {
+GltfBytes find_buffer(const GltfDocument& document, const JsonView& buffer, std::size_t number,
+                      const Chunks& chunks) {
+  const Source& source = document.source;
+  if (!buffer["uri"]) {
+    if (number > 0 || !chunks.has_binary) buffer.fail("has no data");
+    return chunks.binary;
+  }
+  const std::string uri = buffer["uri"].text();
+  std::string own;
+  if (decode_data_uri(uri, own)) {
+    const files::FileBytes bytes(source.path.string(), std::move(own), source.memory);
+    return {bytes, 0, bytes.size()};
+  }
+  if (uri.starts_with("data:")) buffer["uri"].fail("is a malformed data URI");
+  try {
+    const files::FileBytes bytes(source.resolve(decode_percent(uri)), source.memory);
+    return {bytes, 0, bytes.size()};
+  } catch (const files::FileError& e) {
+    if (e.cause() == files::Cause::memory) throw;
+    buffer["uri"].fail(e.what());
+  }
+}
+
+void find_buffers(GltfDocument& document, const Chunks& chunks) {
   const JsonView buffers = document.root()["buffers"];
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const JsonView buffer = buffers[i];
-    std::string_view bytes;
-    if (buffer["uri"]) {
-      std::string& own = document.own_buffers.emplace_back();
-      const std::string uri = buffer["uri"].text();
-      if (!decode_data_uri(uri, own)) {
-        if (uri.starts_with("data:")) buffer["uri"].fail("is a malformed data URI");
-        try {
-          own = files::read_file(document.source.resolve(decode_percent(uri)),
-                                 document.source.memory);
-        } catch (const files::FileError& e) {
-          if (e.cause() == files::Cause::memory) throw;
-          buffer["uri"].fail(e.what());
-        }
-      }
-      bytes = own;
-    } else if (i == 0 && chunks.has_binary) {
-      bytes = chunks.binary;
-    } else {
-      buffer.fail("has no data");
-    }
+    const GltfBytes found = find_buffer(document, buffer, i, chunks);
     const std::uint64_t length = buffer["byteLength"].whole();
-    if (length > bytes.size()) {
+    if (length > found.size) {
       buffer["byteLength"].fail("says " + std::to_string(length) + " bytes; there are " +
-                                std::to_string(bytes.size()));
+                                std::to_string(found.size));
     }
-    document.buffers.push_back(bytes.substr(0, length));
+    document.buffers.push_back({found.bytes, found.begin, length});
   }
 }
 
@@ -192,24 +201,26 @@ std::string decode_percent(std::string_view uri) {
   return path;
 }
 
-std::string_view buffer_view(const GltfDocument& document, std::size_t number) {
+GltfBytes buffer_view(const GltfDocument& document, std::size_t number) {
   const JsonView view = document.root()["bufferViews"][number];
   const std::uint32_t buffer = view["buffer"].reference(document.buffers.size());
   if (buffer == kNone) view["buffer"].fail("is missing");
   const std::uint64_t offset = view["byteOffset"].whole(0), length = view["byteLength"].whole();
-  const std::string_view bytes = document.buffers[buffer];
-  if (offset > bytes.size() || length > bytes.size() - offset) {
-    view.fail("reaches beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
+  const GltfBytes& all = document.buffers[buffer];
+  if (offset > all.size || length > all.size - offset) {
+    view.fail("reaches beyond its buffer of " + std::to_string(all.size) + " bytes");
   }
-  return bytes.substr(offset, length);
+  return {all.bytes, all.begin + offset, length};
 }
 
 GltfDocument read_document(const Source& source) {
   const Chunks chunks = split_chunks(source);
-  GltfDocument document{source, parse_json(source, chunks.json), {}, {}};
+  std::string buffer;
+  GltfDocument document{
+      source, parse_json(source, chunks.json.read(0, chunks.json.size, buffer)), {}};
   check_version(document);
   note_images(document);
-  read_buffers(document, chunks);
+  find_buffers(document, chunks);
   return document;
 }
 

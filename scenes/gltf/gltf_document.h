@@ -1,8 +1,9 @@
 // The parts of a glTF file before they mean anything: JSON, buffers, accessors.
 #pragma once
 
-#include <deque>
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,21 +11,31 @@
 
 namespace delray::scenes::internal {
 
+// Bytes of a buffer, in memory or in a file.
+struct GltfBytes {
+  files::FileBytes bytes;
+  std::uint64_t begin = 0, size = 0;
+
+  // Some of them, in `buffer` where they come from a file. REQUIRES: first + count <= size.
+  std::string_view read(std::uint64_t first, std::uint64_t count, std::string& buffer) const {
+    return bytes.read(begin + first, count, buffer);
+  }
+};
+
 struct GltfDocument {
   const Source& source;
   Json json;
-  std::deque<std::string> own_buffers;    // those that are not in the file itself
-  std::vector<std::string_view> buffers;  // as many bytes as the document says
+  std::vector<GltfBytes> buffers;  // as many bytes as the document says
 
   JsonView root() const { return {source, &json, ""}; }
 };
 
-// Takes the container apart, parses the JSON, reads the buffers. Fails on a required extension that
+// Takes the container apart, parses the JSON, finds the buffers. Fails on a required extension that
 // is not known.
 GltfDocument read_document(const Source& source);
 
 // The bytes of bufferViews[number].
-std::string_view buffer_view(const GltfDocument& document, std::size_t number);
+GltfBytes buffer_view(const GltfDocument& document, std::size_t number);
 
 // Decodes "data:...;base64," URIs and percent signs; false if `uri` is no data URI, resp.
 // left as it is where it is malformed.
@@ -39,8 +50,11 @@ std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::
 // Whether accessors[number] has no data: all of its elements are zero.
 bool is_all_zero(const GltfDocument& document, std::size_t number);
 
-// Elements of an accessor of unsigned integers, and the number of components of any.
+// Elements of an accessor of unsigned integers; as triples, of which the last may be cut off.
 std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_t number);
+std::vector<glm::uvec3> read_index_triples(const GltfDocument& document, std::size_t number);
+// The number of elements of an accessor, and of components of each.
+std::uint64_t element_count(const GltfDocument& document, std::size_t number);
 int component_count(const GltfDocument& document, std::size_t number);
 
 }  // namespace delray::scenes::internal

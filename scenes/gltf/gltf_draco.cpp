@@ -120,8 +120,10 @@ std::optional<DracoPrimitive> DracoPrimitive::read(const GltfDocument& document,
   const std::uint32_t view =
       extension["bufferView"].reference(document.root()["bufferViews"].size());
   if (view == kNone) extension["bufferView"].fail("is missing");
+  const GltfBytes bytes = buffer_view(document, view);
+  std::string buffer;
   std::unique_ptr<draco::Mesh> mesh =
-      decode(document.source, buffer_view(document, view), extension);
+      decode(document.source, bytes.read(0, bytes.size, buffer), extension);
   check_indices(*mesh, extension);
   return DracoPrimitive(std::move(mesh), extension);
 }

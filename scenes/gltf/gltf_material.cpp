@@ -28,7 +28,9 @@ std::uint32_t read_image(const GltfDocument& document, std::uint32_t number, con
   const JsonView image = root["images"][number];
   if (image["bufferView"]) {
     const std::uint32_t view = image["bufferView"].reference(root["bufferViews"].size());
-    const std::string_view bytes = buffer_view(document, view);
+    const GltfBytes range = buffer_view(document, view);
+    std::string buffer;
+    const std::string_view bytes = range.read(0, range.size, buffer);
     return textures.from_memory(image.place(), std::as_bytes(std::span(bytes)), use);
   }
   const std::string uri = image["uri"].text();

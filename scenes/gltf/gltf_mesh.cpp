@@ -4,10 +4,12 @@
 #include "scenes/gltf/gltf_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
+#include "parallel/parallel_for.h"
 #include "scenes/files/vertex_values.h"
 #include "scenes/gltf/gltf_draco.h"
 
@@ -15,6 +17,21 @@ namespace delray::scenes::internal {
 namespace {
 
 constexpr std::uint64_t kTriangles = 4, kStrip = 5, kFan = 6;
+constexpr std::size_t kBlock = 1 << 15;  // vertices or triangles: tens of microseconds
+
+// The first i below `count` that is_wrong(i), or `count`.
+template <class IsWrong>
+std::size_t first_that(std::size_t count, IsWrong&& is_wrong) {
+  return parallel::parallel_reduce(
+      0, count, kBlock, count,
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+          if (is_wrong(i)) return i;
+        }
+        return count;
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+}
 
 std::vector<glm::uvec3> triangles_of(std::span<const std::uint32_t> v, std::uint64_t mode) {
   std::vector<glm::uvec3> triangles;
@@ -41,7 +58,19 @@ void keep(std::vector<T>& values, std::span<const std::uint32_t> kept) {
   values.resize(kept.size());
 }
 
+// Whether each vertex is a corner.
+bool all_are_used(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  parallel::parallel_for(0, mesh.triangles.size(), kBlock, [&](std::size_t t) {
+    for (int k = 0; k < 3; ++k) {
+      std::atomic_ref<std::uint8_t>(used[mesh.triangles[t][k]]).store(1, std::memory_order_relaxed);
+    }
+  });
+  return std::ranges::find(used, 0) == used.end();
+}
+
 void drop_unused_vertices(Mesh& mesh) {
+  if (all_are_used(mesh)) return;
   std::vector<std::uint32_t> number(mesh.positions.size(), kNone), kept;
   for (const glm::uvec3& t : mesh.triangles) number[t.x] = number[t.y] = number[t.z] = 0;
   for (std::uint32_t i = 0; i < number.size(); ++i) {
@@ -49,7 +78,6 @@ void drop_unused_vertices(Mesh& mesh) {
     number[i] = static_cast<std::uint32_t>(kept.size());
     kept.push_back(i);
   }
-  if (kept.size() == number.size()) return;
   keep(mesh.positions, kept);
   keep(mesh.normals, kept);
   keep(mesh.uvs, kept);
@@ -109,10 +137,11 @@ class Attributes {
 std::vector<glm::vec3> read_positions(const JsonView& primitive, Attributes& attributes) {
   std::vector<glm::vec3> positions = attributes.read<3>("POSITION");
   const auto limit = glm::vec3(static_cast<float>(kLargestCoordinate));
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (glm::any(glm::greaterThan(glm::abs(positions[i]), limit))) {
-      primitive.fail("a coordinate of vertex " + std::to_string(i) + " is larger than 1e18");
-    }
+  const std::size_t wrong = first_that(positions.size(), [&](std::size_t i) {
+    return glm::any(glm::greaterThan(glm::abs(positions[i]), limit));
+  });
+  if (wrong < positions.size()) {
+    primitive.fail("a coordinate of vertex " + std::to_string(wrong) + " is larger than 1e18");
   }
   return positions;
 }
@@ -124,7 +153,9 @@ void read_colours(Attributes& attributes, Mesh& mesh) {
   } else {
     mesh.colours = attributes.read<4>("COLOR_0");
   }
-  for (glm::vec4& c : mesh.colours) c = glm::max(c, glm::vec4(0));
+  parallel::parallel_for(0, mesh.colours.size(), kBlock, [&](std::size_t i) {
+    mesh.colours[i] = glm::max(mesh.colours[i], glm::vec4(0));
+  });
 }
 
 std::string attribute_of(const UvUse& use) { return "TEXCOORD_" + std::to_string(use.set); }
@@ -178,6 +209,8 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
   }
   mesh.positions = read_positions(primitive, attributes);
 
+  // Triples of indices are the triangles, without a copy.
+  const bool direct = !compressed && index_accessor != kNone && mode == kTriangles;
   std::vector<std::uint32_t> indices;
   if (compressed) {
     indices = *std::move(compressed);
@@ -187,19 +220,29 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
                                    primitive.place());
     indices.resize(mesh.positions.size());
     std::iota(indices.begin(), indices.end(), 0U);
-  } else {
+  } else if (!direct) {
     indices = read_indices(document, index_accessor);
   }
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    if (indices[i] >= mesh.positions.size()) {
-      primitive["indices"].fail("index " + std::to_string(i) + " is " + std::to_string(indices[i]) +
-                                "; there are " + std::to_string(mesh.positions.size()) +
-                                " vertices");
-    }
+  const auto check = [&](std::span<const std::uint32_t> all) {
+    const std::size_t vertices = mesh.positions.size();
+    const std::size_t wrong =
+        first_that(all.size(), [&](std::size_t i) { return all[i] >= vertices; });
+    if (wrong == all.size()) return;
+    primitive["indices"].fail("index " + std::to_string(wrong) + " is " +
+                              std::to_string(all[wrong]) + "; there are " +
+                              std::to_string(vertices) + " vertices");
+  };
+  if (direct) {
+    mesh.triangles = read_index_triples(document, index_accessor);
+    const std::uint64_t count = element_count(document, index_accessor);
+    if (count > 0) check({&mesh.triangles[0].x, count});
+    mesh.triangles.resize(count / 3);
+  } else {
+    check(indices);
+    const std::size_t triangles = mode == kTriangles ? indices.size() / 3 : indices.size();
+    document.source.require_memory(triangles * sizeof(glm::uvec3), primitive.place());
+    mesh.triangles = triangles_of(indices, mode);
   }
-  const std::size_t triangles = mode == kTriangles ? indices.size() / 3 : indices.size();
-  document.source.require_memory(triangles * sizeof(glm::uvec3), primitive.place());
-  mesh.triangles = triangles_of(indices, mode);
 
   const std::uint32_t material = primitive["material"].reference(materials.size());
   mesh.material = material;
