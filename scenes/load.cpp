@@ -26,7 +26,7 @@ constexpr std::uint64_t kOrderingBytes = 48;          // that ordering takes for
 
 constexpr std::array kReaders = {
     SceneReader{Format::obj, "OBJ", "Wavefront model, with its materials (MTL) and textures",
-                &internal::read_obj},
+                &internal::read_obj, true},
     SceneReader{Format::ply, "PLY",
                 "surface of triangles, polygons or strips, with colours and normals",
                 &internal::read_ply, true},
@@ -43,16 +43,6 @@ std::string no_scene() {
     names += (names.empty() ? "" : ", ") + std::string(reader.name);
   }
   return "this is not a scene that can be read; formats: " + names;
-}
-
-// A backslash at the end of a line continues it; blanks instead leave one long line.
-std::string join_continued_lines(std::string text) {
-  for (std::size_t i = text.find('\\'); i != std::string::npos; i = text.find('\\', i + 1)) {
-    std::size_t end = i + 1;
-    while (end < text.size() && text[end] == '\r') ++end;
-    if (end < text.size() && text[end] == '\n') std::fill(&text[i], &text[end] + 1, ' ');
-  }
-  return text;
 }
 
 const SceneReader* reader_of(Format format) {
@@ -95,7 +85,6 @@ Scene internal::load_content(const std::filesystem::path& path, std::string cont
   if (content.empty()) Source{path, content, warnings}.fail("", "the file is empty");
   const std::string_view start = std::string_view(content).substr(0, kStart);
   const Format format = files::identify(start, content.size(), path).format;
-  if (format == Format::obj) content = join_continued_lines(std::move(content));
   const Source source{path, content, warnings, options.memory, options.outside};
   return read(format, std::string_view(content).substr(0, kStart), source, options.progress);
 }

@@ -45,7 +45,8 @@ class Words {
 
 class Lines {
  public:
-  explicit Lines(std::string_view text) : text_(text) {}
+  // `before`: the number of lines before the text, where it is a part of one.
+  explicit Lines(std::string_view text, std::uint64_t before = 0) : text_(text), number_(before) {}
 
   // The next line without its end ("\n", "\r\n" or "\r"); false after the last.
   bool next(std::string_view& line) {

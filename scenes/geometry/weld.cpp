@@ -1,13 +1,21 @@
-// Finds equal vertices by a hash over the bits of all attributes, in a table with open addressing.
+// Finds equal vertices by a hash over the bits of all attributes, in a table with open addressing
+// that threads fill together.
 // Degenerate: 0 and -0 differ, and equal NaN are equal, as bits are what is compared.
 #include "scenes/geometry/weld.h"
 
+#include <atomic>
 #include <bit>
+#include <functional>
+#include <numeric>
 
+#include "parallel/grow.h"
+#include "parallel/parallel_for.h"
 #include "scenes/geometry/noise.h"
 
 namespace delray::scenes::internal {
 namespace {
+
+constexpr std::size_t kWeldBlock = 1 << 12;  // tens of microseconds
 
 template <class T>
 std::uint64_t hash_value(std::uint64_t hash, const std::vector<T>& values, std::size_t i) {
@@ -35,6 +43,61 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values.resize(kept.size());
 }
 
+// The least of all equal vertices, in a table that threads fill together: a slot belongs to the
+// first that comes, and holds the least of its equals in the end, in whatever order they came.
+template <class Hash, class Equal>
+class FirstOfEqual {
+ public:
+  FirstOfEqual(std::size_t n, const Hash& hash, const Equal& equal)
+      : n_(n), hash_(hash), equal_(equal) {
+    parallel::grow(slots_, n + n / 2 + 1);
+  }
+
+  void insert_all() {
+    distinct_ = parallel::parallel_reduce(
+        0, n_, kWeldBlock, std::size_t{0},
+        [&](std::size_t first, std::size_t last) {
+          std::size_t distinct = 0;
+          for (std::size_t i = first; i < last; ++i) {
+            distinct += insert(static_cast<std::uint32_t>(i)) ? 1 : 0;
+          }
+          return distinct;
+        },
+        std::plus<>());
+  }
+  std::size_t distinct() const { return distinct_; }
+  std::uint32_t find(std::uint32_t i) const {
+    std::size_t slot = slot_of(i);
+    while (!equal_(slots_[slot] - 1, i)) slot = next(slot);
+    return slots_[slot] - 1;
+  }
+
+ private:
+  // Slots hold a vertex plus one; 0: none.
+  bool insert(std::uint32_t i) {
+    for (std::size_t slot = slot_of(i);; slot = next(slot)) {
+      std::atomic_ref<std::uint32_t> at(slots_[slot]);
+      std::uint32_t held = at.load(std::memory_order_relaxed);
+      if (held == 0 && at.compare_exchange_strong(held, i + 1, std::memory_order_relaxed)) {
+        return true;
+      }
+      if (!equal_(held - 1, i)) continue;
+      while (i + 1 < held && !at.compare_exchange_weak(held, i + 1, std::memory_order_relaxed)) {
+      }
+      return false;
+    }
+  }
+  std::size_t slot_of(std::uint32_t i) const {
+    return static_cast<std::size_t>((hash_(i) >> 32) * slots_.size() >> 32);
+  }
+  std::size_t next(std::size_t slot) const { return slot + 1 < slots_.size() ? slot + 1 : 0; }
+
+  std::size_t n_, distinct_ = 0;
+  const Hash& hash_;
+  const Equal& equal_;
+  std::vector<std::uint32_t> slots_;
+};
+
 }  // namespace
 
 std::vector<std::uint32_t> weld(Mesh& mesh) {
@@ -51,17 +114,30 @@ std::vector<std::uint32_t> weld(Mesh& mesh) {
     return same(mesh.positions, i, j) && same(mesh.normals, i, j) && same(mesh.uvs, i, j) &&
            same(mesh.uvs2, i, j) && same(mesh.tangents, i, j) && same(mesh.colours, i, j);
   };
-  std::vector<std::uint32_t> table(std::bit_ceil(2 * n + 1), kNone);  // places in `kept`
-  const std::size_t mask = table.size() - 1;
-  std::vector<std::uint32_t> kept, new_index(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t slot = hash(i) & mask;
-    while (table[slot] != kNone && !equal(kept[table[slot]], i)) slot = (slot + 1) & mask;
-    if (table[slot] == kNone) {
-      table[slot] = static_cast<std::uint32_t>(kept.size());
-      kept.push_back(static_cast<std::uint32_t>(i));
+  std::vector<std::uint32_t> new_index;
+  {
+    FirstOfEqual first(n, hash, equal);
+    first.insert_all();
+    if (first.distinct() < n) {
+      parallel::grow(new_index, n);
+      parallel::parallel_for(0, n, kWeldBlock, [&](std::size_t i) {
+        new_index[i] = first.find(static_cast<std::uint32_t>(i));
+      });
     }
-    new_index[i] = table[slot];
+  }
+  if (new_index.empty()) {  // all differ
+    new_index.resize(n);
+    std::iota(new_index.begin(), new_index.end(), 0U);
+    return new_index;
+  }
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (new_index[i] == i) {
+      new_index[i] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(i);
+    } else {
+      new_index[i] = new_index[new_index[i]];
+    }
   }
   keep(mesh.positions, kept);
   keep(mesh.normals, kept);
@@ -69,7 +145,10 @@ std::vector<std::uint32_t> weld(Mesh& mesh) {
   keep(mesh.uvs2, kept);
   keep(mesh.tangents, kept);
   keep(mesh.colours, kept);
-  for (glm::uvec3& t : mesh.triangles) t = {new_index[t.x], new_index[t.y], new_index[t.z]};
+  parallel::parallel_for(0, mesh.triangles.size(), kWeldBlock, [&](std::size_t i) {
+    glm::uvec3& t = mesh.triangles[i];
+    t = {new_index[t.x], new_index[t.y], new_index[t.z]};
+  });
   return new_index;
 }
 
