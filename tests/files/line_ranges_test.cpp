@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <string>
 
@@ -32,7 +33,7 @@ void expect_cut_well(const FileBytes& bytes, const std::string& text, std::uint6
     lines += ranges.lines(i);
     if (i + 1 == ranges.ranges() || all.empty() || begin + all.size() == text.size()) continue;
     ASSERT_EQ(all.back(), '\n');
-    if (continued) ASSERT_FALSE(all.ends_with("\\\n"));
+    ASSERT_FALSE(continued != '\0' && all.ends_with("\\\n"));
   }
   EXPECT_EQ(all, text.substr(begin));
   const auto ends = static_cast<std::uint64_t>(std::count(all.begin(), all.end(), '\n'));
