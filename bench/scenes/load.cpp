@@ -216,6 +216,7 @@ void compare(const std::vector<std::string>& files, const std::string& self,
                         1.3);
     if (!other.empty()) std::printf(" %12.2f %6s", bench::median(their_peak), same ? "yes" : "NO");
     std::printf("\n");
+    std::fflush(stdout);
   }
 }
 
