@@ -200,6 +200,7 @@ PartCounts count_parts(comm::Communicator& communicator, const PointParts& parts
   comm::all_reduce(communicator, std::span<double>(ends),
                    [](double a, double b) { return std::min(a, b); });
   counts.box = {{ends[0], ends[1], ends[2]}, {-ends[3], -ends[4], -ends[5]}};
+  if (dim == 2 && !counts.box.empty()) counts.box.low.z = counts.box.high.z = 0;
   return counts;
 }
 

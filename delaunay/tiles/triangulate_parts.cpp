@@ -188,7 +188,7 @@ class PartsRun {
     comm::all_or_none(communicator_, comm::Phase::other, [&] {
       if (dim_ == 3 && !has_z_ && points_ > 0) throw std::invalid_argument("points have no z");
       if (options_.on_counted && points_ > 0) {
-        options_.on_counted({points_, has_z_, counts_->box});
+        options_.on_counted({points_, has_z_, counts_->box, attributes_, rows_});
       }
     });
     plan_ = comm::all_or_none(communicator_, comm::Phase::other,
