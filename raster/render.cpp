@@ -128,8 +128,10 @@ RenderOptions options_of_window(const RenderOptions& options) {
 Screen screen_of(const scenes::Camera& camera, const RenderOptions& options) {
   const int n = options.supersampling;
   const geometry::Rect all{0, 0, options.width, options.height};
-  return make_screen(scenes::make_view(camera, options.width * n, options.height * n),
-                     samples_of(options.window.empty() ? all : options.window, n));
+  Screen screen = make_screen(scenes::make_view(camera, options.width * n, options.height * n),
+                              samples_of(options.window.empty() ? all : options.window, n));
+  screen.samples = static_cast<float>(n);
+  return screen;
 }
 
 // Makes distances along the view axis of depths (-near / distance); empty pixels stay.

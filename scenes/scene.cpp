@@ -48,8 +48,15 @@ bool Material::textured() const {
 }
 
 std::uint64_t triangle_count(const Scene& scene) {
+  return first_primitives(scene).back() - splat_count(scene);
+}
+
+std::uint64_t splat_count(const Scene& scene) {
   std::uint64_t count = 0;
-  for (const Instance& i : scene.instances) count += scene.meshes[i.mesh].triangles.size();
+  for (const Instance& i : scene.instances) {
+    const Mesh& mesh = scene.meshes[i.mesh];
+    count += mesh.has_triangles() ? 0 : mesh.triangles.size();
+  }
   return count;
 }
 

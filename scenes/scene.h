@@ -16,9 +16,30 @@ namespace delray::scenes {
 
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
-// Indexed triangles with one material. Attributes are empty or have one value per vertex.
+// How the primitives of a mesh look: triangles, or splats of one radius around points or segments.
+struct Shape {
+  enum class Kind : std::uint8_t {
+    triangle,
+    point,   // a round spot of one depth on the screen; needs a rasterizer
+    disc,    // at right angles to the normal, or without one to the line of sight
+    sphere,  //
+    line     // a segment with round ends
+  } kind = Kind::triangle;
+  // In pixels of the picture rather than in units of the mesh, which an instance scales by the
+  // longest axis of its transform.
+  bool in_pixels = true;
+  float radius = 0.5F;  // finite, >= 0
+
+  bool operator==(const Shape&) const = default;
+};
+
+// Indexed triangles with one material, or points or segments, which are triangles without area: of
+// a point all three corners are one vertex, of a segment the second and the third. So everything
+// that shares out, counts and sends triangles knows them too. Attributes are empty or have one value
+// per vertex. Points and segments are opaque; their uvs and tangents are not looked at.
 struct Mesh {
   std::string name;
+  Shape shape;
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;   // unit length
   std::vector<glm::vec2> uvs;       // v grows downwards, as rows of the texture do
@@ -29,6 +50,7 @@ struct Mesh {
       triangles;  // indices into the attributes; counter-clockwise seen from outside
   std::uint32_t material = 0;
 
+  bool has_triangles() const { return shape.kind == Shape::Kind::triangle; }
   // The coordinates for textures of a set.
   const std::vector<glm::vec2>& uvs_of(int set) const { return set == 0 ? uvs : uvs2; }
 };
@@ -136,14 +158,15 @@ struct Scene {
   geometry::Box3 framed;  // what cameras around the scene show; empty: all of it
 };
 
-// Triangles and vertices of all instances. O(instances).
+// Triangles, points and segments, and vertices of all instances. O(instances).
 std::uint64_t triangle_count(const Scene& scene);
+std::uint64_t splat_count(const Scene& scene);
 std::uint64_t vertex_count(const Scene& scene);
 
 // The box of all instances, transformed vertex by vertex; empty for an empty scene. Parallel.
 geometry::Box3 bounds(const Scene& scene);
 
-// Primitive numbers: triangle t of instance i is number first_primitive[i] + t. One more element
+// Primitive numbers: triangle (or point or segment) t of instance i is number first_primitive[i] + t. One more element
 // than instances: the last is the count.
 std::vector<std::uint64_t> first_primitives(const Scene& scene);
 

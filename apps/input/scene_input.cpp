@@ -11,10 +11,10 @@
 #include <filesystem>
 
 #include "apps/input/colour_by.h"
-#include "apps/input/dots.h"
 #include "apps/input/geographic.h"
 #include "apps/input/point_shape.h"
 #include "apps/input/relief.h"
+#include "apps/input/show_as.h"
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
@@ -93,45 +93,41 @@ std::string no_surface(const delaunay::PointCloud& points) {
   const bool level = std::ranges::all_of(points.positions, same_height);
   return std::string(level ? "all points are equal or on one line"
                            : "all points lie above one point or line of x and y") +
-         ": there is no surface of heights to show; --draw points shows the points";
+         ": there is no surface of heights to show; --show-as points shows the points";
 }
+
+bool has_size(const SceneInput& input) { return input.point_size > 0 || input.radius >= 0; }
 
 [[noreturn]] void fail(const SceneInput& input, const std::string& what) {
   throw files::FileError(files::Cause::input, input.file.path, "", what);
 }
 
-scenes::Scene dots(const SceneInput& input, const delaunay::PointCloud& points) {
+scenes::Scene as_points(const SceneInput& input, const delaunay::PointCloud& points,
+                        const ShowAs& how) {
+  input.file.limits.budget().require(points.size() * kBytesPerShownPoint, input.file.path);
   scenes::Scene scene = coloured(input, points, {});
-  geometry::Box3 box = scene.framed;
-  scenes::Mesh& mesh = scene.meshes[0];
-  if (box.empty()) {
-    for (const glm::vec3& p : mesh.positions) box.include(p);
-  }
-  input.file.limits.budget().require(std::min(points.size(), kMostDots) * kBytesPerDot,
-                                     input.file.path);
-  const std::size_t step = draw_as_dots(mesh, dot_diameter(points.size(), box.size()));
-  if (step > 1) {
-    spdlog::warn("{}: {} points are more than {} dots: drew one of {}", input.file.path,
-                 points.size(), kMostDots, step);
-  }
+  show_points(how, {static_cast<float>(input.point_size), static_cast<float>(input.radius)}, scene);
   return scene;
 }
 
-// The shape that --draw names, or the one that suits the points.
-bool drawn_as_dots(const SceneInput& input, const delaunay::PointCloud& points, bool picture) {
-  if (input.draw == "surface") return false;
+// The row that --show-as names, or the one that suits the points.
+const ShowAs& shown_as(const SceneInput& input, const delaunay::PointCloud& points, bool picture) {
   const bool for_surfaces = !input.file.duplicates.empty() || input.colour_by == "simplex";
-  if (input.draw == "points") {
-    if (for_surfaces)
-      throw UsageError("--duplicates and --color-by simplex are for surfaces, not --draw points");
-    return true;
+  if (!input.show_as.empty()) {
+    const ShowAs& how = find_entry(show_as(), input.show_as, "--show-as");
+    if (how.is_points() && for_surfaces) {
+      throw UsageError(fmt::format(
+          "--duplicates and --color-by simplex are for surfaces, not --show-as {}", how.name));
+    }
+    return how;
   }
-  if (for_surfaces || picture || !are_in_space(points)) return false;
+  if (has_size(input)) return find_entry(show_as(), "points", "--show-as");
+  if (for_surfaces || picture || !are_in_space(points)) return show_as().front();
   spdlog::info(
-      "{}: the points lie in space, not over a plane: drawn as points (--draw surface "
-      "makes a surface of them)",
+      "{}: the points lie in space, not over a plane: shown as spheres (--show-as relief makes a "
+      "surface of them)",
       input.file.path);
-  return true;
+  return find_entry(show_as(), "spheres", "--show-as");
 }
 
 scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress) {
@@ -139,7 +135,8 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   const bool picture = is_picture(input.file);
   delaunay::PointCloud points = read_cloud(input.file);
   to_metres(points, input.file.path);
-  if (drawn_as_dots(input, points, picture)) return dots(input, points);
+  if (const ShowAs& how = shown_as(input, points, picture); how.is_points())
+    return as_points(input, points, how);
   merge_places(input.file, points);
   delaunay::Options how;
   how.threads = parallel::arena_threads();
@@ -259,11 +256,34 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       ->group(group::kInput)
       ->check(positive_number());
   command
-      .add_option("--draw", input.draw,
-                  "Draw points as a surface of heights over x and y, or as single points (default: "
-                  "points for scans, where many lie above each other; else surface)")
+      .add_option("--show-as", input.show_as,
+                  "Show points as a relief, the surface of heights over x and y, or as points, "
+                  "discs or spheres (default: spheres for scans, where many lie above each other; "
+                  "points with --point-size or --radius; else relief)")
+      ->group(group::kInput);
+  choose_from(command, "--show-as", names_in(show_as()));
+  // The name of versions before, without a place in the help.
+  command
+      .add_option_function<std::string>("--draw",
+                                        [&input](const std::string& what) {
+                                          input.show_as = what == "points" ? "spheres" : "relief";
+                                        })
+      ->group("")
+      ->check(one_of({"surface", "points"}))
+      ->excludes("--show-as");
+  command
+      .add_option("--point-size", input.point_size,
+                  "Diameter of points in pixels, for --show-as points, discs or spheres (default: "
+                  "neighbours touch)")
       ->group(group::kInput)
-      ->check(one_of({"surface", "points"}));
+      ->check(number_between(1e-3, 10000));
+  command
+      .add_option("--radius", input.radius,
+                  "Radius of points in units of the scene, for --show-as points, discs or spheres "
+                  "(default: neighbours touch)")
+      ->group(group::kInput)
+      ->check(number_between(0, 1e18))
+      ->excludes("--point-size");
   command
       .add_option("--up", input.up,
                   "Axis that points up: y or z (default: as the file says; else z for points and "
@@ -295,10 +315,13 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
   // Options of points ask for those of a .node, without the .ele beside it.
   const bool is_node = files::format_of_suffix(input.file.path) == Format::node &&
                        !input.file.path.ends_with(".ele");
-  if (is_node && (input.file.given() || !input.draw.empty())) kind = InputKind::points;
+  if (is_node && (input.file.given() || !input.show_as.empty() || has_size(input)))
+    kind = InputKind::points;
   if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
     refuse_outside(input.file.path, input.file.limits);
   }
+  if (input.show_as == "relief" && has_size(input))
+    throw UsageError("--point-size and --radius have no effect with --show-as relief");
   if (kind == InputKind::points || kind == InputKind::picture) {
     return from_points(input, progress);
   }
@@ -308,8 +331,9 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
         "points; {} is a scene",
         input.file.path));
   }
-  if (!input.draw.empty()) {
-    throw UsageError(fmt::format("--draw is for points; {} has triangles", input.file.path));
+  if (!input.show_as.empty() || has_size(input)) {
+    throw UsageError(fmt::format("--show-as, --point-size and --radius are for points; {} has triangles",
+                                 input.file.path));
   }
   if (kind == InputKind::mesh) return from_mesh(input);
   if (input.exaggeration != 1) {

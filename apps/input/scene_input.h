@@ -16,7 +16,9 @@ namespace delray::apps {
 struct SceneInput {
   PointInput file;          // a scene or mesh as well as points
   std::string colour_by;    // empty: what suits the input
-  std::string draw;         // points as "surface" or "points"; empty: what suits them
+  std::string show_as;      // points: a row of show_as.cpp; empty: what suits them
+  double point_size = 0;    // diameter of points in pixels; 0: not given
+  double radius = -1;       // of points in units of the scene; negative: not given
   double exaggeration = 1;  // of the heights of points
   std::string up;           // "y" or "z"; empty: as the input says
 };
@@ -31,11 +33,12 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory 
 // scene or mesh among several.
 InputKind input_kind_of(const PointInput& input);
 
-// Adds SCENE, --color-by, --exaggeration, --draw, --up, --allow-outside and the options of points.
+// Adds SCENE, --color-by, --exaggeration, --show-as, --point-size, --radius, --up, --allow-outside and
+// the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
 // Loads or generates the scene; points are triangulated in the plane, with their z as height, or
-// drawn as dots where they lie in space.
+// shown as points, by default where they lie in space.
 // Warnings go to the log. Parallel in the caller's arena. Throws FileError and UsageError.
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress);
 

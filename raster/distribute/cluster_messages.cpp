@@ -30,9 +30,10 @@ enum Attribute : std::uint8_t {
   kColours = 8,
   kRadiances = 16,
   kUvs2 = 32,
+  kShape = 64,  // not a value of vertices: a ShapeHeader
 };
 
-// Followed by the transform where it is another one than before, first corners, second corners and
+// Followed by the transform where it is another one than before, the shape if there is one, first corners, second corners and
 // third corners, a byte each and all filled up to four bytes, positions, and the attributes in
 // ascending order.
 struct ClusterHeader {
@@ -46,6 +47,14 @@ struct ClusterHeader {
   }
 };
 static_assert(sizeof(ClusterHeader) == 40);
+
+// Of points and segments.
+struct ShapeHeader {
+  scenes::Shape::Kind kind;
+  std::uint8_t in_pixels, unused[2];
+  float radius;
+};
+static_assert(sizeof(ShapeHeader) == 8);
 
 std::size_t corner_bytes(std::size_t triangles) { return (3 * triangles + 3) / 4 * 4; }
 
@@ -77,6 +86,9 @@ std::uint8_t attributes_of(const FrameShading& frame, const PreparedDraw& prepar
   const scenes::Material& material = shading::material(frame.shader, mesh.material);
   const bool coloured = !mesh.colours.empty();
   const auto bits = [](bool have, Attribute bit) { return have ? int{bit} : 0; };
+  if (!mesh.has_triangles())
+    return static_cast<std::uint8_t>(kShape | bits(!mesh.normals.empty(), kNormals) |
+                                     bits(coloured, kColours));
   if (frame.lighting == Lighting::gouraud) {
     const std::uint32_t texture = material.base_colour_texture;
     const int set = texture == scenes::kNone ? 0 : frame.shader.textures[texture].set;
@@ -158,12 +170,21 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
       std::memcpy(&transform, bytes.data(), sizeof transform);
       bytes = bytes.subspan(sizeof transform);
     }
+    scenes::Shape shape;
+    if ((header.attributes & kShape) != 0) {
+      ShapeHeader of_shape;
+      std::memcpy(&of_shape, bytes.data(), sizeof of_shape);
+      shape = {of_shape.kind, of_shape.in_pixels != 0, of_shape.radius};
+      bytes = bytes.subspan(sizeof of_shape);
+    }
     section.content = bytes.data();
     if (sections.empty() || !header.same_mesh(sections.back().header) ||
+        shape != meshes.back().mesh.shape ||
         transform != meshes.back().transform || triangles + header.triangles > kBlockTriangles) {
       close_mesh();
       ArrivedMesh& mesh = meshes.emplace_back();
       mesh.mesh.material = header.material;
+      mesh.mesh.shape = shape;
       mesh.transform = transform;
       mesh.clusters.blocks.push_back(std::make_unique<ClusterBlock>());
       const bool lit = (header.attributes & kRadiances) != 0;
@@ -180,6 +201,7 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
     section.cluster.first_corner = corners;
     section.cluster.box = header.box;
     section.cluster.normals_agree = header.normals_agree != 0;
+    section.cluster.consecutive = true;
     triangles += header.triangles;
     vertices += header.vertices;
     corners += 3 * section.cluster.corner_stride();
@@ -202,7 +224,7 @@ void ClusterPacker::set(const FrameShading& frame, const PreparedDraw& draw, std
   draw_ = draw.draw;
   attributes_ = attributes_of(frame, draw);
   places_ = places;
-  if (frame.lighting != Lighting::gouraud) return;
+  if ((attributes_ & kRadiances) == 0) return;
   numbers_.clear();
   for (const std::uint8_t place : places) numbers_.push_back(cluster << kClusterBits | place);
   lit_ = gouraud_.light_corners(frame, numbers_);
@@ -253,7 +275,9 @@ void ClusterPacker::append_section(std::uint32_t number, PackedClusters& to) {
   to.last_transform = draw_->transform;
   to.triangles += triangles;
   const std::size_t before = to.bytes.size();
+  const bool with_shape = (attributes_ & kShape) != 0;
   to.bytes.resize(before + sizeof(ClusterHeader) +
+                  (with_shape ? sizeof(ShapeHeader) : std::size_t{0}) +
                   (with_transform ? sizeof(glm::mat4x3) : std::size_t{0}) +
                   corner_bytes(triangles) + vertices.size() * vertex_bytes(attributes_));
   std::byte* end = to.bytes.data() + before;
@@ -267,6 +291,10 @@ void ClusterPacker::append_section(std::uint32_t number, PackedClusters& to) {
                              static_cast<std::uint8_t>(with_transform),
                              static_cast<std::uint8_t>(cluster.normals_agree), 0, cluster.box});
   if (with_transform) append_value(*draw_->transform);
+  if (with_shape) {
+    append_value(ShapeHeader{mesh.shape.kind, static_cast<std::uint8_t>(mesh.shape.in_pixels), {},
+                             mesh.shape.radius});
+  }
   for (const auto& corners : section_.corners) append(corners.data(), triangles);
   end += corner_bytes(triangles) - 3 * triangles;
   const auto append_used = [&](std::uint8_t attribute, const auto& values) {

@@ -19,7 +19,11 @@ namespace {
 // Followed by a GroupHeader for each piece, the clusters, their corners, positions, and the
 // attributes that `attributes` names, in ascending order of their bits.
 struct RunHeader {
-  std::uint32_t groups, clusters, triangles, vertices, corners, material, attributes, unused;
+  std::uint32_t groups, clusters, triangles, vertices, corners, material;
+  std::uint16_t attributes;
+  scenes::Shape::Kind kind;
+  std::uint8_t in_pixels;
+  float radius;
   glm::mat4x3 transform;
 };
 static_assert(sizeof(RunHeader) == 80);
@@ -136,6 +140,7 @@ void unpack_run(Reader reader, std::span<Arrival> arrivals) {
 
   scenes::Mesh& mesh = travelled->mesh;
   mesh.material = header.material;
+  mesh.shape = {header.kind, header.in_pixels != 0, header.radius};
   mesh.triangles.resize(header.triangles);
   fill_triangles(*block, mesh.triangles);
   reader.read(header.vertices, mesh.positions);
@@ -229,7 +234,9 @@ void GeometryPacker::write_run(const Run& run, std::byte* to) const {
   to = put(
       RunHeader{static_cast<std::uint32_t>(run.pieces.size()),
                 static_cast<std::uint32_t>(parts.size()), run.triangles, run.vertices, run.corners,
-                mesh.material, attributes_of(mesh), 0, *run.pieces.front().transform},
+                mesh.material, static_cast<std::uint16_t>(attributes_of(mesh)), mesh.shape.kind,
+                static_cast<std::uint8_t>(mesh.shape.in_pixels), mesh.shape.radius,
+                *run.pieces.front().transform},
       to);
   std::uint32_t triangles = 0;
   for (const Piece& piece : run.pieces) {

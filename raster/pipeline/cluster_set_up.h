@@ -29,6 +29,9 @@ struct SetUpResult {
   // All triangles of blended draws.
   std::vector<ScreenTriangle> blended_triangles;
   std::vector<Entry> blended_entries;
+  // Points and segments of more than a few pixels.
+  std::vector<Splat> splats;
+  std::vector<Entry> splat_entries;
 
   TriangleCounts counts;
 
@@ -37,6 +40,8 @@ struct SetUpResult {
     windows.size = 0;
     triangles.clear();
     entries.clear();
+    splats.clear();
+    splat_entries.clear();
   }
 };
 

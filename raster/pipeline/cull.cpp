@@ -17,6 +17,24 @@ namespace {
 // Relative error of a sum of a few products, with a margin.
 constexpr float kCullingSlack = 1e-5F;
 
+// Splats reach beyond the box of their centres: in view coordinates, and spots by a margin on the
+// screen as their depth does not.
+void grow_by_radius(const scenes::View& view, const SplatDraw& splats, glm::vec3& low,
+                    glm::vec3& high, float& margin) {
+  constexpr float kSlack = 1 + kCullingSlack;
+  if (splats.is_spot()) {
+    const float nearest = view.orthographic ? 1 : std::max(low.z, view.near);
+    const float radius = splats.in_samples ? splats.radius : splats.radius * view.scale / nearest;
+    margin = std::min(radius * kSlack, kLargestSplat) + 1;
+    return;
+  }
+  const float radius = splats.in_samples
+                           ? splats.radius * std::max(high.z, view.near) / view.scale
+                           : splats.radius;
+  low -= glm::vec3(radius * kSlack);
+  high += glm::vec3(radius * kSlack);
+}
+
 }  // namespace
 
 ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geometry::Box3& box) {
@@ -36,6 +54,8 @@ ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geomet
   }
 
   const scenes::View& view = screen.view;
+  float margin = 0;
+  if (draw.splats.any()) grow_by_radius(view, draw.splats, low, high, margin);
   ClusterBounds result;
   result.farthest_distance = high.z;
   result.outside = high.z < view.near;
@@ -61,12 +81,12 @@ ClusterBounds bound(const Screen& screen, const PreparedDraw& draw, const geomet
     return static_cast<int>(std::clamp(position, -1.0F, static_cast<float>(size + 1)));
   };
   // A pixel more on each side makes up for rounding and snapping: positions are below 2^16.
-  constexpr float kMargin = 1;
+  const float around = 1 + margin;
   result.pixels =
-      geometry::intersection({pixel(view.half_width + left - kMargin, screen.width),
-                              pixel(view.half_height - top - kMargin, screen.height),
-                              pixel(view.half_width + right + kMargin, screen.width) + 1,
-                              pixel(view.half_height - bottom + kMargin, screen.height) + 1},
+      geometry::intersection({pixel(view.half_width + left - around, screen.width),
+                              pixel(view.half_height - top - around, screen.height),
+                              pixel(view.half_width + right + around, screen.width) + 1,
+                              pixel(view.half_height - bottom + around, screen.height) + 1},
                              screen.frame());
   result.outside |= result.pixels.empty();
   const float nearest = view.orthographic

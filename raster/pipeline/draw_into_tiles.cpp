@@ -18,6 +18,7 @@
 #include "parallel/parallel_for.h"
 #include "raster/pipeline/cull.h"
 #include "raster/pipeline/processor_seconds.h"
+#include "raster/pipeline/splat_set_up.h"
 
 namespace delray::raster {
 namespace {
@@ -51,14 +52,18 @@ void set_up_one(const DrawIntoTiles& task, std::uint32_t k, const FrameTiles& ti
     ++counts.hidden_clusters;
     return;
   }
+  const ClusterToSetUp to_set_up{{task.screen, draw, block, mesh_cluster, worker.vertices},
+                                 cluster.begin,
+                                 cluster.end,
+                                 k << kClusterBits,
+                                 task.clip};
+  if (draw.splats.any()) {
+    set_up_splats(to_set_up, worker.vertices, worker.result);
+    return;
+  }
   transform(draw.to_view, task.screen, draw.draw->mesh->positions, block.vertices_of(mesh_cluster),
             worker.vertices);
-  set_up_cluster({{task.screen, draw, block, mesh_cluster, worker.vertices},
-                  cluster.begin,
-                  cluster.end,
-                  k << kClusterBits,
-                  task.clip},
-                 tiles, worker.result);
+  set_up_cluster(to_set_up, tiles, worker.result);
 }
 
 // By counting, into worker.fragments, entries and windows. Neighbours in a batch lie in one tile or
@@ -77,18 +82,19 @@ void sort_by_tile(Worker& worker) {
   for (const std::uint32_t address : addresses) ++counts[touch(address / kTilePixels)].fragments;
   for (const SetUpResult::Entry& entry : result.entries) ++counts[touch(entry.tile)].entries;
   for (const std::uint32_t tile : window_tiles) ++counts[touch(tile)].windows;
+  for (const SetUpResult::Entry& entry : result.splat_entries) ++counts[touch(entry.tile)].splats;
 
   worker.touched.clear();
   Worker::TileCounts next;
   for (std::uint32_t tile = low; tile <= high && low != kNothing; ++tile) {
     const Worker::TileCounts here = counts[tile];
-    if ((here.fragments | here.entries | here.windows) == 0) continue;
+    if ((here.fragments | here.entries | here.windows | here.splats) == 0) continue;
     counts[tile] = next;
     const Worker::TileCounts first = next;
     next = {first.fragments + here.fragments, first.entries + here.entries,
-            first.windows + here.windows};
+            first.windows + here.windows, first.splats + here.splats};
     worker.touched.push_back({tile, first.fragments, next.fragments, first.entries, next.entries,
-                              first.windows, next.windows});
+                              first.windows, next.windows, first.splats, next.splats});
   }
 
   if (worker.fragments.size() < next.fragments) worker.fragments.resize(next.fragments);
@@ -105,6 +111,9 @@ void sort_by_tile(Worker& worker) {
   if (worker.windows.size() < next.windows) worker.windows.resize(next.windows);
   for (std::uint32_t k = 0; k < window_tiles.size(); ++k)
     worker.windows[counts[window_tiles[k]].windows++] = k;
+  if (worker.splats.size() < next.splats) worker.splats.resize(next.splats);
+  for (const SetUpResult::Entry& entry : result.splat_entries)
+    worker.splats[counts[entry.tile].splats++] = entry.entry;
   for (const Worker::TouchedTile& touched : worker.touched) counts[touched.tile] = {};
 }
 
@@ -129,10 +138,13 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
           .subspan(touched.first_fragment, touched.last_fragment - touched.first_fragment);
   const auto entries = std::span(worker.entries)
                            .subspan(touched.first_entry, touched.last_entry - touched.first_entry);
+  const auto splats = std::span(worker.splats)
+                          .subspan(touched.first_splat, touched.last_splat - touched.first_splat);
   const auto alpha_test = alpha_test_of(task, worker.index);
   if (task.shade_now) {
     const auto shade_now = shade_now_of(task, worker.index);
     worker.shaded += draw_and_shade(fragments, rect, shade_now, tile);
+    worker.shaded += draw_and_shade(task.screen, rect, worker.result.splats, splats, shade_now, tile);
     worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries, alpha_test,
                                     shade_now, tile);
     return;
@@ -142,6 +154,7 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
                         .subspan(touched.first_window, touched.last_window - touched.first_window),
                     tile);
   rasterize_fragments(fragments, tile);
+  rasterize_splats(task.screen, rect, worker.result.splats, splats, tile);
   if (entries.empty()) return;
   rasterize(task.screen, rect, worker.result.triangles, entries, tile);
   rasterize_masked(task.screen, rect, worker.result.triangles, entries, alpha_test, tile);

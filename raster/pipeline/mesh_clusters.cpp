@@ -106,6 +106,12 @@ bool normals_agree(const scenes::Mesh& mesh, const MeshCluster& cluster) {
   return true;
 }
 
+bool consecutive(std::span<const std::uint32_t> vertices) {
+  for (std::size_t i = 1; i < vertices.size(); ++i)
+    if (vertices[i] != vertices[0] + i) return false;
+  return true;
+}
+
 std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t begin,
                                          std::uint32_t end) {
   auto block = std::make_unique<ClusterBlock>();
@@ -140,6 +146,7 @@ std::unique_ptr<ClusterBlock> make_block(const scenes::Mesh& mesh, std::uint32_t
     }
     bound(mesh, *block, cluster);
     cluster.normals_agree = normals_agree(mesh, cluster);
+    cluster.consecutive = consecutive(block->vertices_of(cluster));
     block->box.include(cluster.box);
     block->clusters.push_back(cluster);
   }

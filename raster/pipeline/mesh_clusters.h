@@ -33,6 +33,8 @@ struct MeshCluster {
   float least_height = 0;  // of all triangles: no two opposite parts of one are closer
   // normal_agrees() at every corner of every triangle; false in a mesh without normals.
   bool normals_agree = false;
+  // Vertices follow each other in the mesh as they do in the cluster.
+  bool consecutive = false;
 
   // From one corner's array to the next.
   std::uint32_t corner_stride() const {

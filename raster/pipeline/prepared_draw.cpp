@@ -44,7 +44,7 @@ void prepare_cones(const scenes::View& view, const glm::mat4x3& transform, Prepa
 
 bool is_blended(const shading::Shader& shader, const scenes::Mesh& mesh) {
   const scenes::Material& material = shading::material(shader, mesh.material);
-  if (material.alpha != scenes::Material::Alpha::blend) return false;
+  if (material.alpha != scenes::Material::Alpha::blend || !mesh.has_triangles()) return false;
   return alpha_varies(shader, material, mesh) || !(material.base_colour.w >= 1.0F);
 }
 
@@ -64,9 +64,13 @@ PreparedDraw prepare_draw(const Screen& screen, const Draw& draw, const shading:
   const scenes::Material& material = shading::material(shader, draw.mesh->material);
   PreparedDraw prepared;
   prepared.draw = &draw;
+  prepared.to_view = to_view(screen.view, *draw.transform);
+  if (!draw.mesh->has_triangles()) {
+    prepared.splats = make_splat_draw(screen, draw);
+    return prepared;
+  }
   prepared.masked = may_have_holes(shader, material, *draw.mesh);
   prepared.blended = is_blended(shader, *draw.mesh);
-  prepared.to_view = to_view(screen.view, *draw.transform);
   if (!cull_single_sided || material.double_sided) return prepared;
   // Counter-clockwise in the world is a negative area on the screen, where y grows downwards,
   // unless the transform mirrors.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "raster/pipeline/draws.h"
+#include "raster/pipeline/splat.h"
 #include "raster/pipeline/transform.h"
 #include "shading/shader.h"
 
@@ -20,6 +21,7 @@ struct PreparedDraw {
   bool cones = false;
   glm::vec3 eye{0};
   float scale = 1;
+  SplatDraw splats;  // of points or segments; these are neither masked nor blended
 };
 
 // Whether what lies behind a mesh of the material may shine through it somewhere.

@@ -37,6 +37,7 @@ struct Screen {
   int centre_x = 0, centre_y = 0;    // the pixel that subpixel positions are relative to
   float offset_x = 0, offset_y = 0;  // of the view's axis from that pixel's corner, in subpixels
   int tiles_x = 0, tiles_y = 0;
+  float samples = 1;  // per pixel of the picture, in either direction
 
   int tiles() const { return tiles_x * tiles_y; }
   geometry::Rect frame() const { return {0, 0, width, height}; }

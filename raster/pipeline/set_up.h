@@ -31,13 +31,30 @@ struct TriangleCounts {
 // How much setting up has left of a triangle. Culled: nothing is left.
 enum class SetUpOutcome : std::uint8_t { whole, clipped, culled };
 
+// A triangle over half of the pixels: what stands for a splat where only costs are asked for.
+inline ScreenTriangle half_of(const geometry::Rect& pixels, const Screen& screen,
+                              std::uint32_t number) {
+  const auto vertex = [&](int x, int y) {
+    return ScreenVertex{(x - screen.centre_x) * kSubpixels, (y - screen.centre_y) * kSubpixels, -1};
+  };
+  return {{vertex(pixels.x0, pixels.y0), vertex(pixels.x1, pixels.y0), vertex(pixels.x0, pixels.y1)},
+          number};
+}
+
 // Hands `emit(triangle, pixels)` every part of the cluster's triangle at `place` that has area and
-// a box with a pixel centre of the frame in it; the parts get `number`, and positive area.
+// a box with a pixel centre of the frame in it; the parts get `number`, and positive area. Of a splat, half of its box.
 template <class Emit>
 SetUpOutcome set_up(const ClusterOnScreen& cluster, std::uint32_t place, std::uint32_t number,
                     Emit&& emit) {
   const Screen& screen = cluster.screen;
   const PreparedDraw& draw = cluster.draw;
+  if (draw.splats.any()) {
+    const geometry::Rect pixels =
+        make_splat(screen, draw.splats, cluster.cluster.first + place, number).pixels;
+    if (pixels.empty()) return SetUpOutcome::culled;
+    emit(half_of(pixels, screen, number), pixels);
+    return SetUpOutcome::whole;
+  }
   const LocalCorners corners = corners_at(cluster.block, cluster.cluster, place);
   const ScreenVertex a = cluster.vertices[corners.a];
   const ScreenVertex b = cluster.vertices[corners.b];

@@ -28,8 +28,10 @@ HWY_INLINE V transformed(Floats d, const glm::vec4& row, V x, V y, V z) {
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, row.z), z)), hn::Set(d, row.w));
 }
 
-void transform(const ToView& to_view, const Screen& screen, const glm::vec3* positions,
-               const std::uint32_t* which, std::size_t count, ScreenVertices& vertices) {
+// load(i, p) loads the coordinates of the vertices from i on into rows of p.
+template <class Load>
+HWY_INLINE void transform_all(const ToView& to_view, const Screen& screen, std::size_t count,
+                              ScreenVertices& vertices, Load&& load) {
   const Floats d;
   const Ints di;
   const std::size_t lanes = hn::Lanes(d);
@@ -44,13 +46,7 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
   bool all_inside = true;
   HWY_ALIGN float p[3][16];
   for (std::size_t i = 0; i < count; i += lanes) {
-    // The last vector repeats its last vertex, which leaves the bounds as they are.
-    for (std::size_t k = 0; k < lanes; ++k) {
-      const glm::vec3& position = positions[which[std::min(i + k, count - 1)]];
-      p[0][k] = position.x;
-      p[1][k] = position.y;
-      p[2][k] = position.z;
-    }
+    load(i, p);
     const V x = hn::Load(d, p[0]), y = hn::Load(d, p[1]), z = hn::Load(d, p[2]);
     const V view_x = transformed(d, to_view.row[0], x, y, z);
     const V view_y = transformed(d, to_view.row[1], x, y, z);
@@ -92,6 +88,42 @@ void transform(const ToView& to_view, const Screen& screen, const glm::vec3* pos
   vertices.high_y = hn::GetLane(hn::MaxOfLanes(di, high_y));
 }
 
+// Vector from i on of `count` vertices. The last one repeats its last vertex, which leaves the bounds
+// as they are.
+template <class At>
+HWY_INLINE void load_each(std::size_t i, std::size_t count, At&& at, float (*p)[16]) {
+  for (std::size_t k = 0; k < hn::Lanes(Floats()); ++k) {
+    const glm::vec3& position = at(std::min(i + k, count - 1));
+    p[0][k] = position.x;
+    p[1][k] = position.y;
+    p[2][k] = position.z;
+  }
+}
+
+void transform_chosen(const ToView& to_view, const Screen& screen, const glm::vec3* positions,
+                      const std::uint32_t* which, std::size_t count, ScreenVertices& vertices) {
+  transform_all(to_view, screen, count, vertices, [&](std::size_t i, float(*p)[16]) HWY_ATTR {
+    load_each(
+        i, count, [&](std::size_t k) -> const glm::vec3& { return positions[which[k]]; }, p);
+  });
+}
+
+void transform_row(const ToView& to_view, const Screen& screen, const glm::vec3* positions,
+                   std::size_t count, ScreenVertices& vertices) {
+  const Floats d;
+  transform_all(to_view, screen, count, vertices, [&](std::size_t i, float(*p)[16]) HWY_ATTR {
+    if (i + hn::Lanes(d) > count) {
+      load_each(i, count, [&](std::size_t k) -> const glm::vec3& { return positions[k]; }, p);
+      return;
+    }
+    V x, y, z;
+    hn::LoadInterleaved3(d, &positions[i].x, x, y, z);
+    hn::Store(x, d, p[0]);
+    hn::Store(y, d, p[1]);
+    hn::Store(z, d, p[2]);
+  });
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace delray::raster
 HWY_AFTER_NAMESPACE();
@@ -99,7 +131,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace delray::raster {
 
-HWY_EXPORT(transform);
+HWY_EXPORT(transform_chosen);
+HWY_EXPORT(transform_row);
 
 ToView to_view(const scenes::View& view, const glm::mat4x3& transform) {
   const glm::dvec3 axes[3] = {view.right, view.up, view.forward};
@@ -115,8 +148,14 @@ ToView to_view(const scenes::View& view, const glm::mat4x3& transform) {
 
 void transform(const ToView& to_view, const Screen& screen, std::span<const glm::vec3> positions,
                std::span<const std::uint32_t> which, ScreenVertices& vertices) {
-  HWY_DYNAMIC_DISPATCH(transform)
+  HWY_DYNAMIC_DISPATCH(transform_chosen)
   (to_view, screen, positions.data(), which.data(), which.size(), vertices);
+}
+
+void transform(const ToView& to_view, const Screen& screen, std::span<const glm::vec3> positions,
+               ScreenVertices& vertices) {
+  HWY_DYNAMIC_DISPATCH(transform_row)
+  (to_view, screen, positions.data(), positions.size(), vertices);
 }
 
 }  // namespace delray::raster

@@ -50,5 +50,8 @@ struct ScreenVertices {
 // REQUIRES: 1 <= which.size() <= kClusterVertices.
 void transform(const ToView& to_view, const Screen& screen, std::span<const glm::vec3> positions,
                std::span<const std::uint32_t> which, ScreenVertices& vertices);
+// As transform, of all of so many positions.
+void transform(const ToView& to_view, const Screen& screen, std::span<const glm::vec3> positions,
+               ScreenVertices& vertices);
 
 }  // namespace delray::raster

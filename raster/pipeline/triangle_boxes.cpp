@@ -113,8 +113,37 @@ namespace delray::raster {
 HWY_EXPORT(find_boxes);
 HWY_EXPORT(sum_boxes);
 
+namespace {
+
+void find_splat_boxes(const ClusterOnScreen& cluster, TriangleBoxes& boxes) {
+  boxes.any_alone = false;
+  const std::uint32_t padded = cluster.cluster.corner_stride();
+  for (std::uint32_t place = 0; place < padded; ++place) {
+    boxes.pixels[place] = TriangleBoxes::kCulled;
+    boxes.x0[place] = boxes.y0[place] = INT32_MAX;
+    boxes.x1[place] = boxes.y1[place] = INT32_MIN;
+    if (place >= cluster.cluster.count) continue;
+    const geometry::Rect pixels =
+        make_splat(cluster.screen, cluster.draw.splats, cluster.cluster.first + place, 0).pixels;
+    if (pixels.empty()) continue;
+    const bool large = pixels.area() > kLargeBox;
+    boxes.pixels[place] =
+        large ? TriangleBoxes::kAlone : static_cast<std::int32_t>(pixels.area());
+    boxes.any_alone |= large;
+    if (large) continue;
+    boxes.x0[place] = pixels.x0, boxes.y0[place] = pixels.y0;
+    boxes.x1[place] = pixels.x1, boxes.y1[place] = pixels.y1;
+  }
+}
+
+}  // namespace
+
 void find_boxes(const ClusterOnScreen& cluster, TriangleBoxes& boxes) {
   assert(!cluster.vertices.any_outside);
+  if (cluster.draw.splats.any()) {
+    find_splat_boxes(cluster, boxes);
+    return;
+  }
   HWY_DYNAMIC_DISPATCH(find_boxes)(cluster, boxes);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "raster/pipeline/draws.h"
+#include "raster/pipeline/splat.h"
 #include "raster/pipeline/transform.h"
 #include "raster/shading/interpolate.h"
 #include "shading/shader.h"
@@ -17,6 +18,7 @@ struct ShadedDraw {
   glm::mat3 normal_to_world{1.0F};
   float handedness = 1;  // -1 where the transform mirrors
   bool blended = false;  // what is behind may be seen
+  SplatDraw splats;      // of points or segments
 };
 ShadedDraw make_shaded_draw(const scenes::View& view, const Draw& draw);
 

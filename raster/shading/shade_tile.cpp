@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "composite/fragment.h"
+#include "raster/shading/shade_splats.h"
 #include "shading/shade.h"
 
 namespace delray::raster {
@@ -68,8 +69,8 @@ float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances) {
-  FrameShading frame{screen, shader, list,  {}, {},       {},       {},
-                     false,  false,  false, 0,  lighting, distances};
+  FrameShading frame{screen, shader, list, {},   {},       {},       {}, false,
+                     false,  false,  0,    true, lighting, distances};
   add_draws(frame);
   frame.batch = shading::make_batch_shader(shader);
   if (lighting == Lighting::gouraud) {
@@ -87,6 +88,8 @@ void add_draws(FrameShading& frame) {
     const Draw& draw = frame.list.draws[i];
     frame.draws.push_back(make_shaded_draw(frame.screen.view, draw));
     frame.draws.back().blended = is_blended(frame.shader, *draw.mesh);
+    frame.draws.back().splats = make_splat_draw(frame.screen, draw);
+    frame.all_plain &= is_plain(frame.shader, draw);
     const scenes::Material& material = shading::material(frame.shader, draw.mesh->material);
     frame.any_blended |= frame.draws.back().blended;
     frame.any_colours |= !draw.mesh->colours.empty();
@@ -159,6 +162,7 @@ bool alpha_test(const FrameShading& frame, SeenTriangles& seen, std::uint32_t nu
 
 SeenPoint point_seen(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
                      int y) {
+  if (is_splat(frame, number)) return splat_point(frame, number, x, y);
   const SeenTriangle& triangle = seen.get(frame, number);
   return {static_cast<std::uint32_t>(triangle.material - frame.shader.materials.data()),
           triangle.blended ? 1U : 0U, point_at(triangle, x, y)};
@@ -171,7 +175,8 @@ image::RgbaF shade(const FrameShading& frame, const SeenPoint& seen) {
 
 image::RgbaF colour_at(const FrameShading& frame, SeenTriangles& seen, std::uint32_t number, int x,
                        int y) {
-  if (frame.lighting == Lighting::phong) return shade(frame, point_seen(frame, seen, number, x, y));
+  if (frame.lighting == Lighting::phong || is_splat(frame, number))
+    return shade(frame, point_seen(frame, seen, number, x, y));
   const SeenTriangle& triangle = seen.get(frame, number);
   const float alpha = triangle.blended ? alpha_at(frame, point_seen(frame, seen, number, x, y)) : 1;
   return premultiplied(gouraud(frame, triangle, x, y), alpha);

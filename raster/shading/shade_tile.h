@@ -27,6 +27,7 @@ struct FrameShading {
   // through, and the most sets of texture coordinates that a material looks at.
   bool any_colours = false, any_normal_maps = false, any_blended = false;
   int texture_sets = 0;
+  bool all_plain = true;  // is_plain(), of all draws
   Lighting lighting;
   // Images get distances along the view axis rather than -near / distance.
   bool distances;

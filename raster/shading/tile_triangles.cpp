@@ -141,7 +141,8 @@ void TileTriangles::for_each_group(const FrameShading& frame, Wanted clip, SetUp
   int next = 0;
   members_[0].group = members_[1].group = nullptr;
   for (const Group& group : groups_.groups()) {
-    if (!clip(frame.list.clusters[group.cluster].draw)) {
+    const std::uint32_t draw = frame.list.clusters[group.cluster].draw;
+    if (frame.draws[draw].splats.any() || !clip(draw)) {
       for (std::size_t t = group.first; t < std::size_t{group.first} + group.count; ++t) {
         for (auto& corner : planes_.corner) corner[t] = 0;
         leave_to_shade_pixel(t);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "raster/pipeline/samples.h"
+#include "raster/shading/shade_splats.h"
 
 namespace delray::raster {
 image::RgbaF TileView::colour(std::uint32_t number, int x, int y) {
@@ -28,7 +29,8 @@ void TileView::shade_opaque(const geometry::Rect& rect, const Window<Colour>& wi
   }
   if (shaded_ == nullptr) {
     const std::uint64_t shown =
-        frame_.lighting == Lighting::gouraud
+        frame_.all_plain ? shade_plain_splats(frame_, *tile_, rect, window)
+        : frame_.lighting == Lighting::gouraud
             ? memory_.gouraud.shade(frame_, memory_.seen, *tile_, rect, window)
             : memory_.phong.shade(frame_, memory_.seen, *tile_, rect, window);
     shown_ += shown;

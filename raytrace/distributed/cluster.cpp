@@ -178,9 +178,12 @@ std::vector<geometry::Box3> boxes_of(const ClusterData& cluster) {
   for (const GeometryInstance& instance : cluster.instances) {
     const scenes::Mesh& mesh = cluster.pieces[instance.mesh_number].mesh;
     if (!instance.instanced) {
+      const float radius = mesh.has_triangles() ? 0.0F : splat_radius(instance, mesh.shape);
       for (const glm::uvec3& corners : mesh.triangles) {
         geometry::Box3& box = triangles.emplace_back();
         for (int k = 0; k < 3; ++k) include(mesh.positions[corners[k]], box);
+        box.low -= glm::vec3(radius);
+        box.high += glm::vec3(radius);
       }
       continue;
     }
@@ -197,6 +200,7 @@ comm::Buffer pack(const ClusterData& cluster) {
   out.value(static_cast<std::uint64_t>(cluster.pieces.size()));
   for (const Piece& piece : cluster.pieces) {
     out.value(piece.mesh.material);
+    out.value(piece.mesh.shape);
     out.array(piece.mesh.positions);
     out.array(piece.mesh.normals);
     out.array(piece.mesh.uvs);
@@ -221,6 +225,7 @@ ClusterData unpack_cluster(std::span<const std::byte> message) {
   cluster.pieces.resize(pieces);
   for (Piece& piece : cluster.pieces) {
     piece.mesh.material = in.value<std::uint32_t>();
+    piece.mesh.shape = in.value<scenes::Shape>();
     piece.mesh.positions = in.array<glm::vec3>(1);  // Embree loads past the last one
     piece.mesh.normals = in.array<glm::vec3>();
     piece.mesh.uvs = in.array<glm::vec2>();

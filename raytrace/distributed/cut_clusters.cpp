@@ -53,6 +53,7 @@ Piece piece_of(const GeometryInstance& instance, std::span<const Item> items,
   const scenes::Mesh& mesh = *instance.mesh;
   Piece piece;
   piece.mesh.material = mesh.material;
+  piece.mesh.shape = mesh.shape;
   std::unordered_map<std::uint32_t, std::uint32_t> known;
   known.reserve(items.size());
   std::vector<std::uint32_t> vertices;

@@ -15,6 +15,7 @@
 #endif
 
 #include "raytrace/scene/embree_scene.h"
+#include "raytrace/scene/splat_hits.h"
 
 namespace delray::raytrace {
 
@@ -49,6 +50,7 @@ struct EmbreeScene::State {
   struct Triangles {
     std::vector<glm::vec3> copy = {};  // of positions that were unreadable
     std::shared_ptr<const std::vector<std::uint64_t>> opaque = {};
+    Splats splats = {};  // instead of triangles
   };
   struct Mesh {
     Triangles triangles = {};

@@ -154,17 +154,34 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
   }
 }
 
-}  // namespace
+// Nothing for hits of triangles, of which u and v are the place already.
+void keep_splat_place(const EmbreeScene::State& scene, std::uint32_t geometry,
+                      std::uint32_t number, const SplatRay& ray, float& u, float& v) {
+  const Splats& splats = scene.instances[geometry].triangles.splats;
+  if (splats.kind != scenes::Shape::Kind::triangle) keep_place(splats, number, ray, u, v);
+}
 
-void EmbreeScene::intersect(Ray& ray) const {
-  find_hits(*state_, ray);
-  if (ray.triangle == kMiss || !is_on_edge(ray.u, ray.v)) return;
+[[gnu::noinline]] void keep_splat_places(const EmbreeScene::State& scene, const ActiveRays& active,
+                                         RayPacket& p) {
+  for (int i = 0; i < kPacketRays; ++i) {
+    if (active.ray[i] == 0 || p.triangle[i] == kMiss || p.instance[i] != kMiss) continue;
+    keep_splat_place(scene, p.geometry[i], p.triangle[i],
+                     {{p.origin_x[i], p.origin_y[i], p.origin_z[i]},
+                      {p.direction_x[i], p.direction_y[i], p.direction_z[i]},
+                      p.far[i],
+                      {p.normal_x[i], p.normal_y[i], p.normal_z[i]}},
+                     p.u[i], p.v[i]);
+  }
+}
+
+// Decides between triangles that a ray hits at the same distance.
+void break_tie(const EmbreeScene::State& scene, Ray& ray) {
   Ray again = ray;
   again.far = a_little_further(ray.far);
   again.id = 0;
   Nearest least{};
   least.hit.distance = std::numeric_limits<float>::infinity();
-  find_hits(*state_, again, &least);
+  find_hits(scene, again, &least);
   if (least.hit.triangle == kMiss) return;
   ray.far = least.hit.distance;
   ray.normal_x = least.normal_x, ray.normal_y = least.normal_y, ray.normal_z = least.normal_z;
@@ -174,10 +191,26 @@ void EmbreeScene::intersect(Ray& ray) const {
   ray.geometry = least.instanced ? 0 : least.hit.instance;
 }
 
+}  // namespace
+
+void EmbreeScene::intersect(Ray& ray) const {
+  find_hits(*state_, ray);
+  if (ray.triangle == kMiss) return;
+  if (is_on_edge(ray.u, ray.v)) break_tie(*state_, ray);
+  if (!has_splats_ || ray.instance != kMiss) return;
+  keep_splat_place(*state_, ray.geometry, ray.triangle,
+                   {{ray.origin_x, ray.origin_y, ray.origin_z},
+                    {ray.direction_x, ray.direction_y, ray.direction_z},
+                    ray.far,
+                    {ray.normal_x, ray.normal_y, ray.normal_z}},
+                   ray.u, ray.v);
+}
+
 void EmbreeScene::intersect(const ActiveRays& active, RayPacket& packet, bool coherent) const {
   find_hits(*state_, active, packet, coherent);
   ActiveRays edges;
   if (find_edges(active, packet, edges)) break_ties(*state_, edges, packet, coherent);
+  if (has_splats_) keep_splat_places(*state_, active, packet);
 }
 
 bool EmbreeScene::occluded(Ray& ray, SeeThrough& passed) const {

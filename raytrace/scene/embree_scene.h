@@ -90,6 +90,7 @@ class EmbreeScene {
   std::unique_ptr<State> state_;
   bool has_see_through_ = false;
   bool has_instances_ = false;
+  bool has_splats_ = false;
 };
 
 }  // namespace delray::raytrace

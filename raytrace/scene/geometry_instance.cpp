@@ -31,8 +31,9 @@ void move_to_world(GeometryInstance& instance) {
 
 void look_at_material(GeometryInstance& instance, const shading::Shader& shader) {
   const scenes::Material& material = shader.materials[instance.material];
-  instance.layered = material.alpha != scenes::Material::Alpha::opaque;
-  instance.see_through = instance.layered || material.transmission > 0.0F;
+  const bool triangles = instance.mesh->has_triangles();
+  instance.layered = triangles && material.alpha != scenes::Material::Alpha::opaque;
+  instance.see_through = instance.layered || (triangles && material.transmission > 0.0F);
   instance.texture_sets = shading::texture_sets(shader, material);
 }
 
@@ -98,7 +99,8 @@ std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
     look_at_material(instance, shader);
     instance.opaque = opaque[placed.mesh];
     look_at_transform(instance, reaches[placed.mesh]);
-    instance.instanced = share_meshes && uses[placed.mesh] > 1;
+    instance.instanced =
+        share_meshes && uses[placed.mesh] > 1 && instance.mesh->has_triangles();
     if (!instance.instanced && !instance.identity) move_to_world(instance);
   }
   return instances;
@@ -107,7 +109,7 @@ std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
 std::uint64_t count_degenerate(std::span<const GeometryInstance> instances) {
   std::uint64_t count = 0;
   for (const GeometryInstance& instance : instances) {
-    if (instance.mesh == nullptr) continue;
+    if (instance.mesh == nullptr || !instance.mesh->has_triangles()) continue;
     const auto& triangles = instance.mesh->triangles;
     count += parallel::parallel_reduce(
         0, triangles.size(), kVerticesPerBlock, std::uint64_t{0},

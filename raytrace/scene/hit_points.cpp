@@ -9,6 +9,7 @@
 
 #include "raytrace/scene/edges.h"
 #include "raytrace/scene/intersection.h"
+#include "raytrace/scene/splat_hits.h"
 
 #ifndef DELRAY_RAYTRACE_GATHERED
 #define DELRAY_RAYTRACE_GATHERED
@@ -338,6 +339,18 @@ void for_hits(std::span<const GeometryInstance> instances, const RayGroup& group
   }
 }
 
+// Points of splats, one by one.
+void find_splat_points(std::span<const GeometryInstance> instances, const std::uint32_t* numbers,
+                       shading::LaneMask lanes, RayGroup& group) {
+  for_lanes(lanes, [&](int i) {
+    const Hit hit = hit_of(group.packet, i);
+    const Intersection at =
+        splat_intersection(instances[numbers[i]], hit, -group.view.get(i));
+    set_point(group.points, i, at.point);
+    group.offset[i] = at.offset;
+  });
+}
+
 }  // namespace
 
 bool find_edges(const ActiveRays& active, const RayPacket& packet, ActiveRays& edges) {
@@ -370,6 +383,7 @@ void find_points(std::span<const GeometryInstance> instances, RayGroup& group) {
   HWY_DYNAMIC_DISPATCH(find_hits)(group, numbers);
   if (group.hits == 0) return;
   Gathered gathered;
+  shading::LaneMask splats = 0;
   for (shading::LaneMask rest = group.hits; rest != 0;) {
     const std::uint32_t number = numbers[std::countr_zero(rest)];
     const GeometryInstance& instance = instances[number];
@@ -378,10 +392,16 @@ void find_points(std::span<const GeometryInstance> instances, RayGroup& group) {
     same &= rest;
     rest &= ~same;
     for_lanes(same, [&](int i) { group.material[i] = instance.material; });
+    if (!instance.mesh->has_triangles()) {
+      splats |= same;
+      if (!instance.mesh->colours.empty()) gathered.coloured |= same;
+      continue;
+    }
     gather(instance, group.packet.triangle, same, gathered);
   }
   group.points.coloured = gathered.coloured != 0;
-  HWY_DYNAMIC_DISPATCH(find_gathered_points)(gathered, group);
+  if (splats != group.hits) HWY_DYNAMIC_DISPATCH(find_gathered_points)(gathered, group);
+  if (splats != 0) find_splat_points(instances, numbers, splats, group);
 }
 
 }  // namespace delray::raytrace

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raytrace/scene/splat_hits.h"
+
 namespace delray::raytrace {
 namespace {
 
@@ -39,6 +41,7 @@ shading::Footprint footprint(const std::vector<glm::vec2>& uvs, const glm::uvec3
 Intersection intersection(const GeometryInstance& instance, const Hit& hit,
                           const glm::vec3& direction, const Cone& cone) {
   const scenes::Mesh& mesh = *instance.mesh;
+  if (!mesh.has_triangles()) return splat_intersection(instance, hit, direction);
   const glm::uvec3 corners = mesh.triangles[hit.triangle];
   glm::vec3 a = instance.positions[corners.x];
   glm::vec3 b = instance.positions[corners.y];

@@ -50,7 +50,7 @@ void drop_empty_meshes(Scene& scene) {
 
 void finish(const Source& source, Scene& scene) {
   std::uint64_t degenerate = 0;
-  for (Mesh& mesh : scene.meshes) degenerate += drop_degenerate(mesh);
+  for (Mesh& mesh : scene.meshes) degenerate += mesh.has_triangles() ? drop_degenerate(mesh) : 0;
   drop_empty_meshes(scene);
   if (scene.instances.empty()) {
     source.fail("", degenerate == 0   ? kNoTriangles

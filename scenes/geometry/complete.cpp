@@ -98,6 +98,7 @@ void complete_surfaces(Scene& scene, float crease_degrees) {
   const float crease_cosine = std::cos(crease_degrees * std::numbers::pi_v<float> / 180.0F);
   parallel::parallel_for(0, scene.meshes.size(), 1, [&](std::size_t i) {
     Mesh& mesh = scene.meshes[i];
+    if (!mesh.has_triangles()) return;
     if (mesh.normals.empty()) internal::compute_normals(mesh, crease_cosine);
     add_tangents(scene, mesh);
   });

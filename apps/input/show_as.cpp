@@ -1,0 +1,37 @@
+// The table of what points are shown as, and points of a size that suits their spacing.
+#include "apps/input/show_as.h"
+
+#include <array>
+
+#include "scenes/points.h"
+
+namespace delray::apps {
+namespace {
+
+using Kind = scenes::Shape::Kind;
+
+// Of the spacing: half of a square's diagonal is 0.71.
+constexpr float kCovering = 0.75F;
+
+constexpr std::array kTable = {
+    ShowAs{"relief", "the surface of heights over x and y", Kind::triangle, true},
+    ShowAs{"points", "round spots of one colour and depth", Kind::point, false},
+    ShowAs{"discs", "flat discs that face the viewer", Kind::disc, false},
+    ShowAs{"spheres", "balls, lit", Kind::sphere, true},
+};
+
+}  // namespace
+
+std::span<const ShowAs> show_as() { return kTable; }
+
+void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene) {
+  scenes::Mesh& mesh = scene.meshes[0];
+  scenes::make_points(mesh, {how.kind, true, size.pixels * 0.5F});
+  if (size.radius >= 0)
+    mesh.shape = {how.kind, false, size.radius};
+  else if (!(size.pixels > 0))
+    mesh.shape = {how.kind, false, kCovering * scenes::point_spacing(mesh)};
+  scene.materials[mesh.material].unlit = !how.lit;
+}
+
+}  // namespace delray::apps

@@ -1,0 +1,34 @@
+// --show-as: what is drawn of points.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "scenes/scene.h"
+
+namespace delray::apps {
+
+// A row of the table.
+struct ShowAs {
+  const char* name;
+  const char* description;
+  scenes::Shape::Kind kind;
+  bool lit;  // else points keep their colour whatever the light
+
+  bool is_points() const { return kind != scenes::Shape::Kind::triangle; }
+};
+// The first is the relief.
+std::span<const ShowAs> show_as();
+
+struct PointSize {
+  float pixels = 0;  // diameter; 0: not given
+  float radius = -1;  // in units of the scene; negative: not given
+};
+
+// Makes points of the vertices of the scene's first mesh, which has no triangles. Without a size,
+// discs of it would cover a surface without gaps if the points lay on a square lattice. REQUIRES:
+// is_points.
+inline constexpr std::size_t kBytesPerShownPoint = 80;
+void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene);
+
+}  // namespace delray::apps

@@ -1,0 +1,20 @@
+// Meshes of points.
+#pragma once
+
+#include "scenes/scene.h"
+
+namespace delray::scenes {
+
+// Makes points of all vertices: neighbours follow each other (the k-d tree of Bentley 1975), vertices
+// and attributes with them. O(n log n), parallel.
+void make_points(Mesh& mesh, const Shape& shape);
+
+// How far neighbours of a cloud are from each other, were they a square lattice on a surface: the
+// root of the area that each has, as the distances to eighth neighbours tell (of n in a disc of
+// radius r each has r^2 pi / n). The median over some hundred runs of points, so that lines of a
+// scanner, gaps and strays hardly matter; 0 where most points coincide, or there is one only.
+//
+// REQUIRES: make_points made the mesh.
+float point_spacing(const Mesh& mesh);
+
+}  // namespace delray::scenes
