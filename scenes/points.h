@@ -17,4 +17,8 @@ void make_points(Mesh& mesh, const Shape& shape);
 // REQUIRES: make_points made the mesh.
 float point_spacing(const Mesh& mesh);
 
+// Makes radii in units of the world of those in pixels, for renderers of rays: what a pixel of a
+// frame of this height is where the camera looks at. Of a mesh, as its first instance places it.
+void set_radii_in_units(Scene& scene, const Camera& camera, int height);
+
 }  // namespace delray::scenes

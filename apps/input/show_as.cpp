@@ -8,16 +8,16 @@
 namespace delray::apps {
 namespace {
 
-using Kind = scenes::Shape::Kind;
+using ShapeKind = scenes::Shape::Kind;
 
 // Of the spacing: half of a square's diagonal is 0.71.
 constexpr float kCovering = 0.75F;
 
 constexpr std::array kTable = {
-    ShowAs{"relief", "the surface of heights over x and y", Kind::triangle, true},
-    ShowAs{"points", "round spots of one colour and depth", Kind::point, false},
-    ShowAs{"discs", "flat discs that face the viewer", Kind::disc, false},
-    ShowAs{"spheres", "balls, lit", Kind::sphere, true},
+    ShowAs{"relief", "the surface of heights over x and y", ShapeKind::triangle, true},
+    ShowAs{"points", "round spots of one colour and depth", ShapeKind::point, false},
+    ShowAs{"discs", "flat discs that face the viewer", ShapeKind::disc, false},
+    ShowAs{"spheres", "balls, lit", ShapeKind::sphere, true},
 };
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "raytrace/checkpoint.h"
 #include "scenes/framing.h"
 #include "scenes/generate.h"
+#include "scenes/points.h"
 #include "shading/take_shader.h"
 
 namespace delray::apps {
@@ -244,6 +245,8 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
                                                                    : Background::Kind::studio;
   }
   complete_surfaces(prepared.scene);
+  if (request.engine == Engine::raytrace)
+    scenes::set_radii_in_units(prepared.scene, prepared.camera, request.height);
   complete_light(request.light, prepared.camera, prepared.scene);
   warn_of_glow(request, prepared.scene);
   prepared.load_seconds = watch.lap();

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
@@ -93,6 +94,8 @@ glm::mat4 to_clip(const scenes::View& view) {
 struct MeshBuffers {
   GLuint vertices = 0, indices = 0;
   GLsizei count = 0;
+  bool points = false;  // of this size in pixels, drawn in the order of the vertices
+  float size = 1;
 };
 
 class Picture {
@@ -176,7 +179,10 @@ class Picture {
                      mesh.colours.empty() ? base : base * glm::vec3(mesh.colours[i])};
     }
     MeshBuffers buffers;
-    buffers.count = static_cast<GLsizei>(3 * mesh.triangles.size());
+    buffers.points = mesh.shape.kind == scenes::Shape::Kind::point;
+    buffers.size = std::max(1.0F, 2 * mesh.shape.radius);
+    buffers.count = static_cast<GLsizei>(buffers.points ? vertices.size()
+                                                        : 3 * mesh.triangles.size());
     glGenBuffers(1, &buffers.vertices);
     glBindBuffer(GL_ARRAY_BUFFER, buffers.vertices);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
@@ -204,6 +210,11 @@ class Picture {
     attribute(kPosition, offsetof(Vertex, position));
     attribute(kNormal, offsetof(Vertex, normal));
     attribute(kColour, offsetof(Vertex, colour));
+    if (mesh.points) {
+      glPointSize(mesh.size);
+      glDrawArrays(GL_POINTS, 0, mesh.count);
+      return;
+    }
     glDrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
   }
 

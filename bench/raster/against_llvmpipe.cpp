@@ -4,8 +4,9 @@
 //   raster_against_llvmpipe [--width W] [--height H] [--turns N] [--threads N,N...] [--alone]
 //                           [SCENE...]
 //
-// SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], or layers:back or layers:front, 32 full-screen
-// layers drawn from back to front or from front to back; without any, those of docs/performance.md.
+// SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], layers:back or layers:front, 32 full-screen
+// layers drawn from back to front or from front to back, or points:N, the vertices of a terrain of
+// N points, or scattered:N, in a box, as spots of one pixel and a colour; without any, those of docs/performance.md.
 // Both must cover the same pixels, but for a few on edges. For each number of threads llvmpipe with
 // one and with two threads of its own (the faster median counts) and Delray take turns; the table
 // has medians in milliseconds, Delray's over llvmpipe's, and over Delray's with the first number of
@@ -18,6 +19,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,7 @@
 #include "scenes/framing.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
+#include "scenes/points.h"
 
 namespace {
 
@@ -40,7 +43,8 @@ struct Arguments {
   std::vector<int> threads = {1, 2};
   bool alone = false;
   std::vector<std::string> scenes = {"gen:terrain:1000000", "gen:terrain:10000000",
-                                     "gen:field:13000000", "layers:back", "layers:front"};
+                                     "gen:field:13000000", "layers:back", "layers:front",
+                                     "points:10000000", "scattered:10000000"};
 };
 
 // Squares across the view, wider than any frame, at distances 1, 2 ... 32 from the eye.
@@ -62,6 +66,31 @@ scenes::Scene layers(bool back_to_front) {
   return scene;
 }
 
+// Spots of one pixel, unlit, which come in the order of the terrain's rows or in none at all.
+scenes::Scene points(const std::string& count, bool scattered, scenes::Camera& camera, float aspect) {
+  const auto n = static_cast<std::size_t>(std::stod(count));
+  scenes::Scene scene;
+  scenes::Mesh mesh;
+  if (scattered) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> both(-1, 1);
+    for (std::size_t i = 0; i < n; ++i)
+      mesh.positions.emplace_back(both(random), both(random), both(random));
+  } else {
+    mesh.positions = scenes::generate("gen:terrain:" + std::to_string(2 * n)).meshes[0].positions;
+  }
+  for (const glm::vec3& p : mesh.positions)
+    mesh.colours.emplace_back(glm::fract(p * 7.0F + 0.5F), 1.0F);
+  scenes::make_points(mesh, {scenes::Shape::Kind::point, true, 0.5F});
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({});
+  scene.materials.resize(1);
+  scene.materials[0].unlit = true;
+  scene.materials[0].base_colour = glm::vec4(1);
+  camera = scenes::camera_around(scene, "default", aspect);
+  return scene;
+}
+
 scenes::Scene make_scene(const std::string& name, scenes::Camera& camera, float aspect) {
   if (name.starts_with("layers:")) {
     camera.eye = {0, 0, 0};
@@ -69,6 +98,9 @@ scenes::Scene make_scene(const std::string& name, scenes::Camera& camera, float 
     camera.near = 0.1F;
     return layers(name == "layers:back");
   }
+  for (const std::string kind : {"points:", "scattered:"})
+    if (name.starts_with(kind))
+      return points(name.substr(kind.size()), kind == "scattered:", camera, aspect);
   std::vector<std::string> warnings;
   scenes::Scene scene =
       scenes::is_generated(name) ? scenes::generate(name) : scenes::load(name, warnings);
@@ -195,8 +227,9 @@ bool compare(const std::string& path, const Arguments& arguments) {
       medians.push_back(take_turns(frames, peers, arguments.turns));
     });
   }
-  constexpr std::size_t kEdges = 2000;  // one pixel of so many may differ
-  if (different > static_cast<std::size_t>(arguments.width) * arguments.height / kEdges) {
+  // One pixel of so many may differ; of spots all are on edges.
+  const std::size_t edges = scene.meshes[0].has_triangles() ? 2000 : 500;
+  if (different > static_cast<std::size_t>(arguments.width) * arguments.height / edges) {
     std::printf("%-24s %zu pixels are covered by one and not by the other\n", name.c_str(),
                 different);
     return false;
@@ -205,7 +238,7 @@ bool compare(const std::string& path, const Arguments& arguments) {
     for (std::size_t i = 0; i < medians.size(); ++i) {
       const double seconds = medians[i].ours[cull];
       std::printf("%-24s %10zu %7d %5s %10.2f %10.2f %8.3f %10.3f\n", name.c_str(),
-                  static_cast<std::size_t>(scenes::triangle_count(scene)), arguments.threads[i],
+                  static_cast<std::size_t>(scenes::first_primitives(scene).back()), arguments.threads[i],
                   cull ? "yes" : "no", medians[i].peer * kMilli, seconds * kMilli,
                   seconds / medians[i].peer, seconds / medians[0].ours[cull]);
       bench::report_ratio(
@@ -234,7 +267,7 @@ int main(int count, char** words) {
       std::printf("%-24s %7s %5s %10s %10s %10s %10s %10s\n", "scene", "threads", "cull",
                   "frame ms", "transform", "bin", "rasterize", "shade");
     } else {
-      std::printf("%-24s %10s %7s %5s %10s %10s %8s %10s\n", "scene", "triangles", "threads",
+      std::printf("%-24s %10s %7s %5s %10s %10s %8s %10s\n", "scene", "primitives", "threads",
                   "cull", "llvmpipe", "delray ms", "ratio", "over first");
     }
     bool good = true;

@@ -16,7 +16,7 @@
 namespace delray::raster {
 namespace {
 
-using Kind = scenes::Shape::Kind;
+using ShapeKind = scenes::Shape::Kind;
 
 bool finite(const glm::vec3& v) {
   constexpr float kLargest = std::numeric_limits<float>::max();
@@ -109,7 +109,7 @@ bool meets_ball(const Screen& screen, const Splat& splat, const PixelRay& ray, S
   const float left = splat.radius * splat.radius * squared - glm::dot(m, m);
   if (!(left > 0)) return false;
   const float middle = glm::dot(c, ray.direction) / squared;
-  const bool flat = splat.kind == Kind::disc;
+  const bool flat = splat.kind == ShapeKind::disc;
   const float half = flat ? 0.0F : std::sqrt(left) / squared;
   float t;
   if (!first_seen(screen, middle - half, middle + half, t)) return false;
@@ -200,7 +200,9 @@ SplatDraw make_splat_draw(const Screen& screen, const Draw& draw) {
   } else {
     const float longest =
         std::max({glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2])});
-    result.radius = shape.radius * std::sqrt(longest);
+    // Squares of it are finite.
+    constexpr float kLargestRadius = 1e18F;
+    result.radius = std::min(shape.radius * std::sqrt(longest), kLargestRadius);
   }
   if (result.in_samples && view.orthographic && !result.is_spot()) {
     result.in_samples = false;
@@ -228,7 +230,7 @@ Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
   splat.a = draw.to_view(mesh.positions[corners.x]);
   splat.b = draw.to_view(mesh.positions[corners.y]);
   if (!finite(splat.a) || !finite(splat.b)) return splat;
-  if (draw.kind == Kind::disc && !mesh.normals.empty()) {
+  if (draw.kind == ShapeKind::disc && !mesh.normals.empty()) {
     const glm::vec3 normal = draw.normal_to_view * mesh.normals[corners.x];
     const float squared = glm::dot(normal, normal);
     if (squared > 0) splat.normal = normal * (1.0F / std::sqrt(squared));
@@ -247,8 +249,8 @@ Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
 
 bool meets(const Screen& screen, const Splat& splat, int x, int y, SplatHit& hit) {
   const PixelRay ray = ray_of(screen, x, y);
-  if (splat.kind == Kind::line) return meets_segment(screen, splat, ray, hit);
-  const bool turned = splat.kind == Kind::disc && splat.normal != glm::vec3(0.0F);
+  if (splat.kind == ShapeKind::line) return meets_segment(screen, splat, ray, hit);
+  const bool turned = splat.kind == ShapeKind::disc && splat.normal != glm::vec3(0.0F);
   return turned ? meets_disc(screen, splat, ray, hit) : meets_ball(screen, splat, ray, hit);
 }
 

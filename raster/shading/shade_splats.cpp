@@ -12,7 +12,7 @@
 namespace delray::raster {
 namespace {
 
-using Kind = scenes::Shape::Kind;
+using ShapeKind = scenes::Shape::Kind;
 
 glm::vec3 to_world(const scenes::View& view, const glm::vec3& v) {
   return view.right * v.x + view.up * v.y + view.forward * v.z;
@@ -84,7 +84,7 @@ SeenPoint splat_point(const FrameShading& frame, std::uint32_t number, int x, in
   point.normal = point.geometric_normal = unit(to_world(view, hit.normal), viewer);
   if (!mesh.colours.empty()) {
     point.colour = mesh.colours[corners.x];
-    if (splats.kind == Kind::line)
+    if (splats.kind == ShapeKind::line)
       point.colour += (mesh.colours[corners.y] - mesh.colours[corners.x]) * hit.along;
   }
   return seen;
@@ -92,7 +92,7 @@ SeenPoint splat_point(const FrameShading& frame, std::uint32_t number, int x, in
 
 bool is_plain(const shading::Shader& shader, const Draw& draw) {
   const scenes::Material& material = shading::material(shader, draw.mesh->material);
-  return !draw.mesh->has_triangles() && draw.mesh->shape.kind != Kind::line && material.unlit &&
+  return !draw.mesh->has_triangles() && draw.mesh->shape.kind != ShapeKind::line && material.unlit &&
          material.base_colour_texture == scenes::kNone;
 }
 

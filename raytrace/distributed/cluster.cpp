@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "comm/bad_message.h"
+#include "raytrace/scene/splat_hits.h"
 
 namespace delray::raytrace {
 namespace {

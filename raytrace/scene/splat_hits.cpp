@@ -15,7 +15,7 @@
 namespace delray::raytrace {
 namespace {
 
-using Kind = scenes::Shape::Kind;
+using ShapeKind = scenes::Shape::Kind;
 
 constexpr std::size_t kGrain = 1 << 14;  // points: some ten microseconds
 
@@ -74,13 +74,13 @@ Splats make_splats(const GeometryInstance& instance) {
   Splats splats;
   splats.kind = mesh.shape.kind;
   const std::size_t count = mesh.triangles.size();
-  const bool segments = splats.kind == Kind::line;
+  const bool segments = splats.kind == ShapeKind::line;
   splats.places.resize(segments ? 2 * count : count);
   if (segments) {
     splats.segments.resize(count);
     splats.neighbours.assign(count, 0);
   }
-  const bool turned = splats.kind == Kind::disc && !mesh.normals.empty();
+  const bool turned = splats.kind == ShapeKind::disc && !mesh.normals.empty();
   if (turned) splats.normals.resize(count);
   parallel::parallel_for(0, count, kGrain, [&](std::size_t t) {
     const glm::uvec3& corners = mesh.triangles[t];
@@ -99,11 +99,11 @@ Splats make_splats(const GeometryInstance& instance) {
 
 void keep_place(const Splats& splats, std::uint32_t number, const SplatRay& ray, float& u,
                 float& v) {
-  if (splats.kind == Kind::line) {
+  if (splats.kind == ShapeKind::line) {
     v = packed(to_octahedron(ray.normal));
     return;
   }
-  if (splats.kind == Kind::sphere) {
+  if (splats.kind == ShapeKind::sphere) {
     const glm::vec2 at = to_octahedron(ray.normal);
     u = at.x, v = at.y;
     return;
@@ -126,13 +126,13 @@ Intersection splat_intersection(const GeometryInstance& instance, const Hit& hit
   shading::Point& point = result.point;
   if (!mesh.colours.empty()) point.colour = mesh.colours[corners.x];
   glm::vec3 normal, offset;
-  if (mesh.shape.kind == Kind::line) {
+  if (mesh.shape.kind == ShapeKind::line) {
     normal = from_octahedron(unpacked(hit.v));
     centre += (instance.positions[corners.y] - centre) * hit.u;
     offset = normal * radius;
     if (!mesh.colours.empty())
       point.colour += (mesh.colours[corners.y] - point.colour) * hit.u;
-  } else if (mesh.shape.kind == Kind::sphere) {
+  } else if (mesh.shape.kind == ShapeKind::sphere) {
     normal = from_octahedron({hit.u, hit.v});
     offset = normal * radius;
   } else {
