@@ -82,9 +82,11 @@ void finish(const RenderRequest& request, const Session& session, const Prepared
   const std::string hash = write_picture(session, request.output, frames.picture, frames.extras);
   const Json statistics = render_statistics(request, prepared, frames, hash, watch.lap());
   write_statistics(request.statistics, statistics);
-  spdlog::info("{}: {} x {}, {} triangles, {:.3f} s a frame",
+  const std::string points =
+      prepared.points > 0 ? fmt::format(", {} points and lines", prepared.points) : "";
+  spdlog::info("{}: {} x {}, {} triangles{}, {:.3f} s a frame",
                request.output == "-" ? "standard output" : request.output, request.picture_width(),
-               request.picture_height(), prepared.triangles,
+               request.picture_height(), prepared.triangles, points,
                statistics["seconds"]["frame"].get<double>());
   log_details(statistics);
 }

@@ -19,6 +19,7 @@ struct PointCloud {
   std::vector<glm::u8vec4> colours;          // sRGB
   std::vector<float> intensity;              // 0 .. 1
   std::vector<std::uint8_t> classification;  // LAS classes
+  std::vector<std::uint8_t> returns;         // of LAS: the return's number | how many << 4
   bool geographic = false;                   // x and y are longitude and latitude in degrees
   std::vector<std::string> warnings;         // what the file has and the points have not
 

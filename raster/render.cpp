@@ -23,6 +23,7 @@
 #include "raster/distribute/rank_context.h"
 #include "raster/distribute/share_communicator.h"
 #include "raster/pipeline/samples.h"
+#include "raster/shading/eye_dome.h"
 #include "raster/strategies.h"
 
 namespace delray::raster {
@@ -316,7 +317,19 @@ struct Renderer::Frame {
     for (Picture& display : result.shown) make_distances(display);
     if (communicator.rank() == 0 && options.strategy != "sort-last")
       result.statistics.partition = partition_of_ranks();
+    if (options.eye_dome) {
+      std::visit([&](auto& image) { light_by_eye_dome(view_of_pixels(), image); }, result.picture);
+    }
     return result;
+  }
+
+  // The screen is in samples.
+  scenes::View view_of_pixels() const {
+    scenes::View view = screen.view;
+    view.width = options.width;
+    view.height = options.height;
+    view.scale /= screen.samples;
+    return view;
   }
 
   std::optional<PartitionStatistics> partition_of_ranks() const {

@@ -74,6 +74,7 @@ struct RenderOptions {
   bool float_pixels = false;  // an ImageF with linear light rather than 8-bit sRGB
   int supersampling = 1;      // 1, 2 or 4: so many samples per pixel in either direction
   Lighting lighting = Lighting::phong;
+  bool eye_dome = false;  // pixels are darker behind what stands before them: shading/eye_dome.h
   Shade shade = Shade::deferred;
   // Faces away from the viewer of materials that are not double-sided are not drawn.
   bool cull_single_sided = false;

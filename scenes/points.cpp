@@ -71,8 +71,8 @@ void set_radii_in_units(Scene& scene, const Camera& camera, int height) {
     Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.has_triangles() || !mesh.shape.in_pixels) continue;
     const glm::mat4x3& m = instance.transform;
-    const float longest = std::sqrt(
-        std::max({glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2])}));
+    const float longest =
+        std::sqrt(std::max({glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2])}));
     mesh.shape.in_pixels = false;
     if (longest > 0) mesh.shape.radius *= distance / (view.scale * longest);
   }

@@ -5,8 +5,8 @@
 
 namespace delray::scenes {
 
-// Makes points of all vertices: neighbours follow each other (the k-d tree of Bentley 1975), vertices
-// and attributes with them. O(n log n), parallel.
+// Makes points of all vertices: neighbours follow each other (the k-d tree of Bentley 1975),
+// vertices and attributes with them. O(n log n), parallel.
 void make_points(Mesh& mesh, const Shape& shape);
 
 // How far neighbours of a cloud are from each other, were they a square lattice on a surface: the

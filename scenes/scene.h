@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,8 @@ struct Shape {
 
 // Indexed triangles with one material, or points or segments, which are triangles without area: of
 // a point all three corners are one vertex, of a segment the second and the third. So everything
-// that shares out, counts and sends triangles knows them too. Attributes are empty or have one value
-// per vertex. Points and segments are opaque; their uvs and tangents are not looked at.
+// that shares out, counts and sends triangles knows them too. Attributes are empty or have one
+// value per vertex. Points and segments are opaque; their uvs and tangents are not looked at.
 struct Mesh {
   std::string name;
   Shape shape;
@@ -141,6 +142,18 @@ struct Environment {
   glm::vec3 zenith{0.0F}, horizon{0.0F}, ground{0.0F};  // radiance
 };
 
+// What the colours of vertices tell, for a legend: a number that runs through a map, or classes.
+struct ColourScale {
+  std::string title;
+  float low = 0, high = 1;               // of the map's ends
+  glm::vec3 (*colour)(float) = nullptr;  // linear, from 0 to 1; null: there are classes
+  struct Class {
+    std::string name;
+    glm::vec3 colour;  // linear
+  };
+  std::vector<Class> classes;
+};
+
 // Everything that is rendered.
 struct Scene {
   std::vector<Mesh> meshes;
@@ -155,7 +168,8 @@ struct Scene {
   // Other files that the scene's file names (textures, buffers, materials), whether they are there
   // and read or not; relative to the working folder. Sorted, each once.
   std::vector<std::string> files;
-  geometry::Box3 framed;  // what cameras around the scene show; empty: all of it
+  std::optional<ColourScale> colour_scale;  // where vertices were coloured by one
+  geometry::Box3 framed;                    // what cameras around the scene show; empty: all of it
 };
 
 // Triangles, points and segments, and vertices of all instances. O(instances).
@@ -166,8 +180,8 @@ std::uint64_t vertex_count(const Scene& scene);
 // The box of all instances, transformed vertex by vertex; empty for an empty scene. Parallel.
 geometry::Box3 bounds(const Scene& scene);
 
-// Primitive numbers: triangle (or point or segment) t of instance i is number first_primitive[i] + t. One more element
-// than instances: the last is the count.
+// Primitive numbers: triangle (or point or segment) t of instance i is number first_primitive[i] +
+// t. One more element than instances: the last is the count.
 std::vector<std::uint64_t> first_primitives(const Scene& scene);
 
 // Whether anything lights the scene: a light, an environment, or surfaces that emit it

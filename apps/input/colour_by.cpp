@@ -3,6 +3,8 @@
 // what would tint the result.
 #include "apps/input/colour_by.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -72,6 +74,12 @@ void by_height(scenes::Scene& scene, const delaunay::PointCloud*) {
     all.insert(all.end(), own.begin(), own.end());
   }
   const std::pair<float, float> range = range_of(all);
+  const auto bottom = static_cast<float>(scene.origin[scene.z_up ? 2 : 1]);
+  scene.colour_scale = {"height",
+                        bottom + range.first,
+                        bottom + range.second,
+                        scenes::colour_maps().front().colour,
+                        {}};
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (!heights[m].empty()) scene.meshes[m].colours = mapped(heights[m], range);
   }
@@ -124,19 +132,71 @@ void by_rgb(scenes::Scene& scene, const delaunay::PointCloud* points) {
   });
 }
 
+glm::vec3 grey(float t) { return glm::vec3(t); }
+
 void by_intensity(scenes::Scene& scene, const delaunay::PointCloud* points) {
   const std::vector<float>& values = attributes(points).intensity;
   const auto [low, high] = range_of(values);
   by_attribute(scene, values, "intensity", [low = low, high = high](float value) {
-    const float grey = std::clamp((value - low) / std::max(high - low, 1e-30F), 0.0F, 1.0F);
-    return glm::vec4(grey, grey, grey, 1.0F);
+    const float t = std::clamp((value - low) / std::max(high - low, 1e-30F), 0.0F, 1.0F);
+    return glm::vec4(grey(t), 1.0F);
   });
+  scene.colour_scale = {"intensity", low, high, grey, {}};
+}
+
+// The values that occur, ascending, with their names and colours.
+template <class Name, class Colour>
+scenes::ColourScale classes_of(const std::vector<std::uint8_t>& values, const char* title,
+                               Name&& name, Colour&& colour) {
+  std::array<bool, 256> occurs{};
+  for (const std::uint8_t value : values) occurs[value] = true;
+  scenes::ColourScale scale;
+  scale.title = title;
+  for (std::size_t i = 0; i < occurs.size(); ++i) {
+    if (occurs[i])
+      scale.classes.push_back({name(static_cast<unsigned>(i)), colour(static_cast<unsigned>(i))});
+  }
+  return scale;
+}
+
+// After ASPRS, LAS Specification 1.4 R15, table 17.
+std::string class_name(unsigned code) {
+  constexpr std::array kNames = {
+      "never classified",  "unclassified",    "ground",         "low vegetation",
+      "medium vegetation", "high vegetation", "building",       "low noise",
+      "key point",         "water",           "rail",           "road",
+      "overlap",           "wire guard",      "wire conductor", "tower",
+      "connector",         "bridge deck",     "high noise"};
+  return fmt::format("{}{}{}", code, code < kNames.size() ? " " : "",
+                     code < kNames.size() ? kNames[code] : "");
 }
 
 void by_classification(scenes::Scene& scene, const delaunay::PointCloud* points) {
-  by_attribute(scene, attributes(points).classification, "classification", [](std::uint8_t number) {
+  const std::vector<std::uint8_t>& values = attributes(points).classification;
+  by_attribute(scene, values, "classification", [](std::uint8_t number) {
     return glm::vec4(scenes::classification_colour(number), 1.0F);
   });
+  scene.colour_scale = classes_of(values, "class", class_name, scenes::classification_colour);
+}
+
+// Blue the only one, from green to red the first to the last of several.
+glm::vec3 return_colour(unsigned returns) {
+  const unsigned number = returns & 15U, count = returns >> 4;
+  const scenes::ColourMap& map = scenes::colour_map("turbo");
+  if (count <= 1) return map.colour(0.15F);
+  const float share =
+      number <= 1 ? 0.0F : static_cast<float>(number - 1) / static_cast<float>(count - 1);
+  return map.colour(0.4F + 0.5F * std::min(share, 1.0F));
+}
+
+void by_returns(scenes::Scene& scene, const delaunay::PointCloud* points) {
+  const std::vector<std::uint8_t>& values = attributes(points).returns;
+  by_attribute(scene, values, "return numbers",
+               [](std::uint8_t returns) { return glm::vec4(return_colour(returns), 1.0F); });
+  scene.colour_scale = classes_of(
+      values, "return",
+      [](unsigned returns) { return fmt::format("{} of {}", returns & 15U, returns >> 4); },
+      return_colour);
 }
 
 constexpr std::array kTable = {
@@ -146,6 +206,7 @@ constexpr std::array kTable = {
     ColourBy{"rgb", "the colours of the points", by_rgb},
     ColourBy{"intensity", "the intensity of the points", by_intensity},
     ColourBy{"classification", "the class of the points", by_classification},
+    ColourBy{"returns", "which return of how many the points are", by_returns},
 };
 
 }  // namespace
@@ -159,6 +220,7 @@ std::string_view default_colour_by(const delaunay::PointCloud& points) {
 }
 
 void colour_by(scenes::Scene& scene, std::string_view name, const delaunay::PointCloud* points) {
+  scene.colour_scale.reset();
   find_entry(kTable, name, "--color-by").apply(scene, points);
 }
 

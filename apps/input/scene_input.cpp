@@ -84,6 +84,13 @@ scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& poin
   scenes::Scene scene = relief(points, triangulation, inliers, input.exaggeration);
   set_up(input, scene);
   colour_by(scene, colouring(input, points, triangulation.size() == 0), &points);
+  if (scenes::ColourScale* const scale = scene.colour_scale ? &*scene.colour_scale : nullptr;
+      scale != nullptr && scale->title == "height") {
+    const auto bottom = static_cast<float>(scene.origin.z);
+    const auto stretched = static_cast<float>(input.exaggeration);
+    for (float* const end : {&scale->low, &scale->high})
+      *end = bottom + (*end - bottom) / stretched;
+  }
   return scene;
 }
 
@@ -98,6 +105,10 @@ std::string no_surface(const delaunay::PointCloud& points) {
 
 bool has_size(const SceneInput& input) { return input.point_size > 0 || input.radius >= 0; }
 
+PointSize size_of(const SceneInput& input) {
+  return {static_cast<float>(input.point_size), static_cast<float>(input.radius)};
+}
+
 [[noreturn]] void fail(const SceneInput& input, const std::string& what) {
   throw files::FileError(files::Cause::input, input.file.path, "", what);
 }
@@ -106,7 +117,7 @@ scenes::Scene as_points(const SceneInput& input, const delaunay::PointCloud& poi
                         const ShowAs& how) {
   input.file.limits.budget().require(points.size() * kBytesPerShownPoint, input.file.path);
   scenes::Scene scene = coloured(input, points, {});
-  show_points(how, {static_cast<float>(input.point_size), static_cast<float>(input.radius)}, scene);
+  show_points(how, size_of(input), scene);
   return scene;
 }
 
@@ -202,6 +213,10 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
         {.memory = limits.budget(), .outside = limits.outside(), .progress = progress});
     for (const std::string& warning : warnings) spdlog::warn(warning);
   }
+  if (has_size(input) && !set_point_size(size_of(input), scene)) {
+    throw UsageError(fmt::format("--point-size and --radius are for points and lines; {} has none",
+                                 input.file.path));
+  }
   set_up(input, scene);
   if (!input.colour_by.empty()) colour_by(scene, input.colour_by, nullptr);
   return scene;
@@ -246,9 +261,9 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
       "such as gen:city:1e6");
   command
       .add_option(
-          "--color-by", input.colour_by,
+          "--color-by,--colour-by", input.colour_by,
           "What colours show: material, z (height) or simplex (a colour for each triangle); of "
-          "points also rgb, intensity or classification (default: what the file has)")
+          "points also rgb, intensity, classification or returns (default: what the file has)")
       ->group(group::kInput);
   command
       .add_option("--exaggeration", input.exaggeration,
@@ -331,11 +346,16 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
         "points; {} is a scene",
         input.file.path));
   }
-  if (!input.show_as.empty() || has_size(input)) {
-    throw UsageError(fmt::format("--show-as, --point-size and --radius are for points; {} has triangles",
-                                 input.file.path));
+  if (!input.show_as.empty()) {
+    throw UsageError(fmt::format("--show-as is for points; {} is a scene", input.file.path));
   }
-  if (kind == InputKind::mesh) return from_mesh(input);
+  if (kind == InputKind::mesh) {
+    if (has_size(input)) {
+      throw UsageError(
+          fmt::format("--point-size and --radius are for points; {} is a mesh", input.file.path));
+    }
+    return from_mesh(input);
+  }
   if (input.exaggeration != 1) {
     throw UsageError(fmt::format("--exaggeration is for points; {} is a scene", input.file.path));
   }

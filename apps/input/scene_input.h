@@ -33,8 +33,8 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory 
 // scene or mesh among several.
 InputKind input_kind_of(const PointInput& input);
 
-// Adds SCENE, --color-by, --exaggeration, --show-as, --point-size, --radius, --up, --allow-outside and
-// the options of points.
+// Adds SCENE, --color-by, --exaggeration, --show-as, --point-size, --radius, --up, --allow-outside
+// and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
 // Loads or generates the scene; points are triangulated in the plane, with their z as height, or

@@ -34,4 +34,15 @@ void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene)
   scene.materials[mesh.material].unlit = !how.lit;
 }
 
+bool set_point_size(const PointSize& size, scenes::Scene& scene) {
+  bool any = false;
+  for (scenes::Mesh& mesh : scene.meshes) {
+    if (mesh.has_triangles()) continue;
+    any = true;
+    const bool in_pixels = size.radius < 0;
+    mesh.shape = {mesh.shape.kind, in_pixels, in_pixels ? size.pixels * 0.5F : size.radius};
+  }
+  return any;
+}
+
 }  // namespace delray::apps

@@ -21,7 +21,7 @@ struct ShowAs {
 std::span<const ShowAs> show_as();
 
 struct PointSize {
-  float pixels = 0;  // diameter; 0: not given
+  float pixels = 0;   // diameter; 0: not given
   float radius = -1;  // in units of the scene; negative: not given
 };
 
@@ -30,5 +30,8 @@ struct PointSize {
 // is_points.
 inline constexpr std::size_t kBytesPerShownPoint = 80;
 void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene);
+
+// Sets the size of all points and lines of a scene. Returns whether there are any.
+bool set_point_size(const PointSize& size, scenes::Scene& scene);
 
 }  // namespace delray::apps

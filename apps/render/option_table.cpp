@@ -131,6 +131,9 @@ std::vector<RenderOption> picture_options() {
           .one_of(background_names(),
                   {"#rrggbb", [](const std::string& text) { return text.starts_with('#'); }})
           .reported("background"),
+      RenderOption::of(
+          "--legend", [](auto& r) -> auto& { return r.legend; }, group::kPicture,
+          "Draw into the picture what colours tell: heights, intensity, classes or returns"),
   };
 }
 
@@ -185,11 +188,15 @@ std::vector<RenderOption> rasterizer_options() {
           "(default: binary-swap; radix-k may be given its radices, such as radix-k:4,2)")
           .unless(unless_raster(unless_strategy(&Strategy::composites)))
           .reported("compose", strategy_that(&Strategy::composites)),
-      RenderOption::choice<raster::Lighting>(
-          "--shading", [](auto& r) -> auto& { return r.raster.lighting; },
-          {{"phong", raster::Lighting::phong}, {"gouraud", raster::Lighting::gouraud}},
+      RenderOption::choice<SurfaceLighting>(
+          "--shading", [](auto& r) -> auto& { return r.shading; },
+          {{"phong", SurfaceLighting::phong},
+           {"gouraud", SurfaceLighting::gouraud},
+           {"eye-dome", SurfaceLighting::eye_dome}},
           group::kRasterizer,
-          "Lighting of surfaces: phong, at every pixel (default), or gouraud, at vertices")
+          "Lighting of surfaces: phong, at every pixel (default), gouraud, at vertices, or "
+          "eye-dome, "
+          "as phong and darker behind what stands before it, which shows the shape of points")
           .unless(unless_raster())
           .reported("shading", is_raster),
       RenderOption::of(

@@ -58,6 +58,9 @@ raster::RenderOptions raster_options(const RenderRequest& request, const geometr
   if (window != geometry::Rect{0, 0, request.width, request.height}) options.window = window;
   options.displays = displays(request, ranks);
   options.owners_draw = request.layout.draw_at_home;
+  options.lighting = request.shading == SurfaceLighting::gouraud ? raster::Lighting::gouraud
+                                                                 : raster::Lighting::phong;
+  options.eye_dome = request.shading == SurfaceLighting::eye_dome;
   options.float_pixels = wants_floats(request);
   options.partition = sharing.partition;
   options.costs = sharing.measured_costs ? raster::CostSource::measured : raster::CostSource::model;
@@ -188,6 +191,7 @@ std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
   } else {
     prepared->scene = load_scene(request.scene, progress);
     prepared->triangles = scenes::triangle_count(prepared->scene);
+    prepared->points = scenes::splat_count(prepared->scene);
     prepared->vertices = scenes::vertex_count(prepared->scene);
   }
   return prepared;
@@ -243,6 +247,10 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
   if (prepared.background.kind == Background::Kind::automatic) {
     prepared.background.kind = has_sky(prepared.scene.environment) ? Background::Kind::environment
                                                                    : Background::Kind::studio;
+  }
+  if (request.legend && !prepared.scene.colour_scale) {
+    throw UsageError(
+        "--legend is for colours of height, intensity, classes or returns: see --color-by");
   }
   complete_surfaces(prepared.scene);
   if (request.engine == Engine::raytrace)

@@ -30,6 +30,7 @@ struct Prepared {
   std::string fingerprint;                    // likewise, of all; where there are checkpoints
   bool known_by_name = false;                 // the name of the scene alone tells what is in it
   std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
+  std::uint64_t points = 0;                   // and segments, of the whole scene
   double load_seconds = 0, build_seconds = 0;
 
   const shading::Shader& shading() const { return tracer ? tracer->shader : *shader; }

@@ -83,7 +83,7 @@ void check_raster(const RenderRequest& request) {
   if (request.raster.shade != raster::Shade::composited) return;
   if (!raster::find_strategy(request.raster.strategy)->composites)
     throw UsageError("--shade composited: only --strategy sort-last composites");
-  if (request.raster.lighting == raster::Lighting::gouraud)
+  if (request.shading == SurfaceLighting::gouraud)
     throw UsageError("--shade composited: vertices are lit before with --shading gouraud");
 }
 

@@ -21,6 +21,7 @@
 namespace delray::apps {
 
 enum class Engine { raster, raytrace };
+enum class SurfaceLighting { phong, gouraud, eye_dome };
 
 // Options of sharing the picture out among ranks, for either engine.
 struct Sharing {
@@ -40,7 +41,8 @@ struct RenderRequest {
   Engine engine = Engine::raster;
   std::string camera_path;
   int frames = 1, turntable = 0, frames_at_once = 0;  // 0: by the threads
-  bool list = false;
+  bool list = false, legend = false;
+  SurfaceLighting shading = SurfaceLighting::phong;
   Sharing sharing;
   raster::RenderOptions raster;
   raytrace::RenderOptions raytrace;

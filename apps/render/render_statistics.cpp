@@ -168,6 +168,7 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"scene",
              {{"file", request.scene.file.path},
               {"triangles", prepared.triangles},
+              {"points", prepared.points},
               {"vertices", prepared.vertices},
               {"instances", prepared.scene.instances.size()}}},
             {"camera", json_of(prepared.camera, prepared.scene.origin)},

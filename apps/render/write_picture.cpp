@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/options/help.h"
+#include "apps/render/legend.h"
 #include "image/hash.h"
 #include "image/io.h"
 #include "image/srgb.h"
@@ -50,10 +51,14 @@ void put_background_behind(const RenderRequest& request, const Prepared& prepare
         put_behind(pixels, prepared.background, prepared.shading(), view, {window.x0, window.y0});
       },
       picture);
-  if (sampling.exposure == 0.0 && sampling.tone == "linear") return;
-  image::map_tones(std::get<image::ImageF>(picture),
-                   shading::exp2(static_cast<float>(sampling.exposure)),
-                   image::tone_curve(sampling.tone));
+  if (sampling.exposure != 0.0 || sampling.tone != "linear") {
+    image::map_tones(std::get<image::ImageF>(picture),
+                     shading::exp2(static_cast<float>(sampling.exposure)),
+                     image::tone_curve(sampling.tone));
+  }
+  if (request.legend) {
+    std::visit([&](auto& pixels) { draw_legend(*prepared.scene.colour_scale, pixels); }, picture);
+  }
 }
 
 // A file must not tell where it was made, or how, unless its maker wants it.

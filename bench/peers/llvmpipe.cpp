@@ -181,8 +181,8 @@ class Picture {
     MeshBuffers buffers;
     buffers.points = mesh.shape.kind == scenes::Shape::Kind::point;
     buffers.size = std::max(1.0F, 2 * mesh.shape.radius);
-    buffers.count = static_cast<GLsizei>(buffers.points ? vertices.size()
-                                                        : 3 * mesh.triangles.size());
+    buffers.count =
+        static_cast<GLsizei>(buffers.points ? vertices.size() : 3 * mesh.triangles.size());
     glGenBuffers(1, &buffers.vertices);
     glBindBuffer(GL_ARRAY_BUFFER, buffers.vertices);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),

@@ -14,8 +14,8 @@ class Llvmpipe {
  public:
   // Forks; the child keeps all meshes in vertex and index buffers, with a colour for each vertex,
   // and draws one instance after the other, lit at the vertices by one directional light, without
-  // culling. Of spots (Shape::Kind::point) the vertices are GL_POINTS, squares of that size in pixels.
-  // Errors: std::runtime_error where there is no such rasterizer.
+  // culling. Of spots (Shape::Kind::point) the vertices are GL_POINTS, squares of that size in
+  // pixels. Errors: std::runtime_error where there is no such rasterizer.
   Llvmpipe(const scenes::Scene& scene, const scenes::View& view, int threads);
   ~Llvmpipe();
   Llvmpipe(const Llvmpipe&) = delete;

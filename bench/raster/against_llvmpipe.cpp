@@ -6,11 +6,12 @@
 //
 // SCENE is a file, gen:KIND[:TRIANGLES[:SEED]], layers:back or layers:front, 32 full-screen
 // layers drawn from back to front or from front to back, or points:N, the vertices of a terrain of
-// N points, or scattered:N, in a box, as spots of one pixel and a colour; without any, those of docs/performance.md.
-// Both must cover the same pixels, but for a few on edges. For each number of threads llvmpipe with
-// one and with two threads of its own (the faster median counts) and Delray take turns; the table
-// has medians in milliseconds, Delray's over llvmpipe's, and over Delray's with the first number of
-// threads, without culling and with it: of faces that look away and of hidden clusters. With
+// N points, or scattered:N, in a box, as spots of one pixel and a colour; without any, those of
+// docs/performance.md. Both must cover the same pixels, but for a few on edges. For each number of
+// threads llvmpipe with one and with two threads of its own (the faster median counts) and Delray
+// take turns; the table has medians in milliseconds, Delray's over llvmpipe's, and over Delray's
+// with the first number of threads, without culling and with it: of faces that look away and of
+// hidden clusters. With
 // --alone, for profiles, llvmpipe stays away and medians of Delray's phases are shown.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -42,9 +43,9 @@ struct Arguments {
   int width = 1920, height = 1080, turns = 9;
   std::vector<int> threads = {1, 2};
   bool alone = false;
-  std::vector<std::string> scenes = {"gen:terrain:1000000", "gen:terrain:10000000",
-                                     "gen:field:13000000", "layers:back", "layers:front",
-                                     "points:10000000", "scattered:10000000"};
+  std::vector<std::string> scenes = {
+      "gen:terrain:1000000", "gen:terrain:10000000", "gen:field:13000000", "layers:back",
+      "layers:front",        "points:10000000",      "scattered:10000000"};
 };
 
 // Squares across the view, wider than any frame, at distances 1, 2 ... 32 from the eye.
@@ -67,7 +68,8 @@ scenes::Scene layers(bool back_to_front) {
 }
 
 // Spots of one pixel, unlit, which come in the order of the terrain's rows or in none at all.
-scenes::Scene points(const std::string& count, bool scattered, scenes::Camera& camera, float aspect) {
+scenes::Scene points(const std::string& count, bool scattered, scenes::Camera& camera,
+                     float aspect) {
   const auto n = static_cast<std::size_t>(std::stod(count));
   scenes::Scene scene;
   scenes::Mesh mesh;
@@ -238,9 +240,9 @@ bool compare(const std::string& path, const Arguments& arguments) {
     for (std::size_t i = 0; i < medians.size(); ++i) {
       const double seconds = medians[i].ours[cull];
       std::printf("%-24s %10zu %7d %5s %10.2f %10.2f %8.3f %10.3f\n", name.c_str(),
-                  static_cast<std::size_t>(scenes::first_primitives(scene).back()), arguments.threads[i],
-                  cull ? "yes" : "no", medians[i].peer * kMilli, seconds * kMilli,
-                  seconds / medians[i].peer, seconds / medians[0].ours[cull]);
+                  static_cast<std::size_t>(scenes::first_primitives(scene).back()),
+                  arguments.threads[i], cull ? "yes" : "no", medians[i].peer * kMilli,
+                  seconds * kMilli, seconds / medians[i].peer, seconds / medians[0].ours[cull]);
       bench::report_ratio(
           name + (cull ? ", culling, " : ", ") + bench::thread_count(arguments.threads[i]),
           seconds / medians[i].peer);

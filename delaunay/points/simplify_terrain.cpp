@@ -365,6 +365,7 @@ PointCloud select_rows(const PointCloud& cloud, const std::vector<std::uint32_t>
   select(result.colours, cloud.colours);
   select(result.intensity, cloud.intensity);
   select(result.classification, cloud.classification);
+  select(result.returns, cloud.returns);
   return result;
 }
 

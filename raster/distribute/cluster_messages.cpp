@@ -33,9 +33,9 @@ enum Attribute : std::uint8_t {
   kShape = 64,  // not a value of vertices: a ShapeHeader
 };
 
-// Followed by the transform where it is another one than before, the shape if there is one, first corners, second corners and
-// third corners, a byte each and all filled up to four bytes, positions, and the attributes in
-// ascending order.
+// Followed by the transform where it is another one than before, the shape if there is one, first
+// corners, second corners and third corners, a byte each and all filled up to four bytes,
+// positions, and the attributes in ascending order.
 struct ClusterHeader {
   std::uint32_t cluster, material;
   std::uint16_t vertices, triangles;
@@ -179,8 +179,8 @@ std::vector<Section> find_sections(std::span<const std::byte> bytes,
     }
     section.content = bytes.data();
     if (sections.empty() || !header.same_mesh(sections.back().header) ||
-        shape != meshes.back().mesh.shape ||
-        transform != meshes.back().transform || triangles + header.triangles > kBlockTriangles) {
+        shape != meshes.back().mesh.shape || transform != meshes.back().transform ||
+        triangles + header.triangles > kBlockTriangles) {
       close_mesh();
       ArrivedMesh& mesh = meshes.emplace_back();
       mesh.mesh.material = header.material;
@@ -292,8 +292,8 @@ void ClusterPacker::append_section(std::uint32_t number, PackedClusters& to) {
                              static_cast<std::uint8_t>(cluster.normals_agree), 0, cluster.box});
   if (with_transform) append_value(*draw_->transform);
   if (with_shape) {
-    append_value(ShapeHeader{mesh.shape.kind, static_cast<std::uint8_t>(mesh.shape.in_pixels), {},
-                             mesh.shape.radius});
+    append_value(ShapeHeader{
+        mesh.shape.kind, static_cast<std::uint8_t>(mesh.shape.in_pixels), {}, mesh.shape.radius});
   }
   for (const auto& corners : section_.corners) append(corners.data(), triangles);
   end += corner_bytes(triangles) - 3 * triangles;

@@ -231,13 +231,12 @@ std::span<const std::uint32_t> GeometryPacker::vertices_of(const Part& part) con
 void GeometryPacker::write_run(const Run& run, std::byte* to) const {
   const scenes::Mesh& mesh = *run.pieces.front().mesh;
   const auto parts = std::span(parts_).subspan(run.first_part, run.last_part - run.first_part);
-  to = put(
-      RunHeader{static_cast<std::uint32_t>(run.pieces.size()),
-                static_cast<std::uint32_t>(parts.size()), run.triangles, run.vertices, run.corners,
-                mesh.material, static_cast<std::uint16_t>(attributes_of(mesh)), mesh.shape.kind,
-                static_cast<std::uint8_t>(mesh.shape.in_pixels), mesh.shape.radius,
-                *run.pieces.front().transform},
-      to);
+  to = put(RunHeader{static_cast<std::uint32_t>(run.pieces.size()),
+                     static_cast<std::uint32_t>(parts.size()), run.triangles, run.vertices,
+                     run.corners, mesh.material, static_cast<std::uint16_t>(attributes_of(mesh)),
+                     mesh.shape.kind, static_cast<std::uint8_t>(mesh.shape.in_pixels),
+                     mesh.shape.radius, *run.pieces.front().transform},
+           to);
   std::uint32_t triangles = 0;
   for (const Piece& piece : run.pieces) {
     to = put(GroupHeader{piece.primitive, triangles, piece.count}, to);

@@ -22,15 +22,14 @@ constexpr float kCullingSlack = 1e-5F;
 void grow_by_radius(const scenes::View& view, const SplatDraw& splats, glm::vec3& low,
                     glm::vec3& high, float& margin) {
   constexpr float kSlack = 1 + kCullingSlack;
-  if (splats.is_spot()) {
+  if (splats.is_spot() || (splats.in_samples && splats.kind == scenes::Shape::Kind::line)) {
     const float nearest = view.orthographic ? 1 : std::max(low.z, view.near);
     const float radius = splats.in_samples ? splats.radius : splats.radius * view.scale / nearest;
     margin = std::min(radius * kSlack, kLargestSplat) + 1;
     return;
   }
-  const float radius = splats.in_samples
-                           ? splats.radius * std::max(high.z, view.near) / view.scale
-                           : splats.radius;
+  const float radius =
+      splats.in_samples ? splats.radius * std::max(high.z, view.near) / view.scale : splats.radius;
   low -= glm::vec3(radius * kSlack);
   high += glm::vec3(radius * kSlack);
 }

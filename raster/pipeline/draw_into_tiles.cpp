@@ -144,7 +144,8 @@ void draw_into(const DrawIntoTiles& task, const Worker::TouchedTile& touched, Wo
   if (task.shade_now) {
     const auto shade_now = shade_now_of(task, worker.index);
     worker.shaded += draw_and_shade(fragments, rect, shade_now, tile);
-    worker.shaded += draw_and_shade(task.screen, rect, worker.result.splats, splats, shade_now, tile);
+    worker.shaded +=
+        draw_and_shade(task.screen, rect, worker.result.splats, splats, shade_now, tile);
     worker.shaded += draw_and_shade(task.screen, rect, worker.result.triangles, entries, alpha_test,
                                     shade_now, tile);
     return;

@@ -37,12 +37,14 @@ inline ScreenTriangle half_of(const geometry::Rect& pixels, const Screen& screen
   const auto vertex = [&](int x, int y) {
     return ScreenVertex{(x - screen.centre_x) * kSubpixels, (y - screen.centre_y) * kSubpixels, -1};
   };
-  return {{vertex(pixels.x0, pixels.y0), vertex(pixels.x1, pixels.y0), vertex(pixels.x0, pixels.y1)},
-          number};
+  return {
+      {vertex(pixels.x0, pixels.y0), vertex(pixels.x1, pixels.y0), vertex(pixels.x0, pixels.y1)},
+      number};
 }
 
 // Hands `emit(triangle, pixels)` every part of the cluster's triangle at `place` that has area and
-// a box with a pixel centre of the frame in it; the parts get `number`, and positive area. Of a splat, half of its box.
+// a box with a pixel centre of the frame in it; the parts get `number`, and positive area. Of a
+// splat, half of its box.
 template <class Emit>
 SetUpOutcome set_up(const ClusterOnScreen& cluster, std::uint32_t place, std::uint32_t number,
                     Emit&& emit) {

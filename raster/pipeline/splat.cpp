@@ -74,8 +74,8 @@ geometry::Rect pixels_of(const Screen& screen, const glm::vec3& low, const glm::
         std::ceil(std::clamp(position - kMargin - 0.5F, -1.0F, static_cast<float>(size))));
   };
   const auto end = [](float position, int size) {
-    return static_cast<int>(std::floor(
-               std::clamp(position + kMargin - 0.5F, -1.0F, static_cast<float>(size)))) +
+    return static_cast<int>(
+               std::floor(std::clamp(position + kMargin - 0.5F, -1.0F, static_cast<float>(size)))) +
            1;
   };
   return geometry::intersection({first(view.half_width + least(low.x), screen.width),
@@ -168,10 +168,60 @@ bool meets_segment(const Screen& screen, const Splat& splat, const PixelRay& ray
   if (!any || !first_seen(screen, begin + nearest, begin + farthest, t)) return false;
   hit.position = ray.origin + d * t;
   const glm::vec3 offset = hit.position - splat.a;
-  hit.along =
-      axis_axis > 0 ? std::clamp(glm::dot(axis, offset) / axis_axis, 0.0F, 1.0F) : 0.0F;
+  hit.along = axis_axis > 0 ? std::clamp(glm::dot(axis, offset) / axis_axis, 0.0F, 1.0F) : 0.0F;
   hit.normal = offset - axis * hit.along;
   return true;
+}
+
+// A stripe on the screen: what is linear there is one over the distance.
+bool meets_stripe(const Screen& screen, const Splat& splat, int x, int y, SplatHit& hit) {
+  const glm::vec2 pixel(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+  const glm::vec2 way = splat.screen_b - splat.screen_a, from = pixel - splat.screen_a;
+  const float length = glm::dot(way, way);
+  const float share = length > 0 ? std::clamp(glm::dot(from, way) / length, 0.0F, 1.0F) : 0.0F;
+  const glm::vec2 apart = from - way * share;
+  if (!(glm::dot(apart, apart) < splat.radius * splat.radius)) return false;
+  const float of_a = (1 - share) / splat.a.z, of_b = share / splat.b.z;
+  const PixelRay ray = ray_of(screen, x, y);
+  hit.position = ray.direction * (1 / (of_a + of_b));
+  hit.normal = glm::vec3(0.0F);
+  hit.along = of_b / (of_a + of_b);
+  return true;
+}
+
+// The segment in perspective as a stripe, cut at the near plane.
+void put_on_screen(const Screen& screen, float radius, Splat& splat) {
+  const scenes::View& view = screen.view;
+  splat.on_screen = true;
+  splat.radius = radius;
+  splat.pixels = {};
+  glm::vec3 &a = splat.a, &b = splat.b;
+  const float near = view.near;
+  if (!(a.z >= near || b.z >= near)) return;
+  const auto cut = [near](const glm::vec3& in, const glm::vec3& out) {
+    glm::vec3 p = in + (out - in) * ((in.z - near) / (in.z - out.z));
+    p.z = near;
+    return p;
+  };
+  if (a.z < near) a = cut(b, a);
+  if (b.z < near) b = cut(a, b);
+  const auto place = [&](const glm::vec3& p) {
+    constexpr float kFarthest = 1e6F;  // pixels
+    return glm::clamp(glm::vec2(view.half_width + p.x / p.z * view.scale,
+                                view.half_height - p.y / p.z * view.scale),
+                      -kFarthest, kFarthest);
+  };
+  splat.screen_a = place(a);
+  splat.screen_b = place(b);
+  const glm::vec2 low = glm::min(splat.screen_a, splat.screen_b) - (radius + 1);
+  const glm::vec2 high = glm::max(splat.screen_a, splat.screen_b) + (radius + 1);
+  splat.pixels =
+      geometry::intersection({static_cast<int>(low.x), static_cast<int>(low.y),
+                              static_cast<int>(high.x) + 1, static_cast<int>(high.y) + 1},
+                             screen.frame());
+  constexpr float kSlack = 1 - 1e-5F;
+  splat.nearest =
+      std::max(depth_at_distance(view, std::max(std::min(a.z, b.z) * kSlack, near)), -1.0F);
 }
 
 // The blocks of a tile that pixels [i0, i1) x [j0, j1) of it touch, a bit each.
@@ -235,6 +285,10 @@ Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
     const float squared = glm::dot(normal, normal);
     if (squared > 0) splat.normal = normal * (1.0F / std::sqrt(squared));
   }
+  if (draw.kind == ShapeKind::line && draw.in_samples) {
+    put_on_screen(screen, draw.radius, splat);
+    return splat;
+  }
   splat.radius = draw.radius;
   if (draw.in_samples) {
     splat.radius *= std::max((splat.a.z + splat.b.z) * 0.5F, screen.view.near) / screen.view.scale;
@@ -248,6 +302,7 @@ Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
 }
 
 bool meets(const Screen& screen, const Splat& splat, int x, int y, SplatHit& hit) {
+  if (splat.on_screen) return meets_stripe(screen, splat, x, y, hit);
   const PixelRay ray = ray_of(screen, x, y);
   if (splat.kind == ShapeKind::line) return meets_segment(screen, splat, ray, hit);
   const bool turned = splat.kind == ShapeKind::disc && splat.normal != glm::vec3(0.0F);
@@ -262,8 +317,8 @@ void rasterize_splats(const Screen& screen, const geometry::Rect& rect,
     const Splat& splat = splats[entry];
     const geometry::Rect pixels = geometry::intersection(splat.pixels, rect);
     if (pixels.empty()) continue;
-    const std::uint32_t touched = blocks_of(pixels.x0 - tile_x, pixels.y0 - tile_y,
-                                            pixels.x1 - tile_x, pixels.y1 - tile_y);
+    const std::uint32_t touched =
+        blocks_of(pixels.x0 - tile_x, pixels.y0 - tile_y, pixels.x1 - tile_x, pixels.y1 - tile_y);
     const std::int32_t nearest = code_of_depth(splat.nearest);
     bool hidden = true;
     for (std::uint32_t rest = touched; rest != 0; rest &= rest - 1)

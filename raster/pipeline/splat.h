@@ -1,8 +1,10 @@
-// Points and segments on the screen: splats (Westover 1990; Zwicker et al. 2001, without the blending).
+// Points and segments on the screen: splats (Westover 1990; Zwicker et al. 2001, without the
+// blending).
 //
-// A spot covers the pixel that its centre lies in and those whose centres are nearer than its radius;
-// its depth is the centre's. Discs, spheres and segments with round ends are met by the ray through
-// a pixel's centre, which gives coverage and depth at once.
+// A spot covers the pixel that its centre lies in and those whose centres are nearer than its
+// radius; its depth is the centre's. Discs, spheres and segments with round ends are met by the ray
+// through a pixel's centre, which gives coverage and depth at once; segments as wide as some pixels
+// are stripes on the screen, as deep as the segment is where it is nearest.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -39,13 +41,17 @@ struct Splat {
   std::int32_t subpixels = 0;
   // Of the others, in view coordinates: the point, or the ends of the segment.
   glm::vec3 a{0.0F}, b{0.0F};
+  // Of a segment whose radius is in samples: the ends on the screen, in pixels of the frame, of
+  // what is not before the near plane.
+  bool on_screen = false;
+  glm::vec2 screen_a{0.0F}, screen_b{0.0F};
   glm::vec3 normal{0.0F};  // of a disc; 0: it faces the viewer
   float radius = 0;
   float nearest = -1;  // no depth of it is less
 };
 
-// Of primitive t of the draw's mesh. Spots whose centres are before the near plane or outside of the
-// guard band are empty, as is what is not finite.
+// Of primitive t of the draw's mesh. Spots whose centres are before the near plane or outside of
+// the guard band are empty, as is what is not finite.
 Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
                  std::uint32_t number);
 
@@ -59,8 +65,8 @@ bool meets(const Screen& screen, const Splat& splat, int x, int y, SplatHit& hit
 
 // The depth at a distance along the view axis.
 inline float depth_at_distance(const scenes::View& view, float distance) {
-  const float depth = view.orthographic ? (distance - view.far) / (view.far - view.near)
-                                        : -view.near / distance;
+  const float depth =
+      view.orthographic ? (distance - view.far) / (view.far - view.near) : -view.near / distance;
   return std::min(depth, kDeepest);
 }
 
@@ -82,8 +88,7 @@ inline bool covers(const Screen& screen, const Splat& splat, int x, int y, float
 
 // Calls f(i, j, key) for every pixel of `rect`, at (i, j) of its tile, that the splat covers.
 template <class F>
-void for_each_covered(const Screen& screen, const geometry::Rect& rect, const Splat& splat,
-                      F&& f) {
+void for_each_covered(const Screen& screen, const geometry::Rect& rect, const Splat& splat, F&& f) {
   const int tile_x = rect.x0 / kTileSize * kTileSize;
   const int tile_y = rect.y0 / kTileSize * kTileSize;
   const geometry::Rect pixels = geometry::intersection(splat.pixels, rect);
@@ -96,13 +101,13 @@ void for_each_covered(const Screen& screen, const geometry::Rect& rect, const Sp
   }
 }
 
-// Leaves at every pixel of `rect` the least (depth, number) of what was there and of the splats that
-// `entries` name.
+// Leaves at every pixel of `rect` the least (depth, number) of what was there and of the splats
+// that `entries` name.
 void rasterize_splats(const Screen& screen, const geometry::Rect& rect,
                       std::span<const Splat> splats, std::span<const std::uint32_t> entries,
                       VisibilityTile& tile);
-// The same, and shade(number, x, y) is called whenever a pixel comes to show another one. Returns how
-// often.
+// The same, and shade(number, x, y) is called whenever a pixel comes to show another one. Returns
+// how often.
 std::uint64_t draw_and_shade(const Screen& screen, const geometry::Rect& rect,
                              std::span<const Splat> splats, std::span<const std::uint32_t> entries,
                              parallel::FunctionRef<void(std::uint32_t, int, int)> shade,

@@ -48,7 +48,8 @@ void set_up_spots(const SpotsToSetUp& spots, std::int32_t reach, SetUpResult& re
   const Ints d;
   const hn::RebindToUnsigned<Ints> du;
   const std::size_t lanes = hn::Lanes(d);
-  const I centre_x = hn::Set(d, spots.screen.centre_x), centre_y = hn::Set(d, spots.screen.centre_y);
+  const I centre_x = hn::Set(d, spots.screen.centre_x),
+          centre_y = hn::Set(d, spots.screen.centre_y);
   const I tiles_x = hn::Set(d, spots.screen.tiles_x), in_tile = hn::Set(d, kTileSize - 1);
   const I x0 = hn::Set(d, spots.clip.x0), width = hn::Set(d, spots.clip.width());
   const I y0 = hn::Set(d, spots.clip.y0), height = hn::Set(d, spots.clip.height());
@@ -56,17 +57,18 @@ void set_up_spots(const SpotsToSetUp& spots, std::int32_t reach, SetUpResult& re
   std::size_t size = result.fragments;
   for (std::size_t place = spots.begin; place < spots.end; place += lanes) {
     const I x = hn::LoadU(d, spots.vertices.x + place), y = hn::LoadU(d, spots.vertices.y + place);
-    const I depth = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(spots.vertices.depth) + place);
-    const I number = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(
-                                                            spots.first_number + place)));
+    const I depth =
+        hn::LoadU(d, reinterpret_cast<const std::int32_t*>(spots.vertices.depth) + place);
+    const I number =
+        hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(spots.first_number + place)));
     const Mask used = hn::And(hn::FirstN(d, spots.end - place), hn::Ne(x, hn::Set(d, kOutside)));
     const I own_x = hn::ShiftRight<kSubpixelBits>(x), own_y = hn::ShiftRight<kSubpixelBits>(y);
     for (std::int32_t j = -reach; j <= reach; ++j) {
       const I row = hn::Add(own_y, hn::Set(d, j));
       const I dy = hn::Sub(hn::Add(hn::ShiftLeft<kSubpixelBits>(row), hn::Set(d, kHalfPixel)), y);
       const I pixel_y = hn::Add(row, centre_y), from_top = hn::Sub(pixel_y, y0);
-      const Mask in_rows = hn::And(
-          used, hn::And(hn::Gt(from_top, hn::Set(d, -1)), hn::Lt(from_top, height)));
+      const Mask in_rows =
+          hn::And(used, hn::And(hn::Gt(from_top, hn::Set(d, -1)), hn::Lt(from_top, height)));
       const I tile_row = hn::Mul(hn::ShiftRight<6>(pixel_y), tiles_x);
       const I row_address = hn::ShiftLeft<6>(hn::And(pixel_y, in_tile));
       for (std::int32_t i = -reach; i <= reach; ++i) {
@@ -164,10 +166,10 @@ void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetU
                           mesh_cluster.vertices == mesh_cluster.count;
   if (!by_vectors) {
     for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-      append_splat(cluster,
-                   make_splat(screen, splats, mesh_cluster.first + place,
-                              cluster.first_number + place),
-                   result);
+      append_splat(
+          cluster,
+          make_splat(screen, splats, mesh_cluster.first + place, cluster.first_number + place),
+          result);
     }
     return;
   }

@@ -88,8 +88,8 @@ HWY_INLINE void transform_all(const ToView& to_view, const Screen& screen, std::
   vertices.high_y = hn::GetLane(hn::MaxOfLanes(di, high_y));
 }
 
-// Vector from i on of `count` vertices. The last one repeats its last vertex, which leaves the bounds
-// as they are.
+// Vector from i on of `count` vertices. The last one repeats its last vertex, which leaves the
+// bounds as they are.
 template <class At>
 HWY_INLINE void load_each(std::size_t i, std::size_t count, At&& at, float (*p)[16]) {
   for (std::size_t k = 0; k < hn::Lanes(Floats()); ++k) {
@@ -113,7 +113,8 @@ void transform_row(const ToView& to_view, const Screen& screen, const glm::vec3*
   const Floats d;
   transform_all(to_view, screen, count, vertices, [&](std::size_t i, float(*p)[16]) HWY_ATTR {
     if (i + hn::Lanes(d) > count) {
-      load_each(i, count, [&](std::size_t k) -> const glm::vec3& { return positions[k]; }, p);
+      load_each(
+          i, count, [&](std::size_t k) -> const glm::vec3& { return positions[k]; }, p);
       return;
     }
     V x, y, z;

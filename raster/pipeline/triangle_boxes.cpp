@@ -127,8 +127,7 @@ void find_splat_boxes(const ClusterOnScreen& cluster, TriangleBoxes& boxes) {
         make_splat(cluster.screen, cluster.draw.splats, cluster.cluster.first + place, 0).pixels;
     if (pixels.empty()) continue;
     const bool large = pixels.area() > kLargeBox;
-    boxes.pixels[place] =
-        large ? TriangleBoxes::kAlone : static_cast<std::int32_t>(pixels.area());
+    boxes.pixels[place] = large ? TriangleBoxes::kAlone : static_cast<std::int32_t>(pixels.area());
     boxes.any_alone |= large;
     if (large) continue;
     boxes.x0[place] = pixels.x0, boxes.y0[place] = pixels.y0;

@@ -4,8 +4,8 @@
 // Degenerate: a normal without a direction is replaced by the direction to the viewer.
 #include "raster/shading/shade_splats.h"
 
-#include <cmath>
 #include <hwy/cache_control.h>
+#include <cmath>
 
 #include "composite/fragment.h"
 
@@ -92,8 +92,8 @@ SeenPoint splat_point(const FrameShading& frame, std::uint32_t number, int x, in
 
 bool is_plain(const shading::Shader& shader, const Draw& draw) {
   const scenes::Material& material = shading::material(shader, draw.mesh->material);
-  return !draw.mesh->has_triangles() && draw.mesh->shape.kind != ShapeKind::line && material.unlit &&
-         material.base_colour_texture == scenes::kNone;
+  return !draw.mesh->has_triangles() && draw.mesh->shape.kind != ShapeKind::line &&
+         material.unlit && material.base_colour_texture == scenes::kNone;
 }
 
 template <class Colour>

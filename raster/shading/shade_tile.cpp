@@ -69,8 +69,8 @@ float alpha_at(const FrameShading& frame, const SeenPoint& seen) {
 
 FrameShading make_frame_shading(const Screen& screen, const shading::Shader& shader,
                                 const DrawList& list, Lighting lighting, bool distances) {
-  FrameShading frame{screen, shader, list, {},   {},       {},       {}, false,
-                     false,  false,  0,    true, lighting, distances};
+  FrameShading frame{screen, shader, list,  {}, {},   {},       {},
+                     false,  false,  false, 0,  true, lighting, distances};
   add_draws(frame);
   frame.batch = shading::make_batch_shader(shader);
   if (lighting == Lighting::gouraud) {

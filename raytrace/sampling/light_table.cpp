@@ -133,8 +133,7 @@ void LightTable::add_glowing(const scenes::Scene& scene, const shading::Shader& 
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const scenes::Mesh& mesh = scene.meshes[m];
     const scenes::Material& material = shading::material(shader, mesh.material);
-    if (!(mean(material.emission) > 0.0F) || mesh.triangles.empty() ||
-        !mesh.has_triangles())
+    if (!(mean(material.emission) > 0.0F) || mesh.triangles.empty() || !mesh.has_triangles())
       continue;
     const std::vector<glm::vec2>& uvs = uvs_of(shader, mesh, material.emission_texture);
     const std::vector<glm::vec2>& alpha_uvs = uvs_of(shader, mesh, material.base_colour_texture);

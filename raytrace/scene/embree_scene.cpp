@@ -155,8 +155,8 @@ void find_hits(const EmbreeScene::State& scene, const ActiveRays& active, RayPac
 }
 
 // Nothing for hits of triangles, of which u and v are the place already.
-void keep_splat_place(const EmbreeScene::State& scene, std::uint32_t geometry,
-                      std::uint32_t number, const SplatRay& ray, float& u, float& v) {
+void keep_splat_place(const EmbreeScene::State& scene, std::uint32_t geometry, std::uint32_t number,
+                      const SplatRay& ray, float& u, float& v) {
   const Splats& splats = scene.instances[geometry].triangles.splats;
   if (splats.kind != scenes::Shape::Kind::triangle) keep_place(splats, number, ray, u, v);
 }

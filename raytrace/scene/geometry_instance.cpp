@@ -99,8 +99,7 @@ std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
     look_at_material(instance, shader);
     instance.opaque = opaque[placed.mesh];
     look_at_transform(instance, reaches[placed.mesh]);
-    instance.instanced =
-        share_meshes && uses[placed.mesh] > 1 && instance.mesh->has_triangles();
+    instance.instanced = share_meshes && uses[placed.mesh] > 1 && instance.mesh->has_triangles();
     if (!instance.instanced && !instance.identity) move_to_world(instance);
   }
   return instances;

@@ -344,8 +344,7 @@ void find_splat_points(std::span<const GeometryInstance> instances, const std::u
                        shading::LaneMask lanes, RayGroup& group) {
   for_lanes(lanes, [&](int i) {
     const Hit hit = hit_of(group.packet, i);
-    const Intersection at =
-        splat_intersection(instances[numbers[i]], hit, -group.view.get(i));
+    const Intersection at = splat_intersection(instances[numbers[i]], hit, -group.view.get(i));
     set_point(group.points, i, at.point);
     group.offset[i] = at.offset;
   });

@@ -130,8 +130,7 @@ Intersection splat_intersection(const GeometryInstance& instance, const Hit& hit
     normal = from_octahedron(unpacked(hit.v));
     centre += (instance.positions[corners.y] - centre) * hit.u;
     offset = normal * radius;
-    if (!mesh.colours.empty())
-      point.colour += (mesh.colours[corners.y] - point.colour) * hit.u;
+    if (!mesh.colours.empty()) point.colour += (mesh.colours[corners.y] - point.colour) * hit.u;
   } else if (mesh.shape.kind == ShapeKind::sphere) {
     normal = from_octahedron({hit.u, hit.v});
     offset = normal * radius;
@@ -142,8 +141,7 @@ Intersection splat_intersection(const GeometryInstance& instance, const Hit& hit
   }
   point.position = centre + offset;
   point.geometric_normal = point.normal = normal;
-  result.offset =
-      kOffset * (largest_magnitude(centre) + 2 * radius + instance.transform_scale);
+  result.offset = kOffset * (largest_magnitude(centre) + 2 * radius + instance.transform_scale);
   return result;
 }
 

@@ -1,7 +1,8 @@
 // Points and segments: what Embree is given of them, and where rays hit them.
 //
-// Embree tells of such hits the distance and the normal alone; the place on the splat is kept in the
-// hit's u and v instead, so that a hit says where it is without its ray, as those of triangles do.
+// Embree tells of such hits the distance and the normal alone; the place on the splat is kept in
+// the hit's u and v instead, so that a hit says where it is without its ray, as those of triangles
+// do.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,13 +14,14 @@
 
 namespace delray::raytrace {
 
-// The instance's points, or the ends of its segments two by two, in the world, with the radius as w.
+// The instance's points, or the ends of its segments two by two, in the world, with the radius as
+// w.
 struct Splats {
   scenes::Shape::Kind kind = scenes::Shape::Kind::triangle;
   std::vector<glm::vec4> places = {};
-  std::vector<glm::vec3> normals = {};         // of discs; none: they face the ray
-  std::vector<std::uint32_t> segments = {};    // the first end of each
-  std::vector<std::uint8_t> neighbours = {};   // of segments: none
+  std::vector<glm::vec3> normals = {};        // of discs; none: they face the ray
+  std::vector<std::uint32_t> segments = {};   // the first end of each
+  std::vector<std::uint8_t> neighbours = {};  // of segments: none
 };
 
 // The radius in the world of an instance's splats. Those in pixels count as units.

@@ -16,7 +16,10 @@
 namespace delray::scenes::internal {
 namespace {
 
-constexpr std::uint64_t kTriangles = 4, kStrip = 5, kFan = 6;
+constexpr std::uint64_t kPoints = 0, kLines = 1, kLoop = 2, kTriangles = 4, kStrip = 5, kFan = 6;
+// The file does not say how large.
+constexpr Shape kPointShape{Shape::Kind::point, true, 1.5F};
+constexpr Shape kLineShape{Shape::Kind::line, true, 0.75F};
 constexpr std::size_t kBlock = 1 << 15;  // vertices or triangles: tens of microseconds
 
 // The first i below `count` that is_wrong(i), or `count`.
@@ -49,6 +52,16 @@ std::vector<glm::uvec3> triangles_of(std::span<const std::uint32_t> v, std::uint
     }
   }
   return triangles;
+}
+
+// Points and segments as meshes have them.
+std::vector<glm::uvec3> splats_of(const std::vector<std::uint32_t>& v, std::uint64_t mode) {
+  std::vector<glm::uvec3> splats;
+  const std::size_t step = mode == kLines ? 2 : 1, last = mode == kPoints ? 0 : 1;
+  for (std::size_t i = 0; i + last < v.size(); i += step)
+    splats.emplace_back(v[i], v[i + last], v[i + last]);
+  if (mode == kLoop && v.size() > 2) splats.emplace_back(v.back(), v.front(), v.front());
+  return splats;
 }
 
 template <class T>
@@ -241,7 +254,12 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
     check(indices);
     const std::size_t triangles = mode == kTriangles ? indices.size() / 3 : indices.size();
     document.source.require_memory(triangles * sizeof(glm::uvec3), primitive.place());
-    mesh.triangles = triangles_of(indices, mode);
+    if (mode < kTriangles) {
+      mesh.triangles = splats_of(indices, mode);
+      mesh.shape = mode == kPoints ? kPointShape : kLineShape;
+    } else {
+      mesh.triangles = triangles_of(indices, mode);
+    }
   }
 
   const std::uint32_t material = primitive["material"].reference(materials.size());
@@ -270,10 +288,6 @@ std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const std::uint64_t mode = primitives[i]["mode"].whole(kTriangles);
     if (mode > kFan) primitives[i]["mode"].fail("should be 0 to 6");
-    if (mode < kTriangles) {
-      document.source.warn(primitives[i].place() + ": points or lines left out");
-      continue;
-    }
     meshes.push_back(read_primitive(document, primitives[i], mode, materials));
     meshes.back().name = json["name"].text();
   }

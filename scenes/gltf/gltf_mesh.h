@@ -10,11 +10,11 @@
 
 namespace delray::scenes::internal {
 
-// The primitives of meshes[number] that are triangles, each as a mesh of its own; strips and fans
-// are taken apart. Vertices that no triangle of the primitive uses are left out. A primitive
-// without a material has material kNone. Texture coordinates are what the material's textures use;
-// that a primitive does not have them is told once for each material,
-// unless TEXCOORD_0 is all that it asks for.
+// The primitives of meshes[number], each as a mesh of its own; strips, loops and fans are taken
+// apart. Points are 3 pixels wide and lines 1.5, as the file does not say. Vertices that no
+// triangle of the primitive uses are left out. A primitive without a material has material kNone.
+// Texture coordinates are what the material's textures use; that a primitive does not have them is
+// told once for each material, unless TEXCOORD_0 is all that it asks for.
 std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
                             std::span<GltfMaterial> materials);
 

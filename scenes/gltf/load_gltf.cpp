@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <unordered_map>
 
 #include "scenes/gltf/gltf_document.h"
 #include "scenes/gltf/gltf_extras.h"
@@ -145,10 +146,24 @@ class Placer {
     for (Mesh& part : read_mesh(document_, mesh, materials_)) {
       if (part.triangles.empty()) continue;
       if (part.material == kNone) part.material = default_material();
+      // Light means nothing to them.
+      if (!part.has_triangles() && part.normals.empty()) part.material = unlit(part.material);
       meshes_[mesh].push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
       scene_.meshes.push_back(std::move(part));
     }
     return meshes_[mesh];
+  }
+
+  // The same material without light.
+  std::uint32_t unlit(std::uint32_t material) {
+    if (scene_.materials[material].unlit) return material;
+    const auto [found, is_new] =
+        unlit_.try_emplace(material, static_cast<std::uint32_t>(scene_.materials.size()));
+    if (is_new) {
+      scene_.materials.push_back(Material(scene_.materials[material]));
+      scene_.materials.back().unlit = true;
+    }
+    return found->second;
   }
 
   std::uint32_t default_material() {
@@ -205,8 +220,9 @@ class Placer {
   std::vector<std::vector<std::uint32_t>> meshes_;  // the scene's meshes of each mesh of the file
   std::vector<bool> mesh_is_read_;
   std::uint32_t default_material_ = kNone;
-  std::vector<glm::dmat4> worlds_;                       // of the scene's instances
-  std::vector<std::pair<JsonView, glm::dmat4>> others_;  // nodes with cameras and lights
+  std::unordered_map<std::uint32_t, std::uint32_t> unlit_;  // by the material with light
+  std::vector<glm::dmat4> worlds_;                          // of the scene's instances
+  std::vector<std::pair<JsonView, glm::dmat4>> others_;     // nodes with cameras and lights
 };
 
 // Their depths are told apart best between the nearest and the farthest that there is.

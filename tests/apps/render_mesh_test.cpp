@@ -106,7 +106,7 @@ TEST(RenderMesh, TetrahedraOfANodeAreShown) {
   const Ran info = run("delray info m.node", folder.path());
   EXPECT_NE(info.out.find("simplex: tetrahedron"), std::string::npos) << info.out;
   // Its points alone where somebody asks for points.
-  EXPECT_NE(hash_of("m.node --draw points", folder), picture);
+  EXPECT_NE(hash_of("m.node --show-as points", folder), picture);
 }
 
 TEST(RenderMesh, LevelMeshesShowTheirTriangles) {
@@ -132,14 +132,14 @@ TEST(RenderMesh, SaysWhyPointsHaveNoSurface) {
   folder.write("line.xyz", "0 0\n1 1\n2 2\n");
   folder.write("wall.xyz", "0 0 0\n1 1 0\n2 2 0\n0 0 3\n1 1 4\n2 2 5\n");
   const auto reason = [&](const std::string& name) {
-    const Ran ran = run("delray render " + name + " -o a.png --draw surface", folder.path());
+    const Ran ran = run("delray render " + name + " -o a.png --show-as relief", folder.path());
     EXPECT_EQ(ran.exit_code, 3);
-    EXPECT_NE(ran.err.find("--draw points"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("--show-as points"), std::string::npos) << ran.err;
     return ran.err;
   };
   EXPECT_NE(reason("line.xyz").find("equal or on one line"), std::string::npos);
   EXPECT_NE(reason("wall.xyz").find("lie above one point or line"), std::string::npos);
-  must("delray render wall.xyz -o a.png --draw points -q", folder);
+  must("delray render wall.xyz -o a.png --show-as points -q", folder);
 }
 
 TEST(RenderMesh, ReadsLineEndsOfEveryKindAndRefusesUtf16) {

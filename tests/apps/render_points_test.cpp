@@ -131,17 +131,18 @@ TEST(RenderPoints, DegreesAreDrawnInMetres) {
   }
 }
 
-TEST(RenderPoints, PointsInSpaceAreDots) {
+TEST(RenderPoints, PointsInSpaceAreSpheres) {
   const Folder folder;
   for (const char* kind : {"sphere", "uniform", "gauss"}) {
     const std::string generate =
         std::string("delray generate points ") + kind + " -n 2000 --dim 3 -o a.ply -q";
     ASSERT_EQ(run(generate, folder.path()).exit_code, 0);
     const Ran ran = render("a.ply --stats stats.json", folder);
-    EXPECT_TRUE(mentions(ran.err, "drawn as points")) << ran.err;
-    EXPECT_EQ(json::parse(folder.read("stats.json"))["scene"]["triangles"], 8 * 2000) << kind;
-    const Ran surface = render("a.ply --draw surface --stats stats.json", folder);
-    EXPECT_FALSE(mentions(surface.err, "drawn as points")) << surface.err;
+    EXPECT_TRUE(mentions(ran.err, "shown as spheres")) << ran.err;
+    EXPECT_EQ(json::parse(folder.read("stats.json"))["scene"]["points"], 2000) << kind;
+    EXPECT_EQ(json::parse(folder.read("stats.json"))["scene"]["triangles"], 0) << kind;
+    const Ran surface = render("a.ply --show-as relief --stats stats.json", folder);
+    EXPECT_FALSE(mentions(surface.err, "shown as spheres")) << surface.err;
     EXPECT_LT(json::parse(folder.read("stats.json"))["scene"]["triangles"], 2 * 2000) << kind;
   }
   for (const char* rows : {"terrain", "uniform"}) {  // these are heights, and a plane
@@ -151,15 +152,67 @@ TEST(RenderPoints, PointsInSpaceAreDots) {
                   folder.path())
                   .exit_code,
               0);
-    EXPECT_FALSE(mentions(render("a.ply", folder).err, "drawn as points")) << rows;
-    EXPECT_FALSE(mentions(render("a.ply --draw points", folder).err, "drawn as points"));
+    EXPECT_FALSE(mentions(render("a.ply", folder).err, "shown as spheres")) << rows;
+    EXPECT_FALSE(mentions(render("a.ply --draw points", folder).err, "shown as spheres"));
   }
   const auto exit_code = [&](const std::string& arguments) {
     return run("delray render " + arguments + " -o a.png", folder.path()).exit_code;
   };
-  EXPECT_EQ(exit_code("a.ply --draw points --duplicates min"), 2);
-  EXPECT_EQ(exit_code("a.ply --draw points --color-by simplex"), 2);
-  EXPECT_EQ(exit_code("gen:cornell --draw points"), 2);
+  EXPECT_EQ(exit_code("a.ply --show-as discs --duplicates min"), 2);
+  EXPECT_EQ(exit_code("a.ply --show-as points --color-by simplex"), 2);
+  EXPECT_EQ(exit_code("a.ply --show-as relief --radius 1"), 2);
+  EXPECT_EQ(exit_code("a.ply --show-as points --draw points"), 2);
+  EXPECT_EQ(exit_code("a.ply --point-size 3 --radius 1"), 2);
+  EXPECT_EQ(exit_code("gen:cornell --show-as points"), 2);
+  EXPECT_EQ(exit_code("gen:cornell --point-size 3"), 2);
+  EXPECT_EQ(exit_code("gen:cornell --legend"), 2);
+}
+
+// Bytes of the picture, by its hash.
+TEST(RenderPoints, PointsHaveOnePictureForAllRanks) {
+  const Folder folder;
+  ASSERT_EQ(
+      run("delray generate points terrain -n 5000 --dim 3 -o a.ply -q", folder.path()).exit_code,
+      0);
+  for (const std::string how :
+       {"--show-as points --point-size 4 --shading eye-dome --legend --color-by z",
+        "--show-as spheres --samples 2", "--show-as discs --radius 0.01"}) {
+    const auto hash = [&](const std::string& sharing) {
+      const Ran ran = render("a.ply " + how + " --stats stats.json" + sharing, folder);
+      EXPECT_EQ(ran.exit_code, 0) << ran.err;
+      return json::parse(folder.read("stats.json"))["image"]["hash"].get<std::string>();
+    };
+    const std::string alone = hash("");
+    for (const char* strategy : {"sort-first", "sort-middle", "sort-last", "hybrid"})
+      EXPECT_EQ(hash(std::string(" --ranks 3 --strategy ") + strategy), alone) << how << strategy;
+  }
+}
+
+TEST(RenderPoints, ALegendIsDrawnOverTheLowerLeftCorner) {
+  const Folder folder;
+  folder.write("a.csv", "x,y,z,classification\n0,0,0,2\n1,0,1,6\n0,1,2,9\n1,1,3,2\n");
+  for (const std::string by : {"z", "classification"}) {
+    const auto picture = [&](const std::string& more) {
+      const Ran ran =
+          render("a.csv --show-as points --point-size 9 --color-by " + by + more, folder);
+      EXPECT_EQ(ran.exit_code, 0) << ran.err;
+      return image::read_image8(folder / "a.png");
+    };
+    const auto without = picture(""), with = picture(" --legend");
+    std::size_t changed = 0, outside = 0;
+    for (int y = 0; y < with.height; ++y) {
+      for (int x = 0; x < with.width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y * with.width + x);
+        if (std::memcmp(&with.colour[i], &without.colour[i], sizeof(image::Rgba8)) == 0) continue;
+        ++changed;
+        outside += x > with.width / 2 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(changed, 1000U) << by;
+    EXPECT_EQ(outside, 0U) << by;
+  }
+  EXPECT_EQ(
+      run("delray render a.csv -o b.png --color-by material --legend", folder.path()).exit_code, 2);
 }
 
 TEST(RenderPoints, TellsOfEdgesThatItLeavesOut) {

@@ -41,9 +41,9 @@ inline scenes::Scene splat_scene(unsigned seed, bool with_triangles = true, int 
           const bool again = i % 9 == 8;
           mesh.positions.push_back(again ? mesh.positions[at - 1] : p);
           if (kind == Kind::line) {
-            mesh.positions.push_back(i % 7 == 0 ? mesh.positions[at]
-                                                : p + 0.4F * glm::vec3(both(random), both(random),
-                                                                       both(random)));
+            mesh.positions.push_back(
+                i % 7 == 0 ? mesh.positions[at]
+                           : p + 0.4F * glm::vec3(both(random), both(random), both(random)));
             mesh.triangles.emplace_back(at, at + 1, at + 1);
           } else {
             mesh.triangles.emplace_back(at, at, at);

@@ -75,7 +75,8 @@ TEST(RaySplats, SegmentsLookAsCylindersWithRoundEndsDo) {
   scenes::Mesh tube;
   for (int i = 0; i < kSides; ++i) {
     const double turn = 2 * M_PI * i / kSides;
-    const glm::vec3 n = u * static_cast<float>(std::cos(turn)) + v * static_cast<float>(std::sin(turn));
+    const glm::vec3 n =
+        u * static_cast<float>(std::cos(turn)) + v * static_cast<float>(std::sin(turn));
     for (const glm::vec3& end : {a, b}) {
       tube.positions.push_back(end + n * 0.4F);
       tube.normals.push_back(n);
@@ -86,10 +87,10 @@ TEST(RaySplats, SegmentsLookAsCylindersWithRoundEndsDo) {
   }
   RenderOptions options = small(64, 64);
   options.samples = 4;
-  EXPECT_LT(mean_difference(
-                render_alone(on_a_floor(splats(Kind::line, 0.4F, {a, b})), camera(), options),
-                render_alone(on_a_floor(tube), camera(), options)),
-            0.015);
+  EXPECT_LT(
+      mean_difference(render_alone(on_a_floor(splats(Kind::line, 0.4F, {a, b})), camera(), options),
+                      render_alone(on_a_floor(tube), camera(), options)),
+      0.015);
 }
 
 TEST(RaySplats, DiscsFaceTheirNormalsOrTheViewer) {

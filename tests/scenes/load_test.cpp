@@ -218,15 +218,32 @@ TEST(Load, GltfStripsFansAndUnindexedTriangles) {
   EXPECT_EQ(strip.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
   EXPECT_EQ(fan.meshes[0].triangles, (std::vector<glm::uvec3>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
   EXPECT_THROW(load_mode("7"), files::FileError);
-  std::vector<std::string> warnings;
-  const std::string lines = with(sample_gltf(), "\"primitives\":[", R"("primitives":[
-{"attributes":{"POSITION":0},"mode":0},{"attributes":{"POSITION":0},"mode":2},)");
-  EXPECT_EQ(triangle_count(load(folder.write("b.gltf", lines), warnings)), 6U);
-  ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_NE(warnings[1].find("primitives[1]: points or lines left out"), std::string::npos);
   const Scene plain = load_mode("4");
   EXPECT_EQ(plain.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}}));
   EXPECT_EQ(plain.meshes[0].positions.size(), 3U);  // no triangle uses the others
+}
+
+TEST(Load, GltfPointsAndLinesOfEachMode) {
+  const tests::TemporaryFolder folder;
+  const auto load_mode = [&](const char* mode) {
+    return load_quietly(folder.write(
+        "a.gltf", with(sample_gltf(), "\"indices\":1,", "\"mode\":" + std::string(mode) + ",")));
+  };
+  using Segments = std::vector<glm::uvec3>;
+  const Scene points = load_mode("0"), lines = load_mode("1"), loop = load_mode("2");
+  EXPECT_EQ(points.meshes[0].shape.kind, Shape::Kind::point);
+  EXPECT_EQ(points.meshes[0].triangles,
+            (Segments{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}}));
+  EXPECT_EQ(splat_count(points), 5 * points.instances.size());
+  EXPECT_EQ(triangle_count(points), 0U);
+  EXPECT_TRUE(points.materials[points.meshes[0].material].unlit);
+  EXPECT_EQ(lines.meshes[0].shape.kind, Shape::Kind::line);
+  EXPECT_EQ(lines.meshes[0].triangles, (Segments{{0, 1, 1}, {2, 3, 3}}));
+  EXPECT_EQ(lines.meshes[0].positions.size(), 4U);
+  EXPECT_EQ(loop.meshes[0].triangles,
+            (Segments{{0, 1, 1}, {1, 2, 2}, {2, 3, 3}, {3, 4, 4}, {4, 0, 0}}));
+  EXPECT_EQ(load_mode("3").meshes[0].triangles,
+            (Segments{{0, 1, 1}, {1, 2, 2}, {2, 3, 3}, {3, 4, 4}}));
 }
 
 TEST(Load, GltfCamerasOfBothKindsWithTheirNames) {

@@ -82,6 +82,7 @@ class Assembler {
       resize_like(all.cloud.colours, part.cloud.colours, begin.back());
       resize_like(all.cloud.intensity, part.cloud.intensity, begin.back());
       resize_like(all.cloud.classification, part.cloud.classification, begin.back());
+      resize_like(all.cloud.returns, part.cloud.returns, begin.back());
       resize_like(all.colours, part.colours, begin.back());
       break;
     }
@@ -91,6 +92,7 @@ class Assembler {
       append_values(all.cloud.colours, part.cloud.colours, begin[i]);
       append_values(all.cloud.intensity, part.cloud.intensity, begin[i]);
       append_values(all.cloud.classification, part.cloud.classification, begin[i]);
+      append_values(all.cloud.returns, part.cloud.returns, begin[i]);
       append_values(all.colours, part.colours, begin[i]);
     });
   }
@@ -125,7 +127,7 @@ void apply_filter(const PointFilter& filter, PartPoints& points) {
   for (std::uint32_t i = 0; i < size; ++i) {
     if (filter.classes && !(*filter.classes)[points.cloud.classification[i]]) continue;
     if (filter.returns) {
-      const int returns = points.returns[i];
+      const int returns = points.cloud.returns[i];
       if (!filter.returns->wants(returns & 15, returns >> 4)) continue;
     }
     if (filter.bounds && !contains(*filter.bounds, points.cloud.positions[i])) continue;
@@ -137,7 +139,7 @@ void apply_filter(const PointFilter& filter, PartPoints& points) {
   keep_rows_of(points.cloud.intensity, rows);
   keep_rows_of(points.cloud.classification, rows);
   keep_rows_of(points.colours, rows);
-  keep_rows_of(points.returns, rows);
+  keep_rows_of(points.cloud.returns, rows);
 }
 
 void finish_points(const FileFacts& facts, const AttributeRanges& ranges, PartPoints& points) {
@@ -193,7 +195,6 @@ PointCloud read_all(const FileParts& file, const PointFilter& filter,
     }
   }
   PartPoints& all = assembler.all;
-  all.returns = {};
   all.cloud.has_z = file.facts().has_z;
   finish_points(file.facts(), assembler.ranges, all);
   std::vector<std::string>& warnings = all.cloud.warnings;

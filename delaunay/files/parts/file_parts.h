@@ -22,7 +22,6 @@ namespace delray::delaunay {
 struct PartPoints {
   PointCloud cloud;                   // intensity of any range
   std::vector<glm::u16vec3> colours;  // of 16 bits, or of 8 in 16; else cloud.colours
-  std::vector<std::uint8_t> returns;  // number | count << 4 of LiDAR points
   bool whole_colours = true;          // unnamed columns of text: else they are no colours
   std::size_t left_out = 0;           // rows without coordinates, where the format has such
 

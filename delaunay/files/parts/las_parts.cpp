@@ -92,7 +92,7 @@ void LasParts::append(std::string_view records, std::size_t first, std::size_t c
   points.cloud.positions.resize(end);
   points.cloud.intensity.resize(end);
   points.cloud.classification.resize(end);
-  points.returns.resize(end);
+  points.cloud.returns.resize(end);
   if (coloured) points.colours.resize(end);
   std::size_t bad = count;
   for (std::size_t i = count; i-- > 0;) {
@@ -112,7 +112,7 @@ void LasParts::append(std::string_view records, std::size_t first, std::size_t c
         laz::load<std::uint8_t>(record + header_.format.classification) & header_.format.class_mask;
     const auto returns = laz::load<std::uint8_t>(record + kLasReturns);
     // The formats before 6 have three bits for each number.
-    points.returns[begin + i] =
+    points.cloud.returns[begin + i] =
         header_.format_number >= 6
             ? returns
             : static_cast<std::uint8_t>((returns & 7) | (returns >> 3 & 7) << 4);

@@ -149,6 +149,7 @@ void join_clouds(PointCloud& all, PointCloud&& file) {
   join_values(all.colours, file.colours, rows);
   join_values(all.intensity, file.intensity, rows);
   join_values(all.classification, file.classification, rows);
+  join_values(all.returns, file.returns, rows);
   join_values(all.positions, file.positions, 0);
   all.has_z = all.has_z || file.has_z;
   if (all.geographic != file.geographic) {

@@ -32,9 +32,9 @@ struct Tally {
     colours = colours && !(part.colours.empty() && part.cloud.colours.empty());
     intensity = intensity && !part.cloud.intensity.empty();
     has_classes = has_classes && !part.cloud.classification.empty();
-    has_returns = has_returns && !part.returns.empty();
+    has_returns = has_returns && !part.cloud.returns.empty();
     for (const std::uint8_t value : part.cloud.classification) ++classes[value];
-    for (const std::uint8_t value : part.returns) ++returns[value & 15][value >> 4];
+    for (const std::uint8_t value : part.cloud.returns) ++returns[value & 15][value >> 4];
   }
   void include(const Tally& other) {
     points += other.points;
