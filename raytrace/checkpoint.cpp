@@ -191,6 +191,8 @@ std::string fingerprint(const scenes::Scene& scene, std::string_view settings) {
     hasher.add(mesh.colours);
     hasher.add(mesh.triangles);
     hasher.add_numbers(mesh.material);
+    if (!mesh.has_triangles())
+      hasher.add_numbers(mesh.shape.kind, mesh.shape.in_pixels, mesh.shape.radius);
   }
   hasher.add(scene.instances);
   for (const scenes::Material& material : scene.materials) add_material(material, hasher);

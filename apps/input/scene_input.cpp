@@ -279,10 +279,13 @@ void add_scene_options(CLI::App& command, SceneInput& input) {
   choose_from(command, "--show-as", names_in(show_as()));
   // The name of versions before, without a place in the help.
   command
-      .add_option_function<std::string>("--draw",
-                                        [&input](const std::string& what) {
-                                          input.show_as = what == "points" ? "spheres" : "relief";
-                                        })
+      .add_option_function<std::string>(
+          "--draw",
+          [&input](const std::string& what) {
+            input.show_as = what == "points" ? "spheres" : "relief";
+          },
+          "Older name of --show-as: surface for relief, or points for "
+          "spheres")
       ->group("")
       ->check(one_of({"surface", "points"}))
       ->excludes("--show-as");

@@ -10,8 +10,9 @@ namespace {
 
 using ShapeKind = scenes::Shape::Kind;
 
-// Of the spacing: half of a square's diagonal is 0.71.
-constexpr float kCovering = 0.75F;
+// Of the spacing: half of a square's diagonal, 0.71, would do for a lattice; points scattered at
+// random then leave exp(-pi kCovering^2) of a surface bare.
+constexpr float kCovering = 1.0F;
 
 constexpr std::array kTable = {
     ShowAs{"relief", "the surface of heights over x and y", ShapeKind::triangle, true},

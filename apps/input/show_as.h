@@ -26,7 +26,7 @@ struct PointSize {
 };
 
 // Makes points of the vertices of the scene's first mesh, which has no triangles. Without a size,
-// discs of it would cover a surface without gaps if the points lay on a square lattice. REQUIRES:
+// discs of it would cover all but 4 % of a surface that the points are scattered over. REQUIRES:
 // is_points.
 inline constexpr std::size_t kBytesPerShownPoint = 80;
 void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene);

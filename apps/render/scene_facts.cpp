@@ -87,6 +87,9 @@ std::vector<comm::Fact> scene_facts(const Prepared& prepared) {
              hasher.add(mesh.colours);
              hasher.add(mesh.triangles);
              hasher.add_value(mesh.material);
+             hasher.add_value(mesh.shape.kind);
+             hasher.add_value(mesh.shape.in_pixels);
+             hasher.add_value(mesh.shape.radius);
            }),
       fact("instances", scene.instances,
            [](Hasher& hasher, const scenes::Instance& instance) {
