@@ -29,8 +29,10 @@ std::vector<std::string> tick_texts(float low, float high) {
   const double step = (double{high} - low) / (kTicks - 1);
   const int digits =
       step > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(step))), 0, 6) : 2;
-  std::vector<std::string> result;
-  for (int k = 0; k < kTicks; ++k) result.push_back(fmt::format("{:.{}f}", low + k * step, digits));
+  std::vector<std::string> result(kTicks);
+  for (int k = 0; k < kTicks; ++k) {
+    result[static_cast<std::size_t>(k)] = fmt::format("{:.{}f}", low + k * step, digits);
+  }
   return result;
 }
 
@@ -47,16 +49,19 @@ class Canvas {
 
   bool fits() const { return fits_; }
   void fill(int x, int y, int width, int height, const image::RgbaF& colour) {
-    for (int j = y * size_; j < (y + height) * size_; ++j)
+    for (int j = y * size_; j < (y + height) * size_; ++j) {
       for (int i = x * size_; i < (x + width) * size_; ++i) set(x0_ + i, y0_ + j, colour);
+    }
   }
   void write(int x, int y, std::string_view text) {
     for (const char letter : text) {
       const Glyph& rows = glyph(letter);
-      for (int j = 0; j < kGlyphHeight; ++j)
-        for (int i = 0; i < kGlyphWidth; ++i)
-          if ((rows[static_cast<std::size_t>(j)] >> (7 - i) & 1) != 0)
-            fill(x + i, y + j, 1, 1, kInk);
+      for (int j = 0; j < kGlyphHeight; ++j) {
+        for (int i = 0; i < kGlyphWidth; ++i) {
+          const bool inked = (rows[static_cast<std::size_t>(j)] >> (7 - i) & 1) != 0;
+          if (inked) fill(x + i, y + j, 1, 1, kInk);
+        }
+      }
       x += kGlyphWidth;
     }
   }
@@ -66,10 +71,11 @@ class Canvas {
     Colour& pixel =
         picture_.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width) +
                         static_cast<std::size_t>(x)];
-    if constexpr (std::is_same_v<Colour, image::RgbaF>)
+    if constexpr (std::is_same_v<Colour, image::RgbaF>) {
       pixel = colour;
-    else
+    } else {
       pixel = image::to_8bit(colour);
+    }
   }
 
   image::BasicImage<Colour>& picture_;
@@ -128,17 +134,20 @@ void draw_classes(const scenes::ColourScale& scale, image::BasicImage<Colour>& p
   canvas.write(kPadding, kPadding, scale.title);
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const int y = kPadding + kLine * (static_cast<int>(i) + 1);
-    if (i < shown) canvas.fill(kPadding, y + 1, kSwatch, kSwatch, ink_of(scale.classes[i].colour));
+    if (i < shown) {
+      canvas.fill(kPadding, y + 1, kSwatch, kSwatch, ink_of(scale.classes[i].colour));
+    }
     canvas.write(kPadding + kSwatch + kGap, y, texts[i]);
   }
 }
 
 template <class Colour>
 void draw(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
-  if (scale.colour != nullptr)
+  if (scale.colour != nullptr) {
     draw_bar(scale, picture);
-  else
+  } else {
     draw_classes(scale, picture);
+  }
 }
 
 }  // namespace

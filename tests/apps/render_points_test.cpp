@@ -1,5 +1,6 @@
 // delray render of points as they come: with outliers, in degrees, in space, as pixels of a
 // GeoTIFF.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -178,7 +179,7 @@ TEST(RenderPoints, PointsHaveOnePictureForAllRanks) {
        {"--show-as points --point-size 4 --shading eye-dome --legend --color-by z",
         "--show-as spheres --samples 2", "--show-as discs --radius 0.01"}) {
     const auto hash = [&](const std::string& sharing) {
-      const Ran ran = render("a.ply " + how + " --stats stats.json" + sharing, folder);
+      const Ran ran = render(fmt::format("a.ply {} --stats stats.json{}", how, sharing), folder);
       EXPECT_EQ(ran.exit_code, 0) << ran.err;
       return json::parse(folder.read("stats.json"))["image"]["hash"].get<std::string>();
     };
@@ -193,8 +194,8 @@ TEST(RenderPoints, ALegendIsDrawnOverTheLowerLeftCorner) {
   folder.write("a.csv", "x,y,z,classification\n0,0,0,2\n1,0,1,6\n0,1,2,9\n1,1,3,2\n");
   for (const std::string by : {"z", "classification"}) {
     const auto picture = [&](const std::string& more) {
-      const Ran ran =
-          render("a.csv --show-as points --point-size 9 --color-by " + by + more, folder);
+      const Ran ran = render(
+          fmt::format("a.csv --show-as points --point-size 9 --color-by {}{}", by, more), folder);
       EXPECT_EQ(ran.exit_code, 0) << ran.err;
       return image::read_image8(folder / "a.png");
     };
@@ -202,7 +203,8 @@ TEST(RenderPoints, ALegendIsDrawnOverTheLowerLeftCorner) {
     std::size_t changed = 0, outside = 0;
     for (int y = 0; y < with.height; ++y) {
       for (int x = 0; x < with.width; ++x) {
-        const std::size_t i = static_cast<std::size_t>(y * with.width + x);
+        const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(with.width) +
+                              static_cast<std::size_t>(x);
         if (std::memcmp(&with.colour[i], &without.colour[i], sizeof(image::Rgba8)) == 0) continue;
         ++changed;
         outside += x > with.width / 2 ? 1 : 0;

@@ -189,9 +189,10 @@ TEST(Splats, RaysMeetSpheresDiscsAndSegmentsWhereTheyAre) {
         }
         const glm::dvec3 hit = ray * depth;
         double from_axis = 1e9;
-        for (int k = 0; k <= 1000; ++k)
+        for (int k = 0; k <= 1000; ++k) {
           from_axis = std::min(
               from_axis, glm::length(glm::mix(glm::dvec3(a), glm::dvec3(b), k / 1000.0) - hit));
+        }
         EXPECT_NEAR(from_axis, radius, 2e-3) << seed;
         EXPECT_LT(depth, at + 1e-4) << seed;
       }

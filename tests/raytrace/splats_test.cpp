@@ -120,6 +120,7 @@ TEST(RaySplats, HaveOnePictureHoweverTheSceneIsSharedOut) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> both(-1, 1);
   std::vector<glm::vec3> at;
+  at.reserve(400);
   for (int i = 0; i < 400; ++i) at.emplace_back(both(random), both(random), both(random));
   scenes::Scene scene = on_a_floor(splats(Kind::sphere, 0.05F, at));
   add(scene, splats(Kind::line, 0.02F, at), placed(0.7F, {0.2F, 0, 0.1F}));
@@ -143,9 +144,11 @@ TEST(RaySplats, HaveOnePictureHoweverTheSceneIsSharedOut) {
         const Result result = renderer.render(communicator, camera(), options);
         if (communicator.rank() != 0) return;
         std::size_t different = 0;
-        for (std::size_t i = 0; i < whole.image.pixels(); ++i)
-          different += std::memcmp(&whole.image.colour[i], &result.image.colour[i],
-                                   sizeof(image::RgbaF)) != 0;
+        for (std::size_t i = 0; i < whole.image.pixels(); ++i) {
+          const image::RgbaF &a = whole.image.colour[i], &c = result.image.colour[i];
+          different += a.r != c.r || a.g != c.g || a.b != c.b || a.a != c.a ||
+                       whole.image.depth[i] != result.image.depth[i];
+        }
         EXPECT_EQ(different, 0U) << distribution.name << ' ' << integrator;
       });
     }

@@ -30,10 +30,11 @@ TEST(EyeDome, LeavesWhatFacesTheViewerAndDarkensWhatIsBehindAStep) {
   light_by_eye_dome(plain_view(kWidth, kHeight), step);
   for (int x = 0; x < kWidth; ++x) {
     const image::RgbaF& colour = step.colour[10 * kWidth + x];
-    if (x == 20 || x == 21)
+    if (x == 20 || x == 21) {
       EXPECT_LT(colour.g, 0.95F) << x;
-    else
+    } else {
       EXPECT_EQ(colour.g, 1) << x;
+    }
     EXPECT_EQ(colour.a, 1);
     EXPECT_EQ(step.depth[10 * kWidth + x], x < 20 ? 2.0F : 5.0F);
   }
@@ -43,9 +44,9 @@ TEST(EyeDome, LeavesEmptyPixelsAndWhatIsBesideThem) {
   constexpr int kWidth = 30, kHeight = 9;
   image::ImageF image =
       columns(kWidth, kHeight, [](int x) { return x == 15 ? 2.0F : image::kEmptyDepth; });
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      if (x != 15) image.colour[y * kWidth + x] = {};
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    if (i % kWidth != 15) image.colour[i] = {};
+  }
   light_by_eye_dome(plain_view(kWidth, kHeight), image);
   for (int x = 0; x < kWidth; ++x) EXPECT_EQ(image.colour[4 * kWidth + x].a, x == 15 ? 1 : 0);
   EXPECT_EQ(image.colour[4 * kWidth + 15].r, 1);
