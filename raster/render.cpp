@@ -68,6 +68,8 @@ void check(const RenderOptions& options, int ranks) {
   if (window != geometry::Rect() &&
       (window.empty() || geometry::intersection(window, frame) != window))
     throw std::invalid_argument("a window has pixels of the frame");
+  if (options.eye_dome && (!window.empty() || !options.displays.empty()))
+    throw std::invalid_argument("eye-dome lighting is for whole frames on one rank");
   for (const loadbalance::Region& display : options.displays) {
     if (display.rect.empty() || display.owner < 0 || display.owner >= ranks ||
         geometry::intersection(display.rect, frame) != display.rect)

@@ -105,6 +105,7 @@ void add(EngineStatistics&& more, EngineStatistics& all) {
 }  // namespace
 
 bool comes_in_bands(const RenderRequest& request) {
+  if (request.legend || request.shading == SurfaceLighting::eye_dome) return false;
   const SamplingOptions& sampling = request.sampling;
   return !request.layout.has_displays() && image::is_written_in_rows(request.output) &&
          !request.is_animation() && request.frames == 1 && sampling.noise == 0.0 &&

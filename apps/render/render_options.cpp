@@ -79,6 +79,17 @@ void refuse_idle(const CLI::App& command, const RenderRequest& request) {
   }
 }
 
+void check_layout(const RenderRequest& request) {
+  const FrameLayout& layout = request.layout;
+  if (request.legend && layout.wall)
+    throw UsageError("--legend is for one picture, not for the displays of --wall");
+  if (request.shading == SurfaceLighting::eye_dome && (layout.wall || !layout.crop.empty())) {
+    throw UsageError(
+        "--shading eye-dome looks at neighbours of every pixel: it is for a whole picture, without "
+        "--crop and --wall");
+  }
+}
+
 void check_raster(const RenderRequest& request) {
   if (request.raster.shade != raster::Shade::composited) return;
   if (!raster::find_strategy(request.raster.strategy)->composites)
@@ -171,6 +182,7 @@ void check(const CLI::App& command, RenderRequest& request) {
   }
   complete(command, request);
   refuse_idle(command, request);
+  check_layout(request);
   if (request.engine == Engine::raster) {
     check_raster(request);
   } else {

@@ -167,6 +167,9 @@ TEST(RenderPoints, PointsInSpaceAreSpheres) {
   EXPECT_EQ(exit_code("gen:cornell --show-as points"), 2);
   EXPECT_EQ(exit_code("gen:cornell --point-size 3"), 2);
   EXPECT_EQ(exit_code("gen:cornell --legend"), 2);
+  EXPECT_EQ(exit_code("a.ply --legend --color-by z --wall 2x1"), 2);
+  EXPECT_EQ(exit_code("a.ply --shading eye-dome --wall 2x1"), 2);
+  EXPECT_EQ(exit_code("a.ply --shading eye-dome --crop 0,0,9,9"), 2);
 }
 
 // Bytes of the picture, by its hash.

@@ -291,6 +291,25 @@ TEST(Splats, AreTheSameByVectorsAndOneByOne) {
   }
 }
 
+TEST(Splats, AWindowHasTheFramesBytes) {
+  const scenes::Scene scene = splat_scene(11, true, 200);
+  RenderOptions options = small_picture(120, 90);
+  const Picture whole_picture = picture_of(scene, random_scene_camera(), options);
+  const auto& whole = std::get<image::Image8>(whole_picture);
+  options.window = {37, 21, 103, 82};
+  const Picture window_picture = picture_of(scene, random_scene_camera(), options, 2, 2);
+  const auto& window = std::get<image::Image8>(window_picture);
+  ASSERT_EQ(window.width, 66);
+  ASSERT_EQ(window.height, 61);
+  for (int y = 0; y < window.height; ++y) {
+    for (int x = 0; x < window.width; ++x) {
+      const int i = y * window.width + x, k = (y + 21) * whole.width + x + 37;
+      EXPECT_EQ(window.colour[i], whole.colour[k]) << x << ' ' << y;
+      EXPECT_EQ(window.depth[i], whole.depth[k]) << x << ' ' << y;
+    }
+  }
+}
+
 // Points without light are shaded by a way of their own.
 TEST(Splats, PlainOnesHaveOnePictureToo) {
   std::mt19937 random(5);
