@@ -18,6 +18,7 @@
 #include "geometry/box.h"
 #include "image/geotiff.h"
 #include "image/io.h"
+#include "packs/pack_reader.h"
 #include "scenes/describe.h"
 
 namespace delray::apps {
@@ -156,6 +157,51 @@ Json describe_scene(const scenes::Scene& scene) {
       {"bytes", d.bytes}};
 }
 
+// From the table alone.
+Json describe_pack(const std::string& path, const files::MemoryBudget& memory) {
+  const packs::PackReader pack(path, memory);
+  const scenes::Scene& scene = pack.scene();
+  std::size_t levels = 0;
+  packs::Attributes has;
+  std::uint64_t triangles = 0;
+  geometry::Box3 box;
+  for (const packs::MeshRow& mesh : pack.meshes()) {
+    levels = std::max(levels, mesh.levels.size());
+    triangles += mesh.triangles;
+    has.uvs |= mesh.attributes.uvs;
+    has.colours |= mesh.attributes.colours;
+  }
+  for (const scenes::Instance& instance : scene.instances) {
+    const geometry::Box3& mesh = pack.meshes()[instance.mesh].box;
+    for (int k = 0; k < 8; ++k) {
+      const glm::vec3 corner((k & 1) != 0 ? mesh.high.x : mesh.low.x,
+                             (k & 2) != 0 ? mesh.high.y : mesh.low.y,
+                             (k & 4) != 0 ? mesh.high.z : mesh.low.z);
+      box.include(instance.transform * glm::vec4(corner, 1.0F));
+    }
+  }
+  Json description = {{"triangles", pack.first_primitives().back()},
+                      {"vertices", pack.vertices()},
+                      {"meshes", pack.meshes().size()},
+                      {"instances", scene.instances.size()},
+                      {"stored_triangles", triangles}};
+  if (!box.empty()) {
+    description["low"] = numbers(glm::dvec3(box.low) + scene.origin);
+    description["high"] = numbers(glm::dvec3(box.high) + scene.origin);
+  }
+  description.update({{"up", scene.z_up ? "z" : "y"},
+                      {"texture_coordinates", has.uvs},
+                      {"vertex_colours", has.colours},
+                      {"lights", scene.lights.size()},
+                      {"cameras", scene.cameras.size()},
+                      {"materials", scene.materials.size()},
+                      {"textures", scene.textures.size()},
+                      {"levels", levels},
+                      {"pages", pack.pages().size()},
+                      {"bytes", pack.file_bytes()}});
+  return description;
+}
+
 Json describe_picture(const std::string& path, const files::MemoryBudget& memory) {
   const image::GeoTiff ground = image::read_geotiff(path, memory);
   const image::PictureInfo info = image::read_info(path, memory);
@@ -191,6 +237,8 @@ Json describe(const PointInput& asked, const OutputFile& output) {
   switch (kind) {
     case InputKind::picture:
       return describe_picture(path, memory);
+    case InputKind::pack:
+      return describe_pack(path, memory);
     case InputKind::points:
       tell_left_out(asked);
       return describe_summary(path, summarize(asked));

@@ -26,6 +26,7 @@ enum class Format {
   node,         // points of Triangle and TetGen; the suffix .ele names the pair as well
   json_points,  // [[x, y(, z)], ...]
   text,         // rows of numbers: xyz, csv, txt ...
+  pack,         // a scene in pages
   image,        // anything that OpenImageIO might read
 };
 
@@ -52,13 +53,14 @@ inline constexpr std::array kFormatSuffixes = {
     FormatSign{".exr", Format::image},  FormatSign{".hdr", Format::image},
     FormatSign{".bmp", Format::image},  FormatSign{".tga", Format::image},
     FormatSign{".pgm", Format::image},  FormatSign{".ppm", Format::image},
-    FormatSign{".webp", Format::image},
+    FormatSign{".webp", Format::image}, FormatSign{".pack", Format::pack},
 };
 
 // Formats without a mark of their own are recognized by what they hold.
 inline constexpr std::array kFormatStarts = {
     FormatSign{"LASF", Format::las},
     FormatSign{"glTF", Format::glb},
+    FormatSign{"DELRAYPK", Format::pack},
     FormatSign{"# .PCD", Format::pcd},
     FormatSign{"\x89PNG", Format::image},
     FormatSign{"\xff\xd8\xff", Format::image},

@@ -22,6 +22,7 @@
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/rank_context.h"
 #include "raster/distribute/share_communicator.h"
+#include "raster/packed/packed_scene.h"
 #include "raster/pipeline/samples.h"
 #include "raster/shading/eye_dome.h"
 #include "raster/strategies.h"
@@ -165,6 +166,7 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
   report.rank.steals = rank.schedule.steals;
   report.rank.blocks_stolen = rank.schedule.tasks_stolen;
   report.rank.idle = rank.schedule.idle;
+  report.rank.pack = rank.pack;
   report.rank.bytes_sent = totals.bytes_sent;
   report.rank.bytes_received = totals.bytes_received;
   report.rank.messages = totals.messages_sent;
@@ -177,13 +179,15 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
 }
 
 // The frame's statistics, of all ranks' reports.
-Statistics summarize(std::span<const comm::Buffer> reports) {
+Statistics summarize(std::span<const comm::Buffer> reports, bool packed) {
   Statistics statistics;
+  if (packed) statistics.pack.emplace();
   double busiest = 0, sum = 0;
   for (const comm::Buffer& buffer : reports) {
     const Report& report = buffer.as<Report>()[0];
     statistics.phases += report.rank.phases;
     statistics.ranks.push_back(report.rank);
+    if (packed) *statistics.pack += report.rank.pack;
     busiest = std::max(busiest, report.rank.busy);
     sum += report.rank.busy;
     statistics.triangles_in += report.triangles.in;
@@ -202,13 +206,26 @@ Statistics summarize(std::span<const comm::Buffer> reports) {
 }
 
 // The statistics of a frame of which this rank did what the report says; on rank 0. Collective.
-Statistics gather_statistics(comm::Communicator& communicator, const Report& mine) {
+Statistics gather_statistics(comm::Communicator& communicator, const Report& mine, bool packed) {
   const std::vector<comm::Buffer> reports =
       comm::gather(communicator, 0, comm::Buffer::of_value(mine));
-  return communicator.rank() == 0 ? summarize(reports) : Statistics();
+  return communicator.rank() == 0 ? summarize(reports, packed) : Statistics();
 }
 
 }  // namespace
+
+void PackCounts::operator+=(const PackCounts& other) {
+  pages += other.pages;
+  pages_hidden += other.pages_hidden;
+  clusters += other.clusters;
+  for (std::size_t level = 0; level < kLevels; ++level) levels[level] += other.levels[level];
+  pages_read += other.pages_read;
+  bytes_read += other.bytes_read;
+  hits += other.hits;
+  misses += other.misses;
+  stalls += other.stalls;
+  stall_seconds += other.stall_seconds;
+}
 
 void Phases::operator+=(const Phases& other) {
   transform += other.transform;
@@ -232,6 +249,7 @@ void Statistics::operator+=(Statistics&& more) {
     busy.push_back(ranks[r].busy);
   }
   imbalance = loadbalance::imbalance(busy);
+  if (pack && more.pack) *pack += *more.pack;
   triangles_in += more.triangles_in;
   triangles_culled += more.triangles_culled;
   triangles_clipped += more.triangles_clipped;
@@ -260,6 +278,7 @@ void RankStatistics::operator+=(const RankStatistics& other) {
   steals += other.steals;
   blocks_stolen += other.blocks_stolen;
   idle += other.idle;
+  pack += other.pack;
 }
 
 namespace {
@@ -291,13 +310,15 @@ struct Renderer::Memory {
   Scratch scratch = {};
   FrameMemory memory = {};
   ScratchPool pool = {};
+  std::unique_ptr<PackedScene> packed = {};
 };
 
 struct Renderer::Frame {
   // `scratch` is the frame's until it is rasterized.
   Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
         const scenes::Camera& camera, const RenderOptions& whole, parallel::Progress* progress)
-      : options((check(whole, communicator.size()), check(camera), options_of_window(whole))),
+      : options((check(whole, communicator.size()), check(camera), check_packed(memory, whole),
+                 options_of_window(whole))),
         screen(screen_of(camera, whole)),
         recording(communicator, events),
         rank{recording, memory.scene, screen, options, progress, scratch, memory.memory} {}
@@ -314,7 +335,7 @@ struct Renderer::Frame {
   // Collective.
   Result finish(comm::Communicator& communicator, Picture&& picture) {
     Result result{std::move(picture), std::move(rank.shown), {}};
-    result.statistics = gather_statistics(communicator, report());
+    result.statistics = gather_statistics(communicator, report(), rank.prepared.packed != nullptr);
     make_distances(result.picture);
     for (Picture& display : result.shown) make_distances(display);
     if (communicator.rank() == 0 && options.strategy != "sort-last")
@@ -332,6 +353,15 @@ struct Renderer::Frame {
     view.height = options.height;
     view.scale /= screen.samples;
     return view;
+  }
+
+  static void check_packed(const Memory& memory, const RenderOptions& options) {
+    if (memory.packed == nullptr) return;
+    if (!find_strategy(options.strategy)->packs || !options.schedule.empty() ||
+        options.blend == Blend::by_cell || !options.displays.empty()) {
+      throw std::invalid_argument(
+          "packs are rendered by sort-first and sort-last, without schedules, cells and displays");
+    }
   }
 
   std::optional<PartitionStatistics> partition_of_ranks() const {
@@ -389,6 +419,12 @@ class Renderer::Steps final : public FrameInSteps {
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
   memory_ = std::unique_ptr<Memory>(new Memory{PreparedScene(scene, std::move(shader))});
 }
+Renderer::Renderer(const packs::PackReader& pack, const scenes::Scene& scene,
+                   const PackMemory& memory, std::shared_ptr<const shading::Shader> shader)
+    : Renderer(scene, std::move(shader)) {
+  memory_->packed = std::make_unique<PackedScene>(pack, memory);
+  memory_->scene.packed = memory_->packed.get();
+}
 void Renderer::recycle(Picture&& picture) {
   // Ranks that are not shown the picture keep memory of their own.
   const bool is_empty = std::visit([](const auto& image) { return image.width == 0; }, picture);
@@ -422,7 +458,7 @@ Result Renderer::composite_displays(comm::Communicator& communicator, const scen
     if (display.owner == communicator.rank()) result.shown.push_back(std::move(picture));
     all += frame.report();
   }
-  result.statistics = gather_statistics(communicator, all);
+  result.statistics = gather_statistics(communicator, all, false);
   return result;
 }
 

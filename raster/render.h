@@ -6,6 +6,7 @@
 // snapped to 1/256 pixel.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -20,6 +21,7 @@
 #include "image/image.h"
 #include "loadbalance/cost_model.h"
 #include "loadbalance/partition.h"
+#include "packs/pack_reader.h"
 #include "parallel/progress.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
@@ -127,6 +129,28 @@ struct Phases {
   void operator+=(const Phases& other);
 };
 
+// Work of a rank, or of all of them, with the pages of a pack.
+struct PackCounts {
+  static constexpr std::size_t kLevels = 32;
+
+  std::uint64_t pages = 0;         // in view
+  std::uint64_t pages_hidden = 0;  // left out, as they were behind what was drawn before
+  std::uint64_t clusters = 0;      // of the pages that were drawn
+  // Of the pages that were drawn the triangles by level, the finest first; the last has all beyond.
+  std::array<std::uint64_t, kLevels> levels{};
+  // See packs::CacheCounts: with several threads these depend on which of them was faster.
+  std::uint64_t pages_read = 0, bytes_read = 0, hits = 0, misses = 0, stalls = 0;
+  double stall_seconds = 0;
+
+  void operator+=(const PackCounts& other);
+};
+
+// The memory that a rank may take for the pages of a pack, and the threads that read them.
+struct PackMemory {
+  std::uint64_t cache_bytes = std::uint64_t{1} << 30;
+  int fetch_threads = 2;
+};
+
 // One rank's work for a frame.
 struct RankStatistics {
   int rank = 0;
@@ -138,6 +162,7 @@ struct RankStatistics {
   std::uint64_t bytes_sent = 0, bytes_received = 0, messages = 0;  // messages: sent
   std::uint64_t requests = 0, steals = 0, blocks_stolen = 0;       // of a schedule
   double idle = 0;  // seconds that threads waited for tasks of a schedule
+  PackCounts pack;
 
   void operator+=(const RankStatistics& other);  // but for `rank`
 };
@@ -171,6 +196,7 @@ struct Statistics {
   // hidden by another, and how often one was shaded.
   std::uint64_t fragments = 0, shaded = 0;
   std::optional<PartitionStatistics> partition;  // if asked for, and the screen was cut
+  std::optional<PackCounts> pack;                // summed over ranks, where there is one
   std::vector<std::string> warnings;
 
   // Of several renderings by the same ranks: times and counts are summed, the rest is the last's.
@@ -215,6 +241,12 @@ class Renderer {
   // REQUIRES: indices of the scene are in range (as scenes::load and the generators leave it).
   explicit Renderer(const scenes::Scene& scene,
                     std::shared_ptr<const shading::Shader> shader = nullptr);
+  // Renders a pack, of which no more than some pages are in memory. `scene` is what the pack has
+  // besides (packs::PackReader::scene), with whatever light. Refers to both. Only strategies that
+  // say so render packs, without schedules, not in steps, without displays, and not blended by cell; draw_share and
+  // costs do not.
+  Renderer(const packs::PackReader& pack, const scenes::Scene& scene, const PackMemory& memory,
+           std::shared_ptr<const shading::Shader> shader = nullptr);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -222,6 +254,8 @@ class Renderer {
   // Collective: every rank calls it with the same scene, camera and options. Uncovered pixels are
   // transparent black with depth image::kEmptyDepth. A pixel's depth is that of the nearest
   // surface at its samples, opaque or not. `progress` counts tiles of this rank.
+  //
+  // Of a pack also files::FileError.
   //
   // Throws std::invalid_argument for names that are in no table, for options that exclude each
   // other, for sizes in samples below 1 or above 65534, for a window or display that reaches beyond

@@ -15,7 +15,8 @@ constexpr std::array kStrategies = {
         .description = "each rank draws its own primitives; the images of all ranks are composited",
         .render = sort_last,
         .steps = sort_last_steps,
-        .composites = true},
+        .composites = true,
+        .packs = true},
     Strategy{.name = "sort-first",
              .description = "primitives go to the ranks whose regions of the screen they touch, "
                             "before they are drawn",
@@ -23,7 +24,8 @@ constexpr std::array kStrategies = {
              .partitions = true,
              .travels = true,
              .schedules = true,
-             .displays = true},
+             .displays = true,
+             .packs = true},
     Strategy{.name = "sort-middle",
              .description = "triangles go to the ranks whose regions of the screen they touch, "
                             "once transformed",

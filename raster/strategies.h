@@ -38,6 +38,7 @@ struct Strategy {
   bool schedules = false;   // schedule, block, master_works
   bool groups = false;      // groups, geometry_ranks, redistribution
   bool displays = false;    // owners_draw
+  bool packs = false;       // reads packs, each rank what it draws
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

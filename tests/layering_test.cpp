@@ -27,11 +27,13 @@ const std::map<std::string, Names>& arrows() {
         {"image", {"parallel"}},
         {"loadbalance", {"parallel", "comm"}},
         {"scenes", {"image", "parallel"}},
+        {"packs", {"scenes", "image", "parallel"}},
         {"delaunay", {"parallel", "loadbalance", "comm"}},
         {"shading", {"scenes", "image", "parallel"}},
         {"composite", {"image", "comm", "parallel"}},
         {"raytrace", {"shading", "scenes", "image", "loadbalance", "comm", "parallel"}},
-        {"raster", {"composite", "shading", "scenes", "image", "loadbalance", "comm", "parallel"}},
+        {"raster",
+         {"composite", "shading", "packs", "scenes", "image", "loadbalance", "comm", "parallel"}},
     };
     Names lower;
     for (const auto& [folder, ignored] : t) lower.insert(folder);
@@ -74,9 +76,11 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/raster", {"mesh", "natural_neighbours", "tiles"}},
     {"delaunay/verify", {"files", "mesh"}},
     {"delaunay/distributed", {"insertion", "mesh", "predicates", "tiles"}},
+    {"packs/build", {"format"}},
     {"raster/shading", {"pipeline"}},
     {"raster/distribute", {"pipeline", "shading"}},
-    {"raster/strategies", {"distribute", "pipeline"}},
+    {"raster/packed", {"distribute", "pipeline"}},
+    {"raster/strategies", {"distribute", "packed", "pipeline"}},
     {"raytrace/sampling", {"scene"}},
     {"raytrace/integrators", {"sampling", "scene"}},
     {"raytrace/distributed", {"integrators", "scene"}},

@@ -24,6 +24,7 @@
 #include "files/error.h"
 #include "files/format.h"
 #include "files/read_file.h"
+#include "packs/unpack.h"
 #include "parallel/arena.h"
 #include "scenes/generate.h"
 #include "scenes/load.h"
@@ -222,6 +223,15 @@ scenes::Scene loaded(const SceneInput& input, parallel::Progress* progress) {
   return scene;
 }
 
+scenes::Scene unpacked(const SceneInput& input) {
+  refuse_for_packs(input);
+  const files::MemoryBudget memory = input.file.limits.budget();
+  packs::PackReader pack(input.file.path, memory);
+  scenes::Scene scene = packs::unpack(pack, memory);
+  set_up(input, scene);
+  return scene;
+}
+
 }  // namespace
 
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory) {
@@ -248,6 +258,8 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory)
       return InputKind::scene;
     case Format::image:
       return InputKind::picture;
+    case Format::pack:
+      return InputKind::pack;
     default:
       return InputKind::points;
   }
@@ -320,12 +332,22 @@ InputKind input_kind_of(const PointInput& input) {
     std::error_code error;
     if (!scenes::is_generated(path) && !std::filesystem::is_regular_file(path, error)) continue;
     const InputKind kind = input_kind(path, memory);
-    if (kind == InputKind::scene || kind == InputKind::mesh) {
+    if (kind == InputKind::scene || kind == InputKind::mesh || kind == InputKind::pack) {
       throw UsageError(
           fmt::format("{} is a scene or mesh: only points are read from several files", path));
     }
   }
   return InputKind::points;
+}
+
+void refuse_for_packs(const SceneInput& input) {
+  const bool given = input.file.given() || !input.draw.empty() || !input.colour_by.empty() ||
+                     input.exaggeration != 1;
+  if (!given) return;
+  throw UsageError(fmt::format(
+      "options of points, --draw, --color-by and --exaggeration are for delray pack; {} "
+      "is packed already",
+      input.file.path));
 }
 
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
@@ -343,6 +365,7 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
   if (kind == InputKind::points || kind == InputKind::picture) {
     return from_points(input, progress);
   }
+  if (kind == InputKind::pack) return unpacked(input);
   if (input.file.given()) {
     throw UsageError(fmt::format(
         "--terrain-rgb, --cell-size, --duplicates and options that choose points are for "

@@ -25,8 +25,8 @@ struct SceneInput {
 
 // The kind that a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit
 // coordinates, an OBJ, OFF or STL that delray wrote, a VTU, an .ele or a .node beside one is a mesh
-// of points, and so is a folder with an index of pieces.
-enum class InputKind { scene, mesh, points, picture };
+// of points, and so is a folder with an index of pieces. A pack is a scene that need not be in memory.
+enum class InputKind { scene, mesh, points, picture, pack };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 
 // The same of an input that may be several files, which are points then. Throws UsageError for a
@@ -37,8 +37,11 @@ InputKind input_kind_of(const PointInput& input);
 // and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
 
+// Throws UsageError for options that change how a scene is made, which a pack has behind it.
+void refuse_for_packs(const SceneInput& input);
+
 // Loads or generates the scene; points are triangulated in the plane, with their z as height, or
-// shown as points, by default where they lie in space.
+// shown as points, by default where they lie in space; a pack is unpacked.
 // Warnings go to the log. Parallel in the caller's arena. Throws FileError and UsageError.
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress);
 

@@ -38,14 +38,17 @@ void list_formats() {
   }
   print_list("Points", points);
   print_list("Meshes, whose coordinates are kept exactly", described(delaunay::mesh_readers()));
+  print_list("Packs", {{"pack", fmt::format("scene in pages, written by delray pack ({})",
+                                            files::suffixes(files::Format::pack))}});
   print_list("Pictures", {{"picture", fmt::format("elevations, textures, layers to compose ({})",
                                                   files::suffixes(files::Format::image))}});
 }
 
 std::string format_names() {
-  return fmt::format("scene ({}), points ({}), mesh ({}) or picture ({})",
+  return fmt::format("scene ({}), points ({}), mesh ({}), pack ({}) or picture ({})",
                      joined_names(scenes::scene_readers()), joined_names(delaunay::point_readers()),
-                     joined_names(delaunay::mesh_readers()), files::suffixes(files::Format::image));
+                     joined_names(delaunay::mesh_readers()), files::suffixes(files::Format::pack),
+                     files::suffixes(files::Format::image));
 }
 
 }  // namespace delray::apps

@@ -17,6 +17,7 @@
 #include "apps/statistics.h"
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
+#include "packs/extent.h"
 #include "parallel/arena.h"
 #include "raster/strategies.h"
 #include "raytrace/checkpoint.h"
@@ -176,9 +177,57 @@ void require_memory_for_textures(const RenderRequest& request, const scenes::Sce
                                              request.scene.file.path, "textures");
 }
 
+// Whether pages of a pack are read while they are drawn; otherwise it is unpacked, into memory.
+bool reads_pages(const RenderRequest& request) {
+  return request.engine == Engine::raster &&
+         raster::find_strategy(request.raster.strategy)->packs &&
+         request.sharing.schedule.empty() && request.raster.blend == raster::Blend::by_owner &&
+         !request.layout.wall && input_kind_of(request.scene.file) == InputKind::pack;
+}
+
+std::shared_ptr<Prepared> open_pack(const RenderRequest& request) {
+  refuse_for_packs(request.scene);
+  refuse_outside(request.scene.file.path, request.scene.file.limits);
+  auto prepared = std::make_shared<Prepared>();
+  auto pack = std::make_unique<packs::PackReader>(request.scene.file.path,
+                                                  request.scene.file.limits.budget());
+  prepared->scene = pack->take_scene();
+  if (!request.scene.up.empty()) prepared->scene.z_up = request.scene.up == "z";
+  prepared->triangles = pack->first_primitives().back();
+  prepared->vertices = pack->vertices();
+  prepared->pack = std::move(pack);
+  return prepared;
+}
+
+scenes::FarthestPoints extent_of(const Prepared& prepared) {
+  return prepared.pack ? packs::farthest_points(*prepared.pack)
+                       : scenes::farthest_points(prepared.scene);
+}
+
+// Memory for pages: what the limit leaves, besides pictures, lists of what is in view and tiles,
+// for each rank in this process.
+raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& prepared) {
+  constexpr std::uint64_t kBytesPerPage = 400, kBytesPerPixel = 64, kBase = std::uint64_t{32} << 20;
+  constexpr std::uint64_t kLeast = std::uint64_t{8} << 20;
+  const files::MemoryBudget budget = request.scene.file.limits.budget();
+  const auto pixels =
+      static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height) *
+      static_cast<std::uint64_t>(request.raster.supersampling * request.raster.supersampling);
+  const auto ranks = static_cast<std::uint64_t>(std::max(1, request.launch.ranks));
+  const std::uint64_t other =
+      kBase + prepared.pack->pages().size() * kBytesPerPage + pixels * kBytesPerPixel * ranks;
+  const std::uint64_t left = budget.left();
+  raster::PackMemory memory;
+  // Blocks of the heap are never as full as they could be.
+  memory.cache_bytes = std::max(left > other ? (left - other) / 4 * 3 / ranks : 0, kLeast);
+  memory.fetch_threads = std::clamp(parallel::arena_threads(), 1, 16);
+  return memory;
+}
+
 // Loads the scene, or of one that comes in parts what is no geometry.
 std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
+  if (reads_pages(request)) return open_pack(request);
   auto prepared = std::make_shared<Prepared>();
   prepared->in_parts = in_parts;
   prepared->known_by_name = has_parts(request);
@@ -217,10 +266,16 @@ void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& 
   if (!prepared.cameras.empty()) prepared.camera = prepared.cameras.front();
 }
 
+bool is_lit_by_emission(const Prepared& prepared) {
+  return prepared.pack ? prepared.pack->lit_by_emission()
+                       : scenes::is_lit_by_emission(prepared.scene);
+}
+
 // Says so where nothing but what glows lights a scene, which rasterizers do not see.
-void warn_of_glow(const RenderRequest& request, const scenes::Scene& scene) {
+void warn_of_glow(const RenderRequest& request, const Prepared& prepared) {
+  const scenes::Scene& scene = prepared.scene;
   if (request.engine != Engine::raster || !scene.lights.empty() || has_sky(scene.environment) ||
-      !scenes::is_lit_by_emission(scene)) {
+      !is_lit_by_emission(prepared)) {
     return;
   }
   spdlog::warn(
@@ -252,11 +307,13 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
     throw UsageError(
         "--legend is for colours of height, intensity, classes or returns: see --color-by");
   }
-  complete_surfaces(prepared.scene);
+  if (!prepared.pack) complete_surfaces(prepared.scene);
   if (request.engine == Engine::raytrace)
     scenes::set_radii_in_units(prepared.scene, prepared.camera, request.height);
-  complete_light(request.light, prepared.camera, prepared.scene);
-  warn_of_glow(request, prepared.scene);
+  const bool is_lit = prepared.pack && prepared.pack->lit_by_emission();
+  if (!is_lit || !request.light.light.empty())
+    complete_light(request.light, prepared.camera, prepared.scene);
+  warn_of_glow(request, prepared);
   prepared.load_seconds = watch.lap();
   require_memory_for_textures(request, prepared.scene);
   require_memory_for_pictures(request);
@@ -305,7 +362,7 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   Stopwatch watch;
   const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
   const std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
-  choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared);
+  choose_cameras(request, extent_of(*prepared), *prepared);
   build(request, watch, *prepared);
   return prepared;
 }
@@ -329,7 +386,7 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
     choose_cameras(request, of_all_ranks(communicator, mine), *prepared);
     part = {};
   } else {
-    on_all([&] { choose_cameras(request, scenes::farthest_points(prepared->scene), *prepared); });
+    on_all([&] { choose_cameras(request, extent_of(*prepared), *prepared); });
   }
   on_all([&] { build(request, watch, *prepared); });
   return prepared;
@@ -338,6 +395,11 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
 FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
                              const RenderRequest& request, parallel::Progress* progress)
     : prepared_(prepared), request_(request), progress_(progress) {
+  if (prepared.pack) {
+    raster_.emplace(*prepared.pack, prepared.scene, pack_memory(request, prepared),
+                    prepared.shader);
+    return;
+  }
   if (request.engine == Engine::raster) {
     raster_.emplace(prepared.scene, prepared.shader);
     return;
@@ -387,7 +449,8 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
 }
 
 bool FrameRenderer::has_steps(int ranks) const {
-  return raster_ &&
+  // Frames in steps would be several that read pages at the same time.
+  return raster_ && !prepared_.pack &&
          raster::Renderer::has_steps(raster_options(request_, request_.window, ranks), ranks);
 }
 

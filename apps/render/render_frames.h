@@ -11,6 +11,7 @@
 #include "apps/render/render_options.h"
 #include "comm/communicator.h"
 #include "image/io.h"
+#include "packs/pack_reader.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 
@@ -24,6 +25,7 @@ struct Prepared {
   Background background;                           // not automatic any more
   std::shared_ptr<const shading::Shader> shader;   // rasterizer; ray tracer without a tracer
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
+  std::unique_ptr<const packs::PackReader> pack;   // of a scene that is read while it is rendered
   // Ranks make parts of the geometry for themselves, and `scene` has none.
   bool in_parts = false;
   std::string texture_hash;                   // before the shader took the texels

@@ -62,6 +62,24 @@ Json raster_of(const raster::Statistics& s) {
 }
 Json raster_of(const raytrace::Statistics&) { return nullptr; }
 
+Json json_of(const raster::PackCounts& pack) {
+  Json levels = Json::array();
+  for (const std::uint64_t triangles : pack.levels) levels.push_back(triangles);
+  while (levels.size() > 1 && levels.back() == 0) levels.erase(levels.size() - 1);
+  return {{"pages", pack.pages},
+          {"pages_hidden", pack.pages_hidden},
+          {"clusters", pack.clusters},
+          {"levels", levels},
+          {"pages_read", pack.pages_read},
+          {"bytes_read", pack.bytes_read},
+          {"hits", pack.hits},
+          {"misses", pack.misses},
+          {"stalls", pack.stalls},
+          {"stall_seconds", pack.stall_seconds}};
+}
+Json pack_of(const raster::Statistics& s) { return s.pack ? json_of(*s.pack) : Json(nullptr); }
+Json pack_of(const raytrace::Statistics&) { return nullptr; }
+
 raytrace::RayCounts rays_of(const raster::Statistics&) { return {}; }
 raytrace::RayCounts rays_of(const raytrace::Statistics& s) { return s.rays; }
 
@@ -91,6 +109,7 @@ Json of_rays(const raytrace::RayCounts& rays) {
 // Adds the counts that ranks of only one engine have.
 void add_own(const raster::RankStatistics& rank, Json& row) {
   row["tasks_stolen"] = rank.blocks_stolen;
+  if (rank.pack.pages > 0) row["pack"] = json_of(rank.pack);
 }
 void add_own(const raytrace::RankStatistics& rank, Json& row) {
   constexpr const char* kKinds[] = {"work", "serve", "wait"};
@@ -189,6 +208,7 @@ Json render_statistics(const RenderRequest& request, const Prepared& prepared, c
             {"rays", of_rays(rays_of(s))},
             {"raster", raster_of(s)},
             {"raytrace", raytrace_of(s)},
+            {"pack", pack_of(s)},
             {"sampling",
              {{"passes", frames.extras.passes},
               {"samples", frames.extras.samples},

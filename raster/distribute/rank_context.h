@@ -16,6 +16,7 @@
 namespace delray::raster {
 
 struct FrameMemory;
+class PackedScene;
 
 // A scene with what is made of it once for all frames.
 struct PreparedScene {
@@ -29,6 +30,7 @@ struct PreparedScene {
   std::vector<std::uint64_t> first_primitives;  // scenes::first_primitives(scene)
   bool transparent;                             // some mesh of the scene is blended
   SceneClusters clusters;
+  PackedScene* packed = nullptr;  // of a scene whose triangles are in a pack
 };
 
 // A frame on one rank.
@@ -43,6 +45,7 @@ struct RankContext {
   RegionCounts counts = {};
   std::uint64_t triangles_travelled = 0, fragments_travelled = 0;
   loadbalance::ScheduleCounts schedule = {};  // of a schedule that ran
+  PackCounts pack = {};
   // Which rank the owner k of the screen's partition is; empty: rank k.
   std::vector<int> rank_of_owner = {};
   // In steps, of which only the last may use the communicator: work is reported then.

@@ -108,6 +108,12 @@ void RegionDrawing::draw_all() {
   draw(clusters);
 }
 
+bool RegionDrawing::hides(const geometry::Rect& samples, float depth) const {
+  const geometry::Rect wanted = geometry::intersection(samples, tiles_.clip);
+  if (wanted.empty()) return true;
+  return task_.options.skip_hidden_clusters && scratch_.tiles.is_hidden(wanted, depth);
+}
+
 RegionCounts RegionDrawing::finish(FinishTile finish_tile) {
   RegionCounts counts;
   end_drawing_into(counts);
@@ -153,6 +159,44 @@ void RegionDrawing::drop_hidden(int tile, VisibilityTile& visibility) const {
     if (codes[block] != kEmptyCode) visibility.drop_behind(block, codes[block]);
 }
 
+// Each draw once.
+void RegionDrawing::hold(std::vector<std::uint32_t>& draws) const {
+  std::sort(draws.begin(), draws.end());
+  draws.erase(std::unique(draws.begin(), draws.end()), draws.end());
+  task_.list.holder->hold(draws);
+}
+
+// The draws of large triangles that are looked up while they are drawn.
+void RegionDrawing::hold_large(int tile, std::vector<std::uint32_t>& draws) const {
+  draws.clear();
+  BinnedTriangles& large = scratch_.deferred.large;
+  for (const std::uint32_t entry : large.of_tile(tile)) {
+    if ((entry & kMasked) != 0 || into_tiles_.shade_now)
+      draws.push_back(task_.list.cluster_of(large.triangles[entry & kIndex].number).draw);
+  }
+  hold(draws);
+}
+
+// The draws of all that is seen in the tile, or through it.
+void RegionDrawing::hold_seen(const TileJob& job, const VisibilityTile* tile,
+                              const TileMemory& memory, std::vector<std::uint32_t>& draws) const {
+  draws.clear();
+  std::uint32_t last = kNothing;
+  const auto add = [&](std::uint32_t number) {
+    if (number == kNothing || number >> kClusterBits == last) return;
+    last = number >> kClusterBits;
+    draws.push_back(task_.list.clusters[last].draw);
+  };
+  for (const geometry::Rect& rect : tiles_.rects_of(job)) {
+    for (int y = rect.y0; y < rect.y1 && tile != nullptr; ++y) {
+      for (int x = rect.x0; x < rect.x1; ++x)
+        add(number_of(tile->key[y % kTileSize * kTileSize + x % kTileSize]));
+    }
+  }
+  for (const BlendedFragment& fragment : memory.blended) add(number_of(fragment.key));
+  hold(draws);
+}
+
 void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile,
                                 RegionCounts& counts) {
   const Screen& screen = task_.screen;
@@ -163,6 +207,8 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
   parallel::parallel_for(0, scratch_.workers.size(), 1, [&](std::size_t worker) {
     StageClock<2> clock;
     TileMemory& mine = *scratch_.tile_memory[worker];
+    MeshHolder* const holder = task_.list.holder;
+    std::vector<std::uint32_t> held;
     std::uint64_t shaded_here = 0, shown_here = 0;
     for (;;) {
       const std::size_t k = next.fetch_add(1, std::memory_order_relaxed);
@@ -177,8 +223,10 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
         tile->clear(scratch_.tiles.rect(index));
       }
       if (tile != nullptr) {
+        if (holder != nullptr) hold_large(index, held);
         shaded_here += draw_large(into_tiles_, worker, scratch_.deferred.large,
                                   {index, scratch_.tiles.rect(index), *tile});
+        if (holder != nullptr) holder->release(held);
       }
       if (tile != nullptr) drop_hidden(index, *tile);
       find_blended(screen, scratch_.tiles.rect(index), scratch_.deferred.blended.triangles,
@@ -190,7 +238,9 @@ void RegionDrawing::finish_jobs(std::span<const TileJob> jobs, FinishTile finish
                           static_cast<std::ptrdiff_t>(corner.y0) * screen.width + corner.x0
                     : nullptr;
       TileView view(frame_->shading(), tile, colours, mine);
+      if (holder != nullptr) hold_seen(jobs[k], tile, mine, held);
       finish_tile(tiles_.rects_of(jobs[k]), view);
+      if (holder != nullptr) holder->release(held);
       clock.finish(1);
       shown_here += view.shown();
       shaded_here += view.shaded();

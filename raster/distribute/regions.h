@@ -85,6 +85,9 @@ class RegionDrawing {
   void draw(std::span<const std::uint32_t> clusters);
   void draw_in_order(std::span<const std::uint32_t> clusters);
   void draw_all();
+  // Whether nothing at or behind `depth` can be seen any more in these samples, as far as is known
+  // at a glance.
+  bool hides(const geometry::Rect& samples, float depth) const;
   // By tile of the screen and block in it, how far all that is drawn by now is at most, and that
   // nothing behind such depths need be shaded, since it is hidden: see FrameTiles. Not for drawings
   // in which anything is blended or was shaded already.
@@ -105,6 +108,10 @@ class RegionDrawing {
   RegionDrawing(const RegionTask& task, std::unique_ptr<PreparedFrame> own,
                 const PreparedFrame* frame, Scratch& scratch);
   void end_drawing_into(RegionCounts& counts);
+  void hold_large(int tile, std::vector<std::uint32_t>& draws) const;
+  void hold_seen(const TileJob& job, const VisibilityTile* tile, const TileMemory& memory,
+                 std::vector<std::uint32_t>& draws) const;
+  void hold(std::vector<std::uint32_t>& draws) const;
   void drop_hidden(int tile, VisibilityTile& visibility) const;
   void finish_jobs(std::span<const TileJob> jobs, FinishTile finish_tile, RegionCounts& counts);
 

@@ -47,6 +47,16 @@ struct Cluster {
   std::uint64_t primitive = 0;  // global number of the triangle at place 0
 };
 
+// Keeps the meshes of draws in memory while somebody looks at them, where not all are at all times.
+class MeshHolder {
+ public:
+  virtual ~MeshHolder() = default;
+  // Until they are released as often, these draws have their meshes and clusters. Any thread.
+  // Throws FileError where they cannot be read.
+  virtual void hold(std::span<const std::uint32_t> draws) = 0;
+  virtual void release(std::span<const std::uint32_t> draws) = 0;
+};
+
 // Draws and clusters in ascending order of primitives. A triangle's number within the list is
 // cluster << kClusterBits | place in the cluster: it ascends as primitive numbers do, so that ties
 // of depth resolve as they would over the whole scene, and it leads back to the triangle.
@@ -55,6 +65,9 @@ struct DrawList {
   std::vector<Cluster> clusters;
   std::uint64_t triangles = 0;
   std::deque<MeshClusters> own;  // of meshes that came in messages
+  // Of draws that have their meshes only while they are held: others have one without triangles, of
+  // the same material and attributes. Null: all have theirs.
+  MeshHolder* holder = nullptr;
 
   const Cluster& cluster_of(std::uint32_t number) const { return clusters[number >> kClusterBits]; }
   std::uint32_t triangle_of(std::uint32_t number) const {

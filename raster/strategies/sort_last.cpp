@@ -7,6 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "comm/agree_on_failure.h"
 #include "composite/codec.h"
 #include "composite/deep.h"
 #include "composite/dense.h"
@@ -17,6 +18,7 @@
 #include "parallel/parallel_for.h"
 #include "raster/distribute/frame_memory.h"
 #include "raster/distribute/rank_context.h"
+#include "raster/packed/packed_drawing.h"
 #include "raster/pipeline/processor_seconds.h"
 #include "raster/pipeline/samples.h"
 
@@ -185,8 +187,16 @@ class Steps final : public FrameSteps {
   explicit Steps(RankContext& rank) : rank_(rank) {}
 
   void transform() override {
-    list_ = make_draw_list(pieces(), &rank_.prepared.clusters);
     const geometry::Rect frame = rank_.frame();
+    if (PackedScene* const packed = rank_.prepared.packed) {
+      packed_ = std::make_unique<PackedDrawing>(
+          rank_, *packed,
+          share_of_pages(*packed, visible_pages(rank_, *packed), rank_.number(), rank_.ranks()));
+      drawing_.reset(new RegionDrawing(rank_.begin(packed_->list(), {&frame, 1})));
+      packed_->draw(*drawing_);
+      return;
+    }
+    list_ = make_draw_list(pieces(), &rank_.prepared.clusters);
     drawing_.reset(new RegionDrawing(rank_.begin(list_, {&frame, 1})));
     drawing_->draw_all();
   }
@@ -196,12 +206,12 @@ class Steps final : public FrameSteps {
       image_ = rank_.take_image<Colour>(rank_.options.width, rank_.options.height);
       rank_.end_pixels(*drawing_, image_);
     } else if (shades_last()) {
-      layer_ = two_sets() ? draw_points<SeenPoint>(rank_, list_, *drawing_)
-                          : draw_points<PlainSeenPoint>(rank_, list_, *drawing_);
+      layer_ = two_sets() ? draw_points<SeenPoint>(rank_, list(), *drawing_)
+                          : draw_points<PlainSeenPoint>(rank_, list(), *drawing_);
     } else if (has_cells()) {
-      layer_ = draw_cell(rank_, list_, *drawing_, cell_);
+      layer_ = draw_cell(rank_, list(), *drawing_, cell_);
     } else if (rank_.prepared.transparent) {
-      layer_ = draw_surfaces(rank_, list_, *drawing_);
+      layer_ = draw_surfaces(rank_, list(), *drawing_);
     } else if (counts_only()) {
       const image::BasicImage<Colour> image = rank_.end_samples<Colour>(*drawing_);
       rank_.communicator.mark(comm::Phase::compose, 0);  // ranks that do more than count do not
@@ -210,8 +220,7 @@ class Steps final : public FrameSteps {
       layer_ =
           composite::find_codec(rank_.options.codec)->make(rank_.end_samples<Colour>(*drawing_));
     }
-    drawing_.reset();
-    list_ = {};
+    drop_drawing();
   }
 
   Picture compose() override {
@@ -246,6 +255,13 @@ class Steps final : public FrameSteps {
   Picture rasterize_and_compose() { return picture_of(hand_over_tiles<Colour>(rank_, *drawing_)); }
 
  private:
+  const DrawList& list() const { return packed_ ? packed_->list() : list_; }
+  void drop_drawing() {
+    drawing_.reset();
+    if (packed_) packed_->count();
+    packed_.reset();
+    list_ = {};
+  }
   bool shades_last() const { return rank_.options.shade == Shade::composited; }
   // Whether any material looks at both sets of texture coordinates; all ranks say the same.
   bool two_sets() const {
@@ -297,6 +313,7 @@ class Steps final : public FrameSteps {
 
   RankContext& rank_;
   DrawList list_;
+  std::unique_ptr<PackedDrawing> packed_;  // instead of the list
   std::unique_ptr<RegionDrawing> drawing_;
   image::BasicImage<Colour> image_;          // a single rank's
   std::unique_ptr<composite::Layer> layer_;  // of one among several
@@ -321,6 +338,13 @@ template <class Colour>
 Picture render(RankContext& rank) {
   rank.communicator.mark(comm::Phase::rasterize, 0);
   Steps<Colour> steps(rank);
+  if (rank.prepared.packed != nullptr) {
+    // A rank that cannot read a page would be waited for.
+    comm::all_or_none(rank.communicator, comm::Phase::rasterize, [&] { steps.transform(); });
+    steps.hide_behind_others();
+    comm::all_or_none(rank.communicator, comm::Phase::rasterize, [&] { steps.rasterize(); });
+    return steps.compose();
+  }
   steps.transform();
   steps.hide_behind_others();
   if (steps.has_tiles()) {

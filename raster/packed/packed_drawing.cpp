@@ -1,0 +1,143 @@
+// Draws batches of pages while threads read those of the next ones (Correa, Klosowski and Silva
+// 2002). Before a page is read, and again before it is drawn, it is left out if what is drawn by
+// then hides it.
+//
+// Shading comes when everything is drawn, and looks at what is seen only: it holds the pages of a
+// tile, which the cache may have to read again. Degenerate: where nothing is in view nothing is
+// read.
+#include "raster/packed/packed_drawing.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace delray::raster {
+namespace {
+
+constexpr std::size_t kBatchPages = 128;              // drawn at once
+constexpr std::size_t kPagesAhead = 3 * kBatchPages;  // asked for before they are drawn
+
+}  // namespace
+
+PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
+                             std::vector<PlacedPage>&& pages)
+    : rank_(rank),
+      packed_(packed),
+      pages_(std::move(pages)),
+      before_(packed.cache.counts()),
+      holders_(pages_.size()),
+      held_(pages_.size()) {
+  const scenes::Scene& scene = rank.prepared.scene;
+  constexpr std::uint64_t kMost = 1U << (32 - kClusterBits);
+  if (pages_.size() * packs::kPageClusters >= kMost)
+    throw std::length_error("one rank cannot rasterize more than 8 million pages at once");
+  list_.holder = this;
+  list_.clusters.resize(pages_.size() * packs::kPageClusters);
+  list_.draws.reserve(pages_.size());
+  for (const PlacedPage& page : pages_) {
+    const scenes::Instance& instance = scene.instances[page.instance];
+    list_.draws.push_back({&scene.meshes[instance.mesh], &instance.transform, nullptr, nullptr});
+    list_.triangles += packed.pack.pages()[page.page].triangles;
+  }
+}
+
+bool PackedDrawing::hides(const RegionDrawing& drawing, const PlacedPage& page) const {
+  return drawing.hides(page.pixels, page.nearest);
+}
+
+void PackedDrawing::fill_clusters(std::uint32_t draw, const RasterPage& page) {
+  const std::uint64_t primitive = packed_.pack.first_primitives()[pages_[draw].instance] +
+                                  packed_.pack.pages()[pages_[draw].page].first;
+  const std::vector<MeshCluster>& parts = page.clusters.blocks.front()->clusters;
+  for (std::uint32_t part = 0; part < parts.size(); ++part) {
+    list_.clusters[std::size_t{draw} * packs::kPageClusters + part] = {
+        draw,
+        parts[part].first,
+        part,
+        0,
+        static_cast<std::uint16_t>(parts[part].count),
+        primitive + parts[part].first};
+  }
+}
+
+void PackedDrawing::draw(RegionDrawing& drawing) {
+  std::vector<std::uint32_t> order(pages_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return pages_[a].nearest < pages_[b].nearest;
+  });
+  TriangleCounts& counts = rank_.counts.triangles;
+  PackCounts& pack = rank_.pack;
+  pack.pages += pages_.size();
+  std::vector<std::uint32_t> ahead, batch, clusters;
+  for (std::size_t at = 0, asked = 0; at < order.size();) {
+    ahead.clear();
+    for (; asked < std::min(at + kPagesAhead, order.size()); ++asked) {
+      const PlacedPage& page = pages_[order[asked]];
+      if (!hides(drawing, page)) ahead.push_back(page.page);
+    }
+    packed_.cache.prefetch(ahead);
+
+    batch.clear();
+    clusters.clear();
+    for (; at < order.size() && batch.size() < kBatchPages; ++at) {
+      const PlacedPage& page = pages_[order[at]];
+      const packs::PageRow& row = packed_.pack.pages()[page.page];
+      if (hides(drawing, page)) {
+        counts.in += row.triangles;
+        counts.hidden += row.triangles;
+        counts.hidden_clusters += row.clusters;
+        ++pack.pages_hidden;
+        continue;
+      }
+      batch.push_back(order[at]);
+      for (std::uint32_t part = 0; part < row.clusters; ++part)
+        clusters.push_back(order[at] * packs::kPageClusters + part);
+      pack.levels[std::min<std::size_t>(row.level, PackCounts::kLevels - 1)] += row.triangles;
+    }
+    pack.clusters += clusters.size();
+    hold(batch);
+    drawing.draw_in_order(clusters);
+    release(batch);
+  }
+  packed_.cache.cancel();
+}
+
+void PackedDrawing::count() {
+  const packs::CacheCounts taken = packed_.cache.counts() - before_;
+  PackCounts& pack = rank_.pack;
+  pack.pages_read += taken.pages_read;
+  pack.bytes_read += taken.bytes_read;
+  pack.hits += taken.hits;
+  pack.misses += taken.misses;
+  pack.stalls += taken.stalls;
+  pack.stall_seconds += taken.stall_seconds;
+}
+
+void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
+  std::size_t got = 0;
+  try {
+    for (; got < draws.size(); ++got) {
+      const std::uint32_t draw = draws[got];
+      std::shared_ptr<const packs::CachedPage> page = packed_.cache.get(pages_[draw].page);
+      const std::lock_guard lock(mutex_);
+      if (holders_[draw]++ > 0) continue;
+      const auto& made = static_cast<const RasterPage&>(*page);
+      list_.draws[draw].mesh = &made.mesh;
+      if (list_.draws[draw].clusters == nullptr) fill_clusters(draw, made);
+      // Nothing is made of what is there.
+      list_.draws[draw].clusters = const_cast<MeshClusters*>(&made.clusters);
+      held_[draw] = std::move(page);
+    }
+  } catch (...) {
+    release(draws.first(got));
+    throw;
+  }
+}
+
+void PackedDrawing::release(std::span<const std::uint32_t> draws) {
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t draw : draws)
+    if (--holders_[draw] == 0) held_[draw].reset();
+}
+
+}  // namespace delray::raster

@@ -1,0 +1,60 @@
+// Descends the trees of pages with the bounds that clusters are culled by.
+//
+// Degenerate: orthographic views and skew transforms have no cones; boxes that reach before the
+// near plane may touch all of the screen.
+#include "raster/packed/visible_pages.h"
+
+#include <algorithm>
+
+#include "raster/pipeline/cull.h"
+
+namespace delray::raster {
+
+std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene& packed) {
+  std::vector<PlacedPage> pages;
+  const scenes::Scene& scene = rank.prepared.scene;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scenes::Instance& instance = scene.instances[i];
+    const Draw draw{&scene.meshes[instance.mesh], &instance.transform, nullptr, nullptr};
+    const PreparedDraw prepared =
+        prepare_draw(rank.screen, draw, rank.prepared.shader(), rank.options.cull_single_sided);
+    packed.trees[instance.mesh].front().descend(
+        [&](const packs::PageTree::Node& node) {
+          return !bound(rank.screen, prepared, node.box).outside;
+        },
+        [&](std::uint32_t number) {
+          const packs::PageRow& row = packed.pack.pages()[number];
+          const ClusterBounds bounds = bound(rank.screen, prepared, row.box);
+          if (bounds.outside) return;
+          MeshCluster all;
+          all.box = row.box;
+          all.axis = row.cone.axis;
+          all.cosine = row.cone.cosine;
+          all.least_height = row.cone.least_height;
+          if (shows_hidden_side_only(rank.screen, prepared, all, bounds)) return;
+          pages.push_back({i, number, bounds.pixels, bounds.nearest});
+        });
+  }
+  return pages;
+}
+
+std::vector<PlacedPage> share_of_pages(const PackedScene& packed, std::vector<PlacedPage>&& pages,
+                                       int rank, int ranks) {
+  if (ranks == 1) return std::move(pages);
+  const auto triangles = [&](const PlacedPage& page) {
+    return std::uint64_t{packed.pack.pages()[page.page].triangles};
+  };
+  std::uint64_t all = 0, before = 0;
+  for (const PlacedPage& page : pages) all += triangles(page);
+  const auto begin = [&](int k) {
+    return all * static_cast<std::uint64_t>(k) / static_cast<std::uint64_t>(ranks);
+  };
+  std::vector<PlacedPage> mine;
+  for (const PlacedPage& page : pages) {
+    if (begin(rank) <= before && before < begin(rank + 1)) mine.push_back(page);
+    before += triangles(page);
+  }
+  return mine;
+}
+
+}  // namespace delray::raster

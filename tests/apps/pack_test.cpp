@@ -1,0 +1,166 @@
+// delray pack, and what becomes of packs.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "packs/pack_reader.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+Json rendered(const Folder& folder, const std::string& scene, const std::string& options) {
+  const Ran ran =
+      run("delray render " + scene + " -o p.png --stats s.json -q --size 320x200 " + options,
+          folder.path());
+  EXPECT_EQ(ran.exit_code, 0) << scene << " " << options << "\n" << ran.err;
+  return ran.exit_code == 0 ? Json::parse(folder.read("s.json")) : Json();
+}
+
+void expect_same_pictures(const Folder& folder, const std::string& scene,
+                          const std::string& how = "") {
+  SCOPED_TRACE(scene + how);
+  ASSERT_EQ(run("delray pack " + scene + how + " -o s.pack -q", folder.path()).exit_code, 0);
+  const bool has_views = scene.starts_with("gen:terrain");
+  for (const std::string view : {"", " --view iso"}) {
+    if (!view.empty() && !has_views) continue;
+    const Json expected = rendered(folder, scene, how + view);
+    for (const std::string options :
+         {"", "--ranks 3", "--strategy sort-first --ranks 3 --threads 2"}) {
+      const Json found = rendered(folder, "s.pack", options + view);
+      EXPECT_EQ(found["image"]["hash"], expected["image"]["hash"]) << options << view;
+      EXPECT_EQ(found["scene"]["triangles"], expected["scene"]["triangles"]);
+      EXPECT_GT(found["pack"]["clusters"], 0);
+    }
+  }
+}
+
+TEST(Pack, RendersAsItsSceneDoes) {
+  const Folder folder;
+  for (const std::string scene : {"gen:terrain:50000", "gen:field:30000"})
+    expect_same_pictures(folder, scene);
+}
+
+TEST(Pack, OfModelsRendersAsTheyDo) {
+  const Folder folder;
+  const std::string data = DELRAY_SHARED_DATA "/";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not there";
+  for (const std::string name : {"spot.obj", "2CylinderEngine.glb"})
+    expect_same_pictures(folder, data + name);
+  expect_same_pictures(folder, data + "autzen_trim.las", " --color-by z");
+}
+
+TEST(Pack, IsUnpackedForWhatDoesNotReadPages) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:spheres -o s.pack -q", folder.path()).exit_code, 0);
+  for (const std::string options :
+       {"--strategy sort-middle --ranks 2", "--strategy hybrid --ranks 2", "--engine raytrace",
+        "--strategy sort-first --schedule stealing --ranks 2"}) {
+    EXPECT_EQ(rendered(folder, "s.pack", options)["image"]["hash"],
+              rendered(folder, "gen:spheres", options)["image"]["hash"])
+        << options;
+  }
+}
+
+TEST(Pack, AnimationsReadWhatTheyShow) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:terrain:100000 -o s.pack -q", folder.path()).exit_code, 0);
+  for (const std::string scene : {"s.pack", "gen:terrain:100000"}) {
+    const std::string picture = scene == "s.pack" ? "a.png" : "b.png";
+    const Ran ran = run("delray render " + scene + " -o " + picture +
+                            " --turntable 5 --size 160x100 -q --threads 2",
+                        folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  }
+  for (int frame = 0; frame < 5; ++frame) {
+    const std::string number = "-000" + std::to_string(frame) + ".png";
+    EXPECT_EQ(folder.read("a" + number), folder.read("b" + number)) << frame;
+  }
+}
+
+TEST(Pack, IsDescribed) {
+  const Folder folder;
+  const Ran packed = run("delray pack gen:terrain:20000 -o s.pack --stats -", folder.path());
+  ASSERT_EQ(packed.exit_code, 0) << packed.err;
+  const Json statistics = Json::parse(packed.out);
+  EXPECT_EQ(statistics["schema"], "delray.pack/1");
+  EXPECT_EQ(statistics["result"]["bytes"], std::filesystem::file_size(folder / "s.pack"));
+  const Ran described = run("delray info s.pack --stats -", folder.path());
+  ASSERT_EQ(described.exit_code, 0) << described.err;
+  const Json description = Json::parse(described.out);
+  EXPECT_EQ(description["triangles"], statistics["result"]["triangles"]);
+  EXPECT_EQ(description["pages"], statistics["result"]["pages"]);
+  EXPECT_EQ(description["levels"], 1);
+}
+
+TEST(Pack, WrongUsageIsTwo) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:cornell -o s.pack -q", folder.path()).exit_code, 0);
+  for (const std::string command :
+       {"pack", "pack gen:cornell", "pack gen:cornell -o a.png", "pack gen:cornell -o -",
+        "pack s.pack -o s.pack", "pack gen:nothing -o a.pack",
+        "render s.pack -o a.png --color-by z", "render s.pack -o a.png --exaggeration 2",
+        "render s.pack -o a.png --draw points"}) {
+    EXPECT_EQ(run("delray " + command, folder.path()).exit_code, 2) << command;
+  }
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"s.pack"});
+}
+
+TEST(Pack, DamagedIsThreeAndAFailingDiskIsOne) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:terrain:50000 -o s.pack -q", folder.path()).exit_code, 0);
+  const std::string content = folder.read("s.pack");
+  std::uint64_t place = 0, end = 0;
+  {
+    const packs::PackReader pack(folder / "s.pack");
+    const packs::PageRow& row = pack.pages()[pack.pages().size() / 3];
+    place = row.offset;
+    end = row.offset + row.bytes;
+  }
+  const std::string options = " -o p.png --size 160x100 -q --memory 256MiB";
+  folder.write("cut.pack", content.substr(0, content.size() * 2 / 3));
+  const Ran cut = run("delray render cut.pack" + options, folder.path());
+  EXPECT_EQ(cut.exit_code, 3);
+  EXPECT_NE(cut.err.find("cut.pack: the pack is cut short"), std::string::npos) << cut.err;
+
+  std::string flipped = content;
+  flipped[place + 7] = static_cast<char>(flipped[place + 7] ^ 4);
+  folder.write("flipped.pack", flipped);
+  for (const std::string how : {"", " --ranks 3", " --ranks 3 --strategy sort-first"}) {
+    const Ran ran = run("delray render flipped.pack" + options + how, folder.path());
+    EXPECT_EQ(ran.exit_code, 3) << how;
+    EXPECT_NE(ran.err.find("flipped.pack: page "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("damaged"), std::string::npos) << ran.err;
+  }
+#ifdef DELRAY_FAILING_READS
+  for (const std::string how : {"", " --ranks 3", " --ranks 3 --strategy sort-first"}) {
+    const Ran ran =
+        run("LD_PRELOAD=" DELRAY_FAILING_READS " DELRAY_FAIL_FROM=" + std::to_string(place) +
+                " DELRAY_FAIL_TO=" + std::to_string(end) + " " DELRAY_PROGRAM " render s.pack" +
+                options + how,
+            folder.path());
+    EXPECT_EQ(ran.exit_code, 1) << how;
+    EXPECT_NE(ran.err.find("s.pack: byte " + std::to_string(place) + ": cannot read"),
+              std::string::npos)
+        << ran.err;
+  }
+#endif
+  EXPECT_FALSE(std::filesystem::exists(folder / "p.png"));
+}
+
+TEST(Pack, KeepsItsMemory) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:terrain:1000000 -o s.pack -q", folder.path()).exit_code, 0);
+  const Json free = rendered(folder, "s.pack", "--memory 4GiB");
+  const Json tight = rendered(folder, "s.pack", "--memory 96MiB");
+  EXPECT_EQ(tight["image"]["hash"], free["image"]["hash"]);
+  EXPECT_LE(tight["ranks"][0]["peak_rss"], std::uint64_t{96} << 20);
+  EXPECT_GT(tight["pack"]["bytes_read"], free["pack"]["bytes_read"]);
+}
+
+}  // namespace
+}  // namespace delray::tests
