@@ -25,22 +25,26 @@ struct PackOptions {
   SceneInput scene;
   Launch launch;
   std::string output, statistics;
+  bool exact_only = false;
 };
 
 void pack_scene(const PackOptions& options, parallel::Progress* progress) {
   scenes::Scene scene = load_scene(options.scene, progress);
   refuse_overwriting({{"-o", options.output}, {"--stats", options.statistics}}, scene.files);
   scenes::complete_surfaces(scene);
-  packs::write_pack(options.output, scene);
+  packs::write_pack(options.output, scene, {.levels = !options.exact_only});
 }
 
 Json statistics_of(const PackOptions& options) {
   const packs::PackReader pack(options.output, options.scene.file.limits.budget());
+  std::size_t levels = 0;
+  for (const packs::MeshRow& mesh : pack.meshes()) levels = std::max(levels, mesh.levels.size());
   return {{"schema", "delray.pack/1"},
           {"input", {{"file", options.scene.file.path}}},
           {"result",
            {{"triangles", pack.first_primitives().back()},
             {"meshes", pack.meshes().size()},
+            {"levels", levels},
             {"pages", pack.pages().size()},
             {"bytes", pack.file_bytes()}}},
           {"memory", {{"peak_rss", peak_memory()}}}};
@@ -84,6 +88,9 @@ void add_pack(CLI::App& program, Session& session) {
                    "Statistics as JSON to this file; - for standard output")
       ->type_name("FILE")
       ->group(group::kOutput);
+  command->add_flag(
+      "--exact-only", options->exact_only,
+      "Leave out coarser levels: a smaller pack, which --error of render has no effect on");
   command
       ->add_option("--threads", options->launch.threads,
                    "Number of threads (default: one for each core)")

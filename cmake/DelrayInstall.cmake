@@ -21,7 +21,7 @@ endforeach()
 set(packages
     "Threads::Threads,Threads,-pthread" "TBB::tbb,TBB,-ltbb" "glm::glm,glm," "hwy::hwy,hwy,-lhwy"
     "fmt::fmt,fmt,-lfmt" "PNG::PNG,PNG,-lpng" "draco::draco,draco,-ldraco"
-    "nlohmann_json::nlohmann_json,nlohmann_json," "MPI::MPI_C,MPI," "Boost::context,Boost,-lboost_context"
+    "nlohmann_json::nlohmann_json,nlohmann_json," "meshoptimizer::meshoptimizer,meshoptimizer,-lmeshoptimizer" "MPI::MPI_C,MPI," "Boost::context,Boost,-lboost_context"
     "embree,embree,-lembree${embree_VERSION_MAJOR}")
 foreach(package IN LISTS packages)
   string(REPLACE "," ";" package "${package}")

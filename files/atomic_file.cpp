@@ -106,6 +106,17 @@ void AtomicFile::write(std::string_view bytes) {
   write_to(descriptor_, bytes);
 }
 
+void AtomicFile::read_back(std::uint64_t begin, std::span<char> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(begin));
+    if (got == 0) fail(EIO);
+    if (got < 0 && errno != EINTR) fail(errno);
+    if (got <= 0) continue;
+    begin += static_cast<std::uint64_t>(got);
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+  }
+}
+
 const std::filesystem::path& AtomicFile::temporary() {
   if (!temporary_.empty()) return temporary_;
   std::error_code error;

@@ -1,7 +1,9 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 #include "files/output_path.h"
@@ -26,6 +28,11 @@ class AtomicFile {
 
   // Appends; a call costs a system call. Not together with temporary().
   void write(std::string_view bytes);
+  // Fills `bytes` with what was written from `begin` on. Any thread, while nobody writes. REQUIRES:
+  // so much was written, and not in place.
+  void read_back(std::uint64_t begin, std::span<char> bytes) const;
+  // Whether it is written as it is.
+  bool is_in_place() const { return target_.in_place; }
   // The name of the temporary file, for those who open it themselves.
   const std::filesystem::path& temporary();
   // After the last byte: everything has reached the disk, and only the name is missing.

@@ -13,7 +13,10 @@
 #include <vector>
 
 #include "files/atomic_file.h"
+#include "files/error.h"
 #include "packs/build/cut_pages.h"
+#include "packs/build/encoded_page.h"
+#include "packs/build/levels.h"
 #include "packs/format/page_bytes.h"
 #include "packs/format/scene_bytes.h"
 #include "packs/format/trailer.h"
@@ -26,33 +29,16 @@ namespace {
 constexpr std::uint32_t kBlockTriangles = 1U << 14;  // cut by one thread: some 32 pages
 constexpr std::size_t kBlocksPerThread = 4;
 
-// A page that is only to be written, and its row but for where it will be.
-struct EncodedPage {
-  PageRow row;
-  std::vector<char> bytes;
-};
+using internal::EncodedPage;
 
-EncodedPage encoded(const Page& page, std::uint32_t first) {
-  EncodedPage result;
-  result.bytes = internal::encode(page);
-  PageRow& row = result.row;
-  row.checksum = XXH3_64bits(result.bytes.data(), result.bytes.size());
-  row.bytes = static_cast<std::uint32_t>(result.bytes.size());
-  row.first = first;
-  row.triangles = static_cast<std::uint16_t>(page.mesh.triangles.size());
-  row.vertices = static_cast<std::uint16_t>(page.mesh.positions.size());
-  row.references = static_cast<std::uint16_t>(page.vertices.size());
-  row.clusters = static_cast<std::uint8_t>(page.clusters.size());
-  row.box = internal::box_of(page);
-  row.cone = internal::cone_of(page);
-  return result;
-}
-
-std::vector<EncodedPage> encode_block(const scenes::Mesh& mesh, std::uint32_t begin,
-                                      std::uint32_t end) {
+// Triangles [begin, end) of a part of a mesh, of which the first has the number `first`.
+std::vector<EncodedPage> encode_block(const scenes::Mesh& mesh, std::uint32_t first,
+                                      std::uint32_t begin, std::uint32_t end) {
   std::vector<EncodedPage> pages;
   for (const Page& page : internal::cut_pages(mesh, begin, end)) {
-    pages.push_back(encoded(page, begin));
+    PageRow row;
+    row.first = first + begin;
+    pages.push_back(internal::encode_page(page, row));
     begin += pages.back().row.triangles;
   }
   return pages;
@@ -61,20 +47,37 @@ std::vector<EncodedPage> encode_block(const scenes::Mesh& mesh, std::uint32_t be
 }  // namespace
 
 struct PackWriter::State {
-  explicit State(const std::filesystem::path& path) : file(path) {}
+  State(const std::filesystem::path& path, const WriteOptions& how) : options(how), file(path) {}
 
+  const WriteOptions options;
   files::AtomicFile file;
   std::uint64_t written = 0;
   internal::Table table;
+  MeshRow mesh;              // the one at hand, without name
+  std::uint32_t first = 0;   // page of it
+  std::vector<char> buffer;  // of pages on their way
 
   void write(std::span<const char> bytes) {
     file.write({bytes.data(), bytes.size()});
     written += bytes.size();
   }
-  void append(EncodedPage&& page, std::vector<char>& buffer) {
-    page.row.offset = written + buffer.size();
-    buffer.insert(buffer.end(), page.bytes.begin(), page.bytes.end());
-    table.pages.push_back(page.row);
+  void append(std::vector<EncodedPage>& pages) {
+    for (EncodedPage& page : pages) {
+      page.row.offset = written + buffer.size();
+      buffer.insert(buffer.end(), page.bytes.begin(), page.bytes.end());
+      table.pages.push_back(page.row);
+      mesh.box.include(page.row.box);
+    }
+  }
+  void flush() {
+    write(buffer);
+    buffer.clear();
+  }
+  Page read(std::uint32_t number) const {
+    const PageRow& row = table.pages[number];
+    std::vector<char> bytes(row.bytes);
+    file.read_back(row.offset, bytes);
+    return internal::decode(bytes, row, mesh, "", "page " + std::to_string(number));
   }
   internal::Section section(std::span<const char> bytes) {
     const internal::Section result{written, bytes.size(), XXH3_64bits(bytes.data(), bytes.size())};
@@ -83,7 +86,12 @@ struct PackWriter::State {
   }
 };
 
-PackWriter::PackWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {
+PackWriter::PackWriter(const std::filesystem::path& path, const WriteOptions& options)
+    : state_(std::make_unique<State>(path, options)) {
+  if (options.levels && state_->file.is_in_place()) {
+    throw files::FileError(files::Cause::device, path.string(), "",
+                           "a pack with levels is written to a file, not to a pipe or device");
+  }
   internal::ByteWriter header;
   header.raw(kMagic, sizeof kMagic);
   header.value(kVersion);
@@ -92,43 +100,56 @@ PackWriter::PackWriter(const std::filesystem::path& path) : state_(std::make_uni
 }
 PackWriter::~PackWriter() = default;
 
-std::uint32_t PackWriter::add_mesh(const scenes::Mesh& mesh) {
-  if (mesh.triangles.empty() || mesh.triangles.size() > 0xFFFFFFFFU)
-    throw std::invalid_argument("a mesh of a pack has from 1 to 2^32 - 1 triangles");
-  internal::Table& table = state_->table;
-  MeshRow row{mesh.name,
-              mesh.material,
-              attributes_of(mesh),
-              mesh.triangles.size(),
-              mesh.positions.size(),
-              {},
-              {}};
-  PageRange range{static_cast<std::uint32_t>(table.pages.size()), 0};
-  const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
+void PackWriter::append_part(const scenes::Mesh& part) {
+  MeshRow& row = state_->mesh;
+  const std::uint64_t before = row.triangles;
+  if (before + part.triangles.size() > 0xFFFFFFFFU)
+    throw std::invalid_argument("a mesh of a pack has 2^32 - 1 triangles at most");
+  row.attributes = attributes_of(part);
+  row.material = part.material;
+  row.triangles += part.triangles.size();
+  const auto all = static_cast<std::uint32_t>(part.triangles.size());
   const std::size_t blocks = (std::size_t{all} + kBlockTriangles - 1) / kBlockTriangles;
   const std::size_t wave = kBlocksPerThread * static_cast<std::size_t>(parallel::arena_threads());
   std::vector<std::vector<EncodedPage>> done(std::min(wave, blocks));
-  std::vector<char> buffer;
   for (std::size_t first = 0; first < blocks; first += wave) {
     const std::size_t count = std::min(wave, blocks - first);
     parallel::parallel_for(0, count, 1, [&](std::size_t i) {
       const auto begin = static_cast<std::uint32_t>((first + i) * kBlockTriangles);
-      done[i] = encode_block(mesh, begin, begin + std::min(kBlockTriangles, all - begin));
+      done[i] = encode_block(part, static_cast<std::uint32_t>(before), begin,
+                             begin + std::min(kBlockTriangles, all - begin));
     });
-    buffer.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-      for (EncodedPage& page : done[i]) {
-        row.box.include(page.row.box);
-        state_->append(std::move(page), buffer);
-      }
-      done[i].clear();
-    }
-    state_->write(buffer);
+    for (std::size_t i = 0; i < count; ++i) state_->append(done[i]);
+    state_->flush();
   }
-  range.count = static_cast<std::uint32_t>(table.pages.size()) - range.first;
-  row.levels.push_back(range);
-  table.meshes.push_back(std::move(row));
-  return static_cast<std::uint32_t>(table.meshes.size() - 1);
+}
+
+std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t material,
+                                   std::uint64_t vertices) {
+  State& state = *state_;
+  if (state.mesh.triangles == 0) throw std::invalid_argument("a mesh of a pack has triangles");
+  const auto pages = static_cast<std::uint32_t>(state.table.pages.size());
+  state.mesh.name = name;
+  state.mesh.material = material;
+  state.mesh.vertices = vertices;
+  state.mesh.levels.push_back({state.first, pages - state.first});
+  if (state.options.levels) {
+    internal::build_levels({[&](std::uint32_t page) { return state.read(page); },
+                            [&](std::vector<EncodedPage>&& made) {
+                              state.append(made);
+                              state.flush();
+                            }},
+                           state.table.pages, state.table.groups, state.mesh);
+  }
+  state.first = static_cast<std::uint32_t>(state.table.pages.size());
+  state.table.meshes.push_back(std::move(state.mesh));
+  state.mesh = {};
+  return static_cast<std::uint32_t>(state.table.meshes.size() - 1);
+}
+
+std::uint32_t PackWriter::add_mesh(const scenes::Mesh& mesh) {
+  append_part(mesh);
+  return end_mesh(mesh.name, mesh.material, mesh.positions.size());
 }
 
 void PackWriter::commit(const scenes::Scene& rest, bool lit_by_emission) {
@@ -146,8 +167,9 @@ void PackWriter::commit(const scenes::Scene& rest, bool lit_by_emission) {
 
 std::uint64_t PackWriter::bytes() const { return state_->written; }
 
-void write_pack(const std::filesystem::path& path, const scenes::Scene& scene) {
-  PackWriter writer(path);
+void write_pack(const std::filesystem::path& path, const scenes::Scene& scene,
+                const WriteOptions& options) {
+  PackWriter writer(path, options);
   for (const scenes::Mesh& mesh : scene.meshes) writer.add_mesh(mesh);
   writer.commit(scene, scenes::is_lit_by_emission(scene));
 }

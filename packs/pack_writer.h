@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "packs/page.h"
 #include "scenes/scene.h"
@@ -14,20 +15,33 @@ namespace delray::packs {
 inline constexpr char kMagic[8] = {'D', 'E', 'L', 'R', 'A', 'Y', 'P', 'K'};
 inline constexpr std::uint32_t kVersion = 1;
 
-// A file that appears whole or not at all. Besides a mesh that it is given it needs some pages, and
-// a row for each that it has written. See docs/packs.md for the format.
+// What is written besides what was given.
+struct WriteOptions {
+  bool levels = true;  // coarser ones, for pictures with a bound of error
+};
+
+// A file that appears whole or not at all. Besides what it is given it needs some pages, and a row
+// for each that it has written. See docs/packs.md for the format.
 class PackWriter {
  public:
-  // Throws FileError (device), as all of it does.
-  explicit PackWriter(const std::filesystem::path& path);
+  // Throws FileError (device), as all of it does. Where levels are written the file has to be one
+  // that can be replaced.
+  explicit PackWriter(const std::filesystem::path& path, const WriteOptions& options = {});
   ~PackWriter();
   PackWriter(const PackWriter&) = delete;
   PackWriter& operator=(const PackWriter&) = delete;
 
   // Appends the pages of a mesh, of which all triangles keep their numbers and vertices their bits;
-  // of vertices without triangles nothing is left. Returns its number. Parallel. O(triangles).
+  // of vertices without triangles nothing is left. Returns its number. Parallel. O(triangles), and
+  // O(triangles log triangles) for levels.
   // A mesh without triangles is std::invalid_argument. REQUIRES: coordinates are finite.
   std::uint32_t add_mesh(const scenes::Mesh& mesh);
+
+  // The same in parts, which follow each other: a mesh has the triangles of all parts that were
+  // appended since the last one was ended. Parts have the same attributes; vertices that are alike
+  // to the last bit are one to levels.
+  void append_part(const scenes::Mesh& part);
+  std::uint32_t end_mesh(const std::string& name, std::uint32_t material, std::uint64_t vertices);
 
   // Appends what the scene has besides its meshes, which are those that were added, and gives the
   // file its name. `lit_by_emission` as scenes::is_lit_by_emission says of the whole.
@@ -41,6 +55,7 @@ class PackWriter {
 };
 
 // A whole scene, completed as for rendering (scenes::complete_surfaces), as a pack. Parallel.
-void write_pack(const std::filesystem::path& path, const scenes::Scene& scene);
+void write_pack(const std::filesystem::path& path, const scenes::Scene& scene,
+                const WriteOptions& options = {});
 
 }  // namespace delray::packs

@@ -7,21 +7,25 @@ namespace delray::packs {
 
 PageTree::PageTree(std::span<const PageRow> rows, PageRange pages, std::span<const Group> groups)
     : pages_(pages) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::vector<Node> below;
   below.reserve(pages.count);
   for (const PageRow& row : rows.subspan(pages.first, pages.count)) {
-    below.push_back({row.box, row.made_of == kNoGroup ? 0 : groups[row.made_of].error,
-                     row.simplified_in == kNoGroup ? kInfinity : groups[row.simplified_in].error});
+    if (row.simplified_in == kNoGroup) {
+      below.push_back({row.box, std::numeric_limits<float>::infinity(), row.box});
+      continue;
+    }
+    const Group& group = groups[row.simplified_in];
+    below.push_back(
+        {row.box, group.error, {group.centre - group.radius, group.centre + group.radius}});
   }
   while (below.size() > 1 || levels_.empty()) {
     if (below.empty()) return;
-    std::vector<Node> nodes((below.size() + kBranches - 1) / kBranches, Node{{}, kInfinity, 0});
+    std::vector<Node> nodes((below.size() + kBranches - 1) / kBranches);
     for (std::size_t i = 0; i < below.size(); ++i) {
       Node& node = nodes[i / kBranches];
       node.box.include(below[i].box);
-      node.least_made_of = std::min(node.least_made_of, below[i].least_made_of);
-      node.most_simplified_in = std::max(node.most_simplified_in, below[i].most_simplified_in);
+      node.error = std::max(node.error, below[i].error);
+      node.spheres.include(below[i].spheres);
     }
     levels_.push_back(std::move(nodes));
     below = levels_.back();

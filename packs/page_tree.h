@@ -20,9 +20,10 @@ class PageTree {
 
   struct Node {
     geometry::Box3 box;
-    // Of the pages' groups (Group::error), 0 and infinity where there is none: the least that
-    // simplifying has cost, and the most that simplifying further would.
-    float least_made_of = 0, most_simplified_in = 0;
+    // The largest error of the groups that the pages were simplified in, infinity where one was in
+    // none, and a box around the spheres of those.
+    float error = 0;
+    geometry::Box3 spheres;
   };
 
   // O(pages). Refers to the rows.

@@ -104,8 +104,10 @@ struct RenderOptions {
   // instance from a rank whose region takes long to one that is done with its own. Every rank needs
   // all primitives then, and knows from their clusters' bounds which a block shows. Empty: none.
   std::string schedule;
-  bool master_works = true;          // whether ranks that hand out blocks draw some themselves
-  int block = 64;                    // pixels, the side of a block that is handed out
+  bool master_works = true;  // whether ranks that hand out blocks draw some themselves
+  int block = 64;            // pixels, the side of a block that is handed out
+  // Of packs: how far, in pixels, what is drawn may be from where it belongs; 0: nowhere.
+  double error = 0;
   bool report_partition = false;     // costs time of about that of cutting
   Travel travel = Travel::geometry;  // sort-first, hybrid
   Groups groups = Groups::one;       // sort-middle; a single rank does both
@@ -243,8 +245,8 @@ class Renderer {
                     std::shared_ptr<const shading::Shader> shader = nullptr);
   // Renders a pack, of which no more than some pages are in memory. `scene` is what the pack has
   // besides (packs::PackReader::scene), with whatever light. Refers to both. Only strategies that
-  // say so render packs, without schedules, not in steps, without displays, and not blended by cell; draw_share and
-  // costs do not.
+  // say so render packs, without schedules, not in steps, without displays, and not blended by
+  // cell; draw_share and costs do not.
   Renderer(const packs::PackReader& pack, const scenes::Scene& scene, const PackMemory& memory,
            std::shared_ptr<const shading::Shader> shader = nullptr);
   ~Renderer();

@@ -289,6 +289,22 @@ std::vector<RenderOption> rasterizer_options() {
   };
 }
 
+std::vector<RenderOption> pack_options() {
+  return {
+      RenderOption::of(
+          "--error", [](auto& r) -> auto& { return r.raster.error; }, group::kRasterizer,
+          "Of packs: how far surfaces may be from where they belong, in pixels, so that coarser "
+          "ones "
+          "are drawn (default: 0, the exact picture)")
+          .check(number_between(0.0, 1000.0))
+          .unless(unless_raster([](const RenderRequest& r) -> std::string {
+            if (!strategy_of(r).packs) return "--strategy " + r.raster.strategy;
+            return r.sharing.schedule.empty() ? "" : "--schedule";
+          }))
+          .reported("error", strategy_that(&raster::Strategy::packs)),
+  };
+}
+
 std::vector<RenderOption> raytracer_options() {
   using raytrace::Integrator;
   using Quality = raytrace::BuildOptions::Quality;

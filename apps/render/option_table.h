@@ -14,6 +14,7 @@ std::vector<RenderOption> picture_options();
 std::vector<RenderOption> layout_options();  // see frame_layout.h
 std::vector<RenderOption> animation_options();
 std::vector<RenderOption> rasterizer_options();
+std::vector<RenderOption> pack_options();
 std::vector<RenderOption> raytracer_options();
 std::vector<RenderOption> sampling_options();  // see sampling_options.h
 std::vector<RenderOption> output_options();

@@ -228,6 +228,10 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
 std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
   if (reads_pages(request)) return open_pack(request);
+  if (request.raster.error > 0) {
+    throw UsageError(fmt::format("--error is for packs, whose levels it chooses from; {} is none",
+                                 request.scene.file.path));
+  }
   auto prepared = std::make_shared<Prepared>();
   prepared->in_parts = in_parts;
   prepared->known_by_name = has_parts(request);

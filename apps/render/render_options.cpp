@@ -51,7 +51,7 @@ const std::vector<RenderOption>& all_options() {
   static const std::vector<RenderOption> all = [] {
     std::vector<RenderOption> rows;
     for (auto family : {picture_options, layout_options, animation_options, rasterizer_options,
-                        raytracer_options, sampling_options, output_options}) {
+                        pack_options, raytracer_options, sampling_options, output_options}) {
       for (RenderOption& row : family()) rows.push_back(std::move(row));
     }
     return rows;
@@ -134,7 +134,8 @@ void add_render_options(CLI::App& command, RenderRequest& request) {
   add_camera_options(command, request.camera);
   for (const RenderOption& option : animation_options()) option.add(command, request);
   add_launch_options(command, request.launch);
-  for (auto family : {rasterizer_options, raytracer_options, sampling_options, output_options}) {
+  for (auto family :
+       {rasterizer_options, pack_options, raytracer_options, sampling_options, output_options}) {
     for (const RenderOption& option : family()) option.add(command, request);
   }
   choose_scheme(command);

@@ -45,8 +45,15 @@ bool PackedDrawing::hides(const RegionDrawing& drawing, const PlacedPage& page) 
 }
 
 void PackedDrawing::fill_clusters(std::uint32_t draw, const RasterPage& page) {
-  const std::uint64_t primitive = packed_.pack.first_primitives()[pages_[draw].instance] +
-                                  packed_.pack.pages()[pages_[draw].page].first;
+  const PlacedPage& placed = pages_[draw];
+  // Of several levels any numbers will do that ascend and are the same on all ranks.
+  constexpr std::uint64_t kPageTriangles = packs::kPageClusters * kClusterTriangles;
+  const std::uint64_t primitive =
+      rank_.options.error > 0
+          ? (placed.instance * std::uint64_t{packed_.pack.pages().size()} + placed.page) *
+                kPageTriangles
+          : packed_.pack.first_primitives()[placed.instance] +
+                packed_.pack.pages()[placed.page].first;
   const std::vector<MeshCluster>& parts = page.clusters.blocks.front()->clusters;
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
     list_.clusters[std::size_t{draw} * packs::kPageClusters + part] = {

@@ -1,4 +1,6 @@
-// Descends the trees of pages with the bounds that clusters are culled by.
+// Descends the trees of pages with the bounds that clusters are culled by. With a bound of error,
+// of each group either its pages are taken, or what was made of them, by the same comparison on
+// both sides.
 //
 // Degenerate: orthographic views and skew transforms have no cones; boxes that reach before the
 // near plane may touch all of the screen.
@@ -6,6 +8,7 @@
 
 #include <algorithm>
 
+#include "raster/packed/error_on_screen.h"
 #include "raster/pipeline/cull.h"
 
 namespace delray::raster {
@@ -13,27 +16,38 @@ namespace delray::raster {
 std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene& packed) {
   std::vector<PlacedPage> pages;
   const scenes::Scene& scene = rank.prepared.scene;
+  const double most = rank.options.error * rank.options.supersampling;
+  const std::span<const packs::Group> groups = packed.pack.groups();
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scenes::Instance& instance = scene.instances[i];
     const Draw draw{&scene.meshes[instance.mesh], &instance.transform, nullptr, nullptr};
     const PreparedDraw prepared =
         prepare_draw(rank.screen, draw, rank.prepared.shader(), rank.options.cull_single_sided);
-    packed.trees[instance.mesh].front().descend(
-        [&](const packs::PageTree::Node& node) {
-          return !bound(rank.screen, prepared, node.box).outside;
-        },
-        [&](std::uint32_t number) {
-          const packs::PageRow& row = packed.pack.pages()[number];
-          const ClusterBounds bounds = bound(rank.screen, prepared, row.box);
-          if (bounds.outside) return;
-          MeshCluster all;
-          all.box = row.box;
-          all.axis = row.cone.axis;
-          all.cosine = row.cone.cosine;
-          all.least_height = row.cone.least_height;
-          if (shows_hidden_side_only(rank.screen, prepared, all, bounds)) return;
-          pages.push_back({i, number, bounds.pixels, bounds.nearest});
-        });
+    const ErrorOnScreen error(rank.screen, prepared, most > 0 ? most : 1);
+    const auto visit = [&](const packs::PageTree::Node& node) {
+      if (most > 0 && error.allows_all(node.error, node.spheres))
+        return false;  // coarser ones will do
+      return !bound(rank.screen, prepared, node.box).outside;
+    };
+    const auto look_at = [&](std::uint32_t number) {
+      const packs::PageRow& row = packed.pack.pages()[number];
+      if (most > 0) {
+        if (row.simplified_in != packs::kNoGroup && error.allows(groups[row.simplified_in])) return;
+        if (row.made_of != packs::kNoGroup && !error.allows(groups[row.made_of])) return;
+      }
+      const ClusterBounds bounds = bound(rank.screen, prepared, row.box);
+      if (bounds.outside) return;
+      MeshCluster all;
+      all.box = row.box;
+      all.axis = row.cone.axis;
+      all.cosine = row.cone.cosine;
+      all.least_height = row.cone.least_height;
+      if (shows_hidden_side_only(rank.screen, prepared, all, bounds)) return;
+      pages.push_back({i, number, bounds.pixels, bounds.nearest});
+    };
+    const std::vector<packs::PageTree>& levels = packed.trees[instance.mesh];
+    for (std::size_t level = 0; level < (most > 0 ? levels.size() : 1); ++level)
+      levels[level].descend(visit, look_at);
   }
   return pages;
 }

@@ -14,7 +14,7 @@ namespace {
 
 void expect_same_extent(const scenes::Scene& scene, unsigned seed) {
   const tests::TemporaryFolder folder;
-  write_pack(folder / "a.pack", scene);
+  write_pack(folder / "a.pack", scene, {.levels = false});
   const PackReader pack(folder / "a.pack");
   const scenes::FarthestPoints expected = scenes::farthest_points(scene);
   const scenes::FarthestPoints found = farthest_points(pack);

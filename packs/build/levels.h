@@ -1,0 +1,26 @@
+// Coarser levels of a mesh.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "packs/build/encoded_page.h"
+#include "packs/page.h"
+
+namespace delray::packs::internal {
+
+struct LevelBuilder {
+  // Reads a page that was written.
+  std::function<Page(std::uint32_t page)> read;
+  // Appends pages to the file and to the table.
+  std::function<void(std::vector<EncodedPage>&& pages)> append;
+};
+
+// Simplifies the finest level of the mesh, and what becomes of it, level by level, as long as that
+// leaves fewer triangles. Pages get the groups that they are simplified in; groups and levels are
+// appended. Parallel over groups, a few at a time; the same for every number of threads.
+// O(triangles log triangles).
+void build_levels(const LevelBuilder& builder, std::vector<PageRow>& pages,
+                  std::vector<Group>& groups, MeshRow& mesh);
+
+}  // namespace delray::packs::internal

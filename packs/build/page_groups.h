@@ -1,0 +1,21 @@
+// Which neighbouring pages are simplified together.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "packs/page.h"
+
+namespace delray::packs::internal {
+
+// Pages in a group at most; about half as many at least, where there are so many.
+inline constexpr std::size_t kGroupPages = 10;
+
+// The pages of a level in groups, each in ascending order. Levels are cut at other places than the
+// one before, so that a border between groups, which stays as it is, is within a group on the next
+// level. O(pages log pages).
+std::vector<std::vector<std::uint32_t>> page_groups(std::span<const PageRow> rows, PageRange pages,
+                                                    int level);
+
+}  // namespace delray::packs::internal

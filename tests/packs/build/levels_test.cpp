@@ -1,0 +1,194 @@
+// Levels of detail: cuts without cracks, errors that hold.
+#include "packs/build/levels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "packs/build/simplify.h"
+#include "packs/build/surface_error.h"
+#include "packs/pack_reader.h"
+#include "packs/pack_writer.h"
+#include "scenes/generate.h"
+#include "tests/support/temporary_folder.h"
+
+namespace delray::packs {
+namespace {
+
+using Point = std::array<float, 3>;
+using Edges = std::map<std::pair<Point, Point>, int>;
+
+Point key(const glm::vec3& p) { return {p.x, p.y, p.z}; }
+
+// Edges with an odd number of triangles, by the places of their ends.
+std::vector<std::pair<Point, Point>> border_of(const std::vector<scenes::Mesh>& parts) {
+  Edges edges;
+  for (const scenes::Mesh& mesh : parts) {
+    for (const glm::uvec3& t : mesh.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        Point a = key(mesh.positions[t[k]]), b = key(mesh.positions[t[(k + 1) % 3]]);
+        if (b < a) std::swap(a, b);
+        ++edges[{a, b}];
+      }
+    }
+  }
+  std::vector<std::pair<Point, Point>> border;
+  for (const auto& [edge, count] : edges)
+    if (count % 2 == 1) border.push_back(edge);
+  return border;
+}
+
+// A ball with a wavy surface and normals.
+scenes::Scene wavy_ball(int n) {
+  scenes::Mesh mesh;
+  mesh.name = "ball";
+  const auto add = [&](const glm::vec3& direction) {
+    const float radius = 1 + 0.05F * std::sin(9 * direction.x) * std::sin(7 * direction.y) +
+                         0.02F * std::sin(31 * direction.z);
+    mesh.positions.push_back(direction * radius);
+    mesh.normals.push_back(direction);
+  };
+  add({0, 1, 0});
+  for (int j = 1; j < n; ++j) {
+    const float up = 3.14159265F * static_cast<float>(j) / static_cast<float>(n);
+    for (int i = 0; i < 2 * n; ++i) {
+      const float turn = 3.14159265F * static_cast<float>(i) / static_cast<float>(n);
+      add({std::sin(up) * std::cos(turn), std::cos(up), std::sin(up) * std::sin(turn)});
+    }
+  }
+  add({0, -1, 0});
+  const auto at = [&](int j, int i) {
+    return static_cast<std::uint32_t>(1 + (j - 1) * 2 * n + i % (2 * n));
+  };
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  for (int i = 0; i < 2 * n; ++i) {
+    mesh.triangles.emplace_back(0, at(1, i + 1), at(1, i));
+    for (int j = 1; j + 1 < n; ++j) {
+      mesh.triangles.emplace_back(at(j, i), at(j, i + 1), at(j + 1, i));
+      mesh.triangles.emplace_back(at(j, i + 1), at(j + 1, i + 1), at(j + 1, i));
+    }
+    mesh.triangles.emplace_back(at(n - 1, i), at(n - 1, i + 1), last);
+  }
+  scenes::Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({});
+  scene.materials.emplace_back();
+  return scene;
+}
+
+// The pages that a bound of error in the scene's units chooses.
+std::vector<scenes::Mesh> cut_of(const PackReader& pack, float most) {
+  std::vector<scenes::Mesh> parts;
+  for (std::uint32_t i = 0; i < pack.pages().size(); ++i) {
+    const PageRow& row = pack.pages()[i];
+    const bool fine = row.made_of == kNoGroup || pack.groups()[row.made_of].error <= most;
+    const bool coarsest =
+        row.simplified_in == kNoGroup || pack.groups()[row.simplified_in].error > most;
+    if (fine && coarsest) parts.push_back(pack.read(i).mesh);
+  }
+  return parts;
+}
+
+scenes::Mesh joined(const std::vector<scenes::Mesh>& parts) {
+  scenes::Mesh all;
+  for (const scenes::Mesh& part : parts) {
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+    for (const glm::uvec3& t : part.triangles) all.triangles.push_back(t + first);
+  }
+  return all;
+}
+
+void expect_good_levels(const scenes::Scene& scene) {
+  const tests::TemporaryFolder folder;
+  write_pack(folder / "a.pack", scene);
+  const PackReader pack(folder / "a.pack");
+  const std::vector<PageRange>& levels = pack.meshes()[0].levels;
+  ASSERT_GE(levels.size(), 4U);
+
+  // A group's error and sphere are no smaller than those of the groups that its pages come from.
+  std::vector<float> errors;
+  for (const PageRow& row : pack.pages()) {
+    if (row.simplified_in == kNoGroup) continue;
+    const Group& above = pack.groups()[row.simplified_in];
+    errors.push_back(above.error);
+    for (const glm::vec3& corner : {row.box.low, row.box.high})
+      EXPECT_LE(glm::distance(corner, above.centre), above.radius);
+    if (row.made_of == kNoGroup) continue;
+    const Group& below = pack.groups()[row.made_of];
+    EXPECT_GE(above.error, below.error);
+    EXPECT_LE(glm::distance(below.centre, above.centre) + below.radius, above.radius * 1.00001F);
+  }
+
+  // However cuts are chosen, they have the border of the whole, and are no farther from it than
+  // said.
+  const std::vector<scenes::Mesh> exact = cut_of(pack, 0);
+  const auto border = border_of({scene.meshes[0]});
+  const scenes::Mesh whole = joined({scene.meshes[0]});
+  std::sort(errors.begin(), errors.end());
+  std::size_t last = whole.triangles.size() + 1;
+  for (const double part : {0.02, 0.3, 0.6, 0.9, 1.0}) {
+    const float most =
+        errors[static_cast<std::size_t>(part * static_cast<double>(errors.size() - 1))];
+    const std::vector<scenes::Mesh> cut = cut_of(pack, most);
+    EXPECT_EQ(border_of(cut), border) << most;
+    const scenes::Mesh all = joined(cut);
+    EXPECT_LT(all.triangles.size(), last);
+    last = all.triangles.size();
+    EXPECT_LE(internal::surface_error(whole, all, 0), most * 1.0001F);
+  }
+  EXPECT_LT(last, whole.triangles.size() / 4);
+}
+
+TEST(Levels, OfAClosedSurfaceHaveNoCracks) { expect_good_levels(wavy_ball(90)); }
+
+TEST(Levels, OfATerrainKeepItsBorder) { expect_good_levels(scenes::generate("gen:terrain:40000")); }
+
+TEST(Levels, OfTrianglesThatShareNothingEndAtOnce) {
+  const tests::TemporaryFolder folder;
+  scenes::Scene scene = wavy_ball(30);
+  scenes::Mesh soup;
+  for (const glm::uvec3& t : scene.meshes[0].triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (int k = 0; k < 3; ++k)
+      soup.positions.push_back(scene.meshes[0].positions[t[k]] +
+                               0.001F * static_cast<float>(first));
+    soup.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  scene.meshes[0] = soup;
+  write_pack(folder / "a.pack", scene);
+  EXPECT_EQ(PackReader(folder / "a.pack").meshes()[0].levels.size(), 1U);
+}
+
+TEST(SurfaceError, IsTwoSidedAndHasAttributes) {
+  scenes::Mesh flat;
+  flat.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  flat.normals.assign(4, {0, 0, 1});
+  flat.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scenes::Mesh other = flat;
+  EXPECT_NEAR(internal::surface_error(flat, other, 1), 0, 1e-6);
+  other.positions[2].z = 0.5F;
+  EXPECT_NEAR(internal::surface_error(flat, other, 0), 0.5, 1e-6);
+  EXPECT_NEAR(internal::surface_error(other, flat, 0), 0.5, 1e-6);
+  other = flat;
+  other.triangles.pop_back();  // what is missing is seen from one side only
+  EXPECT_NEAR(internal::surface_error(flat, other, 0), std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(internal::surface_error(other, flat, 0), std::sqrt(0.5), 1e-6);
+  other = flat;
+  other.normals[1] = {0, 1, 0};
+  EXPECT_NEAR(internal::surface_error(flat, other, 0.1F), 0.1 * std::sqrt(2), 1e-6);
+  EXPECT_EQ(internal::surface_error({}, flat, 1), 0);
+}
+
+TEST(Simplify, KeepsTheBorderAndHalfOfTheTriangles) {
+  const scenes::Mesh mesh = scenes::generate("gen:terrain:8000").meshes[0];
+  const internal::Simplified simplified = internal::simplify(mesh);
+  EXPECT_EQ(border_of({simplified.mesh}), border_of({mesh}));
+  EXPECT_LE(simplified.mesh.triangles.size(), mesh.triangles.size() / 2 + 1);
+  EXPECT_GT(simplified.error, 0);
+}
+
+}  // namespace
+}  // namespace delray::packs

@@ -1,0 +1,107 @@
+// Pictures with a bound of error beside exact ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "comm/threads.h"
+#include "packs/pack_writer.h"
+#include "raster/render.h"
+#include "scenes/generate.h"
+#include "tests/raster/allow_threads.h"
+#include "tests/raster/kinds_of_picture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace delray::raster {
+namespace {
+
+Result of_pack(const packs::PackReader& pack, const scenes::Camera& camera,
+               const RenderOptions& options, int ranks = 1, int threads = 1) {
+  Result result;
+  comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
+    Renderer renderer(pack, pack.scene(), {std::uint64_t{1} << 28, 1});
+    Result mine = renderer.render(communicator, camera, options);
+    if (communicator.rank() == 0) result = std::move(mine);
+  });
+  return result;
+}
+
+// Pixels that are not, within so many pixels, at a depth of the other picture.
+std::size_t displaced(const image::Image8& a, const image::Image8& b, const scenes::View& view,
+                      int pixels) {
+  std::size_t count = 0;
+  for (int y = pixels; y + pixels < a.height; ++y) {
+    for (int x = pixels; x + pixels < a.width; ++x) {
+      const float depth = a.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
+                                  static_cast<std::size_t>(x)];
+      float low = image::kEmptyDepth, high = 0;
+      for (int j = y - pixels; j <= y + pixels; ++j) {
+        for (int i = x - pixels; i <= x + pixels; ++i) {
+          const float other =
+              b.depth[static_cast<std::size_t>(j) * static_cast<std::size_t>(b.width) +
+                      static_cast<std::size_t>(i)];
+          low = std::min(low, other);
+          high = std::max(high, other);
+        }
+      }
+      if (depth == image::kEmptyDepth) {
+        count += high == image::kEmptyDepth ? 0 : 1;
+        continue;
+      }
+      const float reach = static_cast<float>(pixels) * depth / view.scale;
+      count += low - reach <= depth && depth <= high + reach ? 0 : 1;
+    }
+  }
+  return count;
+}
+
+TEST(PackedError, MovesNothingByMoreThanAPixel) {
+  const tests::TemporaryFolder folder;
+  const scenes::Scene scene = scenes::generate("gen:terrain:150000");
+  packs::write_pack(folder / "a.pack", scene);
+  const packs::PackReader pack(folder / "a.pack");
+  RenderOptions options;
+  options.width = 200;
+  options.height = 150;
+  for (int turn = 0; turn < 3; ++turn) {
+    scenes::Camera camera = scene.cameras.front();
+    camera.eye = glm::vec3(0.1F + static_cast<float>(turn), 0.9F, 1.7F - static_cast<float>(turn));
+    const scenes::View view = scenes::make_view(camera, options.width, options.height);
+    options.error = 0;
+    const Result exact = of_pack(pack, camera, options);
+    options.error = 1;
+    const Result coarse = of_pack(pack, camera, options);
+    EXPECT_LT(coarse.statistics.triangles_in, exact.statistics.triangles_in * 3 / 4);
+    EXPECT_GT(coarse.statistics.pack->levels[1] + coarse.statistics.pack->levels[2], 0U);
+    const auto& a = std::get<image::Image8>(exact.picture);
+    const auto& b = std::get<image::Image8>(coarse.picture);
+    EXPECT_EQ(displaced(a, b, view, 1), 0U) << turn;
+    EXPECT_EQ(displaced(b, a, view, 1), 0U) << turn;
+  }
+}
+
+TEST(PackedError, GivesOnePictureHoweverItIsSharedOut) {
+  const tests::TemporaryFolder folder;
+  scenes::Scene scene = scenes::generate("gen:terrain:40000");
+  scenes::Instance second = scene.instances[0];  // through the first
+  second.transform[0].x = -1.3F;
+  second.transform[3] = {0.2F, 0.05F, 0.1F};
+  scene.instances.push_back(second);
+  packs::write_pack(folder / "a.pack", scene);
+  const packs::PackReader pack(folder / "a.pack");
+  RenderOptions options;
+  options.width = 160;
+  options.height = 120;
+  options.error = 2;
+  const Result expected = of_pack(pack, scene.cameras.front(), options);
+  EXPECT_GT(expected.statistics.pack->levels[1], 0U);
+  for (const char* strategy : {"sort-last", "sort-first"}) {
+    options.strategy = strategy;
+    for (const int ranks : {1, 2, 3, 5}) {
+      const Result found = of_pack(pack, scene.cameras.front(), options, ranks, 1 + ranks % 3);
+      EXPECT_TRUE(same_bytes(found.picture, expected.picture)) << strategy << " " << ranks;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace delray::raster
