@@ -31,6 +31,13 @@ struct PackOptions {
 void pack_scene(const PackOptions& options, parallel::Progress* progress) {
   scenes::Scene scene = load_scene(options.scene, progress);
   refuse_overwriting({{"-o", options.output}, {"--stats", options.statistics}}, scene.files);
+  for (const scenes::Mesh& mesh : scene.meshes) {
+    if (mesh.shape.kind == scenes::Shape::Kind::triangle) continue;
+    throw UsageError(
+        fmt::format("{}: packs are of triangles, not of points or segments; of points --show-as "
+                    "relief makes some",
+                    options.scene.file.path));
+  }
   scenes::complete_surfaces(scene);
   packs::write_pack(options.output, scene, {.levels = !options.exact_only});
 }
@@ -77,7 +84,7 @@ int run(Session& session, const PackOptions& options) {
 
 void add_pack(CLI::App& program, Session& session) {
   CLI::App* command = program.add_subcommand(
-      "pack", "Pack a scene, mesh or points into a file that render reads in parts");
+      "pack", "Pack a scene, mesh or relief of points into a file that render reads in parts");
   const auto options = std::make_shared<PackOptions>();
   add_scene_options(*command, options->scene);
   command->add_option("-o,--output", options->output, "Pack to write, .pack")

@@ -169,6 +169,10 @@ std::uint64_t PackWriter::bytes() const { return state_->written; }
 
 void write_pack(const std::filesystem::path& path, const scenes::Scene& scene,
                 const WriteOptions& options) {
+  for (const scenes::Mesh& mesh : scene.meshes) {
+    if (mesh.shape.kind != scenes::Shape::Kind::triangle)
+      throw std::invalid_argument("packs are of triangles, not of points or segments");
+  }
   PackWriter writer(path, options);
   for (const scenes::Mesh& mesh : scene.meshes) writer.add_mesh(mesh);
   writer.commit(scene, scenes::is_lit_by_emission(scene));

@@ -55,6 +55,7 @@ class PackWriter {
 };
 
 // A whole scene, completed as for rendering (scenes::complete_surfaces), as a pack. Parallel.
+// Throws std::invalid_argument for a scene of points or segments, which packs do not keep.
 void write_pack(const std::filesystem::path& path, const scenes::Scene& scene,
                 const WriteOptions& options = {});
 

@@ -57,7 +57,8 @@ TEST(Pack, OfModelsRendersAsTheyDo) {
 
 TEST(Pack, IsUnpackedForWhatDoesNotReadPages) {
   const Folder folder;
-  ASSERT_EQ(run("delray pack gen:spheres:2000 -o s.pack -q --exact-only", folder.path()).exit_code, 0);
+  ASSERT_EQ(run("delray pack gen:spheres:2000 -o s.pack -q --exact-only", folder.path()).exit_code,
+            0);
   for (const std::string options :
        {"--strategy sort-middle --ranks 2", "--strategy hybrid --ranks 2", "--engine raytrace",
         "--strategy sort-first --schedule stealing --ranks 2"}) {
@@ -111,6 +112,15 @@ TEST(Pack, WrongUsageIsTwo) {
     EXPECT_EQ(run("delray " + command, folder.path()).exit_code, 2) << command;
   }
   EXPECT_EQ(folder.files(), std::vector<std::string>{"s.pack"});
+}
+
+TEST(Pack, IsOfTriangles) {
+  const Folder folder;
+  folder.write("p.xyz", "0 0 0\n1 0 0\n0 1 1\n1 1 2\n");
+  const Ran ran = run("delray pack p.xyz --show-as points -o p.pack", folder.path());
+  EXPECT_EQ(ran.exit_code, 2) << ran.err;
+  EXPECT_NE(ran.err.find("relief"), std::string::npos) << ran.err;
+  EXPECT_EQ(run("delray pack p.xyz --show-as relief -q -o p.pack", folder.path()).exit_code, 0);
 }
 
 TEST(Pack, DamagedIsThreeAndAFailingDiskIsOne) {
