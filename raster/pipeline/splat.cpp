@@ -175,7 +175,9 @@ bool meets_segment(const Screen& screen, const Splat& splat, const PixelRay& ray
 
 // A stripe on the screen: what is linear there is one over the distance.
 bool meets_stripe(const Screen& screen, const Splat& splat, int x, int y, SplatHit& hit) {
-  const glm::vec2 pixel(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+  // From the view's axis, exactly, so that a window of the frame has the frame's bytes.
+  const glm::vec2 pixel(static_cast<float>(x) + 0.5F - screen.view.half_width,
+                        static_cast<float>(y) + 0.5F - screen.view.half_height);
   const glm::vec2 way = splat.screen_b - splat.screen_a, from = pixel - splat.screen_a;
   const float length = glm::dot(way, way);
   const float share = length > 0 ? std::clamp(glm::dot(from, way) / length, 0.0F, 1.0F) : 0.0F;
@@ -207,14 +209,14 @@ void put_on_screen(const Screen& screen, float radius, Splat& splat) {
   if (b.z < near) b = cut(a, b);
   const auto place = [&](const glm::vec3& p) {
     constexpr float kFarthest = 1e6F;  // pixels
-    return glm::clamp(glm::vec2(view.half_width + p.x / p.z * view.scale,
-                                view.half_height - p.y / p.z * view.scale),
-                      -kFarthest, kFarthest);
+    return glm::clamp(glm::vec2(p.x / p.z * view.scale, -p.y / p.z * view.scale), -kFarthest,
+                      kFarthest);
   };
   splat.screen_a = place(a);
   splat.screen_b = place(b);
-  const glm::vec2 low = glm::min(splat.screen_a, splat.screen_b) - (radius + 1);
-  const glm::vec2 high = glm::max(splat.screen_a, splat.screen_b) + (radius + 1);
+  const glm::vec2 middle(view.half_width, view.half_height);
+  const glm::vec2 low = glm::min(splat.screen_a, splat.screen_b) + middle - (radius + 1);
+  const glm::vec2 high = glm::max(splat.screen_a, splat.screen_b) + middle + (radius + 1);
   splat.pixels =
       geometry::intersection({static_cast<int>(low.x), static_cast<int>(low.y),
                               static_cast<int>(high.x) + 1, static_cast<int>(high.y) + 1},
