@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -32,7 +33,6 @@ namespace {
 
 // What one rank did, as it travels to rank 0, which sums up the statistics of the frame.
 struct Report {
-  RankStatistics rank;
   TriangleCounts triangles;
   std::uint64_t fragments, shaded, triangles_travelled, fragments_travelled;
 
@@ -44,6 +44,7 @@ struct Report {
     triangles_travelled += other.triangles_travelled;
     fragments_travelled += other.fragments_travelled;
   }
+  RankStatistics rank;  // ends with what only packs have
 };
 
 void check(const RenderOptions& options, int ranks) {
@@ -179,12 +180,11 @@ Report make_report(const RankContext& rank, std::span<const comm::Event> events)
 }
 
 // The frame's statistics, of all ranks' reports.
-Statistics summarize(std::span<const comm::Buffer> reports, bool packed) {
+Statistics summarize(std::span<const Report> reports, bool packed) {
   Statistics statistics;
   if (packed) statistics.pack.emplace();
   double busiest = 0, sum = 0;
-  for (const comm::Buffer& buffer : reports) {
-    const Report& report = buffer.as<Report>()[0];
+  for (const Report& report : reports) {
     statistics.phases += report.rank.phases;
     statistics.ranks.push_back(report.rank);
     if (packed) *statistics.pack += report.rank.pack;
@@ -207,8 +207,11 @@ Statistics summarize(std::span<const comm::Buffer> reports, bool packed) {
 
 // The statistics of a frame of which this rank did what the report says; on rank 0. Collective.
 Statistics gather_statistics(comm::Communicator& communicator, const Report& mine, bool packed) {
-  const std::vector<comm::Buffer> reports =
-      comm::gather(communicator, 0, comm::Buffer::of_value(mine));
+  comm::Buffer message(packed ? sizeof(Report) : sizeof(Report) - sizeof(PackCounts));
+  std::memcpy(message.data(), &mine, message.size());
+  std::vector<Report> reports;
+  for (const comm::Buffer& buffer : comm::gather(communicator, 0, std::move(message)))
+    std::memcpy(static_cast<void*>(&reports.emplace_back()), buffer.data(), buffer.size());
   return communicator.rank() == 0 ? summarize(reports, packed) : Statistics();
 }
 
