@@ -341,11 +341,11 @@ InputKind input_kind_of(const PointInput& input) {
 }
 
 void refuse_for_packs(const SceneInput& input) {
-  const bool given = input.file.given() || !input.draw.empty() || !input.colour_by.empty() ||
-                     input.exaggeration != 1;
+  const bool given = input.file.given() || !input.show_as.empty() || has_size(input) ||
+                     !input.colour_by.empty() || input.exaggeration != 1;
   if (!given) return;
   throw UsageError(fmt::format(
-      "options of points, --draw, --color-by and --exaggeration are for delray pack; {} "
+      "options of points, --show-as, --color-by and --exaggeration are for delray pack; {} "
       "is packed already",
       input.file.path));
 }

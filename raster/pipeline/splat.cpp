@@ -18,7 +18,7 @@ namespace {
 
 using ShapeKind = scenes::Shape::Kind;
 
-bool finite(const glm::vec3& v) {
+bool is_finite_at(const glm::vec3& v) {
   constexpr float kLargest = std::numeric_limits<float>::max();
   return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest;
 }
@@ -281,7 +281,7 @@ Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
   splat.number = number;
   splat.a = draw.to_view(mesh.positions[corners.x]);
   splat.b = draw.to_view(mesh.positions[corners.y]);
-  if (!finite(splat.a) || !finite(splat.b)) return splat;
+  if (!is_finite_at(splat.a) || !is_finite_at(splat.b)) return splat;
   if (draw.kind == ShapeKind::disc && !mesh.normals.empty()) {
     const glm::vec3 normal = draw.normal_to_view * mesh.normals[corners.x];
     const float squared = glm::dot(normal, normal);
