@@ -43,7 +43,7 @@ TEST(Limits, TriangulatingIsPartOfThePromise) {
   const Folder folder;
   ASSERT_EQ(
       run("delray generate points uniform -n 300000 --dim 2 -o p.ply", folder.path()).exit_code, 0);
-  for (const std::string command : {"delray triangulate p.ply -o m.ply",
+  for (const std::string command : {"delray triangulate p.ply -o m.obj",
                                     "delray render p.ply -o a.png --size 16x16 --draw surface"}) {
     const Ran ran = run(command + " --memory 40MB", folder.path());
     EXPECT_EQ(ran.exit_code, 1) << command << ran.err;
