@@ -88,7 +88,8 @@ def same(text, value):
 def check_csv(browser, folder, statistics):
     browser.find_element(By.ID, "csv").click()
     deadline = time.time() + 20
-    while not (files := list(folder.glob("*.csv"))):
+    # The browser makes the file before it has its bytes.
+    while not (files := [f for f in folder.glob("*.csv") if f.stat().st_size > 0]) or list(folder.glob("*.crdownload")):
         assert time.time() < deadline, "no CSV was saved"
         time.sleep(0.05)
     with open(files[0], newline="") as file:
