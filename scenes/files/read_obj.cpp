@@ -328,7 +328,7 @@ class ObjReader {
 
   template <class T>
   static void move_to(std::vector<T>& from, std::int64_t at, std::vector<T>& to) {
-    std::ranges::copy(from, to.begin() + at);
+    if (!from.empty()) std::ranges::copy(from, to.begin() + at);
     std::vector<T>().swap(from);
   }
 

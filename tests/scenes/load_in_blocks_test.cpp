@@ -25,14 +25,14 @@ namespace {
 constexpr std::uint32_t kSide = 230;  // of a grid of vertices; some 100000 triangles
 
 // Polygons over a grid, in some order.
-struct Model {
+struct RandomModel {
   std::vector<glm::vec3> positions;
   std::vector<std::vector<std::uint32_t>> faces;
 };
 
-Model random_grid(unsigned seed, bool quads) {
+RandomModel random_grid(unsigned seed, bool quads) {
   std::mt19937 random(seed);
-  Model model;
+  RandomModel model;
   for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
     const auto z = static_cast<float>(random() % 1000) / 64;
     model.positions.emplace_back(i % kSide, i / kSide, z);
@@ -50,7 +50,7 @@ Model random_grid(unsigned seed, bool quads) {
   return model;
 }
 
-std::string header(const Model& model, const std::string& coding, const std::string& real) {
+std::string header(const RandomModel& model, const std::string& coding, const std::string& real) {
   return "ply\nformat " + coding + " 1.0\nelement vertex " +
          std::to_string(model.positions.size()) + "\nproperty " + real + " x\nproperty " + real +
          " y\nproperty " + real + " z\nelement face " + std::to_string(model.faces.size()) +
@@ -58,7 +58,7 @@ std::string header(const Model& model, const std::string& coding, const std::str
 }
 
 template <class Real>
-std::string binary_ply(const Model& model, bool swap) {
+std::string binary_ply(const RandomModel& model, bool swap) {
   std::string ply = header(model, swap ? "binary_big_endian" : "binary_little_endian",
                            sizeof(Real) == 4 ? "float" : "double");
   for (const glm::vec3& p : model.positions) {
@@ -76,7 +76,7 @@ std::string line_of(const glm::vec3& p) {
   return std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z);
 }
 
-std::string text_ply(const Model& model, const std::string& end) {
+std::string text_ply(const RandomModel& model, const std::string& end) {
   std::string ply = header(model, "ascii", "float");
   for (const glm::vec3& p : model.positions) ply += line_of(p) + end;
   for (const auto& face : model.faces) {
@@ -88,7 +88,7 @@ std::string text_ply(const Model& model, const std::string& end) {
 }
 
 // With indices from the start or, `relative`, from the end.
-std::string obj(const Model& model, bool relative, const std::string& end) {
+std::string obj(const RandomModel& model, bool relative, const std::string& end) {
   std::string text;
   for (const glm::vec3& p : model.positions) text += "v " + line_of(p) + end;
   const auto n = static_cast<std::int64_t>(model.positions.size());
@@ -118,7 +118,7 @@ std::map<Triangle, int> triangles_of(const Scene& scene) {
   return result;
 }
 
-std::map<Triangle, int> triangles_of(const Model& model) {
+std::map<Triangle, int> triangles_of(const RandomModel& model) {
   Scene scene;
   Mesh& mesh = scene.meshes.emplace_back();
   mesh.positions = model.positions;
@@ -148,7 +148,7 @@ void expect_same(const Scene& a, const Scene& b) {
 
 TEST(LoadInBlocks, GivesTheTrianglesOfTheFileForEveryCoding) {
   constexpr unsigned kSeed = 5;
-  const Model model = random_grid(kSeed, false);
+  const RandomModel model = random_grid(kSeed, false);
   const auto expected = triangles_of(model);
   const tests::TemporaryFolder folder;
   const std::map<std::string, std::string> files = {
@@ -170,7 +170,7 @@ TEST(LoadInBlocks, GivesTheTrianglesOfTheFileForEveryCoding) {
 
 TEST(LoadInBlocks, NumbersVerticesOfObjByTheirFirstCorners) {
   constexpr unsigned kSeed = 6;
-  Model model = random_grid(kSeed, false);
+  RandomModel model = random_grid(kSeed, false);
   const auto expected = triangles_of(model);
   for (int i = 0; i < 1000; ++i) model.positions.emplace_back(-1, -1, i);  // of no face
   const tests::TemporaryFolder folder;
@@ -185,7 +185,7 @@ TEST(LoadInBlocks, NumbersVerticesOfObjByTheirFirstCorners) {
 
 TEST(LoadInBlocks, CutsPolygonsAlikeInEveryCoding) {
   constexpr unsigned kSeed = 7;
-  const Model model = random_grid(kSeed, true);
+  const RandomModel model = random_grid(kSeed, true);
   const tests::TemporaryFolder folder;
   const Scene first = load_with(folder.write("a.ply", binary_ply<float>(model, false)), 1);
   expect_same(first, load_with(folder / "a.ply", 5));
@@ -214,7 +214,7 @@ std::string complaint(const std::string& name, const std::string& content) {
 
 TEST(LoadInBlocks, TellsThePlaceOfTheFirstError) {
   constexpr unsigned kSeed = 8;
-  Model model = random_grid(kSeed, false);
+  RandomModel model = random_grid(kSeed, false);
   const std::size_t vertices = model.positions.size(), faces = model.faces.size();
   // Two, of which the second may be found first.
   const std::size_t wrong = faces * 3 / 4;
@@ -238,7 +238,7 @@ TEST(LoadInBlocks, TellsThePlaceOfTheFirstError) {
 TEST(LoadInBlocks, RefusesFilesThatEndEarly) {
   constexpr unsigned kSeed = 9;
   for (const bool quads : {false, true}) {
-    const Model model = random_grid(kSeed, quads);
+    const RandomModel model = random_grid(kSeed, quads);
     const std::string binary = binary_ply<float>(model, false), text = text_ply(model, "\n");
     EXPECT_NE(complaint("a.ply", binary.substr(0, binary.size() - 1)).find("ends before"),
               std::string::npos);
