@@ -132,8 +132,11 @@ std::vector<RenderOption> layout_options() {
 
 void complete_layout(RenderRequest& request) {
   FrameLayout& layout = request.layout;
-  if (!layout.crop.empty()) request.window = parse_crop(layout.crop, request.width, request.height);
-  if (layout.grid.empty()) return;
+  if (layout.grid.empty()) {
+    if (!layout.crop.empty())
+      request.window = parse_crop(layout.crop, request.width, request.height);
+    return;
+  }
   const auto refuse = [&](bool given, const char* what) {
     if (given) throw UsageError(fmt::format("--wall does not go with {}", what));
   };

@@ -229,8 +229,14 @@ std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
   if (reads_pages(request)) return open_pack(request);
   if (request.raster.error > 0) {
-    throw UsageError(fmt::format("--error is for packs, whose levels it chooses from; {} is none",
-                                 request.scene.file.path));
+    const std::string& path = request.scene.file.path;
+    throw UsageError(
+        input_kind_of(request.scene.file) == InputKind::pack
+            ? fmt::format(
+                  "--error: {} is unpacked here, as sort-last and sort-first alone, without "
+                  "--wall, --schedule and --blend by-cell, read a pack in parts",
+                  path)
+            : fmt::format("--error is for packs, whose levels it chooses from; {} is none", path));
   }
   auto prepared = std::make_shared<Prepared>();
   prepared->in_parts = in_parts;

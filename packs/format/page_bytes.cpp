@@ -24,6 +24,7 @@ void for_each_attribute(Mesh& mesh, F&& f) {
 
 template <class Vector>
 void append_vectors(const std::vector<Vector>& values, std::vector<char>& bytes) {
+  if (values.empty()) return;
   const auto* const words = reinterpret_cast<const std::uint32_t*>(values.data());
   for (int k = 0; k < Vector::length(); ++k)
     append_planes(words + k, values.size(), static_cast<std::size_t>(Vector::length()), bytes);
@@ -32,6 +33,7 @@ void append_vectors(const std::vector<Vector>& values, std::vector<char>& bytes)
 template <class Vector>
 void read_vectors(ByteReader& from, std::size_t n, std::vector<Vector>& values) {
   values.resize(n);
+  if (n == 0) return;
   auto* const words = reinterpret_cast<std::uint32_t*>(values.data());
   for (int k = 0; k < Vector::length(); ++k)
     read_planes(from.take(4 * n).data(), n, static_cast<std::size_t>(Vector::length()), words + k);

@@ -108,7 +108,8 @@ TEST(Pack, WrongUsageIsTwo) {
        {"pack", "pack gen:cornell", "pack gen:cornell -o a.png", "pack gen:cornell -o -",
         "pack s.pack -o s.pack", "pack gen:nothing -o a.pack",
         "render s.pack -o a.png --color-by z", "render s.pack -o a.png --exaggeration 2",
-        "render s.pack -o a.png --draw points"}) {
+        "render s.pack -o a.png --draw points", "render s.pack -o a.png --wall 2x2 --error 1",
+        "render s.pack -o a.png --engine raytrace --error 1"}) {
     EXPECT_EQ(run("delray " + command, folder.path()).exit_code, 2) << command;
   }
   EXPECT_EQ(folder.files(), std::vector<std::string>{"s.pack"});
