@@ -25,7 +25,8 @@ struct SceneInput {
 
 // The kind that a file is read as. A PLY, OBJ or OFF without faces is points; a PLY with 64-bit
 // coordinates, an OBJ, OFF or STL that delray wrote, a VTU, an .ele or a .node beside one is a mesh
-// of points, and so is a folder with an index of pieces. A pack is a scene that need not be in memory.
+// of points, and so is a folder with an index of pieces. A pack is a scene that need not be in
+// memory.
 enum class InputKind { scene, mesh, points, picture, pack };
 InputKind input_kind(const std::string& path, const files::MemoryBudget& memory = {});
 

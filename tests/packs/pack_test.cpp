@@ -73,9 +73,7 @@ void expect_same(const scenes::Scene& a, const scenes::Scene& b) {
     EXPECT_EQ(a.textures[i].wrap_u, b.textures[i].wrap_u);
     EXPECT_EQ(a.textures[i].set, b.textures[i].set);
     ASSERT_EQ(a.textures[i].texels.size(), b.textures[i].texels.size());
-    EXPECT_EQ(std::memcmp(a.textures[i].texels.data(), b.textures[i].texels.data(),
-                          4 * a.textures[i].texels.size()),
-              0);
+    EXPECT_TRUE(a.textures[i].texels == b.textures[i].texels);
     EXPECT_EQ(a.textures[i].radiance, b.textures[i].radiance);
   }
   ASSERT_EQ(a.lights.size(), b.lights.size());
