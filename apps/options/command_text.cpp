@@ -96,8 +96,10 @@ std::string full_description(const OptionText& option) {
 CommandText command_text(const CLI::App& command) {
   CommandText result{
       command.get_name(), command.get_description(), examples_in(command.get_footer()), {}, {}};
-  for (const CLI::Option* option : command.get_options())
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;  // older names, which nobody need learn
     result.options.push_back(option_text(command, *option));
+  }
   for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; }))
     result.commands.push_back(command_text(*below));
   return result;

@@ -77,9 +77,14 @@ MemoryPlan plan_memory(const Task& task) {
   while (workers > 1 && largest() < kSmallTile) workers /= 2;
   plan.tile_points = largest();
   if (plan.tile_points < kSmallestTile) {
+    const auto least =
+        static_cast<std::uint64_t>(static_cast<double>((kSmallestTile + 1) * bytes) / kTilesShare);
+    // Of what is given more, at least half comes here.
+    const std::uint64_t more = 2 * (resident + least - task.memory) + (1 << 20);
     throw files::FileError(files::Cause::memory, "--memory", "",
-                           "tiles of points need more than " + files::bytes_text(task.memory) +
-                               ": the program itself has " + files::bytes_text(resident));
+                           "tiles of points need " + files::bytes_text(resident + least) +
+                               ", and " + files::bytes_text(task.memory) +
+                               " are left for them: " + files::bytes_text(more) + " more will do");
   }
   if (task.tiles == 0 && (plan.on_disk || share > plan.tile_points)) {
     std::uint64_t wanted = plan.tile_points;
