@@ -9,6 +9,11 @@
 #include <vector>
 
 #include "delaunay/cavity/cavity_insertion.h"
+#include "delaunay/construction/bowyer_watson.h"
+#include "delaunay/construction/dewall.h"
+#include "delaunay/construction/gift_wrapping.h"
+#include "delaunay/construction/quickhull.h"
+#include "delaunay/construction/sweep.h"
 #include "delaunay/divide_and_conquer/divide.h"
 #include "delaunay/history/batch.h"
 #include "delaunay/history/burglary.h"
@@ -151,6 +156,68 @@ std::span<const Method> methods() {
        .splits = all_splits,
        .orders = {"brio", "random"},
        .triangulate = internal::insert_by_circles},
+      {.name = "dewall",
+       .description =
+           "makes the simplices that a plane crosses, then those on its two sides, which "
+           "planes divide in turn",
+       .group = "parts",
+       .dims = {2, 3},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .seeded = false,
+       .triangulate = internal::dewall},
+      {.name = "guibas-stolfi",
+       .description = "divide and conquer by vertical lines alone, as published first",
+       .group = "parts",
+       .dims = {2},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .seeded = false,
+       .triangulate = internal::guibas_stolfi},
+      {.name = "bowyer-watson",
+       .description =
+           "inserts one point after the other into the hole of the triangles that it removes",
+       .group = "one thread",
+       .dims = {2},
+       .locations = {},
+       .splits = {},
+       .orders = {"brio", "hilbert", "random"},
+       .alone = true,
+       .triangulate = internal::insert_by_holes},
+      {.name = "gift-wrapping",
+       .description = "makes one simplex after the other, each on a facet of those that are there",
+       .group = "one thread",
+       .dims = {2, 3},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .alone = true,
+       .seeded = false,
+       .triangulate = internal::wrap_gifts},
+      {.name = "quickhull",
+       .description =
+           "the lower hull of the points lifted onto a paraboloid, each facet's farthest "
+           "point first",
+       .group = "one thread",
+       .dims = {2, 3},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .alone = true,
+       .seeded = false,
+       .triangulate = internal::lower_hull_of_lifted},
+      {.name = "sweep",
+       .description = "sweeps a line over the points and keeps the arcs nearest to each below it",
+       .group = "one thread",
+       .dims = {2},
+       .locations = {},
+       .splits = {},
+       .orders = {},
+       .alone = true,
+       .seeded = false,
+       .triangulate = internal::sweep},
   };
   return table;
 }

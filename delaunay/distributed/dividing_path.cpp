@@ -8,7 +8,6 @@
 #include "delaunay/distributed/dividing_path.h"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <functional>
 #include <unordered_set>
@@ -16,40 +15,23 @@
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "delaunay/predicates.h"
+#include "delaunay/predicates/as_integers.h"
 #include "delaunay/predicates/conflict.h"
 
 namespace delray::delaunay {
 namespace {
 
-using PathInteger = boost::multiprecision::cpp_int;
+using internal::as_integers, internal::Integer;
 
 constexpr double kTurnError = 10 * internal::kRoundOff;
-
-// Doubles as integers times a common power of two.
-template <std::size_t N>
-std::array<PathInteger, N> as_integers(const std::array<double, N>& values) {
-  int lowest = 2000;
-  for (const double x : values) {
-    int exponent = 0;
-    if (std::frexp(x, &exponent) != 0) lowest = std::min(lowest, exponent - 53);
-  }
-  std::array<PathInteger, N> result;
-  for (std::size_t i = 0; i < N; ++i) {
-    int exponent = 0;
-    const double mantissa = std::frexp(values[i], &exponent);
-    result[i] = static_cast<std::int64_t>(std::ldexp(mantissa, 53));
-    if (mantissa != 0) result[i] <<= exponent - 53 - lowest;
-  }
-  return result;
-}
 
 int exact_turn(const CutLine& line, const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   const int s = line.axis, t = 1 - s;
   const auto n = as_integers<7>({a[s], b[s], c[s], line.place, a[t], b[t], c[t]});
-  const PathInteger pa = n[0] - n[3], pb = n[1] - n[3], pc = n[2] - n[3];
-  const PathInteger qa = n[4] - n[6], qb = n[5] - n[6];
-  const PathInteger wa = pa * pa - pc * pc + qa * qa, wb = pb * pb - pc * pc + qb * qb;
-  const PathInteger turn = qa * wb - qb * wa;
+  const Integer pa = n[0] - n[3], pb = n[1] - n[3], pc = n[2] - n[3];
+  const Integer qa = n[4] - n[6], qb = n[5] - n[6];
+  const Integer wa = pa * pa - pc * pc + qa * qa, wb = pb * pb - pc * pc + qb * qb;
+  const Integer turn = qa * wb - qb * wa;
   return turn.sign();
 }
 
@@ -103,7 +85,7 @@ bool is_lifted_less(const CutLine& line, const glm::dvec2& a, const glm::dvec2& 
   if (difference > error) return false;
   if (-difference > error) return true;
   const auto n = as_integers<3>({a[s], b[s], line.place});
-  const PathInteger exact = abs(PathInteger(n[0] - n[2])) - abs(PathInteger(n[1] - n[2]));
+  const Integer exact = abs(Integer(n[0] - n[2])) - abs(Integer(n[1] - n[2]));
   return exact.sign() != 0 ? exact.sign() < 0 : lexicographically_less(a, b);
 }
 

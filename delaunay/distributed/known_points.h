@@ -4,11 +4,10 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <vector>
 
+#include "delaunay/construction/apex_search.h"
 #include "delaunay/tiles.h"
-#include "delaunay/tiles/box_tree.h"
 
 namespace delray::delaunay {
 
@@ -24,14 +23,10 @@ class KnownPoints {
   std::optional<RowPoint> apex_of(const RowPoint& a, const RowPoint& b) const;
 
  private:
-  // Points along a curve, and the boxes of runs of them.
   struct Area {
     std::vector<RowPoint> points;
-    BoxTree<glm::dvec2> runs;
+    ApexSearch<2> search;  // its points are these, in the same order
   };
-  template <class Touches, class Found>
-  void find(const Touches& touches, const Found& found) const;
-  std::optional<RowPoint> any_left_of(const RowPoint& a, const RowPoint& b) const;
 
   std::map<int, Area> areas_;
 };

@@ -17,6 +17,7 @@
 #include <atomic>
 #include <bit>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -61,14 +62,23 @@ class Divider {
     const std::uint32_t low = grid.number(points_[first]), high = grid.number(points_[last - 1]);
     if (low == high) return divide(first, last, grid_over(first, last));
     const std::size_t split = find_split(first, last, grid, low, high);
-    std::array<Part, 2> halves;
-    parallel::parallel_for(0, 2, 1, [&](std::size_t half) {
-      halves[half] = half == 0 ? divide(first, split, grid) : divide(split, last, grid);
+    return divide_at(split, split_by_y(low, high), [&](bool upper) {
+      return upper ? divide(split, last, grid) : divide(first, split, grid);
     });
-    const Part whole =
-        timed([&] { return merge(halves[0], halves[1], split, split_by_y(low, high)); });
-    note_creator_of_merge(split);
-    return whole;
+  }
+
+  // The same of points in lexicographic order, by vertical lines alone.
+  Part divide_vertically(std::size_t first, std::size_t last) {
+    if (last - first <= kPointsPerTask) {
+      note_creator(first, last);
+      const Part part = timed([&] { return divide_sorted(first, last); });
+      if (progress_ != nullptr) progress_->advance(last - first);
+      return part;
+    }
+    const std::size_t split = first + (last - first) / 2;
+    return divide_at(split, false, [&](bool upper) {
+      return upper ? divide_vertically(split, last) : divide_vertically(first, split);
+    });
   }
 
   // Summed over threads.
@@ -83,6 +93,20 @@ class Divider {
   static constexpr std::size_t kBlock = 256;
   // Takes about a millisecond.
   static constexpr std::size_t kPointsPerTask = 8192;
+
+  // half(false) triangulates the points before `split`, half(true) the others.
+  template <class Half>
+  Part divide_at(std::size_t split, bool by_y, const Half& half) {
+    std::array<Part, 2> halves;
+    if (parallel_) {
+      parallel::parallel_for(0, 2, 1, [&](std::size_t i) { halves[i] = half(i == 1); });
+    } else {
+      halves = {half(false), half(true)};
+    }
+    const Part whole = timed([&] { return merge(halves[0], halves[1], split, by_y); });
+    note_creator_of_merge(split);
+    return whole;
+  }
 
   template <class F>
   Part timed(const F& f) {
@@ -237,17 +261,33 @@ struct Divided {
   Statistics seconds;
 };
 
-Divided divide(PointView<double> points, const Options& options) {
+enum class Cuts { kAlternating, kVertical };
+
+void sort_lexicographically(CellOrder& order, std::size_t n) {
+  std::vector<std::pair<glm::dvec2, std::uint32_t>> sorted(n);
+  for (std::size_t i = 0; i < n; ++i) sorted[i] = {order.points[i], order.rows[i]};
+  std::ranges::sort(sorted, [](const auto& a, const auto& b) {
+    return lexicographically_less(a.first, b.first);
+  });
+  for (std::size_t i = 0; i < n; ++i) std::tie(order.points[i], order.rows[i]) = sorted[i];
+}
+
+Divided divide(PointView<double> points, const Options& options, Cuts cuts) {
   Divided result;
   Stopwatch watch;
   CellOrder order = cell_order(points, options.threads);
-  result.seconds.order = watch.lap();
   const std::size_t n = order.points.size();
+  if (cuts == Cuts::kVertical) sort_lexicographically(order, n);
+  result.seconds.order = watch.lap();
   if (options.progress != nullptr) options.progress->advance(points.size() - n);
   result.built.mesh = Mesh<2>(n < 2 ? 0 : 2 * n - 2);
   if (n >= 2) {
     Divider divider(order, result.built.mesh, options);
-    divider.divide(0, n, CellGrid(order.box));
+    if (cuts == Cuts::kVertical) {
+      divider.divide_vertically(0, n);
+    } else {
+      divider.divide(0, n, CellGrid(order.box));
+    }
     result.seconds.subdivide = divider.seconds();
     result.created_by = divider.take_created_by();
   }
@@ -257,8 +297,8 @@ Divided divide(PointView<double> points, const Options& options) {
   return result;
 }
 
-Result run(PointView<double> points, const Options& options) {
-  Divided divided = divide(points, options);
+Result run(PointView<double> points, const Options& options, Cuts cuts) {
+  Divided divided = divide(points, options, cuts);
   Stopwatch watch;
   const Array<std::uint32_t>& rows = divided.built.rows;
   Result result = extract(std::move(divided.built.mesh), {rows.data(), rows.size()},
@@ -271,11 +311,16 @@ Result run(PointView<double> points, const Options& options) {
 }  // namespace
 
 Result divide_and_conquer(PointView<double> points, const Options& options) {
-  return with_threads(options.threads, [&] { return run(points, options); });
+  return with_threads(options.threads, [&] { return run(points, options, Cuts::kAlternating); });
 }
 
 BuiltMesh<2> divide_and_conquer_mesh(PointView<double> points, const Options& options) {
-  return with_threads(options.threads, [&] { return divide(points, options).built; });
+  return with_threads(options.threads,
+                      [&] { return divide(points, options, Cuts::kAlternating).built; });
+}
+
+Result guibas_stolfi(PointView<double> points, const Options& options) {
+  return with_threads(options.threads, [&] { return run(points, options, Cuts::kVertical); });
 }
 
 }  // namespace delray::delaunay::internal

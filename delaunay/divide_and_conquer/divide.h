@@ -18,4 +18,8 @@ Result divide_and_conquer(PointView<double> points, const Options& options);
 // The mesh before it is copied out.
 BuiltMesh<2> divide_and_conquer_mesh(PointView<double> points, const Options& options);
 
+// As published first: all lines are vertical (Guibas and Stolfi 1985), so that merge lines are long
+// and there are more of the edges that a later merge removes. O(n log n).
+Result guibas_stolfi(PointView<double> points, const Options& options);
+
 }  // namespace delray::delaunay::internal

@@ -10,7 +10,6 @@
 // equal to a vertex only lowers its row.
 #include "delaunay/history/insertion.h"
 
-#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -24,12 +23,10 @@
 #include "delaunay/history/dag_run.h"
 #include "delaunay/history/insert_in_leaf.h"
 #include "delaunay/history/sole_dag_access.h"
-#include "delaunay/insertion/insertion_order.h"
+#include "delaunay/insertion/insert_walking.h"
 #include "delaunay/insertion/insertion_phases.h"
-#include "delaunay/insertion/insertion_start.h"
 #include "delaunay/insertion/walk.h"
 #include "delaunay/mesh/access.h"
-#include "delaunay/mesh/extract.h"
 #include "delaunay/mesh/mesh.h"
 #include "delaunay/mesh/start_mesh.h"
 #include "delaunay/mesh/stopwatch.h"
@@ -107,58 +104,6 @@ class WalkedMesh<3> {
   Flips3d<Mesh<3>, ReusingAccess> flips_{mesh_, orientation_, access_, suspects_};
   std::uint32_t random_;
 };
-
-template <int D, class Located>
-Result insert_walking(PointView<double> input, const Options& options) {
-  Statistics seconds;
-  const bool timed = options.statistics;
-  Stopwatch watch;
-
-  using Points = std::vector<Position<D>>;
-  Points points = positions<D>(input);
-  std::vector<std::uint32_t> rows =
-      insertion_order(std::span<const Position<D>>(points), options.order, options.seed);
-  const std::size_t n = points.size();
-  Points ordered(n);
-  for (std::size_t i = 0; i < n; ++i) ordered[i] = points[rows[i]];
-  points.swap(ordered);
-  ordered = {};
-  seconds.order = watch.lap();
-
-  const auto start = first_simplex<D>(points);
-  if (!start) {
-    Result result;
-    result.statistics = seconds;
-    result.triangulation.dim = D;
-    result.triangulation.distinct = count_distinct(std::move(points));
-    return result;
-  }
-  Located mesh(points, *start, options.seed);
-  std::uint64_t distinct = D + 1;
-  for (VertexNumber vertex = 0; vertex < n; ++vertex) {
-    if (options.progress != nullptr) options.progress->advance();
-    if (std::ranges::find(*start, vertex) != start->end()) continue;
-    if (timed) watch.lap();
-    const Place place = mesh.locate(vertex);
-    if (timed) seconds.locate += watch.lap();
-    if (place.equal != kInfiniteVertex) {
-      rows[place.equal] = std::min(rows[place.equal], rows[vertex]);
-      continue;
-    }
-    ++distinct;
-    mesh.subdivide(vertex, place.simplex);
-    if (timed) seconds.subdivide += watch.lap();
-    mesh.legalize();
-    if (timed) seconds.legalize += watch.lap();
-  }
-  watch.lap();
-  points = {};
-  Result result = extract(mesh.take(), rows);
-  result.triangulation.distinct = distinct;
-  seconds.extract = watch.lap();
-  result.statistics = seconds;
-  return result;
-}
 
 // Down the history of the triangulation to the simplex of the next point.
 template <int D>

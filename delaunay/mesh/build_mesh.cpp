@@ -9,7 +9,6 @@
 #include "delaunay/methods.h"
 
 namespace delray::delaunay {
-namespace {
 
 template <int D>
 BuiltMesh<D> mesh_of(const Triangulation& triangulation, std::size_t points) {
@@ -43,8 +42,6 @@ BuiltMesh<D> mesh_of(const Triangulation& triangulation, std::size_t points) {
   return built;
 }
 
-}  // namespace
-
 template <int D>
 BuiltMesh<D> build_mesh(PointView<double> points, const Options& options) {
   const Options resolved = resolve(options);
@@ -63,5 +60,8 @@ BuiltMesh<D> build_mesh(PointView<double> points, const Options& options) {
 
 template BuiltMesh<2> build_mesh(PointView<double> points, const Options& options);
 template BuiltMesh<3> build_mesh(PointView<double> points, const Options& options);
+
+template BuiltMesh<2> mesh_of(const Triangulation& triangulation, std::size_t points);
+template BuiltMesh<3> mesh_of(const Triangulation& triangulation, std::size_t points);
 
 }  // namespace delray::delaunay

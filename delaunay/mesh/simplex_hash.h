@@ -5,6 +5,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -28,6 +29,8 @@ class HashSum {
       order(0, 1);
       order(1, 2);
       order(0, 1);
+    } else if constexpr (Corners > 4) {
+      std::ranges::sort(rows);
     } else {
       static_assert(Corners == 4);
       order(0, 1);

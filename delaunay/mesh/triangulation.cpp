@@ -33,8 +33,18 @@ Hash128 hash_all(int dim, std::span<const Row> vertices) {
   return parallel::parallel_reduce(
       0, simplices, kSimplicesPerBlock, Hash128{},
       [&](std::size_t first, std::size_t last) {
-        return dim == 2 ? hash_of_range<3>(vertices, first, last)
-                        : hash_of_range<4>(vertices, first, last);
+        switch (dim) {
+          case 2:
+            return hash_of_range<3>(vertices, first, last);
+          case 3:
+            return hash_of_range<4>(vertices, first, last);
+          case 4:
+            return hash_of_range<5>(vertices, first, last);
+          case 5:
+            return hash_of_range<6>(vertices, first, last);
+          default:
+            return hash_of_range<7>(vertices, first, last);
+        }
       },
       [](const Hash128& a, const Hash128& b) { return a + b; });
 }
