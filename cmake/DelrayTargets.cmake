@@ -69,33 +69,71 @@ endif()
 
 # delray_compile_together(<target> [SIZE <sources>] [FIRST <source>...] [ALONE <source>...])
 #
-# A unity build: half of the time of a small source goes into headers, so SIZE (six) of a target are
-# compiled in one go, first those of FIRST, so that users of a heavy header share it, then the others by
-# path. Private names must therefore differ within a target; where two of a batch do not, the compiler
-# says where. Alone are those of ALONE, which take long by themselves, and those that Highway compiles
-# once per instruction set. -DDELRAY_TOGETHER=OFF compiles each alone; with
-# -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources show what they fail to include.
+# A unity build: half of the time of a small source goes into headers, so about SIZE (six) of a target are
+# compiled in one go. Those of FIRST go together, so that users of a heavy header share it; of the others
+# those of a sub-folder, cut evenly where they are many, and small sub-folders one after the other: a
+# source that is added has no others compiled anew but its neighbours. Private names must differ within a
+# target; where two of a group do not, the compiler says where. Alone are those of ALONE, which take long by
+# themselves, and those that Highway compiles once per instruction set. -DDELRAY_TOGETHER=OFF compiles each
+# alone; with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON as well, sources show what they fail to include.
 function(delray_compile_together target)
   cmake_parse_arguments(ARG "" "SIZE" "FIRST;ALONE" ${ARGN})
   if(NOT ARG_SIZE)
     set(ARG_SIZE 6)
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_BATCH_SIZE ${ARG_SIZE})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DELRAY_TOGETHER} UNITY_BUILD_MODE GROUP)
   if(DELRAY_TOGETHER AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # takes sources for headers
   endif()
   get_target_property(sources ${target} SOURCES)
   list(TRANSFORM ARG_FIRST PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   list(TRANSFORM ARG_ALONE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  list(PREPEND sources ${ARG_FIRST})
-  list(REMOVE_DUPLICATES sources)
-  set_target_properties(${target} PROPERTIES SOURCES "${sources}")
+  set(folders)
   foreach(source IN LISTS sources)
     file(STRINGS ${source} highway REGEX "^#define HWY_TARGET_INCLUDE" LIMIT_COUNT 1)
     if(highway OR source IN_LIST ARG_ALONE)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+      continue()
     endif()
+    if(source IN_LIST ARG_FIRST)
+      set(folder ${CMAKE_CURRENT_SOURCE_DIR}/first)
+    else()
+      cmake_path(GET source PARENT_PATH folder)
+    endif()
+    if(NOT folder IN_LIST folders)
+      list(APPEND folders ${folder})
+    endif()
+    list(APPEND "sources_${folder}" ${source})
   endforeach()
+  math(EXPR few "${ARG_SIZE} + 1")
+  math(EXPR many "${ARG_SIZE} + ${ARG_SIZE} / 2 + 1")
+  set(collected ${many})  # sources of small folders in the group called `small`
+  foreach(folder IN LISTS folders)
+    file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${folder})
+    string(MAKE_C_IDENTIFIER "${target}_${name}" name)
+    list(LENGTH "sources_${folder}" size)
+    if(size LESS_EQUAL few)
+      math(EXPR collected "${collected} + ${size}")
+      if(collected GREATER many)
+        set(small ${name})
+        set(collected ${size})
+      endif()
+      delray_unity_group(${small} ${sources_${folder}})
+      continue()
+    endif()
+    math(EXPR cuts "(${size} + ${ARG_SIZE} / 2) / ${ARG_SIZE}")
+    foreach(cut RANGE 1 ${cuts})
+      math(EXPR begin "${size} * (${cut} - 1) / ${cuts}")
+      math(EXPR length "${size} * ${cut} / ${cuts} - ${begin}")
+      list(SUBLIST "sources_${folder}" ${begin} ${length} part)
+      delray_unity_group("${name}_${cut}" ${part})
+    endforeach()
+  endforeach()
+endfunction()
+
+# delray_unity_group(<name> <source>...): those are compiled in one go.
+function(delray_unity_group name)
+  set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${name})
 endfunction()
 
 # delray_sources(<variable> <pattern>): the sources of this folder and of its sub-folders without a
