@@ -2,7 +2,6 @@
 // all ranks with the exit code of a failure, and reports the phase when the process is told to end.
 #include "comm/mpi.h"
 
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,6 +20,7 @@
 #include "comm/failure.h"
 #include "comm/mpi/mpi_end.h"
 #include "comm/mpi/mpi_header.h"
+#include "comm/mpi/open_mpi_choices.h"
 #include "comm/transport/first_failure.h"
 #include "files/error.h"
 #include "files/printable.h"
@@ -124,16 +124,6 @@ void wait_for_the_end() {
   std::this_thread::sleep_for(kLongest);
 }
 
-// Open MPI moves large messages between processes of one machine by process_vm_readv, believes that
-// it works wherever the kernel has it, and fails in containers that forbid it.
-void avoid_forbidden_copies() {
-  char source = 1, target = 0;
-  iovec local{&target, 1}, remote{&source, 1};
-  if (process_vm_readv(getpid(), &local, 1, &remote, 1, 0) != 1) {
-    setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", /*overwrite=*/0);
-  }
-}
-
 // What the line about a failure says.
 std::string reason_of(const std::exception_ptr& failure) {
   return tells_of_no_memory(failure) ? "out of memory" : internal::describe(failure);
@@ -177,7 +167,7 @@ void run_mpi(int* argc, char*** argv, const std::function<void(Communicator&)>& 
   int initialized = 0;
   MPI_Initialized(&initialized);
   if (!initialized) {
-    avoid_forbidden_copies();
+    internal::choose_for_open_mpi();
     int provided = 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided);
     if (provided < MPI_THREAD_SERIALIZED)
