@@ -107,10 +107,12 @@ std::string scratch_folder(const TilesChoice& choice, const std::string& output)
 }
 
 std::uint64_t memory_beyond_limit(const PointInput& input, int dim) {
-  const std::uint64_t left = input.limits.budget().left();
+  constexpr std::uint64_t kReserve = std::uint64_t{16} << 20;  // for what allocators keep
+  const std::uint64_t all = input.limits.budget().left(), left = all - std::min(all, kReserve);
   const std::uint64_t bytes_per_point =
-      sizeof(glm::dvec3) + (dim == 2 ? kBytesToTriangulate2D : kBytesToTriangulate3D);
+      kMostBytesOfPoint + (dim == 2 ? kBytesToTriangulate2D : kBytesToTriangulate3D);
   constexpr std::uint64_t kShortestRow = 4;  // of text
+  const bool packed = is_picture(input);     // any number of pixels in a few bytes
   std::uint64_t most = 0;
   for (const std::filesystem::path& path : input_files(input)) {
     std::error_code error;
@@ -118,7 +120,7 @@ std::uint64_t memory_beyond_limit(const PointInput& input, int dim) {
     most += std::filesystem::file_size(path, error) / kShortestRow;
     if (error) return 0;
   }
-  if (most <= left / bytes_per_point || is_picture(input)) return 0;
+  if (most <= left / bytes_per_point && !packed) return 0;
   const auto parts = open_parts(input);
   std::uint64_t rows = 0;
   for (std::size_t part = 0; part < parts->parts(); ++part) rows += parts->most_rows(part);
@@ -174,6 +176,7 @@ void triangulate_in_parts(Session& session, const PartsTask& task,
     Stopwatch watch;
     const auto parts = comm::all_or_none(communicator, comm::Phase::other, [&] {
       auto opened = open_parts(task.input);
+      if (task.how.dim == 3 && opened->has_z() == false) refuse_without_z(task.input);
       if (task.to != nullptr && opened->has_z() == false) task.to->require_heights(false);
       return opened;
     });

@@ -2,6 +2,7 @@
 // control groups, version 1 and 2 (cgroups(7)): the least limit of the group and those above it.
 #include "files/memory_budget.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -98,8 +99,12 @@ void MemoryBudget::require(std::uint64_t bytes, const std::string& file,
   small += std::min(bytes, kWorthLooking);
   if (small < kWorthLooking) return;
   small = 0;
-  const std::uint64_t resident = resident_set();
-  if (resident <= limit_ && bytes <= limit_ - resident) return;
+  std::uint64_t resident = resident_set();
+  const auto fits = [&] { return resident <= limit_ && bytes <= limit_ - resident; };
+  if (fits()) return;
+  malloc_trim(0);  // what was freed and is kept for later
+  resident = resident_set();
+  if (fits()) return;
   throw FileError(Cause::memory, file, place,
                   "takes " + bytes_text(bytes) + " of memory; the program has " +
                       bytes_text(resident) + " and may have " + bytes_text(limit_) + " (--memory)");

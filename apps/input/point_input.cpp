@@ -136,9 +136,13 @@ delaunay::PointCloud load_points(const PointInput& input, int dim) {
   if (dim == 2) {
     merge_places(input, cloud);
   } else if (!cloud.has_z) {
-    throw UsageError("--dim 3: " + input.path + " has no z");
+    refuse_without_z(input);
   }
   return cloud;
+}
+
+void refuse_without_z(const PointInput& input) {
+  throw UsageError("--dim 3: " + input.path + " has no z");
 }
 
 files::CoordinateSystem coordinate_system_of(const PointInput& input) {

@@ -74,6 +74,11 @@ delaunay::PointCloud load_points(const PointInput& input, int dim);
 // The coordinate system of the points, as their file has it.
 files::CoordinateSystem coordinate_system_of(const PointInput& input);
 
+// Throws the UsageError of points without heights in 3D.
+[[noreturn]] void refuse_without_z(const PointInput& input);
+
+// Bytes that a point takes while it is read, with all that a file may say of it.
+inline constexpr std::uint64_t kMostBytesOfPoint = 40;
 // Bytes a point that the default methods take besides the points themselves; measured on uniform
 // ones.
 inline constexpr std::uint64_t kBytesToTriangulate2D = 70, kBytesToTriangulate3D = 260;

@@ -84,15 +84,25 @@ std::size_t batch_end(const PartCounts& counts, std::size_t first, std::size_t l
   return end;
 }
 
-// Reads parts and sorts their points by tiles.
-std::vector<comm::Parcel> read_batch(const PointParts& parts, const PartCounts& counts,
-                                     const Destination& to, std::size_t first, std::size_t last,
-                                     int ranks) {
+struct BatchOptions {
+  std::size_t rows = 1;
+  int ranks = 1;
+};
+
+// Reads parts and gives their points, sorted by tiles, some batch_rows at a time: a part that
+// cannot be cut may have many more.
+template <class Give>
+void read_batch(const PointParts& parts, const PartCounts& counts, const Destination& to,
+                std::size_t first, std::size_t last, const BatchOptions& options,
+                const Give& give) {
   std::vector<PointCloud> clouds(last - first);
   std::vector<PointRun> runs;
   std::vector<std::int32_t> tile_of;
-  tile_of.reserve(counts.first_rows[last - counts.first_part] -
-                  counts.first_rows[first - counts.first_part]);
+  const auto give_runs = [&] {
+    if (!runs.empty()) give(pack_by_tile(runs, tile_of, to.format, to.tiles, options.ranks));
+    runs.clear();
+    tile_of.clear();
+  };
   for (std::size_t part = first; part < last; ++part) {
     PointCloud& cloud = clouds[part - first];
     parts.read(part, cloud);
@@ -101,10 +111,16 @@ std::vector<comm::Parcel> read_batch(const PointParts& parts, const PartCounts& 
       throw files::FileError(files::Cause::device, "points", "part " + std::to_string(part),
                              "has changed while it was read");
     }
-    runs.push_back({cloud.positions, counts.first_rows[own]});
-    for (const glm::dvec3& place : cloud.positions) tile_of.push_back(to.cut.tile_of(place));
+    const std::span<const glm::dvec3> places = cloud.positions;
+    for (std::size_t begin = 0; begin < places.size(); begin += options.rows) {
+      const auto some =
+          places.subspan(begin, std::min<std::size_t>(options.rows, places.size() - begin));
+      if (tile_of.size() + some.size() > options.rows) give_runs();
+      runs.push_back({some, counts.first_rows[own] + begin});
+      for (const glm::dvec3& place : some) tile_of.push_back(to.cut.tile_of(place));
+    }
   }
-  return pack_by_tile(runs, tile_of, to.format, to.tiles, ranks);
+  give_runs();
 }
 
 // Takes messages in for the rank's own tiles.
@@ -209,6 +225,7 @@ void distribute_parts(comm::Communicator& communicator, const PointParts& parts,
                       parallel::Progress* progress) {
   const int ranks = communicator.size(), rank = communicator.rank();
   const std::size_t begin = counts.first_part, end = begin + counts.first_rows.size() - 1;
+  const BatchOptions batch{static_cast<std::size_t>(plan.batch_rows), ranks};
   Receiver receiver(to, static_cast<std::size_t>(first_tile(rank, ranks, to.tiles)));
   const auto points_of = [&](std::size_t first, std::size_t last) {
     return counts.first_rows[last - begin] - counts.first_rows[first - begin];
@@ -217,9 +234,9 @@ void distribute_parts(comm::Communicator& communicator, const PointParts& parts,
     share_parts(begin, end, [&](std::size_t, std::size_t first, std::size_t last) {
       while (first < last) {
         const std::size_t next = batch_end(counts, first, last, plan.batch_rows);
-        for (comm::Parcel& parcel : read_batch(parts, counts, to, first, next, ranks)) {
-          receiver.take(std::move(parcel.message));
-        }
+        read_batch(parts, counts, to, first, next, batch, [&](std::vector<comm::Parcel>&& some) {
+          for (comm::Parcel& parcel : some) receiver.take(std::move(parcel.message));
+        });
         advance(progress, points_of(first, next));
         first = next;
       }
@@ -238,7 +255,9 @@ void distribute_parts(comm::Communicator& communicator, const PointParts& parts,
       std::vector<std::vector<comm::Parcel>> parcels(batches.size());
       parallel::parallel_for(0, batches.size(), 1, [&](std::size_t i) {
         const auto [first, last] = batches[i];
-        parcels[i] = read_batch(parts, counts, to, first, last, ranks);
+        read_batch(parts, counts, to, first, last, batch, [&](std::vector<comm::Parcel>&& some) {
+          std::ranges::move(some, std::back_inserter(parcels[i]));
+        });
         advance(progress, points_of(first, last));
       });
       for (auto& each : parcels) std::ranges::move(each, std::back_inserter(all));

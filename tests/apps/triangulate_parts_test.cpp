@@ -1,4 +1,5 @@
 // delray triangulate for inputs that memory does not hold, by the built program.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -56,6 +57,38 @@ TEST(TriangulateInParts, KeepsWithinMemory) {
   ASSERT_EQ(chosen.exit_code, 0) << chosen.err;
   EXPECT_NE(chosen.err.find("triangulating in tiles"), std::string::npos) << chosen.err;
   EXPECT_EQ(json::parse(folder.read("s.json"))["result"], alone["result"]);
+}
+
+// What does with less memory does with more, whether in tiles or not.
+TEST(TriangulateInParts, MoreMemoryRefusesNothing) {
+  const Folder folder;
+  for (const char* file : {"p.xyz", "p.ply"}) {
+    ASSERT_EQ(run(std::string("delray generate points uniform -n 600000 --dim 2 -o ") + file,
+                  folder.path())
+                  .exit_code,
+              0);
+    json first;
+    for (const int limit : {76, 88, 110}) {
+      const json made =
+          statistics(fmt::format("delray triangulate {} --memory {}MiB", file, limit), folder);
+      if (made.is_null()) continue;
+      EXPECT_LE(made["memory"]["peak_rss"].get<std::uint64_t>(), std::uint64_t(limit) << 20)
+          << file << " " << limit;
+      if (first.is_null()) first = made["result"];
+      EXPECT_EQ(made["result"], first) << file << " " << limit;
+    }
+  }
+}
+
+TEST(TriangulateInParts, NamesAFileWithoutHeights) {
+  const Folder folder;
+  folder.write("flat.xyz", "0 0\n1 0\n0 1\n");
+  for (const char* how : {"", " --tiles 2", " --ranks 2"}) {
+    const Ran ran =
+        run(std::string("delray triangulate flat.xyz --dim 3 --stats -") + how, folder.path());
+    EXPECT_EQ(ran.exit_code, 2) << how << ran.err;
+    EXPECT_NE(ran.err.find("--dim 3: flat.xyz has no z"), std::string::npos) << how << ran.err;
+  }
 }
 
 TEST(TriangulateInParts, GoesOnAfterItWasKilled) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <functional>
 
 #include "files/error.h"
 #include "parallel/arena.h"
@@ -34,6 +35,23 @@ void append_values(std::vector<T>& all, const std::vector<T>& part, std::size_t 
 template <class T>
 void resize_like(std::vector<T>& all, const std::vector<T>& part, std::size_t size) {
   if (!part.empty()) all.resize(size);
+}
+
+// How many rows parts have at most: a bound that costs nothing where there is memory for so many,
+// and else, as that of text is far off, counted.
+std::uint64_t rows_at_most(const FileParts& file, std::size_t first, std::size_t last,
+                           std::uint64_t fitting) {
+  std::uint64_t rows = 0;
+  for (std::size_t part = first; part < last; ++part) rows += file.row_bound(part);
+  if (rows <= fitting) return rows;
+  return parallel::parallel_reduce(
+      first, last, 1, std::uint64_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        std::uint64_t counted = 0;
+        for (std::size_t part = begin; part < end; ++part) counted += file.most_rows(part);
+        return counted;
+      },
+      std::plus<>());
 }
 
 // Reads parts in order, some at a time, and puts their points behind each other.
@@ -182,8 +200,7 @@ PointCloud read_all(const FileParts& file, const PointFilter& filter,
   Assembler assembler(file, filter);
   for (std::size_t first = 0; first < parts; first += at_a_time) {
     const std::size_t last = std::min(parts, first + at_a_time);
-    std::uint64_t rows = 0;
-    for (std::size_t part = first; part < last; ++part) rows += file.row_bound(part);
+    const std::uint64_t rows = rows_at_most(file, first, last, memory.left() / kBytesPerPoint);
     memory.require(rows * kBytesPerPoint, file.facts().told.file);
     assembler.read(first, last);
     // Parts have about as many points as those before, so that the points need not move.

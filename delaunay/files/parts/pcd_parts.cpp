@@ -173,7 +173,9 @@ void PcdParts::read_compressed(Rows& rows) const {
   if (wanted > most_lzf_bytes(sizes[0])) {
     fail(source_.input(), at_byte(at), "so few bytes cannot hold so many points");
   }
-  source_.memory().require(wanted, source_.name());
+  constexpr std::uint64_t kBytesPerPoint = 40;  // a PointCloud with everything
+  source_.memory().require(wanted + sizes[0] + header_.points * kBytesPerPoint, source_.name());
+  rows.points.cloud.positions.reserve(header_.points);
   std::string unpacked(wanted, '\0');
   if (!unpack_lzf(source_.read(at + sizeof sizes, sizes[0], buffer), unpacked)) {
     fail(source_.input(), at_byte(at + sizeof sizes), "the compressed points are damaged");
