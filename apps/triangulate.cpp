@@ -9,59 +9,27 @@
 #include "apps/commands.h"
 #include "apps/families.h"
 #include "apps/input/point_choice.h"
-#include "apps/input/point_input.h"
-#include "apps/launch.h"
 #include "apps/options/help.h"
-#include "apps/options/list.h"
-#include "apps/options/numbers.h"
 #include "apps/output/triangulation_output.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
 #include "apps/triangulate_distributed.h"
+#include "apps/triangulate_options.h"
 #include "apps/triangulate_parts.h"
 #include "apps/triangulate_tiles.h"
 #include "apps/triangulation_json.h"
 #include "comm/agree_on_failure.h"
 #include "delaunay/distributed.h"
-#include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
-#include "delaunay/triangulate.h"
+#include "files/error_hint.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
 namespace {
 
-struct TriangulateOptions {
-  PointInput input;
-  TriangulationOutput output;
-  std::string statistics;
-  delaunay::Options how;
-  std::optional<double> max_error;
-  Launch launch;
-  TilesChoice tiles;
-  std::string distributed;  // a method of delaunay/distributed.h; empty: tiles
-  bool makers = false;      // go to the mesh
-  bool list = false;
-};
-
 struct Seconds {
   double read = 0, triangulate = 0;
 };
-
-// Throws UsageError for options that mean nothing to the insertion that is bounded by an error.
-void require_plain(const TriangulateOptions& options) {
-  const delaunay::Options defaults;
-  const delaunay::Options& how = options.how;
-  if (how.dim != 2) throw UsageError("--max-error is for terrains, which are --dim 2");
-  if (how.method != defaults.method || how.location != defaults.location ||
-      how.split != defaults.split || how.order != defaults.order ||
-      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.launch.threads != 0 || options.makers) {
-    throw UsageError(
-        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed, "
-        "threads and makers");
-  }
-}
 
 // Replaces the points by those that are kept, and the vertices, which are their rows, by their new
 // rows.
@@ -113,118 +81,6 @@ void add_output(const Json& output, Json& statistics) {
   if (!output.is_null()) statistics["raster"] = output;
 }
 
-// Names in a table, or that which leaves the choice to the program.
-template <class Table>
-void choose(CLI::App& command, const char* option, const Table& table) {
-  std::vector<std::string> names = names_in(table);
-  names.insert(names.begin(), "auto");
-  choose_from(command, option, names,
-              {"", [](const std::string& name) { return name == "none"; }});  // as statistics say
-}
-
-void add_choices(CLI::App& command) {
-  choose(command, "--method", delaunay::methods());
-  choose(command, "--location", delaunay::locations());
-  choose(command, "--split", delaunay::splits());
-  choose(command, "--order", delaunay::orders());
-  choose(command, "--deadlocks", delaunay::deadlock_strategies());
-}
-
-bool is_tiled(const Session& session, const TriangulateOptions& options) {
-  return options.tiles.given() || !options.distributed.empty() || options.launch.ranks > 1 ||
-         session.processes > 1;
-}
-
-// Throws UsageError for options that mean nothing to the distributed method.
-void require_distributed(const TriangulateOptions& options) {
-  const auto& method =
-      find_entry(delaunay::distributed_methods(), options.distributed, "--distributed");
-  if (options.tiles.given())
-    throw UsageError(
-        "--tiles, --scratch and --resume: not with --distributed, which has an area a rank");
-  const delaunay::Options defaults;
-  const delaunay::Options& how = options.how;
-  if (!method.triangulates_parts &&
-      (how.method != defaults.method || how.location != defaults.location ||
-       how.split != defaults.split || how.order != defaults.order ||
-       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue)) {
-    throw UsageError("--distributed " + options.distributed +
-                     " leaves no choice of method, location, split, order, deadlocks and queue");
-  }
-  if (std::ranges::find(method.dims, how.dim) == method.dims.end()) {
-    throw UsageError("--distributed " + options.distributed + ": not in " +
-                     std::to_string(how.dim) + "D");
-  }
-}
-
-// Throws UsageError for what the method makes no use of.
-void require_used(const TriangulateOptions& options) {
-  const delaunay::Method& method = method_of(options.how);
-  const delaunay::Options defaults;
-  if (options.how.queue != defaults.queue && !method.queued) {
-    throw UsageError(fmt::format("--queue has no effect with method {}", method.name));
-  }
-  const bool by_areas =
-      options.distributed.empty() ||
-      find_entry(delaunay::distributed_methods(), options.distributed, "--distributed")
-          .triangulates_parts;
-  if (options.how.seed != defaults.seed && !method.seeded && by_areas) {
-    throw UsageError(fmt::format("--seed has no effect with method {}", method.name));
-  }
-}
-
-// Refuses what does not go together, and resolves every "auto".
-void check(const Session& session, TriangulateOptions& options) {
-  if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
-  const OutputKind output = options.output.kind();
-  if (output == OutputKind::none && options.statistics.empty()) {
-    throw UsageError("triangulate: -o MESH is missing");
-  }
-  check_output(options.output, options.input, options.how.dim);
-  if (options.max_error && output == OutputKind::folder) {
-    throw UsageError("--max-error: a simplified terrain goes to one file");
-  }
-  const bool takes_parts =
-      output == OutputKind::none || options.output.takes_parts(options.how.dim);
-  if (!takes_parts && (!options.tiles.scratch.empty() || options.tiles.resume)) {
-    throw UsageError(
-        "--scratch and --resume: such a mesh in one file is made in memory; -o "
-        "FOLDER/, .vtu and triangles as .ply are not");
-  }
-  if (output == OutputKind::file && options.tiles.resume) {
-    throw UsageError("--resume: a mesh in one file is made in one run; -o FOLDER/ is not");
-  }
-  if (output == OutputKind::raster && options.tiles.resume) {
-    throw UsageError("--resume: a raster is made in one run");
-  }
-  if (options.makers && (output != OutputKind::file || !options.output.path.ends_with(".vtu"))) {
-    throw UsageError("--makers: only a mesh in a .vtu file can tell them");
-  }
-  if (is_tiled(session, options) && (options.max_error || options.makers)) {
-    throw UsageError((options.max_error ? std::string("--max-error") : std::string("--makers")) +
-                     ": not with several ranks or tiles");
-  }
-  if (!options.distributed.empty()) require_distributed(options);
-  if (options.max_error && options.tiles.given()) throw UsageError("--max-error: not with tiles");
-  check(session, options.launch);
-  delaunay::Options& how = options.how;
-  how.threads = session.under_mpi
-                    ? threads_per_rank(options.launch, processes_here())
-                    : threads_per_rank(options.launch, std::max(1, options.launch.ranks));
-  if (options.max_error) {
-    require_plain(options);
-    how.threads = 1;
-  }
-  try {
-    how = resolve(how);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(error.what());
-  }
-  if (!options.max_error) require_used(options);
-  check_scratch(options.tiles);
-  check_output_paths(options.output, options.statistics, options.input.paths);
-}
-
 void warn_of_no_simplices(const TriangulateOptions& options, std::uint64_t simplices) {
   if (simplices > 0) return;
   spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
@@ -252,12 +108,25 @@ TiledRun triangulate_with_ranks(comm::Communicator& communicator, const Triangul
   return std::move(run.made);
 }
 
+// All points, with room to triangulate them. FileErrors (memory) say which outputs need less.
+delaunay::PointCloud load_to_triangulate(const TriangulateOptions& options) {
+  try {
+    delaunay::PointCloud points = load_points(options.input, options.how.dim);
+    check_output_of(options.output, options.input, points);
+    require_memory_to_triangulate(options.input, points.size(), options.how.dim);
+    return points;
+  } catch (const files::FileError& error) {
+    if (error.cause() != files::Cause::memory || takes_parts(options)) throw;
+    throw with_hint(
+        error, fmt::format("{} is made in memory: -o FOLDER/, .vtu{} are not", options.output.path,
+                           options.how.dim == 2 ? " and .ply" : ""));
+  }
+}
+
 int run_tiled(Session& session, const TriangulateOptions& options) {
   Stopwatch watch;
   Seconds seconds;
-  const delaunay::PointCloud points = load_points(options.input, options.how.dim);
-  check_output_of(options.output, options.input, points);
-  require_memory_to_triangulate(options.input, points.size(), options.how.dim);
+  const delaunay::PointCloud points = load_to_triangulate(options);
   seconds.read = watch.lap();
   delaunay::TileOptions how;
   how.tiles = options.tiles.tiles;
@@ -347,11 +216,10 @@ int run_in_parts(Session& session, const TriangulateOptions& options) {
 
 // Whether the input goes through memory in parts, which it says where nobody asked for it.
 bool goes_in_parts(const Session& session, const TriangulateOptions& options) {
-  const OutputKind output = options.output.kind();
   if (!options.distributed.empty() || options.makers || options.max_error) {
     return false;
   }
-  if (output != OutputKind::none && !options.output.takes_parts(options.how.dim)) return false;
+  if (!takes_parts(options)) return false;
   if (is_tiled(session, options)) return true;
   const std::uint64_t needed = memory_beyond_limit(options.input, options.how.dim);
   if (needed == 0) return false;
@@ -382,13 +250,11 @@ int run(Session& session, TriangulateOptions options) {
 
   Stopwatch watch;
   Seconds seconds;
-  delaunay::PointCloud points = load_points(options.input, how.dim);
+  delaunay::PointCloud points = load_to_triangulate(options);
   if (!points.has_z && options.max_error) {
     throw UsageError("--max-error: " + options.input.path + " has no z");
   }
-  check_output_of(options.output, options.input, points);
   const std::size_t rows = points.size();
-  require_memory_to_triangulate(options.input, rows, how.dim);
   seconds.read = watch.lap();
   how.statistics = !options.statistics.empty();
   how.created_by = options.makers;
@@ -444,61 +310,7 @@ void add_triangulate(CLI::App& program, Session& session) {
   CLI::App* command =
       program.add_subcommand("triangulate", "Compute the Delaunay triangulation of points");
   const auto options = std::make_shared<TriangulateOptions>();
-  add_points_argument(*command, "POINTS", options->input,
-                      "Files of points (delray info --list names the formats), folders of such or "
-                      "patterns; - for standard input");
-  add_output_options(*command, options->output);
-  command
-      ->add_option("--dim", options->how.dim,
-                   "Dimension: 2, over x and y, where z is kept as height (default), or 3")
-      ->check(one_of({"2", "3"}));
-  command->add_option(
-      "--method", options->how.method,
-      "Method (--list describes them; default: auto, the fastest of the dimension)");
-  command->add_option(
-      "--location", options->how.location,
-      "How the simplex that a new point lies in is found: dag, hierarchy, walk or auto (default)");
-  command->add_option(
-      "--split", options->how.split,
-      "Which thread inserts which points: random, slabs, distance, curve or auto (default)");
-  command->add_option("--order", options->how.order,
-                      "Order of insertion: brio, hilbert, random or auto (default)");
-  command->add_option(
-      "--deadlocks", options->how.deadlocks,
-      "How the optimistic method ends deadlocks: detection, priorities or auto (default)");
-  command
-      ->add_option(
-          "--queue", options->how.queue,
-          "Capacity of the batch method's queue in points (default: by the number of points)")
-      ->transform(any_count());
-  command
-      ->add_option("--max-error", options->max_error,
-                   "Simplify a terrain: keep just enough points for all others to be within this "
-                   "above or below the mesh, in units of z")
-      ->check(non_negative_number());
-  add_launch_options(*command, options->launch);
-  add_tiles_options(*command, options->tiles);
-  command
-      ->add_option("--distributed", options->distributed,
-                   "How ranks share one triangulation (--list describes the methods; default: "
-                   "tiles)")
-      ->group(group::kParallel);
-  choose_from(*command, "--distributed", names_in(delaunay::distributed_methods()));
-  command->add_option("--seed", options->how.seed, "Seed of all random numbers (default: 1)")
-      ->transform(any_count());
-  command
-      ->add_option("--stats", options->statistics,
-                   "Statistics as JSON to this file; - for standard output")
-      ->type_name("FILE")
-      ->group(group::kOutput);
-  command
-      ->add_flag("--makers", options->makers,
-                 "Tell which thread made each simplex, as \"thread\" in a .vtu")
-      ->group(group::kOutput);
-  command->add_flag("--list", options->list, "List the methods, and what their options choose from")
-      ->group(group::kOutput);
-  add_choices(*command);
-  add_point_options(*command, options->input);
+  add_triangulate_options(*command, *options);
   add_common_options(*command, session,
                      "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"
                      "triangulate points.las -o terrain.tif --cell-size 1\n"

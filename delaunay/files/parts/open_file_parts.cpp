@@ -11,6 +11,7 @@
 #include "delaunay/files/parts/ply_parts.h"
 #include "delaunay/files/parts/text_parts.h"
 #include "delaunay/files/point_readers.h"
+#include "files/error_hint.h"
 #include "files/read_file.h"
 
 namespace delray::delaunay {
@@ -67,6 +68,24 @@ class WholeFile : public FileParts {
   PartPoints points_;
 };
 
+// What no reader can cut: `path` is empty for a stream, which `source` has.
+std::unique_ptr<FileParts> read_whole(const ByteSource& source, const PointReader& reader,
+                                      const std::filesystem::path& path) {
+  const std::string name(source.name());
+  try {
+    std::string buffer;
+    const std::string content = with_line_feeds(
+        reader.format, path.empty() ? std::string(source.read(0, source.size(), buffer))
+                                    : files::read_file(path, source.memory()));
+    return std::make_unique<WholeFile>(name, reader.read({name, content, source.memory()}));
+  } catch (const files::FileError& error) {
+    if (error.cause() != files::Cause::memory) throw;
+    throw with_hint(error,
+                    "such a file is read as a whole: text, LAS, LAZ, PCD and binary PLY without "
+                    "faces need not be");
+  }
+}
+
 // Throws std::invalid_argument where the filter asks for what the file does not have.
 void check_filter(const FileFacts& facts, const PointFilter& filter) {
   const std::string& file = facts.told.file;
@@ -108,11 +127,7 @@ std::unique_ptr<FileParts> open_unchecked(const std::filesystem::path& given,
   std::unique_ptr<FileParts> parts;
   if (cut != kPartReaders.end()) parts = cut->open(source, filter);
   if (parts == nullptr) {
-    std::string buffer;
-    const std::string content =
-        with_line_feeds(format, stream ? std::string(source.read(0, source.size(), buffer))
-                                       : files::read_file(path, options.memory));
-    parts = std::make_unique<WholeFile>(name, reader->read({name, content, options.memory}));
+    parts = read_whole(source, *reader, stream ? std::filesystem::path() : path);
   }
   parts->tell_format(reader->name);
   return parts;

@@ -125,7 +125,11 @@ TEST(MeshFiles, AreWrittenWithinMemory) {
   EXPECT_EQ(hull.exit_code, 2);
   EXPECT_NE(hull.err.find("-o FOLDER/"), std::string::npos) << hull.err;
   EXPECT_EQ(hull.out, "");
-  EXPECT_EQ(run(command + " -o m.obj", folder.path()).exit_code, 1);
+  const Ran text = run(command + " -o m.obj", folder.path());
+  EXPECT_EQ(text.exit_code, 1);
+  EXPECT_NE(text.err.find("m.obj is made in memory: -o FOLDER/, .vtu and .ply are not"),
+            std::string::npos)
+      << text.err;
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"m.ply", "p.ply"}));
 }
 
