@@ -33,9 +33,9 @@ struct DistributedOptions {
 // What a rank sent and waited for. Counted, except for the seconds.
 struct DistributedStatistics {
   std::uint64_t messages = 0, bytes = 0;  // sent to other ranks
-  std::uint64_t waits = 0;                // for the answer of another rank to a request
+  std::uint64_t waits = 0;                // for answers of other ranks to requests
   double waiting_seconds = 0;             // for any message; by the communicator's clock
-  std::uint64_t requests = 0;             // for simplices that other ranks have
+  std::uint64_t requests = 0;             // messages that ask for simplices of another rank
   std::uint64_t refusals = 0;             // of requests that could have ended in a deadlock
   std::uint64_t rollbacks = 0;            // insertions that were undone and tried again
   std::uint64_t cached_reads = 0;         // that the cache answered

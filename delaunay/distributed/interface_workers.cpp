@@ -36,7 +36,15 @@ class InterfaceWorkers final : public RankInserter<D> {
       : site_(site), nodes_(site.communicator, site.statistics) {
     nodes_.on_message([this](std::uint32_t kind, int source, Unpacker& content) {
       if (kind == kCall) {
-        calls_.push_back({content.value<RowPoint>(), content.value<NodeId>(), source});
+        const auto point = content.value<RowPoint>();
+        calls_.push_back({point, content.value<WalkEnd>(), source});
+      } else if (kind == kWalk) {
+        const auto q = content.value<glm::dvec3>();
+        auto message = nodes_.message_of(kWalkEnd);
+        message.value(walk_here(q, content.value<NodeId>()));
+        nodes_.send(source, std::move(message));
+      } else if (kind == kWalkEnd) {
+        walk_end_ = content.value<WalkEnd>();
       } else {
         const auto row = content.value<std::uint64_t>();
         comm::check_message(called_.erase(row) == 1);
@@ -80,10 +88,10 @@ class InterfaceWorkers final : public RankInserter<D> {
   const RemoteNodes<D>& nodes() const override { return nodes_; }
 
  private:
-  enum Kind : std::uint32_t { kCall = RemoteNodes<D>::kFirstKind, kDone };
+  enum Kind : std::uint32_t { kCall = RemoteNodes<D>::kFirstKind, kDone, kWalk, kWalkEnd };
   struct Call {
     RowPoint point;
-    NodeId start;
+    WalkEnd start;
     int worker = 0;
   };
 
@@ -104,10 +112,7 @@ class InterfaceWorkers final : public RankInserter<D> {
 
   // Of a worker. Calls if it cannot insert the point by itself, or sets it aside.
   void insert_or_call(const RowPoint& point) {
-    const NodeId start = local_.value_or(shared_);
-    const WalkEnd end = walk<D>(site_.first, point.position, start, [&](const NodeId& id) {
-      return nodes_.is_home_of(id) ? nodes_.find(id) : nullptr;
-    });
+    const WalkEnd end = walk_here(point.position, local_.value_or(shared_));
     nodes_.begin({}, /*only_here=*/true);
     if (end.found && nodes_.lock(end.node) != nullptr) {
       if (const auto cavity = lock_cavity(nodes_, end.node, site_.first, point.position)) {
@@ -123,24 +128,22 @@ class InterfaceWorkers final : public RankInserter<D> {
     called_.insert(point.row);
     ++site_.statistics.points_sent;
     auto message = nodes_.message_of(kCall);
-    message.value(point).value(end.node);
+    message.value(point).value(end);
     nodes_.send(0, std::move(message));
   }
 
   // Of the interface. Workers grant all that is asked for: they lock nothing for long.
   void answer(const Call& call) {
-    NodeId start = call.start;
+    WalkEnd start = call.start;
     nodes_.begin({});
     for (;;) {
-      start = walk<D>(site_.first, call.point.position, start, [&](const NodeId& id) {
-                return find_anywhere(id);
-              }).node;
-      const Node<D>* node = nodes_.lock(start);
+      while (!start.found) start = walk_anywhere(call.point.position, start.node);
+      const Node<D>* node = nodes_.lock(start.node);
       comm::check_message(node != nullptr);
       if (!node->is_dead()) break;
-      start = node->successor;  // the worker was faster
+      start = {node->successor, false};  // the worker was faster
     }
-    const auto cavity = lock_cavity(nodes_, start, site_.first, call.point.position);
+    const auto cavity = lock_cavity(nodes_, start.node, site_.first, call.point.position);
     comm::check_message(cavity.has_value());
     const Changes<D> changes = star(*cavity, call.point);
     nodes_.commit(changes, nullptr);
@@ -149,10 +152,23 @@ class InterfaceWorkers final : public RankInserter<D> {
     nodes_.send(call.worker, std::move(message));
   }
 
-  const Node<D>* find_anywhere(const NodeId& id) {
-    if (nodes_.is_home_of(id)) return nodes_.find(id);
-    read_ = nodes_.read(id, 1);
-    return &read_.at(0);
+  // Over nodes that are at home here.
+  WalkEnd walk_here(const glm::dvec3& q, const NodeId& start) const {
+    return walk<D>(site_.first, q, start, [&](const NodeId& id) {
+      return nodes_.is_home_of(id) ? nodes_.find(id) : nullptr;
+    });
+  }
+
+  // Of the interface: a worker walks over its own nodes.
+  WalkEnd walk_anywhere(const glm::dvec3& q, const NodeId& start) {
+    if (nodes_.is_home_of(start)) return walk_here(q, start);
+    ++site_.statistics.requests;
+    ++site_.statistics.waits;
+    auto message = nodes_.message_of(kWalk);
+    message.value(q).value(start);
+    nodes_.send(static_cast<int>(start.home), std::move(message));
+    while (!walk_end_) nodes_.serve(comm::Deadline::never());
+    return *std::exchange(walk_end_, std::nullopt);
   }
 
   void note(const Changes<D>& changes) {
@@ -169,9 +185,9 @@ class InterfaceWorkers final : public RankInserter<D> {
   std::deque<Call> calls_;                    // of the interface
   std::unordered_set<std::uint64_t> called_;  // rows of a worker's points that the interface has
   std::deque<RowPoint> set_aside_;
-  std::optional<NodeId> local_;  // where a walk begins, if there is one
-  NodeId shared_;                // and otherwise
-  std::vector<Node<D>> read_;
+  std::optional<NodeId> local_;      // where a walk begins, if there is one
+  NodeId shared_;                    // and otherwise
+  std::optional<WalkEnd> walk_end_;  // that a worker has answered
 };
 
 constexpr InsertionMethod kInterfaceWorkers = {

@@ -1,4 +1,5 @@
-// A cavity is connected, so a search over facets from one node finds it. New nodes are neighbours
+// A cavity is connected, so a search over facets from one node finds it, ring by ring: nodes around
+// those that are known are asked for at once. New nodes are neighbours
 // where they share a ridge, the D - 1 corners besides the point and the one opposite.
 //
 // Degenerate: the perturbed rule of conflict leaves no flat simplices. O(border log border).
@@ -18,18 +19,27 @@ std::optional<Cavity<D>> lock_cavity(RemoteNodes<D>& nodes, const NodeId& start,
   Cavity<D> cavity;
   std::unordered_map<NodeId, bool, NodeIdHash> is_inside = {{start, true}};
   cavity.inside.push_back(start);
-  for (std::size_t next = 0; next < cavity.inside.size(); ++next) {
-    const NodeId inside = cavity.inside[next];
-    const std::array<NodeId, D + 1> neighbours = nodes.held(inside).neighbours;
-    for (unsigned k = 0; k <= D; ++k) {
-      auto at = is_inside.find(neighbours[k]);
-      if (at == is_inside.end()) {
-        const Node<D>* node = nodes.lock(neighbours[k]);
-        if (node == nullptr) return std::nullopt;
-        at = is_inside.emplace(neighbours[k], conflict(*node, first, q)).first;
-        if (at->second) cavity.inside.push_back(neighbours[k]);
+  std::vector<NodeId> ring;
+  for (std::size_t begin = 0; begin < cavity.inside.size();) {
+    const std::size_t end = cavity.inside.size();
+    ring.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const NodeId& neighbour : nodes.held(cavity.inside[i]).neighbours) {
+        if (is_inside.emplace(neighbour, false).second) ring.push_back(neighbour);
       }
-      if (!at->second) cavity.border.push_back({inside, neighbours[k], k});
+    }
+    if (!nodes.lock(ring)) return std::nullopt;
+    for (const NodeId& id : ring) {
+      if (!conflict(nodes.held(id), first, q)) continue;
+      is_inside[id] = true;
+      cavity.inside.push_back(id);
+    }
+    begin = end;
+  }
+  for (const NodeId& inside : cavity.inside) {
+    const std::array<NodeId, D + 1>& neighbours = nodes.held(inside).neighbours;
+    for (unsigned k = 0; k <= D; ++k) {
+      if (!is_inside.at(neighbours[k])) cavity.border.push_back({inside, neighbours[k], k});
     }
   }
   return cavity;

@@ -55,8 +55,9 @@ WalkEnd walk(const FirstSimplex<D>& first, const glm::dvec3& q, NodeId id, const
   }
 }
 
-// Locks the cavity of q and the nodes around it, which get new neighbours. Nothing where a lock was
-// refused: then rollback() is due. REQUIRES: `start` is locked and in conflict with q.
+// Locks the cavity of q and the nodes around it, which get new neighbours; waits for others once
+// for each ring of nodes around the start. Nothing where a lock was refused: then rollback() is
+// due. REQUIRES: `start` is locked and in conflict with q.
 template <int D>
 std::optional<Cavity<D>> lock_cavity(RemoteNodes<D>& nodes, const NodeId& start,
                                      const FirstSimplex<D>& first, const glm::dvec3& q);

@@ -51,7 +51,11 @@ void RemoteNodes<D>::put(const Node<D>& node) {
   ++living_;
   const auto early = early_.extract(node.id);
   if (early.empty()) return;
-  for (const Request& each : early.mapped()) request(node.id, each);
+  for (const Request& each : early.mapped()) {
+    Answer answer;
+    request(node.id, each, answer);
+    send_answer(each.from, answer);
+  }
 }
 
 template <int D>
@@ -74,7 +78,7 @@ typename RemoteNodes<D>::Slot& RemoteNodes<D>::slot_of(const NodeId& id) {
 }
 
 template <int D>
-void RemoteNodes<D>::request(const NodeId& id, const Request& request) {
+void RemoteNodes<D>::request(const NodeId& id, const Request& request, Answer& answer) {
   const auto at = slots_.find(id);
   if (at == slots_.end()) {
     early_[id].push_back(request);
@@ -82,34 +86,36 @@ void RemoteNodes<D>::request(const NodeId& id, const Request& request) {
   }
   Slot& slot = at->second;
   if (slot.node.is_dead()) {
-    grant(slot.node, request.from);
+    answer.granted.push_back(slot.node);
   } else if (slot.holder < 0) {
     slot.holder = request.from;
     slot.priority = request.priority;
-    grant(slot.node, request.from);
+    answer.granted.push_back(slot.node);
   } else if (request.priority < slot.priority) {
     slot.waiting.push_back(request);
   } else {
-    refuse(request.from);
+    ++answer.refusals;
   }
 }
 
 template <int D>
-void RemoteNodes<D>::grant(const Node<D>& node, int to) {
+void RemoteNodes<D>::send_answer(int to, const Answer& answer) {
+  if (answer.refusals == 0 && answer.granted.empty()) return;
   if (to == rank()) {
-    answer_ = Answer{true, {node}};
+    take(answer);
   } else {
-    send(to, std::move(message_of(kGranted).value(node)));
+    send(to, std::move(message_of(kLocked).value(answer.refusals).list(answer.granted)));
   }
 }
 
 template <int D>
-void RemoteNodes<D>::refuse(int to) {
-  if (to == rank()) {
-    answer_ = Answer{};
-  } else {
-    send(to, message_of(kRefused));
-  }
+void RemoteNodes<D>::take(const Answer& answer) {
+  const std::uint64_t answered = answer.refusals + answer.granted.size();
+  comm::check_message(answered <= unanswered_);
+  unanswered_ -= answered;
+  refused_ += answer.refusals;
+  // A dead node is kept until the end of the insertion as well, but nobody locked it.
+  for (const Node<D>& node : answer.granted) held_.insert_or_assign(node.id, node);
 }
 
 template <int D>
@@ -117,7 +123,8 @@ void RemoteNodes<D>::release(Slot& slot) {
   slot.holder = -1;
   if (slot.waiting.empty()) return;
   if (slot.node.is_dead()) {
-    for (const Request& each : std::exchange(slot.waiting, {})) grant(slot.node, each.from);
+    for (const Request& each : std::exchange(slot.waiting, {}))
+      send_answer(each.from, {0, {slot.node}});
     return;
   }
   const auto youngest = std::ranges::max_element(slot.waiting, {}, &Request::priority);
@@ -125,29 +132,31 @@ void RemoteNodes<D>::release(Slot& slot) {
   slot.waiting.erase(youngest);
   slot.holder = next.from;
   slot.priority = next.priority;
-  grant(slot.node, next.from);
+  send_answer(next.from, {0, {slot.node}});
 }
 
 template <int D>
-const Node<D>* RemoteNodes<D>::lock(const NodeId& id) {
-  if (const auto at = held_.find(id); at != held_.end()) return &at->second;
-  if (only_here_ && (!is_home_of(id) || is_locked(id))) return nullptr;
-  answer_.reset();
-  if (is_home_of(id)) {
-    request(id, {priority_, rank()});
-  } else {
+bool RemoteNodes<D>::lock(std::span<const NodeId> ids) {
+  std::vector<NodeId> own;
+  std::map<int, std::vector<NodeId>> elsewhere;  // by home
+  unanswered_ = refused_ = 0;
+  for (const NodeId& id : ids) {
+    if (held_.contains(id)) continue;
+    if (only_here_ && (!is_home_of(id) || is_locked(id))) return false;
+    (is_home_of(id) ? own : elsewhere[static_cast<int>(id.home)]).push_back(id);
+    ++unanswered_;
+  }
+  for (const auto& [home, asked] : elsewhere) {
     ++statistics_.requests;
-    ++statistics_.waits;
-    send(static_cast<int>(id.home), std::move(message_of(kLock).value(id).value(priority_)));
+    send(home, std::move(message_of(kLock).value(priority_).list(asked)));
   }
-  if (is_home_of(id) && !answer_) ++statistics_.waits;
-  const Answer answer = wait_for_answer();
-  if (!answer.granted) {
-    ++statistics_.refusals;
-    return nullptr;
-  }
-  // A dead node is kept until the end of the insertion as well, but nobody locked it.
-  return &held_.insert_or_assign(id, answer.nodes.at(0)).first->second;
+  Answer answer;
+  for (const NodeId& id : own) request(id, {priority_, rank()}, answer);
+  take(answer);
+  if (unanswered_ > 0) ++statistics_.waits;
+  while (unanswered_ > 0) serve(comm::Deadline::never());
+  statistics_.refusals += refused_;
+  return refused_ == 0;
 }
 
 template <int D>
@@ -254,9 +263,10 @@ std::vector<Node<D>> RemoteNodes<D>::read(const NodeId& first, std::uint64_t cou
   if (is_home_of(first)) return page_of(first, count);
   ++statistics_.requests;
   ++statistics_.waits;
-  answer_.reset();
+  page_.reset();
   send(static_cast<int>(first.home), std::move(message_of(kRead).value(first).value(count)));
-  return wait_for_answer().nodes;
+  while (!page_) serve(comm::Deadline::never());
+  return *std::exchange(page_, std::nullopt);
 }
 
 template <int D>
@@ -271,16 +281,17 @@ void RemoteNodes<D>::handle(int source, const comm::Buffer& message) {
   const auto kind = content.value<std::uint32_t>();
   switch (kind) {
     case kLock: {
-      const auto id = content.value<NodeId>();
-      request(id, {content.value<Priority>(), source});
+      const auto priority = content.value<Priority>();
+      Answer answer;
+      for (const NodeId& id : content.list<NodeId>()) request(id, {priority, source}, answer);
+      send_answer(source, answer);
       break;
     }
-    case kGranted:
-      answer_ = Answer{true, {content.value<Node<D>>()}};
+    case kLocked: {
+      const auto refusals = content.value<std::uint64_t>();
+      take({refusals, content.list<Node<D>>()});
       break;
-    case kRefused:
-      answer_ = Answer{};
-      break;
+    }
     case kRead: {
       const auto first = content.value<NodeId>();
       const auto page = page_of(first, content.value<std::uint64_t>());
@@ -288,7 +299,7 @@ void RemoteNodes<D>::handle(int source, const comm::Buffer& message) {
       break;
     }
     case kPage:
-      answer_ = Answer{true, content.list<Node<D>>()};
+      page_ = content.list<Node<D>>();
       break;
     case kChanges:
       apply(source, Changes<D>::unpack(content));
@@ -311,12 +322,6 @@ bool RemoteNodes<D>::serve(comm::Deadline deadline) {
     handle(envelope->source, message);
   }
   return true;
-}
-
-template <int D>
-typename RemoteNodes<D>::Answer RemoteNodes<D>::wait_for_answer() {
-  while (!answer_) serve(comm::Deadline::never());
-  return *std::exchange(answer_, std::nullopt);
 }
 
 template <int D>

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -92,9 +93,12 @@ class RemoteNodes {
     priority_ = priority;
     only_here_ = only_here;
   }
-  // The node as its home has it; locked, unless it is dead. Null where waiting for it might end in
-  // a deadlock: then rollback() is due. Serves other ranks while it waits.
-  const Node<D>* lock(const NodeId& id);
+  // Asks the homes of the nodes for all of them at once, and waits once, for the last answer: each
+  // node is then held() as its home has it; locked, unless it is dead. False where waiting for one
+  // of them might end in a deadlock: then rollback() is due. Serves other ranks while it waits.
+  bool lock(std::span<const NodeId> ids);
+  // One node, or null.
+  const Node<D>* lock(const NodeId& id) { return lock({&id, 1}) ? &held(id) : nullptr; }
   // Tells the home of each node, and `listeners` of it, what has changed; unlocks all. The caller
   // says whose nodes these are; nodes of `changes.unlocked` are filled in.
   using Listeners = std::function<void(const Node<D>&, std::vector<int>&)>;
@@ -117,7 +121,7 @@ class RemoteNodes {
   bool wait_for_work();
 
  private:
-  enum Kind : std::uint32_t { kLock, kGranted, kRefused, kRead, kPage, kChanges };
+  enum Kind : std::uint32_t { kLock, kLocked, kRead, kPage, kChanges };
   struct Request {
     Priority priority;
     int from = 0;
@@ -128,20 +132,21 @@ class RemoteNodes {
     Priority priority;  // of the holder
     std::vector<Request> waiting;
   };
+  // To requests for locks, as many as there are nodes and refusals.
   struct Answer {
-    bool granted = false;
-    std::vector<Node<D>> nodes;
+    std::uint64_t refusals = 0;
+    std::vector<Node<D>> granted;
   };
 
-  void request(const NodeId& id, const Request& request);
-  void grant(const Node<D>& node, int to);
-  void refuse(int to);
+  // Adds to the answer, or has the request wait.
+  void request(const NodeId& id, const Request& request, Answer& answer);
+  void send_answer(int to, const Answer& answer);
+  void take(const Answer& answer);
   void release(Slot& slot);
   Slot& slot_of(const NodeId& id);
   void apply(int source, const Changes<D>& changes);
   std::vector<Node<D>> page_of(const NodeId& first, std::uint64_t count) const;
   void handle(int source, const comm::Buffer& message);
-  Answer wait_for_answer();
 
   comm::Communicator& communicator_;
   DistributedStatistics& statistics_;
@@ -153,8 +158,9 @@ class RemoteNodes {
   std::unordered_map<NodeId, Node<D>, NodeIdHash> held_;
   Priority priority_;
   bool only_here_ = false;
-  std::optional<Answer> answer_;
-  std::uint64_t next_number_ = D + 2;  // after those of the first nodes
+  std::uint64_t unanswered_ = 0, refused_ = 0;  // of the requests of a call of lock()
+  std::optional<std::vector<Node<D>>> page_;    // that was read
+  std::uint64_t next_number_ = D + 2;           // after those of the first nodes
   std::uint64_t living_ = 0;
 };
 

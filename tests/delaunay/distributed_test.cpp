@@ -42,6 +42,7 @@ void add(const DistributedTriangulation& made, AllParts& all) {
   all.add(made.part);
   all.statistics.messages += made.statistics.messages;
   all.statistics.bytes += made.statistics.bytes;
+  all.statistics.waits += made.statistics.waits;
   all.statistics.shared_simplices += made.statistics.shared_simplices;
 }
 
@@ -119,6 +120,20 @@ TEST(Distributed, MethodsWorkOnThreads) {
       }
     }
   });
+}
+
+// The interface asks for rings of simplices, and workers walk for it: one by one there were some 3
+// to 4 waits for each of the points.
+TEST(Distributed, InterfaceWaitsForManySimplicesAtATime) {
+  const auto positions = generate_points("uniform", 300, 2, 1).positions;
+  DistributedOptions options;
+  options.method = "interface-workers";
+  options.triangulate.dim = 2;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const AllParts made = triangulate_on(3, positions, options, in_any_order(seed));
+    expect_as_in_core(positions, 2, made);
+    EXPECT_LE(made.statistics.waits, 500U) << "seed " << seed;
+  }
 }
 
 TEST(Distributed, MethodsTakeHardPointsInAnyOrderOfArrival) {
