@@ -11,8 +11,8 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
-#include "apps/statistics.h"
 #include "apps/verify/verify_folder.h"
+#include "apps/verify/verify_json.h"
 #include "delaunay/match_points.h"
 #include "delaunay/mesh_folder.h"
 #include "delaunay/read_mesh.h"
@@ -131,28 +131,17 @@ std::string what_was_checked(const delaunay::PointMesh& mesh, const Matched& mat
       mesh.points.size(), matched.how, matched.unused, matched.distinct, heights);
 }
 
-Json statistics_of(const VerifyOptions& options, const delaunay::PointMesh& mesh,
-                   const Matched& matched, const delaunay::Verdict& verdict) {
-  return {
-      {"schema", "delray.verify/1"},
-      {"mesh", options.mesh},
-      {"points", options.points.path},
-      {"dim", options.dim},
-      {"result",
-       {{"points", matched.points},
-        {"vertices", mesh.points.size()},
-        {"matched", matched.how},
-        {"unused", matched.unused},
-        {"heights", matched.heights},
-        {"distinct", matched.by_rows() ? verdict.distinct : matched.distinct},
-        {"simplices", mesh.triangulation.size()},
-        {"hash", hash_of(mesh, matched)},
-        {"valid", verdict.valid},
-        {"delaunay", verdict.delaunay},
-        {"canonical", verdict.canonical},
-        {"simplex", verdict.simplex ? Json(*verdict.simplex) : Json(nullptr)},
-        {"reason", verdict.reason}}},
-  };
+// What was checked.
+Json checked_json(const delaunay::PointMesh& mesh, const Matched& matched,
+                  const delaunay::Verdict& verdict) {
+  return {{"points", matched.points},
+          {"vertices", mesh.points.size()},
+          {"matched", matched.how},
+          {"unused", matched.unused},
+          {"heights", matched.heights},
+          {"distinct", matched.by_rows() ? verdict.distinct : matched.distinct},
+          {"simplices", mesh.triangulation.size()},
+          {"hash", hash_of(mesh, matched)}};
 }
 
 int verify_file(const VerifyOptions& options) {
@@ -168,7 +157,8 @@ int verify_file(const VerifyOptions& options) {
   const bool good = (options.canonical ? verdict.canonical : verdict.delaunay) &&
                     !(options.complete && matched.unused > 0) && !matched.other_height;
   const std::string where = verdict.simplex ? fmt::format("simplex {}: ", *verdict.simplex) : "";
-  write_statistics(options.statistics, statistics_of(options, mesh, matched, verdict));
+  write_statistics(options.statistics,
+                   verify_json(options, checked_json(mesh, matched, verdict), verdict));
   if (!verdict.reason.empty()) {
     const char* const rows = matched.by_rows() ? "" : " (rows are those of the mesh's vertices)";
     if (good) {
@@ -214,9 +204,10 @@ int run(Session& session, const VerifyOptions& options) {
   if (delaunay::is_mesh_folder(options.mesh)) return verify_folder(session, options);
   refuse_parts_of_folders(options.mesh);
   if (options.launch.ranks > 1 || session.processes > 1 || !options.scratch.empty()) {
-    throw UsageError(
-        "several ranks and --scratch: for a folder of pieces; a mesh in one file is looked at in "
-        "memory");
+    throw UsageError(fmt::format(
+        "{} is one file, which is checked in memory by one rank (--threads shares the work); "
+        "several ranks and --scratch are for a folder of pieces, as triangulate -o FOLDER/ writes",
+        options.mesh));
   }
   const int threads = threads_per_rank(options.launch, 1);
   const parallel::AllowThreads allowed(threads);

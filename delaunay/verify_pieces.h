@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "comm/communicator.h"
 #include "delaunay/mesh_folder.h"
@@ -21,6 +22,7 @@ struct PieceSource {
   int dim = 2;
   std::size_t pieces = 0;
   std::function<void(std::size_t piece, PieceMesh& mesh)> read;
+  std::vector<std::uint64_t> simplices = {};  // of each piece; empty: not known before
 };
 
 // What verify_pieces() finds.
@@ -56,10 +58,12 @@ struct VerifyPiecesOptions {
 // looks at a run of pieces and of parts of the points, and all return the same, whatever their
 // number.
 //
-// Memory of a rank: a piece and its adjacency, a part of the points, a bit for each row, and facets
-// and vertices on the borders of pieces, of which those beyond an eighth of `memory` wait in a file
-// without a name. Cost: pieces are read once, points once by one rank and twice by several; pieces
-// once more if rows are equal to others, and once to name what is wrong with rows.
+// Memory of a rank: a piece, the adjacency of it or, where that is beyond a quarter of `memory` and
+// the source tells how many simplices pieces have, of a run of its simplices; a part of the points,
+// a bit for each row, and facets and vertices on the borders of pieces and runs, of which those
+// beyond an eighth of `memory` wait in a file without a name. Cost: pieces are read once, points
+// once by one rank and twice by several; pieces once more if rows are equal to others, and once to
+// name what is wrong with rows.
 //
 // Throws, on all ranks, what the sources throw, FileError (memory) where there is no room for bits
 // and the hull, naming `name`, and FileError (device) for a scratch folder that is full.

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "apps/input/point_parts_input.h"
-#include "apps/statistics.h"
+#include "apps/verify/verify_json.h"
 #include "comm/agree_on_failure.h"
 #include "delaunay/cloud_parts.h"
 #include "delaunay/mesh_folder.h"
@@ -23,27 +23,16 @@ namespace {
 
 Json statistics_of(const VerifyOptions& options, const delaunay::PiecesVerdict& verdict,
                    const std::string& piece) {
-  return {
-      {"schema", "delray.verify/1"},
-      {"mesh", options.mesh},
-      {"points", options.points.path},
-      {"dim", options.dim},
-      {"result",
-       {{"points", verdict.points},
-        {"vertices", verdict.distinct},
-        {"matched", "rows"},
-        {"unused", 0},
-        {"heights", verdict.heights},
-        {"distinct", verdict.distinct},
-        {"simplices", verdict.simplices},
-        {"hash", to_string(verdict.hash)},
-        {"valid", verdict.valid},
-        {"delaunay", verdict.delaunay},
-        {"canonical", verdict.canonical},
-        {"piece", verdict.piece ? Json(piece) : Json(nullptr)},
-        {"simplex", verdict.simplex ? Json(*verdict.simplex) : Json(nullptr)},
-        {"reason", verdict.reason}}},
-  };
+  const Json checked = {{"points", verdict.points},
+                        {"vertices", verdict.distinct},
+                        {"matched", "rows"},
+                        {"unused", 0},
+                        {"heights", verdict.heights},
+                        {"distinct", verdict.distinct},
+                        {"simplices", verdict.simplices},
+                        {"hash", to_string(verdict.hash)},
+                        {"piece", verdict.piece ? Json(piece) : Json(nullptr)}};
+  return verify_json(options, checked, verdict);
 }
 
 // What the index says of the mesh as a whole, which each of its pieces by itself does not show.
@@ -139,9 +128,10 @@ int verify_folder(Session& session, const VerifyOptions& options) {
     throw UsageError(fmt::format("--dim {}: {} has simplices of dimension {}", options.dim,
                                  options.mesh, index.dim));
   }
-  const delaunay::PieceSource pieces{
+  delaunay::PieceSource pieces{
       index.dim, index.pieces.size(),
       [&](std::size_t piece, delaunay::PieceMesh& mesh) { folder.read(piece, mesh); }};
+  for (const delaunay::MeshPiece& piece : index.pieces) pieces.simplices.push_back(piece.simplices);
   // Which of several heights counts is decided over all points; else they pass in parts.
   std::optional<delaunay::PointCloud> whole;
   if (!options.points.duplicates.empty()) whole = load_points(options.points, options.dim);

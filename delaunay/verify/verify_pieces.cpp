@@ -58,7 +58,9 @@
 #include "comm/threads.h"
 #include "delaunay/mesh/arguments.h"
 #include "delaunay/mesh/equal_points.h"
+#include "delaunay/verify/flat_points.h"
 #include "delaunay/verify/piece_borders.h"
+#include "delaunay/verify/piece_runs.h"
 #include "delaunay/verify/vertex_rows.h"
 #include "parallel/arena.h"
 
@@ -74,6 +76,9 @@ using internal::PieceSimplex;
 using internal::RankShare;
 using internal::VerifiedMesh;
 using internal::Words;
+
+// Measured, for a simplex: adjacency, what finds it, and the next piece.
+constexpr std::uint64_t bytes_of_simplex(int dim) { return dim == 2 ? 90 : 200; }
 
 // A rank's pieces in their order, of which the next is read while one is looked at.
 class PiecesAhead {
@@ -116,6 +121,16 @@ internal::RecordsPlace place_of_borders(const comm::Communicator& communicator,
   return {std::max(options.memory.limit() / kShare / ranks, kLeast), options.scratch};
 }
 
+// Simplices of which a rank looks at a time, the same number for all.
+std::uint64_t most_simplices(comm::Communicator& communicator, int dim,
+                             const VerifyPiecesOptions& options) {
+  constexpr std::uint64_t kShare = 4, kLeast = 4096;
+  const std::uint64_t bytes =
+      bytes_of_simplex(dim) * kShare * static_cast<std::uint64_t>(communicator.size());
+  return comm::all_reduce_value(communicator, std::max(options.memory.limit() / bytes, kLeast),
+                                [](std::uint64_t a, std::uint64_t b) { return std::min(a, b); });
+}
+
 template <int D>
 class PiecesVerifier {
  public:
@@ -125,6 +140,7 @@ class PiecesVerifier {
                  const PointParts& points, const VerifyPiecesOptions& options)
       : communicator_(communicator),
         pieces_(pieces),
+        points_(points),
         options_(options),
         facets_(place_of_borders(communicator, options)),
         rows_(communicator, pieces, points, options, place_of_borders(communicator, options)) {}
@@ -153,7 +169,9 @@ class PiecesVerifier {
   // points.
   bool check() {
     if (!check_pieces()) return false;
-    if (verdict_.simplices == 0) return rows_.check_flat(verdict_, findings_);
+    if (verdict_.simplices == 0) {
+      return internal::check_flat<D>(communicator_, points_, verdict_, findings_);
+    }
     return rows_.put_together(findings_) && check_boundary(match_all_borders()) &&
            rows_.check_points(verdict_, findings_);
   }
@@ -198,10 +216,8 @@ class PiecesVerifier {
   }
 
   bool check_piece(std::uint32_t piece, const PieceMesh& content) {
-    // Measured, for a simplex: adjacency, what finds it, and the next piece.
-    constexpr std::uint64_t kBytesOfSimplex = D == 2 ? 90 : 200;
     const std::size_t simplices = content.simplices.size() / (D + 1);
-    options_.memory.require(simplices * kBytesOfSimplex, options_.name,
+    options_.memory.require(simplices * bytes_of_simplex(D), options_.name,
                             "a piece of " + std::to_string(simplices) + " simplices");
     const auto* const bytes = reinterpret_cast<const std::byte*>(content.points.data());
     const PointView<double> places{bytes, content.points.size(), sizeof(RowPoint)};
@@ -365,6 +381,7 @@ class PiecesVerifier {
 
   comm::Communicator& communicator_;
   const PieceSource& pieces_;
+  const PointParts& points_;
   const VerifyPiecesOptions& options_;
   internal::BorderRecords<BorderFacet<D>> facets_;
   internal::VertexRows<D> rows_;
@@ -377,8 +394,12 @@ class PiecesVerifier {
 PiecesVerdict verify_pieces(comm::Communicator& communicator, const PieceSource& pieces,
                             const PointParts& points, const VerifyPiecesOptions& options) {
   internal::check_dim(pieces.dim);
-  return pieces.dim == 2 ? PiecesVerifier<2>(communicator, pieces, points, options).run()
-                         : PiecesVerifier<3>(communicator, pieces, points, options).run();
+  const internal::PieceRuns runs(pieces, most_simplices(communicator, pieces.dim, options));
+  PiecesVerdict verdict =
+      pieces.dim == 2 ? PiecesVerifier<2>(communicator, runs.pieces(), points, options).run()
+                      : PiecesVerifier<3>(communicator, runs.pieces(), points, options).run();
+  runs.name_in_source(verdict);
+  return verdict;
 }
 
 PiecesVerdict verify_pieces(const PieceSource& pieces, const PointParts& points,

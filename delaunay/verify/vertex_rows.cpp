@@ -24,28 +24,6 @@ std::string place_text(const glm::dvec3& p, int dim) {
   return text + ")";
 }
 
-// The first D + 1 points that are not flat, as far as there are such.
-template <int D>
-class FlatFrame {
- public:
-  using Point = glm::vec<D, double>;
-  void add(const RowPoint& point) {
-    const auto at = [&](std::size_t i) { return Point(frame_[i].position); };
-    const Point p(point.position);
-    bool independent = frame_.empty();
-    if (frame_.size() == 1) independent = p != at(0);
-    if (frame_.size() == 2) independent = !collinear(at(0), at(1), p);
-    if constexpr (D == 3) {
-      if (frame_.size() == 3) independent = orient3d(at(0), at(1), at(2), p) != 0;
-    }
-    if (independent && frame_.size() <= D) frame_.push_back(point);
-  }
-  const std::vector<RowPoint>& get() const { return frame_; }
-
- private:
-  std::vector<RowPoint> frame_;
-};
-
 }  // namespace
 
 template <int D>
@@ -255,75 +233,31 @@ bool VertexRows<D>::put_together(Findings& findings) {
   return doubled == kNoRow || refuse_doubled(doubled, findings);
 }
 
-// Names the first vertex in another piece or place than the first one that has the row.
+// Names the first vertex in another place than the first one that has the row, or else in another
+// piece.
 template <int D>
 bool VertexRows<D>::refuse_doubled(std::uint64_t row, Findings& findings) {
-  const auto first = first_vertex([&](const Found& found) { return found.vertex.row == row; });
-  std::optional<Found> other;
-  if (first) {
-    other = first_vertex([&](const Found& found) {
-      return found.vertex.row == row &&
-             (found.of.piece != first->of.piece ||
-              Point(found.vertex.position) != Point(first->vertex.position));
+  const auto first_with = [&](auto&& wanted) {
+    return first_corner(communicator_, pieces_, [&](const PieceCorner& found) {
+      return found.vertex.row == row && wanted(found);
     });
+  };
+  auto named = first_with([](const PieceCorner&) { return true; });
+  if (named) {
+    const PieceCorner first = *named;
+    auto other = first_with([&](const PieceCorner& found) {
+      return Point(found.vertex.position) != Point(first.vertex.position);
+    });
+    if (!other) {
+      other =
+          first_with([&](const PieceCorner& found) { return found.of.piece != first.of.piece; });
+    }
+    if (other) named = other;
   }
-  const auto& named = other ? other : first;
   return findings.refuse(
       named ? std::optional(named->of) : std::nullopt,
       internal::row(row) +
           " is a vertex at another place too, or of simplices that this does not meet");
-}
-
-// Calls f(point, whether it has a height) for all points of some parts in the order of rows.
-template <int D>
-template <class F>
-void VertexRows<D>::for_points(const RankShare& parts, std::uint64_t first_row, F&& f) const {
-  PointCloud part;
-  std::uint64_t row = first_row;
-  for (std::size_t i = parts.begin; i < parts.end; ++i) {
-    points_.read(i, part);
-    for (const glm::dvec3& position : part.positions) f(RowPoint{position, row++}, part.has_z);
-  }
-}
-
-// Calls f(found) for each corner of each simplex of the rank's pieces, until it returns true.
-template <int D>
-template <class F>
-void VertexRows<D>::for_vertices(F&& f) const {
-  PieceMesh mesh;
-  const RankShare own = share_of_rank(communicator_, pieces_.pieces);
-  for (std::size_t piece = own.begin; piece < own.end; ++piece) {
-    pieces_.read(piece, mesh);
-    for (std::size_t i = 0; i < mesh.simplices.size(); ++i) {
-      const PieceSimplex of{static_cast<std::uint32_t>(piece),
-                            static_cast<std::uint32_t>(i / (D + 1))};
-      if (f(Found{mesh.points[mesh.simplices[i]], of})) return;
-    }
-  }
-}
-
-// Collective: the first corner of all pieces that `wanted(found)` is true for.
-template <int D>
-template <class Wanted>
-auto VertexRows<D>::first_vertex(Wanted&& wanted) const -> std::optional<Found> {
-  struct Told {
-    Found found;
-    std::uint64_t exists = 0;
-  };
-  const Told mine = comm::all_or_none(communicator_, comm::Phase::other, [&] {
-    Told told;
-    for_vertices([&](const Found& found) {
-      if (wanted(found)) told = {found, 1};
-      return told.exists != 0;
-    });
-    return told;
-  });
-  // Pieces of lower ranks come first.
-  for (const comm::Buffer& each : comm::all_gather(communicator_, comm::Buffer::of_value(mine))) {
-    const Told told = each.template as<Told>()[0];
-    if (told.exists != 0) return told.found;
-  }
-  return std::nullopt;
 }
 
 template <int D>
@@ -339,7 +273,7 @@ bool VertexRows<D>::check_points(PiecesVerdict& verdict, Findings& findings) {
   std::uint64_t all_unused = 0;
   std::uint64_t sums[] = {0, 0, 0, mesh_has_heights_ ? 1U : 0U};
   comm::all_or_none(communicator_, comm::Phase::other, [&] {
-    for_points(parts, own_first_, [&](const RowPoint& point, bool has_z) {
+    for_points(points_, parts, own_first_, [&](const RowPoint& point, bool has_z) {
       ++sums[0];
       if (has_z && point.position.z != 0) sums[2] = 1;
       if (!marks_.is_marked(point.row)) {
@@ -358,7 +292,8 @@ bool VertexRows<D>::check_points(PiecesVerdict& verdict, Findings& findings) {
   mesh_has_heights_ = sums[3] != 0;
   if (const std::uint64_t extra = least_of_all(marks_.next(verdict.points).value_or(kNoRow));
       extra != kNoRow) {
-    const auto found = first_vertex([&](const Found& each) { return each.vertex.row == extra; });
+    const auto found = first_corner(
+        communicator_, pieces_, [&](const PieceCorner& each) { return each.vertex.row == extra; });
     return findings.refuse(found ? std::optional(found->of) : std::nullopt,
                            internal::row(extra) + " is not a row of the points", kUnknownVertex);
   }
@@ -378,7 +313,7 @@ bool VertexRows<D>::check_points(PiecesVerdict& verdict, Findings& findings) {
     comm::all_or_none(communicator_, comm::Phase::other, [&] {
       std::uint64_t seen = 0;
       if (left == 0) return;
-      for_points(parts, own_first_, [&](const RowPoint& point, bool) {
+      for_points(points_, parts, own_first_, [&](const RowPoint& point, bool) {
         if (!marks_.is_marked(point.row) && seen++ >= done && unused.size() < most) {
           unused.push_back(point);
         }
@@ -409,7 +344,7 @@ bool VertexRows<D>::check_unused(const std::vector<RowPoint>& unused, Findings& 
   if (rows.empty()) return true;
   std::vector<std::uint8_t> found(rows.size());
   comm::all_or_none(communicator_, comm::Phase::other, [&] {
-    for_vertices([&](const Found& vertex) {
+    for_corners(communicator_, pieces_, [&](const PieceCorner& vertex) {
       const auto at = lowest.find(without_signed_zeros<D>(Point(vertex.vertex.position)));
       if (at == lowest.end()) return false;
       found[at->second.number] = 1;
@@ -435,10 +370,10 @@ bool VertexRows<D>::check_unused(const std::vector<RowPoint>& unused, Findings& 
 // coordinates; `reason` becomes a sentence about it.
 template <int D>
 auto VertexRows<D>::find_different(const Range& range, int compared, std::string& reason)
-    -> std::optional<Found> {
+    -> std::optional<PieceCorner> {
   const std::vector<RowPoint> mine = comm::all_or_none(communicator_, comm::Phase::other, [&] {
     std::vector<RowPoint> some;
-    for_points(share_of_rank(communicator_, points_.parts()), own_first_,
+    for_points(points_, share_of_rank(communicator_, points_.parts()), own_first_,
                [&](const RowPoint& point, bool) {
                  if (point.row >= range.first && point.row < range.last) some.push_back(point);
                });
@@ -449,7 +384,7 @@ auto VertexRows<D>::find_different(const Range& range, int compared, std::string
        comm::all_gather(communicator_, comm::Buffer::of(std::span<const RowPoint>(mine)))) {
     for (const RowPoint& point : some.template as<RowPoint>()) positions.push_back(point.position);
   }
-  const auto different = first_vertex([&](const Found& found) {
+  const auto different = first_corner(communicator_, pieces_, [&](const PieceCorner& found) {
     const RowPoint& vertex = found.vertex;
     if (vertex.row < range.first || vertex.row - range.first >= positions.size()) return false;
     const glm::dvec3& point = positions[vertex.row - range.first];
@@ -474,37 +409,6 @@ void VertexRows<D>::compare_heights(PiecesVerdict& verdict) {
     verdict.heights = "different";
     find_different(*range, 3, verdict.other_height);
   }
-}
-
-// The first rank reads all, as a few points tell.
-template <int D>
-bool VertexRows<D>::check_flat(PiecesVerdict& verdict, Findings& findings) {
-  constexpr std::size_t kMost = D + 1;
-  struct Told {
-    std::uint64_t points = 0, count = 0;
-    std::array<std::uint64_t, kMost> rows{};
-  };
-  const Told mine = comm::all_or_none(communicator_, comm::Phase::other, [&] {
-    Told told;
-    if (communicator_.rank() != 0) return told;
-    FlatFrame<D> flat;
-    for_points({0, points_.parts()}, 0, [&](const RowPoint& point, bool) {
-      ++told.points;
-      flat.add(point);
-    });
-    for (const RowPoint& point : flat.get()) told.rows[told.count++] = point.row;
-    return told;
-  });
-  const comm::Buffer shared = comm::broadcast(communicator_, 0, comm::Buffer::of_value(mine));
-  const Told told = shared.template as<Told>()[0];
-  verdict.points = told.points;
-  if (told.count <= D) return true;
-  std::string rows;
-  for (std::size_t k = 0; k <= D; ++k) {
-    rows += (k == 0 ? "" : k < D ? ", " : " and ") + std::to_string(told.rows[k]);
-  }
-  return findings.refuse({}, std::string("there are no ") + Words<D>::simplices + ", but rows " +
-                                 rows + " are not " + Words<D>::flat);
 }
 
 template class VertexRows<2>;

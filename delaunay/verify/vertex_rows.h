@@ -13,21 +13,11 @@
 #include "delaunay/verify/border_records.h"
 #include "delaunay/verify/findings.h"
 #include "delaunay/verify/piece_borders.h"
+#include "delaunay/verify/read_again.h"
 #include "delaunay/verify/row_fingerprints.h"
 #include "delaunay/verify_pieces.h"
 
 namespace delray::delaunay::internal {
-
-// The share of a rank in something that is counted: [begin, end).
-struct RankShare {
-  std::size_t begin = 0, end = 0;
-};
-inline RankShare share_of_rank(const comm::Communicator& communicator, std::size_t n) {
-  const auto rank = static_cast<std::size_t>(communicator.rank());
-  const auto ranks = static_cast<std::size_t>(communicator.size());
-  const auto begin = [&](std::size_t i) { return n / ranks * i + std::min(i, n % ranks); };
-  return {begin(rank), begin(rank + 1)};
-}
 
 // Takes pieces first, all of them, then looks at the points. Why it suffices: 6. of
 // verify_pieces.cpp. Each rank keeps the rows of its own parts of the points once all ranks have
@@ -53,17 +43,10 @@ class VertexRows {
   // Compares with the points, and counts them. False where a vertex is not the point of its row, or
   // a point is no vertex and equals none.
   bool check_points(PiecesVerdict& verdict, Findings& findings);
-  // As above, where there are no simplices: all points have to be flat.
-  bool check_flat(PiecesVerdict& verdict, Findings& findings);
 
  private:
   enum VertexKind : std::uint8_t { kUnused, kInner, kBorder };
   using Range = RowFingerprints::Range;
-  // A vertex and a simplex that has it.
-  struct Found {
-    RowPoint vertex;
-    PieceSimplex of;
-  };
   static constexpr std::uint64_t kNoRow = ~std::uint64_t{0};
 
   std::uint64_t most_rows() const;
@@ -79,13 +62,7 @@ class VertexRows {
   std::uint64_t least_of_all(std::uint64_t row) const;
   bool check_unused(const std::vector<RowPoint>& unused, Findings& findings);
   void compare_heights(PiecesVerdict& verdict);
-  std::optional<Found> find_different(const Range& range, int compared, std::string& reason);
-  template <class F>
-  void for_points(const RankShare& parts, std::uint64_t first_row, F&& f) const;
-  template <class F>
-  void for_vertices(F&& f) const;
-  template <class Wanted>
-  std::optional<Found> first_vertex(Wanted&& wanted) const;
+  std::optional<PieceCorner> find_different(const Range& range, int compared, std::string& reason);
 
   comm::Communicator& communicator_;
   const PieceSource& pieces_;

@@ -1,13 +1,21 @@
 #include "delaunay/verify_pieces.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <random>
+#include <string>
+#include <utility>
 
+#include "comm/threads.h"
 #include "delaunay/cloud_parts.h"
 #include "delaunay/generate.h"
+#include "delaunay/verify/piece_runs.h"
+#include "files/error.h"
+#include "files/memory_budget.h"
 #include "tests/delaunay/pieces_in_memory.h"
 
 namespace delray::delaunay {
@@ -347,6 +355,100 @@ TEST(VerifyPieces, TakesMoreRanksThanThereIsWork) {
   const Pieces pieces = tests::in_pieces(cloud, 3, 3);
   EXPECT_EQ(tests::verify_by_ranks(9, pieces, 3, CloudParts(cloud)),
             tests::verify(pieces, 3, CloudParts(cloud)));
+}
+
+PieceSource source_of(const Pieces& pieces, int dim) {
+  PieceSource source{
+      dim, pieces.size(), [&](std::size_t i, PieceMesh& mesh) { mesh = pieces[i]; }, {}};
+  for (const PieceMesh& piece : pieces) {
+    source.simplices.push_back(piece.simplices.size() / (static_cast<std::size_t>(dim) + 1));
+  }
+  return source;
+}
+
+TEST(VerifyPieces, FindsTheSameInRunsOfPieces) {
+  for (const int dim : {2, 3}) {
+    const PointCloud cloud = generate_points("uniform", 300, dim, 1);
+    Pieces pieces = tests::in_pieces(cloud, dim, 3);
+    for (const bool spoiled : {false, true}) {
+      const std::size_t corner = 10 * (static_cast<std::size_t>(dim) + 1);  // of simplex 10
+      if (spoiled) std::swap(pieces[1].simplices[corner], pieces[1].simplices[corner + 1]);
+      const PiecesVerdict expected = tests::verify(pieces, dim, CloudParts(cloud));
+      const PieceSource source = source_of(pieces, dim);
+      for (const std::uint64_t most : {1U, 7U, 100U, 1000000U}) {
+        SCOPED_TRACE(std::to_string(most) + " simplices in " + std::to_string(dim) + "D");
+        internal::PieceRuns runs(source, most);
+        EXPECT_EQ(runs.pieces().pieces == pieces.size(), most == 1000000);
+        PiecesVerdict verdict = verify_pieces(runs.pieces(), CloudParts(cloud), "mesh");
+        runs.name_in_source(verdict);
+        if (!spoiled) {
+          EXPECT_EQ(verdict, expected);
+          continue;
+        }
+        EXPECT_FALSE(verdict.valid);
+        EXPECT_EQ(verdict.piece, std::optional<std::size_t>(1));
+        EXPECT_EQ(verdict.simplex, std::optional<std::size_t>(10));
+        EXPECT_EQ(verdict.reason, expected.reason);
+      }
+    }
+  }
+}
+
+TEST(VerifyPieces, RefusesPiecesThatMemoryDoesNotHold) {
+  const PointCloud cloud = generate_points("uniform", 20000, 2, 1);
+  const Pieces pieces = tests::in_pieces(cloud, 2, 1);
+  for (const bool can_cut : {false, true}) {
+    PieceSource source = source_of(pieces, 2);
+    if (!can_cut) source.simplices.clear();
+    try {
+      verify_pieces(source, CloudParts(cloud), "mesh", files::MemoryBudget(1));
+      ADD_FAILURE() << "accepted";
+    } catch (const files::FileError& error) {
+      EXPECT_EQ(error.cause(), files::Cause::memory);
+      EXPECT_EQ(error.file(), "mesh");
+      EXPECT_NE(error.place().find("a piece of "), std::string::npos) << error.what();
+    }
+  }
+}
+
+// Pieces that are all border, in less memory than they take.
+TEST(VerifyPieces, BordersWaitOnDisk) {
+  const PointCloud cloud = generate_points("uniform", 6000, 3, 1);
+  const Pieces whole = tests::in_pieces(cloud, 3, 1);
+  ASSERT_EQ(whole.size(), 1U);
+  // Every fourth simplex, so that neighbours are hardly ever together.
+  Pieces pieces(4, {whole[0].points, {}});
+  for (std::size_t i = 0; i < whole[0].simplices.size(); ++i) {
+    pieces[i / 4 % 4].simplices.push_back(whole[0].simplices[i]);
+  }
+  const PieceSource source = source_of(pieces, 3);
+  const files::MemoryBudget memory(files::resident_set() + (std::uint64_t{24} << 20));
+  // Two facets of each simplex at least: corners, rows, and the simplex.
+  ASSERT_GT(whole[0].simplices.size() / 4 * 2 * 136, memory.limit() / 16);
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / ("borders-" + std::to_string(::getpid()));
+  const auto verify_in = [&](int ranks) {
+    PiecesVerdict first;
+    comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
+      const PiecesVerdict verdict =
+          verify_pieces(communicator, source, CloudParts(cloud), {"mesh", memory, folder});
+      if (communicator.rank() == 0) first = verdict;
+    });
+    return first;
+  };
+  try {
+    verify_in(1);
+    ADD_FAILURE() << "nothing was written";
+  } catch (const files::FileError& error) {
+    EXPECT_EQ(error.cause(), files::Cause::device) << error.what();
+    EXPECT_NE(std::string(error.what()).find(folder.string()), std::string::npos) << error.what();
+  }
+  std::filesystem::create_directory(folder);
+  const PiecesVerdict expected = tests::verify(pieces, 3, CloudParts(cloud));
+  EXPECT_TRUE(expected.canonical) << expected.reason;
+  for (const int ranks : {1, 2}) EXPECT_EQ(verify_in(ranks), expected);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove(folder);
 }
 
 }  // namespace
