@@ -1,4 +1,9 @@
 // Cuts space by partitions of grids of counts, coarse ones first (see tile_cut.h).
+//
+// A point near a cut costs more than others: simplices there are made by the tiles on both sides,
+// and once more when these are put together. How far that reaches depends on how far apart points
+// are, which a tree of the places tells (Bentley 1975). So once space is cut, places near the cut
+// weigh more in those that follow.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +19,43 @@ namespace {
 
 using geometry::Rect;
 using Owned = loadbalance::Region;
+
+struct Place {
+  glm::dvec3 at;
+  double reach = 0;   // how near a cut has to be for the place to cost more
+  double weight = 1;  // that of those that no cut is near
+};
+
+// A cut is felt by so many layers of points on each side, which then cost so much more each.
+// Measured in space: an inner tile of n points is told of 18 n^(2/3), three layers for each face,
+// and makes its own points there again with these.
+constexpr double kLayers = 3, kCostOfLayer = 2;
+
+// Finds the reaches of places, each of which stands for so many points. O(n log n).
+void find_reaches(std::span<Place> places, int dim, double points_per_place) {
+  constexpr std::size_t kLeaf = 8;
+  geometry::Box3d box;
+  for (const Place& place : places) box.include(place.at);
+  const glm::dvec3 size = box.high - box.low;
+  const auto n = static_cast<double>(places.size());
+  if (places.size() <= kLeaf) {
+    if (places.size() < 2) return;
+    // Of n uniform places the box is (n - 1) / (n + 1) as long as the cell that they lie in.
+    double volume = 1 / (n * points_per_place);
+    for (int k = 0; k < dim; ++k) volume *= size[k] * (n + 1) / (n - 1);
+    const double reach = kLayers * std::pow(volume, 1.0 / dim);
+    for (Place& place : places) place.reach = std::isfinite(reach) ? reach : 0;
+    return;
+  }
+  int longest = 0;
+  for (int k = 1; k < dim; ++k) longest = size[k] > size[longest] ? k : longest;
+  const auto middle = places.begin() + std::ssize(places) / 2;
+  std::nth_element(places.begin(), middle, places.end(), [longest](const Place& a, const Place& b) {
+    return a.at[longest] < b.at[longest];
+  });
+  find_reaches({places.begin(), middle}, dim, points_per_place);
+  find_reaches({middle, places.end()}, dim, points_per_place);
+}
 
 // A grid of nearly square cells over the two longest axes of a box, in ascending order.
 struct PlaneGrid {
@@ -63,17 +105,17 @@ struct PlaneGrid {
   }
 };
 
-loadbalance::Costs count(const PlaneGrid& grid, std::span<const glm::dvec3> places) {
+loadbalance::Costs count(const PlaneGrid& grid, std::span<const Place> places) {
   const auto [columns, rows] = grid.cells;
   loadbalance::Costs costs{{0, 0, columns, rows}, columns, rows, {}, {}, {}, {}};
   const std::size_t cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   costs.cells.resize(cells);
   costs.cross_right.resize(cells);
   costs.cross_down.resize(cells);
-  for (const glm::dvec3& place : places) {
-    ++costs.cells[static_cast<std::size_t>(grid.cell_of(place, 1)) *
-                      static_cast<std::size_t>(columns) +
-                  static_cast<std::size_t>(grid.cell_of(place, 0))];
+  for (const Place& place : places) {
+    costs.cells[static_cast<std::size_t>(grid.cell_of(place.at, 1)) *
+                    static_cast<std::size_t>(columns) +
+                static_cast<std::size_t>(grid.cell_of(place.at, 0))] += place.weight;
   }
   return costs;
 }
@@ -128,10 +170,10 @@ class Cutter {
       : dim_(dim), partitioner_(partitioner) {}
 
   // Returns the number of the first plane.
-  std::uint32_t cut(std::span<glm::dvec3> places, int first, int tiles) {
+  std::uint32_t cut(std::span<Place> places, int first, int tiles) {
     if (tiles == 1 || places.empty()) return leaf(first);
     geometry::Box3d box;
-    for (const glm::dvec3& place : places) box.include(place);
+    for (const Place& place : places) box.include(place.at);
     const PlaneGrid grid(box, dim_, tiles);
     if (grid.is_point()) return leaf(first);
     const loadbalance::Costs costs = count(grid, places);
@@ -148,10 +190,12 @@ class Cutter {
     const double at = divide(places, axis, share, grid.border(line.cell - 1, line.along),
                              grid.border(line.cell + 1, line.along));
     const auto middle = std::partition(places.begin(), places.end(),
-                                       [&](const glm::dvec3& place) { return place[axis] < at; });
+                                       [&](const Place& place) { return place.at[axis] < at; });
     // Equal coordinates may have left another share there.
-    const double below_share =
-        static_cast<double>(middle - places.begin()) / static_cast<double>(places.size());
+    const double below_share = weight_of({places.begin(), middle}) / weight_of(places);
+    for (Place& place : places) {
+      if (std::abs(place.at[axis] - at) < place.reach) place.weight += kCostOfLayer;
+    }
     const int lower = std::clamp(static_cast<int>(std::lround(below_share * tiles)), 1, tiles - 1);
     const std::uint32_t plane = add(at, axis);
     const std::uint32_t below = cut({places.begin(), middle}, first, lower);
@@ -194,27 +238,47 @@ class Cutter {
     return result;
   }
 
-  // The coordinate within [low, high] that leaves about that share of the places below it. Reorders
-  // the places.
-  static double divide(std::span<glm::dvec3> places, int axis, double share, double low,
-                       double high) {
-    const auto wanted =
-        static_cast<std::ptrdiff_t>(std::llround(share * static_cast<double>(places.size())));
-    const auto nth = places.begin() + std::min(wanted, std::ssize(places) - 1);
-    const auto before = [axis](const glm::dvec3& a, const glm::dvec3& b) {
-      return a[axis] < b[axis];
-    };
-    std::nth_element(places.begin(), nth, places.end(), before);
-    const double at = (*nth)[axis];
+  static double weight_of(std::span<const Place> places) {
+    double sum = 0;
+    for (const Place& place : places) sum += place.weight;
+    return sum;
+  }
+
+  // The number of the place before which, were they sorted by a coordinate, the weights add up to
+  // `wanted`. Reorders the places so that none after it has a lower one. O(n), expected.
+  static std::size_t select(std::span<Place> places, int axis, double wanted) {
+    const auto before = [axis](const Place& a, const Place& b) { return a.at[axis] < b.at[axis]; };
+    std::size_t first = 0, last = places.size();
+    while (last - first > 1) {
+      const std::size_t middle = first + (last - first) / 2;
+      const auto some = places.subspan(first, last - first);
+      std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(middle - first),
+                       some.end(), before);
+      const double weight = weight_of(places.subspan(first, middle - first));
+      if (weight <= wanted) {
+        wanted -= weight;
+        first = middle;
+      } else {
+        last = middle;
+      }
+    }
+    return first;
+  }
+
+  // The coordinate within [low, high] that leaves about that share of the weights below it.
+  // Reorders the places.
+  static double divide(std::span<Place> places, int axis, double share, double low, double high) {
+    const double wanted = std::round(share * weight_of(places));  // weights are whole numbers
+    const std::size_t nth = select(places, axis, wanted);
+    const double at = places[nth].at[axis];
     // Places with this very coordinate lie all below or all above.
-    const auto fewer =
-        std::count_if(places.begin(), nth, [&](const glm::dvec3& p) { return p[axis] < at; });
-    std::ptrdiff_t equal = 0;
-    double next = at, least = at;
-    for (const glm::dvec3& place : places) {
-      least = std::min(least, place[axis]);
-      if (place[axis] == at) ++equal;
-      if (place[axis] > at && (next == at || place[axis] < next)) next = place[axis];
+    double fewer = 0, equal = 0, next = at, least = at;
+    for (const Place& place : places) {
+      const double x = place.at[axis];
+      least = std::min(least, x);
+      if (x < at) fewer += place.weight;
+      if (x == at) equal += place.weight;
+      if (x > at && (next == at || x < next)) next = x;
     }
     const bool goes_below = fewer + equal - wanted < wanted - fewer || fewer == 0;
     const double wished = goes_below && next > at ? next : at;
@@ -254,13 +318,17 @@ class Cutter {
 
 }  // namespace
 
-TileCut cut_places(std::vector<glm::dvec3> places, int dim, int tiles,
-                   const loadbalance::Partitioner& partitioner) {
-  if (dim == 2) {
-    for (glm::dvec3& place : places) place.z = 0;
+TileCut cut_places(std::span<const glm::dvec3> places, int dim, int tiles,
+                   const loadbalance::Partitioner& partitioner, double points_per_place) {
+  std::vector<Place> weighted;
+  weighted.reserve(places.size());
+  for (const glm::dvec3& place : places) {
+    weighted.push_back({dim == 2 ? glm::dvec3(place.x, place.y, 0) : place});
   }
+  // The first of the cuts has none before it.
+  if (points_per_place > 0 && tiles > 2) find_reaches(weighted, dim, points_per_place);
   Cutter cutter(dim, partitioner);
-  cutter.cut(places, 0, tiles);
+  cutter.cut(weighted, 0, tiles);
   return TileCut(cutter.take_planes());
 }
 

@@ -2,6 +2,7 @@
 #include "delaunay/tiles/distribute_points.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "comm/agree_on_failure.h"
@@ -20,10 +21,12 @@ TileCut cut_points(comm::Communicator& communicator, std::span<const RowPoint> p
   if (tiles == 1) return {};
   PointSample sample(sample_for_tiles(static_cast<std::uint64_t>(tiles)));
   for (const RowPoint& point : points) sample.add(point.row, point.position);
-  std::vector<glm::dvec3> places = std::move(sample).gather(communicator);
+  const std::vector<glm::dvec3> places = std::move(sample).gather(communicator);
+  const std::uint64_t all =
+      comm::all_reduce_value(communicator, std::uint64_t{points.size()}, std::plus<>());
   const TileCut cut = comm::all_or_none(communicator, comm::Phase::redistribute, [&] {
-    return communicator.rank() == 0 ? cut_places(std::move(places), dim, tiles, partitioner)
-                                    : TileCut();
+    if (communicator.rank() != 0) return TileCut();
+    return cut_places(places, dim, tiles, partitioner, points_per_place(dim, all, places.size()));
   });
   return share_cut(communicator, cut);
 }

@@ -60,12 +60,22 @@ std::size_t sample_for_tiles(std::uint64_t tiles);
 // Where there is no such line (owners have regions in several places, or around each other)
 // regions are taken as they are. Tiles with near numbers are near each other.
 //
-// O((places + tiles) log tiles) and some partitions of grids with as many cells as tiles in
-// all. Degenerate: equal places are in one tile, so that others may have none.
+// With points_per_place, for how many points a place stands, tiles get even work instead of even
+// numbers of points: points along cuts, which are triangulated by more than one tile, count more.
 //
-// REQUIRES: tiles >= 1.
-TileCut cut_places(std::vector<glm::dvec3> places, int dim, int tiles,
-                   const loadbalance::Partitioner& partitioner);
+// O((places + tiles) log tiles) and some partitions of grids with as many cells as tiles in
+// all; O(places log places) with points_per_place. Degenerate: equal places are in one tile, so
+// that others may have none.
+//
+// REQUIRES: tiles >= 1; points_per_place is 0 or at least 1.
+TileCut cut_places(std::span<const glm::dvec3> places, int dim, int tiles,
+                   const loadbalance::Partitioner& partitioner, double points_per_place = 0);
+
+// For cut_places(), where tiles are those of ranks: in the plane too few points lie along cuts to
+// matter.
+inline double points_per_place(int dim, std::uint64_t points, std::size_t places) {
+  return dim == 2 || places == 0 ? 0 : static_cast<double>(points) / static_cast<double>(places);
+}
 
 // Collective: rank 0's cut, for all.
 TileCut share_cut(comm::Communicator& communicator, const TileCut& cut);

@@ -221,7 +221,10 @@ class PartsRun {
     const auto& partitioner = *loadbalance::find_partitioner(options_.tiles.partition);
     const double each = sampled.empty() ? 0 : double(points_) / static_cast<double>(sampled.size());
     for (;;) {
-      cut_ = cut_places(sampled, dim_, plan_.tiles, partitioner);
+      // A rank by itself makes tiles as large as memory allows.
+      cut_ = cut_places(
+          sampled, dim_, plan_.tiles, partitioner,
+          communicator_.size() > 1 ? points_per_place(dim_, points_, sampled.size()) : 0);
       if (plan_.tile_points == ~std::uint64_t{0}) return;
       const auto counts = cut_.count(sampled, plan_.tiles);
       const auto most = static_cast<double>(*std::ranges::max_element(counts));

@@ -43,6 +43,27 @@ TEST(TileCut, GivesTilesAboutAsManyPoints) {
   }
 }
 
+// Four cubes in a row, of points 0.05 apart: 400 lie in a layer along a cut, 1200 in the three that
+// feel it, which cost three times as much. The inner cubes have two cuts.
+TEST(TileCut, TilesBetweenOthersGetFewerPointsWhereCutsCost) {
+  auto places = generate_points("uniform", 32000, 3, 1).positions;
+  for (glm::dvec3& place : places) place.x *= 4;
+  const auto& partitioner = *loadbalance::find_partitioner("kd-split");
+  const auto counts = cut_places(places, 3, 4, partitioner, 1).count(places, 4);
+  EXPECT_EQ(sum_of(counts), 32000U);
+  constexpr double kCut = 2 * 1200;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double cuts = i == 0 || i == 3 ? 1 : 2;
+    EXPECT_NEAR(static_cast<double>(counts[i]) + kCut * cuts, 8000 + 1.5 * kCut, 350) << i;
+  }
+  // A place that stands for eight points has them half as far apart as the places.
+  const auto sampled = cut_places(places, 3, 4, partitioner, 8).count(places, 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double cuts = i == 0 || i == 3 ? 1 : 2;
+    EXPECT_NEAR(static_cast<double>(sampled[i]) + kCut / 2 * cuts, 8000 + 1.5 * kCut / 2, 250) << i;
+  }
+}
+
 TEST(TileCut, CutsManyTilesEvenly) {
   const auto places = generate_points("cluster", 100000, 2, 3).positions;
   const auto counts = cut_evenly(places, 2, 1024);
