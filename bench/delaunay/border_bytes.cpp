@@ -11,12 +11,11 @@
 #include <cstdio>
 #include <vector>
 
+#include "bench/delaunay/on_simulated_ranks.h"
 #include "comm/collectives.h"
 #include "comm/recording.h"
-#include "comm/simulated.h"
 #include "delaunay/mesh/random.h"
 #include "delaunay/tiles.h"
-#include "parallel/arena.h"
 
 namespace {
 
@@ -28,40 +27,33 @@ struct BorderTraffic {
 
 BorderTraffic traffic_of(int ranks, std::size_t points_per_rank, int dim) {
   BorderTraffic sum;
-  comm::SimulationOptions simulation;
-  simulation.stack_bytes = std::size_t{8} << 20;
-  parallel::Arena(1).execute([&] {
-    comm::run_simulated(
-        ranks, {}, 1,
-        [&](comm::Communicator& communicator) {
-          std::vector<delaunay::RowPoint> mine;
-          for (std::size_t i = 0; i < points_per_rank; ++i) {
-            const std::uint64_t row =
-                static_cast<std::uint64_t>(communicator.rank()) * points_per_rank + i;
-            delaunay::RowRandom random(1, row);
-            const double x = random.uniform(), y = random.uniform();
-            mine.push_back({{x, y, random.uniform()}, row});
-          }
-          delaunay::TileOptions options;
-          options.triangulate.dim = dim;
-          std::vector<comm::Event> events;
-          comm::Recording recording(communicator, events);
-          const auto made = triangulate_tiles(recording, mine, options);
-          // The gathering of summaries comes between the points' way to their tiles and the halos.
-          bool is_halo = false;
-          for (const comm::Event& event : events) {
-            if (event.kind != comm::Event::Kind::send) continue;
-            if (event.tag == comm::kTagAllGather) is_halo = true;
-            if (!is_halo || event.peer == communicator.rank()) continue;
-            if (event.tag == comm::kTagExchange) sum.bytes += event.amount;
-            if (event.tag == comm::kTagExchangeHeaders) sum.header_bytes += event.amount;
-          }
-          for (const delaunay::TileStatistics& tile : made.tiles) {
-            sum.points += tile.points;
-            sum.told += tile.sent;
-          }
-        },
-        simulation);
+  bench::on_simulated_ranks(ranks, [&](comm::Communicator& communicator) {
+    std::vector<delaunay::RowPoint> mine;
+    for (std::size_t i = 0; i < points_per_rank; ++i) {
+      const std::uint64_t row =
+          static_cast<std::uint64_t>(communicator.rank()) * points_per_rank + i;
+      delaunay::RowRandom random(1, row);
+      const double x = random.uniform(), y = random.uniform();
+      mine.push_back({{x, y, random.uniform()}, row});
+    }
+    delaunay::TileOptions options;
+    options.triangulate.dim = dim;
+    std::vector<comm::Event> events;
+    comm::Recording recording(communicator, events);
+    const auto made = triangulate_tiles(recording, mine, options);
+    // The gathering of summaries comes between the points' way to their tiles and the halos.
+    bool is_halo = false;
+    for (const comm::Event& event : events) {
+      if (event.kind != comm::Event::Kind::send) continue;
+      if (event.tag == comm::kTagAllGather) is_halo = true;
+      if (!is_halo || event.peer == communicator.rank()) continue;
+      if (event.tag == comm::kTagExchange) sum.bytes += event.amount;
+      if (event.tag == comm::kTagExchangeHeaders) sum.header_bytes += event.amount;
+    }
+    for (const delaunay::TileStatistics& tile : made.tiles) {
+      sum.points += tile.points;
+      sum.told += tile.sent;
+    }
   });
   return sum;
 }

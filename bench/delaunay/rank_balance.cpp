@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "comm/simulated.h"
+#include "bench/delaunay/on_simulated_ranks.h"
 #include "delaunay/generate.h"
 #include "delaunay/tiles.h"
-#include "parallel/arena.h"
 
 namespace {
 
@@ -38,30 +37,23 @@ struct Balance {
 Balance balance_of(const std::string& kind, std::size_t points, int dim, int ranks) {
   const auto cloud = delaunay::generate_points(kind, points, dim, 1);
   Balance balance;
-  comm::SimulationOptions simulation;
-  simulation.stack_bytes = std::size_t{8} << 20;
-  parallel::Arena(1).execute([&] {
-    comm::run_simulated(
-        ranks, {}, 1,
-        [&](comm::Communicator& communicator) {
-          std::vector<delaunay::RowPoint> mine;
-          const auto step = static_cast<std::size_t>(ranks);
-          for (auto row = static_cast<std::size_t>(communicator.rank()); row < points; row += step)
-            mine.push_back({cloud.positions[row], row});
-          delaunay::TileOptions options;
-          options.triangulate.dim = dim;
-          const auto made = triangulate_tiles(communicator, mine, options);
-          std::uint64_t own_points = 0, created = made.shared.simplices, own = 0;
-          for (const delaunay::TileStatistics& tile : made.tiles) {
-            own_points += tile.points;
-            created += tile.simplices;
-          }
-          own = made.vertices.size() / (static_cast<std::size_t>(dim) + 1);
-          balance.points.add(own_points);
-          balance.created.add(created);
-          balance.own.add(own);
-        },
-        simulation);
+  bench::on_simulated_ranks(ranks, [&](comm::Communicator& communicator) {
+    std::vector<delaunay::RowPoint> mine;
+    const auto step = static_cast<std::size_t>(ranks);
+    for (auto row = static_cast<std::size_t>(communicator.rank()); row < points; row += step)
+      mine.push_back({cloud.positions[row], row});
+    delaunay::TileOptions options;
+    options.triangulate.dim = dim;
+    const auto made = triangulate_tiles(communicator, mine, options);
+    std::uint64_t own_points = 0, created = made.shared.simplices, own = 0;
+    for (const delaunay::TileStatistics& tile : made.tiles) {
+      own_points += tile.points;
+      created += tile.simplices;
+    }
+    own = made.vertices.size() / (static_cast<std::size_t>(dim) + 1);
+    balance.points.add(own_points);
+    balance.created.add(created);
+    balance.own.add(own);
   });
   return balance;
 }
