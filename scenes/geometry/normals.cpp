@@ -81,7 +81,9 @@ struct Fan {
   };
   std::vector<Spoke> spokes;
   std::vector<std::uint32_t> parent;
-  std::vector<glm::vec3> sum;
+  // Of area vectors in single precision, exact unless they differ by a factor of 2^26: what the
+  // order of the triangles is does not matter.
+  std::vector<glm::dvec3> sum;
 
   std::uint32_t root(std::uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -113,7 +115,7 @@ void connect(const Surface& surface, std::span<const std::uint32_t> corners, Fan
              std::span<std::uint32_t> labels, std::span<glm::vec3> normals) {
   fan.spokes.clear();
   fan.parent.resize(corners.size());
-  fan.sum.assign(corners.size(), glm::vec3(0));
+  fan.sum.assign(corners.size(), glm::dvec3(0));
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     fan.parent[i] = i;
     const glm::uvec3& triangle = surface.triangles[corners[i] / 3];
@@ -131,14 +133,13 @@ void connect(const Surface& surface, std::span<const std::uint32_t> corners, Fan
     }
   }
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
-    fan.sum[fan.root(i)] += surface.area[corners[i] / 3];
+    fan.sum[fan.root(i)] += glm::dvec3(surface.area[corners[i] / 3]);
   }
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     const std::uint32_t part = fan.root(i);
-    const double length = glm::length(glm::dvec3(fan.sum[part]));
+    const double length = glm::length(fan.sum[part]);
     labels[corners[i]] = corners[part];
-    normals[corners[i]] =
-        length > 0 ? glm::vec3(glm::dvec3(fan.sum[part]) / length) : glm::vec3(0, 0, 1);
+    normals[corners[i]] = length > 0 ? glm::vec3(fan.sum[part] / length) : glm::vec3(0, 0, 1);
   }
 }
 
