@@ -25,17 +25,6 @@ std::pair<float, float> range_of(const std::vector<float>& values) {
   return usual_range(values.size(), [&](std::size_t i) { return values[i]; });
 }
 
-std::vector<glm::vec4> mapped(const std::vector<float>& values, std::pair<float, float> range) {
-  const float width = std::max(range.second - range.first, 1e-30F);
-  const scenes::ColourMap& map = scenes::colour_maps().front();
-  std::vector<glm::vec4> colours(values.size());
-  parallel::parallel_for(0, values.size(), kGrain, [&](std::size_t i) {
-    const float t = std::clamp((values[i] - range.first) / width, 0.0F, 1.0F);
-    colours[i] = glm::vec4(map.colour(t), 1.0F);
-  });
-  return colours;
-}
-
 // Colours of numbers that mean nothing but themselves.
 glm::vec4 distinct_colour(std::uint64_t number) {
   const std::uint64_t bits = (number + 1) * 0x9E3779B97F4A7C15U;
@@ -43,17 +32,6 @@ glm::vec4 distinct_colour(std::uint64_t number) {
     return 0.25F + 0.65F * static_cast<float>((bits >> shift) & 0xFF) / 255.0F;
   };
   return {channel(56), channel(40), channel(24), 1.0F};
-}
-
-// Materials that would tint the colours become white.
-void whiten(scenes::Scene& scene) {
-  for (scenes::Material& material : scene.materials) {
-    material.base_colour = glm::vec4(1.0F);
-    material.base_colour_texture = scenes::kNone;
-    material.metallic = 0.0F;
-    material.metallic_roughness_texture = scenes::kNone;
-    material.transmission = 0.0F;
-  }
 }
 
 void keep_materials(scenes::Scene&, const delaunay::PointCloud*) {}
@@ -81,29 +59,16 @@ void by_height(scenes::Scene& scene, const delaunay::PointCloud*) {
                         scenes::colour_maps().front().colour,
                         {}};
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    if (!heights[m].empty()) scene.meshes[m].colours = mapped(heights[m], range);
+    if (!heights[m].empty()) scene.meshes[m].colours = height_colours(heights[m], range);
   }
 }
 
-// Every triangle gets vertices of its own.
 void by_simplex(scenes::Scene& scene, const delaunay::PointCloud*) {
   whiten(scene);
   std::uint64_t number = 0;
   for (scenes::Mesh& mesh : scene.meshes) {
-    scenes::Mesh apart;
-    apart.name = mesh.name;
-    apart.material = mesh.material;
-    for (const glm::uvec3& corners : mesh.triangles) {
-      const auto first = static_cast<std::uint32_t>(apart.positions.size());
-      for (int k = 0; k < 3; ++k) {
-        apart.positions.push_back(mesh.positions[corners[k]]);
-        apart.colours.push_back(distinct_colour(number));
-        if (!mesh.normals.empty()) apart.normals.push_back(mesh.normals[corners[k]]);
-      }
-      apart.triangles.emplace_back(first, first + 1, first + 2);
-      ++number;
-    }
-    mesh = std::move(apart);
+    colour_simplices(number, mesh);
+    number += mesh.triangles.size();
   }
 }
 
@@ -212,6 +177,44 @@ constexpr std::array kTable = {
 }  // namespace
 
 std::span<const ColourBy> colour_bys() { return kTable; }
+
+std::vector<glm::vec4> height_colours(std::span<const float> heights,
+                                      std::pair<float, float> range) {
+  const float width = std::max(range.second - range.first, 1e-30F);
+  const scenes::ColourMap& map = scenes::colour_maps().front();
+  std::vector<glm::vec4> colours(heights.size());
+  parallel::parallel_for(0, heights.size(), kGrain, [&](std::size_t i) {
+    const float t = std::clamp((heights[i] - range.first) / width, 0.0F, 1.0F);
+    colours[i] = glm::vec4(map.colour(t), 1.0F);
+  });
+  return colours;
+}
+
+void colour_simplices(std::uint64_t first, scenes::Mesh& mesh) {
+  scenes::Mesh apart;
+  apart.name = mesh.name;
+  apart.material = mesh.material;
+  for (const glm::uvec3& corners : mesh.triangles) {
+    const auto vertex = static_cast<std::uint32_t>(apart.positions.size());
+    for (int k = 0; k < 3; ++k) {
+      apart.positions.push_back(mesh.positions[corners[k]]);
+      apart.colours.push_back(distinct_colour(first + apart.triangles.size()));
+      if (!mesh.normals.empty()) apart.normals.push_back(mesh.normals[corners[k]]);
+    }
+    apart.triangles.emplace_back(vertex, vertex + 1, vertex + 2);
+  }
+  mesh = std::move(apart);
+}
+
+void whiten(scenes::Scene& scene) {
+  for (scenes::Material& material : scene.materials) {
+    material.base_colour = glm::vec4(1.0F);
+    material.base_colour_texture = scenes::kNone;
+    material.metallic = 0.0F;
+    material.metallic_roughness_texture = scenes::kNone;
+    material.transmission = 0.0F;
+  }
+}
 
 std::string_view default_colour_by(const delaunay::PointCloud& points) {
   if (!points.colours.empty()) return "rgb";

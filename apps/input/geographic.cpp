@@ -37,16 +37,23 @@ bool is_geographic(const delaunay::PointCloud& points) {
          box.low.y >= -90 && box.high.y <= 90 && box.low.z > kDeepest && box.high.z < kHighest;
 }
 
-void to_metres(delaunay::PointCloud& points, const std::string& path) {
-  if (!is_geographic(points)) return;
+std::optional<glm::dvec2> metres_of_degrees(const delaunay::PointCloud& points,
+                                            const std::string& path) {
+  if (!is_geographic(points)) return {};
   const geometry::Box3d box = usual_box(points);
   const double latitude = std::clamp((box.low.y + box.high.y) / 2, -90.0, 90.0);
   const glm::dvec2 metres = metres_per_degree(latitude);
-  for (glm::dvec3& p : points.positions) p = {p.x * metres.x, p.y * metres.y, p.z};
   spdlog::warn(
       "{}: x and y are {} degrees of longitude and latitude: drawn in metres, {:.0f} for a degree "
       "of longitude and {:.0f} for one of latitude, as at {:.2f} degrees",
       path, points.geographic ? "in" : "taken for", metres.x, metres.y, latitude);
+  return metres;
+}
+
+void to_metres(delaunay::PointCloud& points, const std::string& path) {
+  const std::optional<glm::dvec2> metres = metres_of_degrees(points, path);
+  if (!metres) return;
+  for (glm::dvec3& p : points.positions) p = {p.x * metres->x, p.y * metres->y, p.z};
   points.geographic = false;
 }
 

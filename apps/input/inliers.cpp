@@ -2,6 +2,8 @@
 // from outliers. Degenerate: where nearly all points are equal, none is an outlier.
 #include "apps/input/inliers.h"
 
+#include <limits>
+
 #include "parallel/parallel_for.h"
 
 namespace delray::apps {
@@ -23,21 +25,25 @@ geometry::Box3d usual_box(const delaunay::PointCloud& points) {
   return box;
 }
 
-Inliers find_inliers(const delaunay::PointCloud& points) {
+geometry::Box3d limits_of_inliers(const delaunay::PointCloud& points) {
   const geometry::Box3d usual = usual_box(points);
   const glm::dvec3 sides = usual.high - usual.low;
   const double reach = kFarOff * std::max({sides.x, sides.y, sides.z});
+  if (reach > 0) return {usual.low - reach, usual.high + reach};
   // Where nearly all points are equal, the others are what there is to see.
-  const bool all = !(reach > 0);
-  const glm::dvec3 low = usual.low - reach, high = usual.high + reach;
+  const glm::dvec3 all(std::numeric_limits<double>::infinity());
+  return {-all, all};
+}
+
+Inliers find_inliers(const delaunay::PointCloud& points) {
+  const geometry::Box3d limits = limits_of_inliers(points);
   return parallel::parallel_reduce(
       0, points.size(), kPointsPerBlock, Inliers{},
       [&](std::size_t first, std::size_t last) {
         Inliers inliers;
         for (std::size_t i = first; i < last; ++i) {
           const glm::dvec3& p = points.positions[i];
-          const bool inside = all || (glm::all(glm::lessThanEqual(low, p)) &&
-                                      glm::all(glm::lessThanEqual(p, high)));
+          const bool inside = is_within(p, limits);
           if (inside) inliers.box.include(p);
           inliers.outside += inside ? 0 : 1;
         }

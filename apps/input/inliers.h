@@ -34,9 +34,17 @@ auto usual_range(std::size_t n, F&& value) {
 // The box of the usual range of every coordinate.
 geometry::Box3d usual_box(const delaunay::PointCloud& points);
 
+// The usual box and half of its longest side on every side, which inliers are in; all of space
+// where nearly all points are equal.
+geometry::Box3d limits_of_inliers(const delaunay::PointCloud& points);
+inline bool is_within(const glm::dvec3& p, const geometry::Box3d& limits) {
+  return glm::all(glm::lessThanEqual(limits.low, p)) &&
+         glm::all(glm::lessThanEqual(p, limits.high));
+}
+
 struct Inliers {
   geometry::Box3d box;      // of all points but those outside
-  std::size_t outside = 0;  // points that are farther from usual_box than half its longest side
+  std::size_t outside = 0;  // points that are not within limits_of_inliers
 };
 Inliers find_inliers(const delaunay::PointCloud& points);
 

@@ -20,29 +20,31 @@ std::vector<glm::uvec3> surface_of(const delaunay::Triangulation& triangulation)
 
 }  // namespace
 
-scenes::Scene relief(const delaunay::PointCloud& points,
-                     const delaunay::Triangulation& triangulation, const Inliers& inliers,
-                     double exaggeration) {
+scenes::Scene around_relief(const Inliers& inliers, double exaggeration) {
   scenes::Scene scene;
   scene.z_up = true;
   scene.origin = inliers.box.centre();
-
-  scenes::Mesh mesh;
-  mesh.name = "points";
-  mesh.positions.reserve(points.size());
-  const glm::dvec3 scale(1, 1, exaggeration);
-  for (const glm::dvec3& p : points.positions) {
-    mesh.positions.emplace_back((p - scene.origin) * scale);
-  }
   if (inliers.outside > 0) {
-    scene.framed.include(glm::vec3((inliers.box.low - scene.origin) * scale));
-    scene.framed.include(glm::vec3((inliers.box.high - scene.origin) * scale));
+    scene.framed.include(in_relief(inliers.box.low, scene.origin, exaggeration));
+    scene.framed.include(in_relief(inliers.box.high, scene.origin, exaggeration));
   }
-  mesh.triangles = surface_of(triangulation);
-  scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({});
   scene.materials.emplace_back();
   scene.materials.back().roughness = 0.9F;
+  return scene;
+}
+
+scenes::Scene relief(const delaunay::PointCloud& points,
+                     const delaunay::Triangulation& triangulation, const Inliers& inliers,
+                     double exaggeration) {
+  scenes::Scene scene = around_relief(inliers, exaggeration);
+  scenes::Mesh mesh;
+  mesh.name = kReliefName;
+  mesh.positions.reserve(points.size());
+  for (const glm::dvec3& p : points.positions)
+    mesh.positions.push_back(in_relief(p, scene.origin, exaggeration));
+  mesh.triangles = surface_of(triangulation);
+  scene.meshes.push_back(std::move(mesh));
   return scene;
 }
 

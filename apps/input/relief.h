@@ -18,4 +18,12 @@ scenes::Scene relief(const delaunay::PointCloud& points,
                      const delaunay::Triangulation& triangulation, const Inliers& inliers,
                      double exaggeration);
 
+// That scene without its mesh, for who makes it in parts, the mesh's name, and where a point comes
+// to lie in it.
+scenes::Scene around_relief(const Inliers& inliers, double exaggeration);
+inline constexpr const char* kReliefName = "points";
+inline glm::vec3 in_relief(const glm::dvec3& point, const glm::dvec3& origin, double exaggeration) {
+  return (point - origin) * glm::dvec3(1, 1, exaggeration);
+}
+
 }  // namespace delray::apps

@@ -49,19 +49,6 @@ bool has_elements(const std::string& path) {
                                           error);
 }
 
-// Throws FileError for points that 32-bit floats cannot hold around their middle.
-void check_reach(const SceneInput& input, const delaunay::PointCloud& points,
-                 const glm::dvec3& middle) {
-  constexpr double kFarthest = 1e18;  // as of scenes
-  for (const glm::dvec3& p : points.positions) {
-    const glm::dvec3 offset = glm::abs(p - middle) * glm::dvec3(1, 1, input.exaggeration);
-    if (std::max({offset.x, offset.y, offset.z}) <= kFarthest) continue;
-    throw files::FileError(
-        files::Cause::input, input.file.path, "",
-        "a point is more than 1e18 from the others: there is no picture of that");
-  }
-}
-
 void set_up(const SceneInput& input, scenes::Scene& scene) {
   if (!input.up.empty()) scene.z_up = input.up == "z";
 }
@@ -77,11 +64,8 @@ std::string colouring(const SceneInput& input, const delaunay::PointCloud& point
 scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& points,
                        const delaunay::Triangulation& triangulation) {
   const Inliers inliers = find_inliers(points);
-  check_reach(input, points, inliers.box.centre());
-  if (inliers.outside > 0) {
-    spdlog::warn("{}: {} of {} points lie far off all others: the view is of the others",
-                 input.file.path, inliers.outside, points.size());
-  }
+  check_reach(input, points.positions, inliers.box.centre());
+  warn_of_outliers(input, inliers, points.size());
   scenes::Scene scene = relief(points, triangulation, inliers, input.exaggeration);
   set_up(input, scene);
   colour_by(scene, colouring(input, points, triangulation.size() == 0), &points);
@@ -340,6 +324,40 @@ InputKind input_kind_of(const PointInput& input) {
   return InputKind::points;
 }
 
+void check_reach(const SceneInput& input, std::span<const glm::dvec3> points,
+                 const glm::dvec3& middle) {
+  constexpr double kFarthest = 1e18;  // as of scenes
+  for (const glm::dvec3& p : points) {
+    const glm::dvec3 offset = glm::abs(p - middle) * glm::dvec3(1, 1, input.exaggeration);
+    if (std::max({offset.x, offset.y, offset.z}) <= kFarthest) continue;
+    throw files::FileError(
+        files::Cause::input, input.file.path, "",
+        "a point is more than 1e18 from the others: there is no picture of that");
+  }
+}
+
+void warn_of_outliers(const SceneInput& input, const Inliers& inliers, std::uint64_t points) {
+  if (inliers.outside == 0) return;
+  spdlog::warn("{}: {} of {} points lie far off all others: the view is of the others",
+               input.file.path, inliers.outside, points);
+}
+
+void refuse_options_of_points(const SceneInput& input, InputKind kind) {
+  if (input.file.given()) {
+    throw UsageError(fmt::format(
+        "--terrain-rgb, --cell-size, --duplicates and options that choose points are for "
+        "points; {} is a scene",
+        input.file.path));
+  }
+  if (!input.show_as.empty()) {
+    throw UsageError(fmt::format("--show-as is for points; {} is a scene", input.file.path));
+  }
+  if (kind == InputKind::mesh && has_size(input)) {
+    throw UsageError(
+        fmt::format("--point-size and --radius are for points; {} is a mesh", input.file.path));
+  }
+}
+
 void refuse_for_packs(const SceneInput& input) {
   const bool given = input.file.given() || !input.show_as.empty() || has_size(input) ||
                      !input.colour_by.empty() || input.exaggeration != 1;
@@ -366,22 +384,8 @@ scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) 
     return from_points(input, progress);
   }
   if (kind == InputKind::pack) return unpacked(input);
-  if (input.file.given()) {
-    throw UsageError(fmt::format(
-        "--terrain-rgb, --cell-size, --duplicates and options that choose points are for "
-        "points; {} is a scene",
-        input.file.path));
-  }
-  if (!input.show_as.empty()) {
-    throw UsageError(fmt::format("--show-as is for points; {} is a scene", input.file.path));
-  }
-  if (kind == InputKind::mesh) {
-    if (has_size(input)) {
-      throw UsageError(
-          fmt::format("--point-size and --radius are for points; {} is a mesh", input.file.path));
-    }
-    return from_mesh(input);
-  }
+  refuse_options_of_points(input, kind);
+  if (kind == InputKind::mesh) return from_mesh(input);
   if (input.exaggeration != 1) {
     throw UsageError(fmt::format("--exaggeration is for points; {} is a scene", input.file.path));
   }

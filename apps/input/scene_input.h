@@ -1,8 +1,11 @@
 // A scene from whatever the user names: a scene file, a generated scene, points or a mesh of them.
 #pragma once
 
+#include <glm/glm.hpp>
+#include <span>
 #include <string>
 
+#include "apps/input/inliers.h"
 #include "apps/input/point_input.h"
 #include "apps/session.h"
 #include "scenes/scene.h"
@@ -37,6 +40,16 @@ InputKind input_kind_of(const PointInput& input);
 // Adds SCENE, --color-by, --exaggeration, --show-as, --point-size, --radius, --up, --allow-outside
 // and the options of points.
 void add_scene_options(CLI::App& command, SceneInput& input);
+
+// Throws UsageError for options of points, given with a scene or mesh.
+void refuse_options_of_points(const SceneInput& input, InputKind kind);
+
+// Throws FileError for points that 32-bit floats cannot hold around their middle.
+void check_reach(const SceneInput& input, std::span<const glm::dvec3> points,
+                 const glm::dvec3& middle);
+
+// Says so in the log where so many points have outliers.
+void warn_of_outliers(const SceneInput& input, const Inliers& inliers, std::uint64_t points);
 
 // Throws UsageError for options that change how a scene is made, which a pack has behind it.
 void refuse_for_packs(const SceneInput& input);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "parallel/parallel_for.h"
+#include "scenes/complete_part.h"
 #include "scenes/geometry/normals.h"
 #include "scenes/scene.h"
 
@@ -47,6 +48,8 @@ double area(const Mesh& mesh, const glm::mat4x3& transform) {
   }
   return sum;
 }
+
+float cosine_of(float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); }
 
 void add_tangents(const Scene& scene, Mesh& mesh) {
   const std::uint32_t texture = scene.materials[mesh.material].normal_texture;
@@ -93,9 +96,15 @@ void add_default_light(Scene& scene, const Camera& camera, float strength) {
   scene.environment.ground = kGround * strength;
 }
 
+void complete_part(Mesh& part, std::uint32_t first, std::uint32_t count, float crease_degrees) {
+  internal::compute_normals(part, cosine_of(crease_degrees));
+  part.triangles.erase(part.triangles.begin(), part.triangles.begin() + first);
+  part.triangles.resize(count);
+}
+
 void complete_surfaces(Scene& scene, float crease_degrees) {
   if (scene.materials.empty()) scene.materials.emplace_back();
-  const float crease_cosine = std::cos(crease_degrees * std::numbers::pi_v<float> / 180.0F);
+  const float crease_cosine = cosine_of(crease_degrees);
   parallel::parallel_for(0, scene.meshes.size(), 1, [&](std::size_t i) {
     Mesh& mesh = scene.meshes[i];
     if (!mesh.has_triangles()) return;
