@@ -11,6 +11,7 @@
 #include "apps/options/help.h"
 #include "apps/options/numbers.h"
 #include "apps/options/outputs.h"
+#include "apps/pack/pack_folder.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
 #include "files/memory_budget.h"
@@ -29,15 +30,12 @@ struct PackOptions {
 };
 
 void pack_scene(const PackOptions& options, parallel::Progress* progress) {
+  if (is_surface_in_pieces(options.scene)) {
+    pack_folder(options.scene, options.output, {.levels = !options.exact_only}, progress);
+    return;
+  }
   scenes::Scene scene = load_scene(options.scene, progress);
   refuse_overwriting({{"-o", options.output}, {"--stats", options.statistics}}, scene.files);
-  for (const scenes::Mesh& mesh : scene.meshes) {
-    if (mesh.shape.kind == scenes::Shape::Kind::triangle) continue;
-    throw UsageError(
-        fmt::format("{}: packs are of triangles, not of points or segments; of points --show-as "
-                    "relief makes some",
-                    options.scene.file.path));
-  }
   scenes::complete_surfaces(scene);
   packs::write_pack(options.output, scene, {.levels = !options.exact_only});
 }
@@ -84,7 +82,7 @@ int run(Session& session, const PackOptions& options) {
 
 void add_pack(CLI::App& program, Session& session) {
   CLI::App* command = program.add_subcommand(
-      "pack", "Pack a scene, mesh or relief of points into a file that render reads in parts");
+      "pack", "Pack a scene, mesh or points into a file that render reads in parts");
   const auto options = std::make_shared<PackOptions>();
   add_scene_options(*command, options->scene);
   command->add_option("-o,--output", options->output, "Pack to write, .pack")

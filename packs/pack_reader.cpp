@@ -27,6 +27,7 @@ using files::FileError;
 scenes::Mesh mesh_without_triangles(const MeshRow& row) {
   scenes::Mesh mesh;
   mesh.name = row.name;
+  mesh.shape = row.shape;
   mesh.material = row.material;
   if (row.attributes.normals) mesh.normals.emplace_back(0, 0, 1);
   if (row.attributes.uvs) mesh.uvs.emplace_back(0, 0);

@@ -106,6 +106,7 @@ void PackWriter::append_part(const scenes::Mesh& part) {
   if (before + part.triangles.size() > 0xFFFFFFFFU)
     throw std::invalid_argument("a mesh of a pack has 2^32 - 1 triangles at most");
   row.attributes = attributes_of(part);
+  row.shape = part.shape;
   row.material = part.material;
   row.triangles += part.triangles.size();
   const auto all = static_cast<std::uint32_t>(part.triangles.size());
@@ -133,7 +134,7 @@ std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t materi
   state.mesh.material = material;
   state.mesh.vertices = vertices;
   state.mesh.levels.push_back({state.first, pages - state.first});
-  if (state.options.levels) {
+  if (state.options.levels && state.mesh.shape.kind != scenes::Shape::Kind::line) {
     internal::build_levels({[&](std::uint32_t page) { return state.read(page); },
                             [&](std::vector<EncodedPage>&& made) {
                               state.append(made);
@@ -169,10 +170,6 @@ std::uint64_t PackWriter::bytes() const { return state_->written; }
 
 void write_pack(const std::filesystem::path& path, const scenes::Scene& scene,
                 const WriteOptions& options) {
-  for (const scenes::Mesh& mesh : scene.meshes) {
-    if (mesh.shape.kind != scenes::Shape::Kind::triangle)
-      throw std::invalid_argument("packs are of triangles, not of points or segments");
-  }
   PackWriter writer(path, options);
   for (const scenes::Mesh& mesh : scene.meshes) writer.add_mesh(mesh);
   writer.commit(scene, scenes::is_lit_by_emission(scene));

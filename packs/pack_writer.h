@@ -13,7 +13,7 @@ namespace delray::packs {
 
 // The bytes that a file of packs begins with, and the version of the format.
 inline constexpr char kMagic[8] = {'D', 'E', 'L', 'R', 'A', 'Y', 'P', 'K'};
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 
 // What is written besides what was given.
 struct WriteOptions {
@@ -55,7 +55,6 @@ class PackWriter {
 };
 
 // A whole scene, completed as for rendering (scenes::complete_surfaces), as a pack. Parallel.
-// Throws std::invalid_argument for a scene of points or segments, which packs do not keep.
 void write_pack(const std::filesystem::path& path, const scenes::Scene& scene,
                 const WriteOptions& options = {});
 

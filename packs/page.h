@@ -1,4 +1,5 @@
-// What a pack is made of: pages of triangles, and the table that says where they are.
+// What a pack is made of: pages of triangles, points or segments, and the table that says where
+// they are.
 #pragma once
 
 #include <cstdint>
@@ -101,6 +102,7 @@ Attributes attributes_of(const scenes::Mesh& mesh);
 // A mesh in the table.
 struct MeshRow {
   std::string name;
+  scenes::Shape shape;
   std::uint32_t material = 0;
   Attributes attributes;
   std::uint64_t triangles = 0, vertices = 0;  // as they were packed

@@ -16,17 +16,6 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-void append_page(const scenes::Mesh& page, scenes::Mesh& mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  append(page.positions, mesh.positions);
-  append(page.normals, mesh.normals);
-  append(page.uvs, mesh.uvs);
-  append(page.uvs2, mesh.uvs2);
-  append(page.tangents, mesh.tangents);
-  append(page.colours, mesh.colours);
-  for (const glm::uvec3& triangle : page.triangles) mesh.triangles.push_back(triangle + first);
-}
-
 // The arrays at once in the size that they will have.
 void reserve(const PackReader& pack, const MeshRow& row, scenes::Mesh& mesh) {
   const PageRange& range = row.levels.front();
@@ -44,6 +33,17 @@ void reserve(const PackReader& pack, const MeshRow& row, scenes::Mesh& mesh) {
 
 }  // namespace
 
+void append_page(const scenes::Mesh& page, scenes::Mesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  append(page.positions, mesh.positions);
+  append(page.normals, mesh.normals);
+  append(page.uvs, mesh.uvs);
+  append(page.uvs2, mesh.uvs2);
+  append(page.tangents, mesh.tangents);
+  append(page.colours, mesh.colours);
+  for (const glm::uvec3& triangle : page.triangles) mesh.triangles.push_back(triangle + first);
+}
+
 scenes::Scene unpack(PackReader& pack, const files::MemoryBudget& memory) {
   std::uint64_t bytes = 0;
   for (const MeshRow& row : pack.meshes()) {
@@ -58,6 +58,7 @@ scenes::Scene unpack(PackReader& pack, const files::MemoryBudget& memory) {
     const MeshRow& row = pack.meshes()[m];
     scenes::Mesh mesh;
     mesh.name = row.name;
+    mesh.shape = row.shape;
     mesh.material = row.material;
     reserve(pack, row, mesh);
     const PageRange& range = row.levels.front();

@@ -12,4 +12,7 @@ namespace delray::packs {
 // than that.
 scenes::Scene unpack(PackReader& pack, const files::MemoryBudget& memory = {});
 
+// Appends the triangles of a page, with vertices of their own, to a mesh of the same attributes.
+void append_page(const scenes::Mesh& page, scenes::Mesh& mesh);
+
 }  // namespace delray::packs

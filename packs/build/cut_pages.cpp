@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 namespace delray::packs::internal {
 namespace {
@@ -51,6 +50,40 @@ class ConeOfTriangles {
   bool flat_ = false;
 };
 
+// Numbers for the vertices of a page or cluster, by first use: a hash table that is forgotten at
+// once.
+class VertexNumbers {
+ public:
+  // The number of a vertex, and whether it is new.
+  std::pair<std::uint32_t, bool> add(std::uint32_t vertex) {
+    Slot& slot = slot_of(vertex);
+    const bool is_new = slot.round != round_;
+    if (is_new) slot = {vertex, count_++, round_};
+    return {slot.number, is_new};
+  }
+  bool contains(std::uint32_t vertex) { return slot_of(vertex).round == round_; }
+  std::uint32_t count() const { return count_; }
+  void clear() {
+    count_ = 0;
+    ++round_;
+  }
+
+ private:
+  // Four times as many as a page has vertices at most.
+  static constexpr std::size_t kSlots = std::size_t{4} * kPageClusters * kClusterVertices;
+  struct Slot {
+    std::uint32_t vertex = 0, number = 0, round = 0;
+  };
+  Slot& slot_of(std::uint32_t vertex) {
+    std::size_t i = (vertex * 0x9E3779B97F4A7C15U >> 32) % kSlots;
+    while (slots_[i].round == round_ && slots_[i].vertex != vertex) i = (i + 1) % kSlots;
+    return slots_[i];
+  }
+
+  std::vector<Slot> slots_{kSlots};
+  std::uint32_t count_ = 0, round_ = 1;
+};
+
 // Makes one page after the other of a mesh.
 class PageCutter {
  public:
@@ -62,6 +95,7 @@ class PageCutter {
     source_.clear();
     std::uint32_t t = begin;
     while (t < end && page.clusters.size() < kPageClusters) t = cut_cluster(t, end, page);
+    page.mesh.shape = mesh_.shape;
     page.mesh.material = mesh_.material;
     gather(mesh_.positions, page.mesh.positions);
     gather(mesh_.normals, page.mesh.normals);
@@ -92,22 +126,20 @@ class PageCutter {
       const glm::uvec3& v = mesh_.triangles[t];
       std::uint32_t fresh = 0;
       for (int k = 0; k < 3; ++k) fresh += in_cluster_.contains(v[k]) ? 0 : 1;
-      if (cluster.vertices + fresh > kClusterVertices) break;
+      if (in_cluster_.count() + fresh > kClusterVertices) break;
       glm::u8vec3 corner;
       glm::uvec3 of_page;
       for (int k = 0; k < 3; ++k) {
-        const auto [known, is_new] = in_cluster_.emplace(v[k], cluster.vertices);
-        if (is_new) {
-          ++cluster.vertices;
-          page.vertices.push_back(number_of(v[k]));
-        }
-        corner[k] = static_cast<std::uint8_t>(known->second);
-        of_page[k] = page.vertices[cluster.first_vertex + known->second];
+        const auto [number, is_new] = in_cluster_.add(v[k]);
+        if (is_new) page.vertices.push_back(number_of(v[k]));
+        corner[k] = static_cast<std::uint8_t>(number);
+        of_page[k] = page.vertices[cluster.first_vertex + number];
       }
       corners.push_back(corner);
       page.mesh.triangles.push_back(of_page);
     }
     cluster.count = static_cast<std::uint32_t>(corners.size());
+    cluster.vertices = in_cluster_.count();
     page.corners.resize(page.corners.size() + std::size_t{3} * cluster.corner_stride());
     for (std::size_t i = 0; i < corners.size(); ++i) {
       for (std::uint32_t k = 0; k < 3; ++k) {
@@ -120,10 +152,9 @@ class PageCutter {
   }
 
   std::uint32_t number_of(std::uint32_t vertex) {
-    const auto [known, is_new] =
-        number_.emplace(vertex, static_cast<std::uint32_t>(source_.size()));
+    const auto [number, is_new] = number_.add(vertex);
     if (is_new) source_.push_back(vertex);
-    return known->second;
+    return number;
   }
 
   static void bound(const Page& page, PageCluster& cluster) {
@@ -145,7 +176,7 @@ class PageCutter {
   }
 
   const scenes::Mesh& mesh_;
-  std::unordered_map<std::uint32_t, std::uint32_t> number_, in_cluster_;
+  VertexNumbers number_, in_cluster_;
   std::vector<std::uint32_t> source_;  // by vertex of the page: that of the mesh
 };
 

@@ -10,7 +10,7 @@
 namespace delray::packs::internal {
 
 // Pages in a group at most; about half as many at least, where there are so many.
-inline constexpr std::size_t kGroupPages = 10;
+inline constexpr std::size_t kGroupPages = 4;
 
 // The pages of a level in groups, each in ascending order. Levels are cut at other places than the
 // one before, so that a border between groups, which stays as it is, is within a group on the next

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "packs/build/surface_error.h"
 #include "packs/page.h"
 
 namespace delray::packs::internal {
@@ -11,12 +12,14 @@ namespace delray::packs::internal {
 scenes::Mesh merge(std::span<const Page> pages);
 
 struct Simplified {
-  scenes::Mesh mesh;  // its vertices are some of the original; triangles ordered for locality
-  float error = 0;    // see surface_error
+  scenes::Mesh mesh;     // its vertices are some of the original; triangles ordered for locality
+  SurfaceErrors errors;  // of its triangles; see surface_errors
 };
 
-// About half of the triangles. Vertices on the border, edges with a single triangle, stay. The
-// result has as many triangles as before where nothing could be left out. Deterministic.
-Simplified simplify(const scenes::Mesh& mesh);
+// About kKept of the triangles, of which each was so far from the surface `before`, as
+// surface_errors has it. Vertices on the border, edges with a single triangle, stay. The result has
+// as many triangles as before where nothing could be left out. Deterministic.
+inline constexpr double kKept = 0.5;
+Simplified simplify(const scenes::Mesh& mesh, std::span<const float> before = {});
 
 }  // namespace delray::packs::internal

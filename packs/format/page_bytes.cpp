@@ -157,6 +157,7 @@ Page decode(std::span<const char> bytes, const PageRow& row, const MeshRow& mesh
   const std::span<const char> second = bytes.subspan(sizeof first_size + first_size);
 
   Page page;
+  page.mesh.shape = mesh.shape;
   page.mesh.material = mesh.material;
   const std::size_t n = row.vertices;
   unpacked.resize(row.clusters * kClusterBytes + std::size_t{2} * row.references +

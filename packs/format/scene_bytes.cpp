@@ -43,37 +43,25 @@ void material_fields(Bytes& b, Material& m) {
   }
 }
 
+template <class Bytes, class... Values>
+void values(Bytes& b, Values&... all) {
+  (b.value(all), ...);
+}
+
 template <class Bytes, class Light>
 void light_fields(Bytes& b, Light& l) {
   b.choice(l.kind, scenes::Light::Kind::area);
-  b.value(l.colour);
-  b.value(l.position);
-  b.value(l.direction);
-  b.value(l.edge_u);
-  b.value(l.edge_v);
+  values(b, l.colour, l.position, l.direction, l.edge_u, l.edge_v);
 }
 
 template <class Bytes, class Environment>
 void environment_fields(Bytes& b, Environment& e) {
-  b.value(e.texture);
-  b.value(e.rotation);
-  b.value(e.up);
-  b.value(e.zenith);
-  b.value(e.horizon);
-  b.value(e.ground);
+  values(b, e.texture, e.rotation, e.up, e.zenith, e.horizon, e.ground);
 }
 
 template <class Bytes, class Camera>
 void camera_fields(Bytes& b, Camera& c) {
-  b.value(c.eye);
-  b.value(c.at);
-  b.value(c.up);
-  b.value(c.vertical_fov);
-  b.value(c.near);
-  b.value(c.aperture);
-  b.value(c.focus);
-  b.value(c.height);
-  b.value(c.far);
+  values(b, c.eye, c.at, c.up, c.vertical_fov, c.near, c.aperture, c.focus, c.height, c.far);
   b.text(c.name);
 }
 
@@ -178,6 +166,9 @@ void check_scene(const ByteReader& from, std::size_t meshes, const scenes::Scene
 template <class Bytes, class Row>
 void mesh_fields(Bytes& b, Row& row) {
   b.text(row.name);
+  b.choice(row.shape.kind, scenes::Shape::Kind::line);
+  b.flag(row.shape.in_pixels);
+  b.value(row.shape.radius);
   b.value(row.material);
   b.flag(row.attributes.normals);
   b.flag(row.attributes.uvs);
@@ -236,6 +227,8 @@ void check_page(const ByteReader& from, std::uint64_t data_end, std::size_t grou
 std::uint32_t check_mesh(const ByteReader& from, const Table& table, std::uint32_t next,
                          const MeshRow& mesh) {
   if (mesh.levels.empty()) from.fail("a mesh has no pages");
+  if (!(mesh.shape.radius >= 0) || !std::isfinite(mesh.shape.radius))
+    from.fail("points or segments have no radius");
   for (std::size_t level = 0; level < mesh.levels.size(); ++level) {
     const PageRange& range = mesh.levels[level];
     if (range.first != next || range.count == 0 || range.count > table.pages.size() - next)

@@ -17,7 +17,7 @@ namespace delray::raster {
 
 // What the splats of a draw have in common. Kind triangle: it has none.
 struct SplatDraw {
-  const scenes::Mesh* mesh = nullptr;
+  const Draw* draw = nullptr;  // whose mesh may become another one of that shape
   scenes::Shape::Kind kind = scenes::Shape::Kind::triangle;
   bool in_samples = false;  // the radius is in samples of the screen, else in the world's units
   float radius = 0;

@@ -175,7 +175,7 @@ void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetU
   }
   // A vertex at each place: primitives are numbered by vertices as these are first used.
   const std::span<const std::uint32_t> which = block.vertices_of(mesh_cluster);
-  const std::vector<glm::vec3>& positions = splats.mesh->positions;
+  const std::vector<glm::vec3>& positions = splats.draw->mesh->positions;
   if (mesh_cluster.consecutive)
     transform(splats.to_view, screen, std::span(positions).subspan(which[0], which.size()),
               vertices);

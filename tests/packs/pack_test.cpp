@@ -5,8 +5,10 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include "files/error.h"
+#include "packs/check_pack.h"
 #include "packs/pack_reader.h"
 #include "packs/pack_writer.h"
 #include "packs/unpack.h"
@@ -50,44 +52,35 @@ void expect_same(const scenes::Mesh& a, const scenes::Mesh& b) {
   EXPECT_EQ(differ, 0U);
 }
 
+// As many of them, and f(a[i], b[i]) for each.
+template <class T, class F>
+void expect_each(const std::vector<T>& a, const std::vector<T>& b, F&& f) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) f(a[i], b[i]);
+}
+
 void expect_same(const scenes::Scene& a, const scenes::Scene& b) {
-  ASSERT_EQ(a.meshes.size(), b.meshes.size());
-  for (std::size_t m = 0; m < a.meshes.size(); ++m) expect_same(a.meshes[m], b.meshes[m]);
-  ASSERT_EQ(a.instances.size(), b.instances.size());
-  for (std::size_t i = 0; i < a.instances.size(); ++i) {
-    EXPECT_EQ(a.instances[i].mesh, b.instances[i].mesh);
-    EXPECT_EQ(a.instances[i].transform, b.instances[i].transform);
-  }
-  ASSERT_EQ(a.materials.size(), b.materials.size());
-  for (std::size_t i = 0; i < a.materials.size(); ++i) {
-    EXPECT_EQ(a.materials[i].base_colour, b.materials[i].base_colour);
-    EXPECT_EQ(a.materials[i].alpha, b.materials[i].alpha);
-    EXPECT_EQ(a.materials[i].double_sided, b.materials[i].double_sided);
-    EXPECT_EQ(a.materials[i].attenuation_distance, b.materials[i].attenuation_distance);
-    EXPECT_EQ(a.materials[i].textures(), b.materials[i].textures());
-  }
-  ASSERT_EQ(a.textures.size(), b.textures.size());
-  for (std::size_t i = 0; i < a.textures.size(); ++i) {
-    EXPECT_EQ(a.textures[i].width, b.textures[i].width);
-    EXPECT_EQ(a.textures[i].srgb, b.textures[i].srgb);
-    EXPECT_EQ(a.textures[i].wrap_u, b.textures[i].wrap_u);
-    EXPECT_EQ(a.textures[i].set, b.textures[i].set);
-    ASSERT_EQ(a.textures[i].texels.size(), b.textures[i].texels.size());
-    EXPECT_TRUE(a.textures[i].texels == b.textures[i].texels);
-    EXPECT_EQ(a.textures[i].radiance, b.textures[i].radiance);
-  }
-  ASSERT_EQ(a.lights.size(), b.lights.size());
-  for (std::size_t i = 0; i < a.lights.size(); ++i) {
-    EXPECT_EQ(a.lights[i].kind, b.lights[i].kind);
-    EXPECT_EQ(a.lights[i].colour, b.lights[i].colour);
-    EXPECT_EQ(a.lights[i].position, b.lights[i].position);
-  }
-  ASSERT_EQ(a.cameras.size(), b.cameras.size());
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
-    EXPECT_EQ(a.cameras[i].eye, b.cameras[i].eye);
-    EXPECT_EQ(a.cameras[i].vertical_fov, b.cameras[i].vertical_fov);
-    EXPECT_EQ(a.cameras[i].name, b.cameras[i].name);
-  }
+  expect_each(a.meshes, b.meshes,
+              [](const scenes::Mesh& x, const scenes::Mesh& y) { expect_same(x, y); });
+  expect_each(a.instances, b.instances, [](const auto& x, const auto& y) {
+    EXPECT_EQ(std::tie(x.mesh, x.transform), std::tie(y.mesh, y.transform));
+  });
+  expect_each(a.materials, b.materials, [](const auto& x, const auto& y) {
+    EXPECT_EQ(std::tie(x.base_colour, x.alpha, x.double_sided, x.attenuation_distance),
+              std::tie(y.base_colour, y.alpha, y.double_sided, y.attenuation_distance));
+    EXPECT_EQ(x.textures(), y.textures());
+  });
+  expect_each(a.textures, b.textures, [](const auto& x, const auto& y) {
+    EXPECT_EQ(std::tie(x.width, x.srgb, x.wrap_u, x.set, x.radiance),
+              std::tie(y.width, y.srgb, y.wrap_u, y.set, y.radiance));
+    EXPECT_TRUE(x.texels == y.texels);
+  });
+  expect_each(a.lights, b.lights, [](const auto& x, const auto& y) {
+    EXPECT_EQ(std::tie(x.kind, x.colour, x.position), std::tie(y.kind, y.colour, y.position));
+  });
+  expect_each(a.cameras, b.cameras, [](const auto& x, const auto& y) {
+    EXPECT_EQ(std::tie(x.eye, x.vertical_fov, x.name), std::tie(y.eye, y.vertical_fov, y.name));
+  });
   EXPECT_EQ(a.environment.texture, b.environment.texture);
   EXPECT_EQ(a.environment.zenith, b.environment.zenith);
   EXPECT_EQ(a.origin, b.origin);
@@ -130,7 +123,7 @@ TEST(Pack, HasTheSceneThatWasWritten) {
 
 TEST(Pack, PagesAreBoundedAndHaveAsManyTrianglesAsFit) {
   const tests::TemporaryFolder folder;
-  write_pack(folder / "a.pack", scenes::generate("gen:terrain:30000"));
+  write_pack(folder / "a.pack", scenes::generate("gen:terrain:9000"));
   const PackReader pack(folder / "a.pack");
   std::size_t full = 0;
   for (std::uint32_t i = 0; i < pack.pages().size(); ++i) {
@@ -160,7 +153,7 @@ TEST(Pack, PagesAreBoundedAndHaveAsManyTrianglesAsFit) {
 
 TEST(Pack, IsTheSameFileForEveryNumberOfThreads) {
   const tests::TemporaryFolder folder;
-  const scenes::Scene scene = scenes::generate("gen:terrain:30000");
+  const scenes::Scene scene = scenes::generate("gen:terrain:9000");
   std::string expected;
   const parallel::AllowThreads allowed(5);
   for (const int threads : {1, 2, 5}) {
@@ -234,7 +227,7 @@ TEST(Pack, AFlippedBitAnywhereIsAnError) {
 
 TEST(Pack, SaysWhichPageIsDamaged) {
   const tests::TemporaryFolder folder;
-  write_pack(folder / "a.pack", raster::random_scene(5, 2000));
+  write_pack(folder / "a.pack", raster::random_scene(5, 2000), {.levels = false});
   std::uint64_t offset = 0;
   {
     const PackReader pack(folder / "a.pack");
@@ -247,9 +240,31 @@ TEST(Pack, SaysWhichPageIsDamaged) {
   EXPECT_NE(problem.find("page 3, byte " + std::to_string(offset)), std::string::npos) << problem;
 }
 
+TEST(CheckPack, NamesTheFirstPageThatIsDamaged) {
+  const tests::TemporaryFolder folder;
+  write_pack(folder / "a.pack", raster::random_scene(5, 4500), {.levels = false});
+  std::string content = content_of(folder / "a.pack");
+  {
+    const PackReader pack(folder / "a.pack");
+    check_pack(pack);
+    ASSERT_GT(pack.pages().size(), 8U);
+    for (const std::uint32_t page : {8U, 3U, 6U}) {
+      const std::uint64_t place = pack.pages()[page].offset;
+      content[place + 5] = static_cast<char>(content[place + 5] ^ 1);
+    }
+  }
+  const PackReader damaged(folder.write("b.pack", content));
+  try {
+    check_pack(damaged);
+    FAIL();
+  } catch (const files::FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("page 3, byte"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Pack, OtherFilesAreNone) {
   const tests::TemporaryFolder folder;
-  for (const std::string content : {"", "DELRAYP", "ply\n", "DELRAYPK\x02\0\0\0\0\0\0\0"}) {
+  for (const std::string content : {"", "DELRAYP", "ply\n", "DELRAYPK\x01\0\0\0\0\0\0\0"}) {
     const auto path = folder.write("a.pack", content);
     EXPECT_NE(problem_of(path), "") << content;
   }

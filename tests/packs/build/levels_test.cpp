@@ -142,9 +142,9 @@ void expect_good_levels(const scenes::Scene& scene) {
   EXPECT_LT(last, whole.triangles.size() / 4);
 }
 
-TEST(Levels, OfAClosedSurfaceHaveNoCracks) { expect_good_levels(wavy_ball(90)); }
+TEST(Levels, OfAClosedSurfaceHaveNoCracks) { expect_good_levels(wavy_ball(45)); }
 
-TEST(Levels, OfATerrainKeepItsBorder) { expect_good_levels(scenes::generate("gen:terrain:40000")); }
+TEST(Levels, OfATerrainKeepItsBorder) { expect_good_levels(scenes::generate("gen:terrain:10000")); }
 
 TEST(Levels, OfTrianglesThatShareNothingEndAtOnce) {
   const tests::TemporaryFolder folder;
@@ -187,7 +187,7 @@ TEST(Simplify, KeepsTheBorderAndHalfOfTheTriangles) {
   const internal::Simplified simplified = internal::simplify(mesh);
   EXPECT_EQ(border_of({simplified.mesh}), border_of({mesh}));
   EXPECT_LE(simplified.mesh.triangles.size(), mesh.triangles.size() / 2 + 1);
-  EXPECT_GT(simplified.error, 0);
+  EXPECT_GT(simplified.errors.largest, 0);
 }
 
 }  // namespace
