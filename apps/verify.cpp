@@ -13,12 +13,14 @@
 #include "apps/options/outputs.h"
 #include "apps/verify/verify_folder.h"
 #include "apps/verify/verify_json.h"
+#include "apps/verify/verify_pack.h"
 #include "delaunay/match_points.h"
 #include "delaunay/mesh_folder.h"
 #include "delaunay/read_mesh.h"
 #include "delaunay/simplify_terrain.h"
 #include "delaunay/verify.h"
 #include "files/error.h"
+#include "packs/pack_reader.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -195,6 +197,10 @@ int verify_file(const VerifyOptions& options) {
 
 int run(Session& session, const VerifyOptions& options) {
   if (options.mesh.empty()) throw UsageError("verify: MESH is missing");
+  if (packs::is_pack(options.mesh)) {
+    check_outputs({{"--stats", options.statistics}}, {options.mesh});
+    return verify_pack(session, options);
+  }
   if (options.points.path.empty()) throw UsageError("verify: --points POINTS is missing");
   std::vector<std::string> inputs = options.points.paths;
   inputs.push_back(options.mesh);
@@ -219,13 +225,14 @@ int run(Session& session, const VerifyOptions& options) {
 
 void add_verify(CLI::App& program, Session& session) {
   CLI::App* command = program.add_subcommand(
-      "verify", "Check a triangulation against its points, with exact arithmetic");
+      "verify", "Check a triangulation against its points, with exact arithmetic, or a pack");
   const auto options = std::make_shared<VerifyOptions>();
   command
       ->add_option("MESH", options->mesh,
                    "Triangulation to check, a file or a folder of pieces: the exit code is 0 if it "
                    "is what the options demand, 4 if it is "
-                   "not, 3 if a vertex is none of the points")
+                   "not, 3 if a vertex is none of the points. A pack is checked by itself: 3 if any "
+                   "of it is damaged")
       ->group(group::kInput);
   add_points_argument(*command, "--points", options->points,
                       "Points that MESH should be the triangulation of: files, folders, patterns");
@@ -253,7 +260,8 @@ void add_verify(CLI::App& program, Session& session) {
                      "verify mesh.ply --points points.las\n"
                      "verify mesh/ --points tiles/*.laz --memory 2GiB\n"
                      "verify mesh.off --points points.csv --canonical --stats -\n"
-                     "verify simplified.stl --points terrain.tif");
+                     "verify simplified.stl --points terrain.tif\n"
+                     "verify scene.pack");
   command->callback([&session, options] {
     // --points takes all names that follow.
     std::vector<std::string>& points = options->points.paths;
