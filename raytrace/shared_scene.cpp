@@ -109,6 +109,21 @@ std::vector<ClusterData> assigned(comm::Communicator& communicator, std::vector<
   return result;
 }
 
+// The lights of a scene, none of which is a surface. How strong they are beside each other goes by
+// how large the whole scene is: for that its diagonal stands for it.
+LightTable lights_around(const scenes::Scene& scene, const geometry::Box3& box,
+                         const shading::Shader& shader) {
+  scenes::Scene rest;
+  rest.materials = scene.materials;
+  rest.textures = scene.textures;
+  rest.lights = scene.lights;
+  rest.environment = scene.environment;
+  rest.meshes.emplace_back();
+  rest.instances.emplace_back();
+  if (!box.empty()) rest.meshes[0].positions = {box.low, box.high};
+  return LightTable(rest, shader);
+}
+
 }  // namespace
 
 SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Scene& scene,
@@ -151,13 +166,7 @@ SharedScene SharedScene::make(comm::Communicator& communicator, scenes::ScenePar
     a.include(b);
     return a;
   });
-  // How strong lights are beside each other goes by how large the whole scene is: for that its
-  // diagonal stands for it.
-  scenes::Scene& rest = part.scene;
-  rest.meshes.assign(1, {});
-  rest.instances.assign(1, {});
-  if (!box.empty()) rest.meshes[0].positions = {box.low, box.high};
-  LightTable lights(rest, shader);
+  LightTable lights = lights_around(part.scene, box, shader);
   return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
 }
 
@@ -224,11 +233,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
       has_instances_ = has_instances_ || each.instanced != 0;
     }
   }
-  for (const ClusterBox& box : all_boxes) bounds_.include(box.box);
-  boxes_ = std::move(all_boxes);
-  everywhere_ = ClusterTree(boxes_);
-  is_resident_.assign(owners_.size(), 0);
-  wanted_.assign(owners_.size(), 0.0);
+  set_boxes(std::move(all_boxes));
 
   std::vector<std::shared_ptr<const Cluster>> ready(mine.size());
   std::vector<std::uint64_t> degenerate(mine.size());
@@ -244,13 +249,51 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   for (std::size_t i = 0; i < owners_.size(); ++i)
     bytes_of_others += owners_[i] == communicator.rank() ? 0 : packed_bytes_[i];
   has_room_for_all_ = options.cache_bytes >= kBytesWithStructure * bytes_of_others;
-  is_kept_.assign(owners_.size(), 0);
   gather(Joined::none);
   const std::uint64_t all_bytes = comm::all_reduce_value(communicator, bytes(), std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
   degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
   note_bytes();
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+SharedScene::SharedScene(std::unique_ptr<const PackedClusters> file, shading::Shader shader,
+                         LightTable lights, const ShareOptions& options)
+    : file_(std::move(file)),
+      shader_(std::move(shader)),
+      alphas_(least_alphas(shader_)),
+      lights_(std::move(lights)),
+      build_(options.build),
+      device_(build_) {
+  std::uint64_t all = 0;
+  for (std::uint32_t i = 0; i < file_->size(); ++i) {
+    packed_bytes_.push_back(file_->bytes(i));
+    all += packed_bytes_.back();
+    has_instances_ = has_instances_ || file_->is_instanced(i);
+  }
+  owners_.assign(file_->size(), kFile);
+  set_boxes(std::vector<ClusterBox>(file_->boxes()));
+  has_room_for_all_ = options.cache_bytes >= kBytesWithStructure * all;
+  cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : kBytesWithStructure * all / 10;
+  gather(Joined::none);
+}
+
+SharedScene SharedScene::of_pack(const packs::PackReader& pack, const scenes::Scene& scene,
+                                 const geometry::Box3& box, const ShareOptions& options) {
+  shading::Shader shader = shading::make_shader(scene);
+  LightTable lights = lights_around(scene, box, shader);
+  auto file =
+      std::make_unique<const PackedClusters>(pack, scene, shader, options.build.share_meshes);
+  return SharedScene(std::move(file), std::move(shader), std::move(lights), options);
+}
+
+void SharedScene::set_boxes(std::vector<ClusterBox>&& boxes) {
+  for (const ClusterBox& box : boxes) bounds_.include(box.box);
+  boxes_ = std::move(boxes);
+  everywhere_ = ClusterTree(boxes_);
+  is_resident_.assign(owners_.size(), 0);
+  is_kept_.assign(owners_.size(), 0);
+  wanted_.assign(owners_.size(), 0.0);
 }
 
 std::uint64_t SharedScene::bytes() const {

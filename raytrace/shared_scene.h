@@ -11,6 +11,7 @@
 #include "comm/communicator.h"
 #include "raytrace/distributed/cluster_scene.h"
 #include "raytrace/distributed/cluster_tree.h"
+#include "raytrace/distributed/packed_clusters.h"
 #include "raytrace/sampling/light_table.h"
 #include "scenes/generate.h"
 #include "scenes/scene.h"
@@ -54,6 +55,12 @@ class SharedScene {
   // rank ever has more than its own. Nothing in a part may glow.
   static SharedScene make(comm::Communicator& communicator, scenes::ScenePart&& part,
                           const ShareOptions& options);
+  // Of a pack whose surfaces do not glow: every rank reads clusters from the file when rays want
+  // them, and none travels. `scene` is what the pack has besides triangles, with the lights, `box`
+  // the extent of the whole. Refers to pack and scene. For distributions that fetch clusters and
+  // send no rays. Not collective; frames may throw files::FileError.
+  static SharedScene of_pack(const packs::PackReader& pack, const scenes::Scene& scene,
+                             const geometry::Box3& box, const ShareOptions& options);
   // Collective. The clusters are this rank's part, shader and lights are those of the whole scene.
   SharedScene(comm::Communicator& communicator, shading::Shader shader, LightTable lights,
               std::vector<ClusterData>&& mine, const ShareOptions& options);
@@ -62,7 +69,11 @@ class SharedScene {
   const LightTable& lights() const { return lights_; }
   geometry::Box3 bounds() const { return bounds_; }
   std::uint32_t clusters() const { return static_cast<std::uint32_t>(owners_.size()); }
+  // A rank, or kFile.
+  static constexpr int kFile = -1;
   int owner(std::uint32_t cluster) const { return owners_[cluster]; }
+  // The pack that clusters are read from, where no rank owns any; otherwise null.
+  const PackedClusters* file() const { return file_.get(); }
   std::uint64_t packed_bytes(std::uint32_t cluster) const { return packed_bytes_[cluster]; }
   // Whether any instance of the whole scene is an Embree instance, or can be seen through.
   bool has_instances() const { return has_instances_; }
@@ -130,6 +141,9 @@ class SharedScene {
   std::uint64_t degenerate() const { return degenerate_; }
 
  private:
+  SharedScene(std::unique_ptr<const PackedClusters> file, shading::Shader shader, LightTable lights,
+              const ShareOptions& options);
+  void set_boxes(std::vector<ClusterBox>&& boxes);
   void note_bytes();
   void drop_old();
   // Clusters of the cache that are resident beside those that this rank owns. Within a frame none
@@ -158,6 +172,7 @@ class SharedScene {
     std::uint64_t bytes = 0;                    // with its own structure, whether it has one or not
     std::list<std::uint32_t>::iterator use;     // of those that are not kept
   };
+  std::unique_ptr<const PackedClusters> file_;
   shading::Shader shader_;
   std::vector<LeastAlpha> alphas_;  // of its textures
   LightTable lights_;

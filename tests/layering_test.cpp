@@ -31,7 +31,7 @@ const std::map<std::string, Names>& arrows() {
         {"delaunay", {"parallel", "loadbalance", "comm"}},
         {"shading", {"scenes", "image", "parallel"}},
         {"composite", {"image", "comm", "parallel"}},
-        {"raytrace", {"shading", "scenes", "image", "loadbalance", "comm", "parallel"}},
+        {"raytrace", {"shading", "packs", "scenes", "image", "loadbalance", "comm", "parallel"}},
         {"raster",
          {"composite", "shading", "packs", "scenes", "image", "loadbalance", "comm", "parallel"}},
     };

@@ -4,13 +4,17 @@
 // A rank that a ray comes to intersects it with all that it has, so that no ray need go to a rank
 // twice. Degenerate: a ray remembers a few ranks only, and may go to one again that it has
 // forgotten; it learns nothing there.
+#include <algorithm>
 #include <cstddef>
 #include <unordered_set>
 
+#include "parallel/parallel_for.h"
 #include "raytrace/distributed/ray_router.h"
 
 namespace delray::raytrace {
 namespace {
+
+constexpr std::size_t kMostRead = 32;  // clusters at a time: some megabytes, work for all threads
 
 class ClusterRouter final : public RayRouter {
  public:
@@ -25,13 +29,15 @@ class ClusterRouter final : public RayRouter {
 
   void choose_next(const Line& line, Progression& way) const override {
     way.next = kMiss;
-    if (way.has_been_everywhere(context_.messenger.ranks())) return;
     const SharedScene& scene = context_.scene;
+    const bool from_file = scene.file() != nullptr;  // where no ray needs to go to another rank
+    if (!from_file && way.has_been_everywhere(context_.messenger.ranks())) return;
     for (;;) {
       const ClusterHit hit = scene.elsewhere().next(line, way.last);
       if (hit.cluster == kNoCluster) return;
       way.last = hit;
-      if (way.has_been_at(scene.owner(hit.cluster)) || way.has_met(hit.cluster)) continue;
+      if (way.has_met(hit.cluster)) continue;
+      if (!from_file && way.has_been_at(scene.owner(hit.cluster))) continue;
       way.next = hit.cluster;
       return;
     }
@@ -56,6 +62,12 @@ class ClusterRouter final : public RayRouter {
   }
 
   void take_turn(bool idle) override {
+    send_or_fetch(idle);
+    read_from_file();
+  }
+
+ private:
+  void send_or_fetch(bool idle) {
     auto& by_cluster = context_.waiting.by_cluster;
     for (auto at = by_cluster.begin(); at != by_cluster.end();) {
       const std::uint32_t cluster = at->first;
@@ -69,7 +81,10 @@ class ClusterRouter final : public RayRouter {
           ++at;
           break;
         case RoutingDecision::fetch_cluster:
-          fetch(cluster);
+          if (context_.scene.file() != nullptr)
+            to_read_.push_back(cluster);
+          else
+            fetch(cluster);
           ++at;
           break;
         case RoutingDecision::send_rays: {
@@ -83,7 +98,23 @@ class ClusterRouter final : public RayRouter {
     }
   }
 
- private:
+  // Some at a time, by all threads; others are decided about again.
+  void read_from_file() {
+    SharedScene& scene = context_.scene;
+    const std::size_t count = std::min(to_read_.size(), kMostRead);
+    std::vector<ClusterData> read(count);
+    parallel::parallel_for(0, count, 1, [&](std::size_t i) {
+      read[i] = scene.file()->read(to_read_[i], scene.shader());
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      ++context_.counts.clusters_fetched;
+      context_.counts.cluster_bytes += scene.file()->bytes_in_file(to_read_[i]);
+      context_.waiting.arrived.emplace_back(to_read_[i],
+                                            scene.put(to_read_[i], std::move(read[i])));
+    }
+    to_read_.clear();
+  }
+
   WaitingList waiting_list(std::uint32_t cluster, const RayQueue& waiting, bool idle) const {
     WaitingList list;
     list.cluster = cluster;
@@ -113,6 +144,7 @@ class ClusterRouter final : public RayRouter {
   const Distribution& distribution_;
   RoutingContext context_;
   std::unordered_set<std::uint32_t> fetching_;  // clusters that were asked for
+  std::vector<std::uint32_t> to_read_;          // likewise, of a file
 };
 
 }  // namespace

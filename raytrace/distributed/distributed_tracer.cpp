@@ -61,7 +61,8 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       last_sample_(frame.options.part.first_sample + samples_of(frame.options)),
       ready_at_once_(kReadyAtOnce),
       most_in_flight_(distribution.fetches ? kMostFetchingTasks : kMostPixelTasks),
-      passes_tiles_on_(!(distribution.fetches && scene.has_room_for_all())),
+      passes_tiles_on_(scene.file() == nullptr &&
+                       !(distribution.fetches && scene.has_room_for_all())),
       plans_tiles_(distribution.plans_tiles && passes_tiles_on_ && communicator.size() > 1),
       plan_(plan),
       kernels_{scene.has_instances()},
@@ -140,7 +141,7 @@ bool DistributedTracer::serve() {
   const std::uint64_t before = messenger_.sent();
   router_->take_turn(!any);
   send_all(!any);
-  return any || messenger_.sent() != before;
+  return any || messenger_.sent() != before || !waiting_.arrived.empty();
 }
 
 void DistributedTracer::wait_a_moment() {

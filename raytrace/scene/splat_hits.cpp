@@ -19,7 +19,7 @@ using ShapeKind = scenes::Shape::Kind;
 
 constexpr std::size_t kGrain = 1 << 14;  // points: some ten microseconds
 
-glm::vec3 unit(const glm::vec3& v, const glm::vec3& otherwise) {
+glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
   const float squared = glm::dot(v, v);
   return squared > 0 ? v * (1.0F / std::sqrt(squared)) : otherwise;
 }
@@ -38,7 +38,7 @@ glm::vec3 from_octahedron(const glm::vec2& at) {
   glm::vec3 n(at.x, at.y, 1 - std::abs(at.x) - std::abs(at.y));
   if (n.z < 0)
     n = {(1 - std::abs(at.y)) * sign_of(at.x), (1 - std::abs(at.x)) * sign_of(at.y), n.z};
-  return unit(n, {0, 0, 1});
+  return unit_or(n, {0, 0, 1});
 }
 
 constexpr float kSteps = 4095;  // of a coordinate in 12 bits
@@ -56,7 +56,7 @@ glm::vec2 unpacked(float value) {
 
 glm::vec3 normal_of(const GeometryInstance& instance, std::uint32_t vertex) {
   const glm::vec3& normal = instance.mesh->normals[vertex];
-  return unit(instance.identity ? normal : instance.normal_to_world * normal, {0, 0, 1});
+  return unit_or(instance.identity ? normal : instance.normal_to_world * normal, {0, 0, 1});
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ void keep_place(const Splats& splats, std::uint32_t number, const SplatRay& ray,
     return;
   }
   const glm::vec3 normal =
-      splats.normals.empty() ? -unit(ray.direction, {0, 0, 1}) : splats.normals[number];
+      splats.normals.empty() ? -unit_or(ray.direction, {0, 0, 1}) : splats.normals[number];
   const geometry::Frame frame = geometry::frame_around(normal);
   const glm::vec3 apart =
       (ray.origin - glm::vec3(splats.places[number])) + ray.direction * ray.distance;
