@@ -28,6 +28,15 @@ CacheCounts CacheCounts::operator-(const CacheCounts& before) const {
           bytes_read - before.bytes_read};
 }
 
+void CacheCounts::operator+=(const CacheCounts& other) {
+  hits += other.hits;
+  misses += other.misses;
+  stalls += other.stalls;
+  stall_seconds += other.stall_seconds;
+  pages_read += other.pages_read;
+  bytes_read += other.bytes_read;
+}
+
 PageCache::PageCache(Make make, BytesOf bytes_of, std::uint64_t limit, int threads)
     : make_(std::move(make)), bytes_of_(std::move(bytes_of)), limit_(limit) {
   for (int i = 0; i < threads; ++i)

@@ -30,6 +30,7 @@ struct CacheCounts {
   std::uint64_t pages_read = 0, bytes_read = 0;
 
   CacheCounts operator-(const CacheCounts& before) const;
+  void operator+=(const CacheCounts& other);
 };
 
 // A cache by least recent use (Correa, Klosowski and Silva 2002, with threads that fetch). What

@@ -22,6 +22,7 @@
 #include "loadbalance/cost_model.h"
 #include "loadbalance/partition.h"
 #include "packs/pack_reader.h"
+#include "packs/page_cache.h"
 #include "parallel/progress.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
@@ -140,9 +141,7 @@ struct PackCounts {
   std::uint64_t clusters = 0;      // of the pages that were drawn
   // Of the pages that were drawn the triangles by level, the finest first; the last has all beyond.
   std::array<std::uint64_t, kLevels> levels{};
-  // See packs::CacheCounts: with several threads these depend on which of them was faster.
-  std::uint64_t pages_read = 0, bytes_read = 0, hits = 0, misses = 0, stalls = 0;
-  double stall_seconds = 0;
+  packs::CacheCounts cache;  // with several threads these depend on which of them was faster
 
   void operator+=(const PackCounts& other);
 };

@@ -11,9 +11,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "apps/render/frame_budget.h"
 #include "apps/render/write_picture.h"
 #include "apps/statistics.h"
 #include "comm/agreed_pipeline.h"
+#include "comm/collectives.h"
 #include "parallel/arena.h"
 #include "scenes/camera_path.h"
 
@@ -24,6 +26,11 @@ namespace {
 // the others do not need, as far as memory for pictures is not worth more.
 std::size_t default_slots() {
   return static_cast<std::size_t>(std::clamp(parallel::arena_threads() + 2, 4, 8));
+}
+
+// What rank 0 has chosen.
+double agreed(comm::Communicator& communicator, double value) {
+  return comm::broadcast(communicator, 0, comm::Buffer::of_value(value)).as<double>()[0];
 }
 
 // The state of one frame on its way.
@@ -74,6 +81,8 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
   std::vector<Slot> slots(animation.slots);
   std::vector<parallel::PipelineStage> stages;
   std::size_t done = 0;  // frames that are not the pipeline's at hand
+  std::optional<FrameBudget> budget;
+  if (request.frame_milliseconds > 0) budget.emplace(request.frame_milliseconds * 1e-3);
   const auto add = [&](std::string name, bool in_order, auto run) {
     stages.push_back({std::move(name), in_order, [&, run](std::size_t item, std::size_t slot) {
                         Stopwatch watch;
@@ -105,7 +114,19 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
   } else {
     add("render", true, [&](std::size_t i, Slot& slot) {
       slot.seconds = 0;
+      double error = request.raster.error;
+      if (budget) {
+        error = agreed(communicator, budget->error());
+        renderer.set_error(error);
+      }
+      Stopwatch watch;
       Frame frame = renderer.render(communicator, cameras[i]);
+      if (budget) budget->took(watch.lap());
+      const auto* const drawn = std::get_if<raster::Statistics>(&frame.statistics);
+      if (prepared.pack && drawn != nullptr && first_rank) {
+        animation.errors.push_back(error);
+        animation.triangles.push_back(drawn->triangles_rasterized);
+      }
       finish(i, slot, std::move(frame.picture), std::move(frame.statistics));
     });
   }

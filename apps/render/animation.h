@@ -28,6 +28,9 @@ std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
 struct Animation {
   Frames frames;  // the statistics are the last one's; the picture has gone to its file
   std::string hash;
+  // Of each frame, where it is a pack's: the bound of error that it had, and triangles drawn.
+  std::vector<double> errors;
+  std::vector<std::uint64_t> triangles;
   std::vector<std::string> stages;
   std::size_t empty_frames = 0;   // that show nothing of the scene
   std::size_t slots = 0;          // frames in the making at the same time

@@ -302,6 +302,20 @@ std::vector<RenderOption> pack_options() {
             return r.sharing.schedule.empty() ? "" : "--schedule";
           }))
           .reported("error", strategy_that(&raster::Strategy::packs)),
+      RenderOption::of(
+          "--frame-time", [](auto& r) -> auto& { return r.frame_milliseconds; }, group::kRasterizer,
+          "Of animations of packs: milliseconds that a frame is to take; the bound of error "
+          "follows "
+          "from what the frames before took")
+          .check(number_between(0.1, 1e6))
+          .type_name("MS")
+          .excludes("--error")
+          .unless(unless_raster([](const RenderRequest& r) -> std::string {
+            if (!r.is_animation()) return "a single picture";
+            if (!strategy_of(r).packs) return "--strategy " + r.raster.strategy;
+            return r.sharing.schedule.empty() ? "" : "--schedule";
+          }))
+          .reported("frame_time", [](const RenderRequest& r) { return r.frame_milliseconds > 0; }),
   };
 }
 

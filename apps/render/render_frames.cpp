@@ -177,12 +177,23 @@ void require_memory_for_textures(const RenderRequest& request, const scenes::Sce
                                              request.scene.file.path, "textures");
 }
 
-// Whether pages of a pack are read while they are drawn; otherwise it is unpacked, into memory.
+// Whether pages of a pack are read while they are drawn, or rays want them; otherwise it is
+// unpacked, into memory.
 bool reads_pages(const RenderRequest& request) {
-  return request.engine == Engine::raster &&
-         raster::find_strategy(request.raster.strategy)->packs &&
-         request.sharing.schedule.empty() && request.raster.blend == raster::Blend::by_owner &&
-         !request.layout.wall && input_kind_of(request.scene.file) == InputKind::pack;
+  if (request.layout.wall || input_kind_of(request.scene.file) != InputKind::pack) return false;
+  if (request.engine == Engine::raytrace) {
+    const raytrace::Distribution& data = *raytrace::find_distribution(request.data);
+    return data.fetches && !data.chooses && request.sampling.checkpoint.empty();
+  }
+  return raster::find_strategy(request.raster.strategy)->packs &&
+         request.sharing.schedule.empty() && request.raster.blend == raster::Blend::by_owner;
+}
+
+// Whether rays have to be sent to surfaces, as they are lights.
+bool has_glow(const scenes::Scene& scene) {
+  return std::ranges::any_of(scene.materials, [](const scenes::Material& material) {
+    return material.emission != glm::vec3(0.0F);
+  });
 }
 
 std::shared_ptr<Prepared> open_pack(const RenderRequest& request) {
@@ -194,6 +205,10 @@ std::shared_ptr<Prepared> open_pack(const RenderRequest& request) {
   prepared->scene = pack->take_scene();
   if (!request.scene.up.empty()) prepared->scene.z_up = request.scene.up == "z";
   prepared->triangles = pack->first_primitives().back();
+  for (const scenes::Instance& instance : prepared->scene.instances) {
+    const packs::MeshRow& mesh = pack->meshes()[instance.mesh];
+    if (mesh.shape.kind != scenes::Shape::Kind::triangle) prepared->points += mesh.triangles;
+  }
   prepared->vertices = pack->vertices();
   prepared->pack = std::move(pack);
   return prepared;
@@ -227,16 +242,20 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
 // Loads the scene, or of one that comes in parts what is no geometry.
 std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
-  if (reads_pages(request)) return open_pack(request);
-  if (request.raster.error > 0) {
+  if (reads_pages(request)) {
+    std::shared_ptr<Prepared> prepared = open_pack(request);
+    if (request.engine == Engine::raster || !has_glow(prepared->scene)) return prepared;
+  }
+  if (request.raster.error > 0 || request.frame_milliseconds > 0) {
     const std::string& path = request.scene.file.path;
+    const char* const option = request.raster.error > 0 ? "--error" : "--frame-time";
     throw UsageError(
         input_kind_of(request.scene.file) == InputKind::pack
-            ? fmt::format(
-                  "--error: {} is unpacked here, as sort-last and sort-first alone, without "
-                  "--wall, --schedule and --blend by-cell, read a pack in parts",
-                  path)
-            : fmt::format("--error is for packs, whose levels it chooses from; {} is none", path));
+            ? fmt::format("{}: {} is unpacked here, as sort-last and sort-first alone, without "
+                          "--wall, --schedule and --blend by-cell, read a pack in parts",
+                          option, path)
+            : fmt::format("{} is for packs, whose levels it chooses from; {} is none", option,
+                          path));
   }
   auto prepared = std::make_shared<Prepared>();
   prepared->in_parts = in_parts;
@@ -405,6 +424,14 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
 FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& prepared,
                              const RenderRequest& request, parallel::Progress* progress)
     : prepared_(prepared), request_(request), progress_(progress) {
+  if (prepared.pack && request.engine == Engine::raytrace) {
+    const geometry::Box3 box = scenes::bounds(packs::farthest_points(*prepared.pack));
+    raytrace::ShareOptions options = share_options(request);
+    if (options.cache_bytes == 0) options.cache_bytes = pack_memory(request, prepared).cache_bytes;
+    shared_.emplace(raytrace::SharedScene::of_pack(*prepared.pack, prepared.scene, box, options));
+    raytrace_.emplace(*shared_, *raytrace::find_distribution(request.data));
+    return;
+  }
   if (prepared.pack) {
     raster_.emplace(*prepared.pack, prepared.scene, pack_memory(request, prepared),
                     prepared.shader);
@@ -440,8 +467,9 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
   Frame frame;
   const int ranks = communicator.size();
   if (raster_) {
-    raster::Result result =
-        raster_->render(communicator, camera, raster_options(request_, window, ranks), progress_);
+    raster::RenderOptions options = raster_options(request_, window, ranks);
+    options.error = error_.value_or(options.error);
+    raster::Result result = raster_->render(communicator, camera, options, progress_);
     frame.picture = std::move(result.picture);
     frame.shown = std::move(result.shown);
     frame.statistics = std::move(result.statistics);

@@ -84,6 +84,8 @@ class FrameRenderer {
   }
   Frame render(comm::Communicator& communicator, const scenes::Camera& camera,
                const geometry::Rect& window);
+  // Another bound of error, of packs (raster::RenderOptions::error), from the next frame on.
+  void set_error(double error) { error_ = error; }
   // Gives the memory of a picture, as render returned it, to the next frame where that takes less
   // time so.
   void recycle(Picture&& picture) {
@@ -102,6 +104,7 @@ class FrameRenderer {
   std::optional<raster::Renderer> raster_;       // one of the two
   std::optional<raytrace::SharedScene> shared_;  // of the next, with some --data
   std::optional<raytrace::Renderer> raytrace_;
+  std::optional<double> error_;
   double load_seconds_ = 0, build_seconds_ = 0;
 };
 

@@ -41,6 +41,7 @@ struct RenderRequest {
   Engine engine = Engine::raster;
   std::string camera_path;
   int frames = 1, turntable = 0, frames_at_once = 0;  // 0: by the threads
+  double frame_milliseconds = 0;  // of an animation of a pack; 0: however long it takes
   bool list = false, legend = false;
   SurfaceLighting shading = SurfaceLighting::phong;
   Sharing sharing;

@@ -70,12 +70,12 @@ Json json_of(const raster::PackCounts& pack) {
           {"pages_hidden", pack.pages_hidden},
           {"clusters", pack.clusters},
           {"levels", levels},
-          {"pages_read", pack.pages_read},
-          {"bytes_read", pack.bytes_read},
-          {"hits", pack.hits},
-          {"misses", pack.misses},
-          {"stalls", pack.stalls},
-          {"stall_seconds", pack.stall_seconds}};
+          {"pages_read", pack.cache.pages_read},
+          {"bytes_read", pack.cache.bytes_read},
+          {"hits", pack.cache.hits},
+          {"misses", pack.cache.misses},
+          {"stalls", pack.cache.stalls},
+          {"stall_seconds", pack.cache.stall_seconds}};
 }
 Json pack_of(const raster::Statistics& s) { return s.pack ? json_of(*s.pack) : Json(nullptr); }
 Json pack_of(const raytrace::Statistics&) { return nullptr; }
@@ -228,7 +228,7 @@ Json animation_statistics(const Animation& animation) {
                       {"seconds", animation.all.stages[i]},
                       {"seconds_alone", animation.alone.stages[i]}});
   }
-  return {
+  Json statistics = {
       {"frames", animation.frames.seconds.size()},
       {"frames_at_once", animation.slots},
       {"stages", stages},
@@ -238,6 +238,15 @@ Json animation_statistics(const Animation& animation) {
       {"predicted_seconds", animation.predicted_seconds()},
       {"speed_up", animation.speed_up()},
       {"predicted_speed_up", animation.predicted_speed_up()}};
+  if (!animation.errors.empty()) {
+    Json& rows = statistics["each"] = Json::array();
+    for (std::size_t i = 0; i < animation.errors.size(); ++i) {
+      rows.push_back({{"seconds", animation.frames.seconds[i]},
+                      {"error", animation.errors[i]},
+                      {"triangles", animation.triangles[i]}});
+    }
+  }
+  return statistics;
 }
 
 }  // namespace delray::apps

@@ -83,12 +83,7 @@ void PackCounts::operator+=(const PackCounts& other) {
   pages_hidden += other.pages_hidden;
   clusters += other.clusters;
   for (std::size_t level = 0; level < kLevels; ++level) levels[level] += other.levels[level];
-  pages_read += other.pages_read;
-  bytes_read += other.bytes_read;
-  hits += other.hits;
-  misses += other.misses;
-  stalls += other.stalls;
-  stall_seconds += other.stall_seconds;
+  cache += other.cache;
 }
 
 void Phases::operator+=(const Phases& other) {

@@ -31,8 +31,12 @@ float stretch_of(const glm::mat4x3& transform) {
 ErrorOnScreen::ErrorOnScreen(const Screen& screen, const PreparedDraw& draw, double most)
     : screen_(screen), draw_(draw) {
   const scenes::View& view = screen.view;
-  const float x = std::max(view.half_width, static_cast<float>(view.width) - view.half_width);
-  const float y = std::max(view.half_height, static_cast<float>(view.height) - view.half_height);
+  // Of the whole frame, so that a window of it shows the same levels.
+  const geometry::Rect& frame = screen.whole;
+  const float x = std::max(view.half_width - static_cast<float>(frame.x0),
+                           static_cast<float>(frame.x1) - view.half_width);
+  const float y = std::max(view.half_height - static_cast<float>(frame.y0),
+                           static_cast<float>(frame.y1) - view.half_height);
   const float slant =
       view.orthographic ? 1.0F : std::sqrt(1 + (x * x + y * y) / (view.scale * view.scale));
   factor_ = stretch_of(*draw.draw->transform) * view.scale * slant * (1 + kRoundingOfErrors) /

@@ -109,16 +109,7 @@ void PackedDrawing::draw(RegionDrawing& drawing) {
   packed_.cache.cancel();
 }
 
-void PackedDrawing::count() {
-  const packs::CacheCounts taken = packed_.cache.counts() - before_;
-  PackCounts& pack = rank_.pack;
-  pack.pages_read += taken.pages_read;
-  pack.bytes_read += taken.bytes_read;
-  pack.hits += taken.hits;
-  pack.misses += taken.misses;
-  pack.stalls += taken.stalls;
-  pack.stall_seconds += taken.stall_seconds;
-}
+void PackedDrawing::count() { rank_.pack.cache += packed_.cache.counts() - before_; }
 
 void PackedDrawing::hold(std::span<const std::uint32_t> draws) {
   std::size_t got = 0;

@@ -1,9 +1,11 @@
 // delray pack, and what becomes of packs.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "packs/pack_reader.h"
 #include "tests/support/run_program.h"
@@ -53,6 +55,110 @@ TEST(Pack, OfModelsRendersAsTheyDo) {
   for (const std::string name : {"spot.obj", "2CylinderEngine.glb"})
     expect_same_pictures(folder, data + name);
   expect_same_pictures(folder, data + "autzen_trim.las", " --color-by z");
+}
+
+// Points with heights, some of them far off the others.
+std::string points_with_heights(int n) {
+  std::mt19937 random(20261127);
+  std::string text;
+  for (int i = 0; i < n; ++i) {
+    const double x = random() % 100000 * 1e-2 + 5e5, y = random() % 100000 * 1e-2 + 4e6;
+    const double far = i % 997 == 5 ? 1e5 : 0;
+    text += std::to_string(x + far) + " " + std::to_string(y) + " " +
+            std::to_string(100 * std::sin(x * 0.02) * std::cos(y * 0.013)) + "\n";
+  }
+  return text;
+}
+
+TEST(Pack, OfAFolderHasThePictureOfItsMesh) {
+  const Folder folder;
+  folder.write("p.xyz", points_with_heights(3000));
+  ASSERT_EQ(run("delray triangulate p.xyz -o m.ply -q", folder.path()).exit_code, 0);
+  for (const std::string format : {"", " --pieces ply"}) {
+    ASSERT_EQ(run("delray triangulate p.xyz -o m/ --tiles 7 -q" + format, folder.path()).exit_code,
+              0);
+    for (const std::string how : {"", " --color-by material --up y", " --exaggeration 3"}) {
+      ASSERT_EQ(run("delray pack m/ -o m.pack -q" + how, folder.path()).exit_code, 0);
+      const Json expected = rendered(folder, "m.ply", how);
+      const Json found = rendered(folder, "m.pack", "--ranks 2");
+      EXPECT_EQ(found["image"]["hash"], expected["image"]["hash"]) << format << how;
+      EXPECT_EQ(found["scene"]["triangles"], expected["scene"]["triangles"]);
+    }
+    std::filesystem::remove_all(folder / "m");
+  }
+  // Colours by number are those of the folder in memory, which numbers as its pieces do.
+  ASSERT_EQ(run("delray triangulate p.xyz -o m/ --tiles 4 -q", folder.path()).exit_code, 0);
+  ASSERT_EQ(run("delray pack m/ -o m.pack -q --color-by simplex", folder.path()).exit_code, 0);
+  EXPECT_EQ(rendered(folder, "m.pack", "")["image"]["hash"],
+            rendered(folder, "m/", "--color-by simplex")["image"]["hash"]);
+  for (const std::string wrong : {"--color-by rgb", "--show-as points", "--duplicates min"})
+    EXPECT_EQ(run("delray pack m/ -o n.pack " + wrong, folder.path()).exit_code, 2) << wrong;
+  EXPECT_FALSE(std::filesystem::exists(folder / "n.pack"));
+}
+
+TEST(Pack, OfPointsHasTheirPicture) {
+  const Folder folder;
+  folder.write("p.xyz", points_with_heights(2000));
+  for (const std::string how :
+       {" --show-as points", " --show-as discs --point-size 3", " --show-as spheres --radius 4"}) {
+    ASSERT_EQ(run("delray pack p.xyz -o p.pack -q" + how, folder.path()).exit_code, 0) << how;
+    for (const std::string options : {"", " --ranks 3", " --engine raytrace"}) {
+      if (how == " --show-as points" && !options.ends_with('3') && !options.empty()) continue;
+      const Json expected = rendered(folder, "p.xyz", how + options);
+      const Json found = rendered(folder, "p.pack", options);
+      EXPECT_EQ(found["image"]["hash"], expected["image"]["hash"]) << how << options;
+      EXPECT_EQ(found["scene"]["points"], expected["scene"]["points"]);
+    }
+    const Json coarse = rendered(folder, "p.pack", "--error 20");
+    EXPECT_GT(coarse["pack"]["levels"].size(), 1U) << how;
+  }
+}
+
+TEST(Pack, IsVerifiedAsAWhole) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:terrain:5000 -o s.pack -q", folder.path()).exit_code, 0);
+  const Ran good = run("delray verify s.pack", folder.path());
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_NE(good.out.find("valid: yes"), std::string::npos);
+  EXPECT_EQ(run("delray verify s.pack --points s.pack", folder.path()).exit_code, 2);
+  EXPECT_EQ(run("delray verify s.pack --canonical", folder.path()).exit_code, 2);
+  std::uint64_t place = 0, last = 0;
+  {
+    const packs::PackReader pack(folder / "s.pack");
+    place = pack.pages()[7].offset;
+    last = pack.pages().back().offset;
+  }
+  std::string content = folder.read("s.pack");
+  content[place] = static_cast<char>(content[place] ^ 1);
+  content[last] = static_cast<char>(content[last] ^ 1);
+  folder.write("t.pack", content);
+  const Ran bad = run("delray verify t.pack --threads 2", folder.path());
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_NE(bad.err.find("t.pack: page 7, byte " + std::to_string(place)), std::string::npos)
+      << bad.err;
+}
+
+TEST(Pack, FramesInTimeHaveTheErrorThatFits) {
+  const Folder folder;
+  ASSERT_EQ(run("delray pack gen:terrain:20000 -o s.pack -q", folder.path()).exit_code, 0);
+  const auto errors_of = [&](const std::string& time, const std::string& how = "") {
+    const Ran ran =
+        run("delray render s.pack -o a.png --size 160x100 --turntable 8 -q --stats - "
+            "--frame-time " +
+                time + how,
+            folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    return Json::parse(ran.out)["animation"]["each"];
+  };
+  const Json hasty = errors_of("0.1"), patient = errors_of("100000", " --ranks 2");
+  ASSERT_EQ(hasty.size(), 8U);
+  EXPECT_GT(hasty[7]["error"], hasty[0]["error"]);
+  EXPECT_LT(patient[7]["error"], 0.1);
+  EXPECT_GT(patient[7]["triangles"], hasty[7]["triangles"]);
+  for (const std::string wrong : {"s.pack -o a.png --frame-time 10",
+                                  "s.pack -o a.png --turntable 3 --frame-time 10 --error 1",
+                                  "gen:cornell -o a.png --turntable 3 --frame-time 10"})
+    EXPECT_EQ(run("delray render " + wrong, folder.path()).exit_code, 2) << wrong;
 }
 
 TEST(Pack, IsUnpackedForWhatDoesNotReadPages) {
@@ -113,15 +219,6 @@ TEST(Pack, WrongUsageIsTwo) {
     EXPECT_EQ(run("delray " + command, folder.path()).exit_code, 2) << command;
   }
   EXPECT_EQ(folder.files(), std::vector<std::string>{"s.pack"});
-}
-
-TEST(Pack, IsOfTriangles) {
-  const Folder folder;
-  folder.write("p.xyz", "0 0 0\n1 0 0\n0 1 1\n1 1 2\n");
-  const Ran ran = run("delray pack p.xyz --show-as points -o p.pack", folder.path());
-  EXPECT_EQ(ran.exit_code, 2) << ran.err;
-  EXPECT_NE(ran.err.find("relief"), std::string::npos) << ran.err;
-  EXPECT_EQ(run("delray pack p.xyz --show-as relief -q -o p.pack", folder.path()).exit_code, 0);
 }
 
 TEST(Pack, DamagedIsThreeAndAFailingDiskIsOne) {

@@ -56,12 +56,12 @@ std::size_t displaced(const image::Image8& a, const image::Image8& b, const scen
 
 TEST(PackedError, MovesNothingByMoreThanAPixel) {
   const tests::TemporaryFolder folder;
-  const scenes::Scene scene = scenes::generate("gen:terrain:150000");
+  const scenes::Scene scene = scenes::generate("gen:terrain:40000");
   packs::write_pack(folder / "a.pack", scene);
   const packs::PackReader pack(folder / "a.pack");
   RenderOptions options;
-  options.width = 200;
-  options.height = 150;
+  options.width = 100;
+  options.height = 75;
   for (int turn = 0; turn < 3; ++turn) {
     scenes::Camera camera = scene.cameras.front();
     camera.eye = glm::vec3(0.1F + static_cast<float>(turn), 0.9F, 1.7F - static_cast<float>(turn));
@@ -81,7 +81,7 @@ TEST(PackedError, MovesNothingByMoreThanAPixel) {
 
 TEST(PackedError, GivesOnePictureHoweverItIsSharedOut) {
   const tests::TemporaryFolder folder;
-  scenes::Scene scene = scenes::generate("gen:terrain:40000");
+  scenes::Scene scene = scenes::generate("gen:terrain:10000");
   scenes::Instance second = scene.instances[0];  // through the first
   second.transform[0].x = -1.3F;
   second.transform[3] = {0.2F, 0.05F, 0.1F};
@@ -89,8 +89,8 @@ TEST(PackedError, GivesOnePictureHoweverItIsSharedOut) {
   packs::write_pack(folder / "a.pack", scene);
   const packs::PackReader pack(folder / "a.pack");
   RenderOptions options;
-  options.width = 160;
-  options.height = 120;
+  options.width = 80;
+  options.height = 60;
   options.error = 2;
   const Result expected = of_pack(pack, scene.cameras.front(), options);
   EXPECT_GT(expected.statistics.pack->levels[1], 0U);
@@ -99,6 +99,32 @@ TEST(PackedError, GivesOnePictureHoweverItIsSharedOut) {
     for (const int ranks : {1, 2, 3, 5}) {
       const Result found = of_pack(pack, scene.cameras.front(), options, ranks, 1 + ranks % 3);
       EXPECT_TRUE(same_bytes(found.picture, expected.picture)) << strategy << " " << ranks;
+    }
+  }
+}
+
+TEST(PackedError, IsTheSameInAWindow) {
+  const tests::TemporaryFolder folder;
+  const scenes::Scene scene = scenes::generate("gen:terrain:10000");
+  packs::write_pack(folder / "a.pack", scene);
+  const packs::PackReader pack(folder / "a.pack");
+  RenderOptions options;
+  options.width = 90;
+  options.height = 70;
+  options.error = 1.5;
+  const Result whole = of_pack(pack, scene.cameras.front(), options);
+  const auto& all = std::get<image::Image8>(whole.picture);
+  for (const geometry::Rect window :
+       {geometry::Rect{0, 0, 40, 70}, {50, 10, 90, 61}, {33, 20, 50, 45}}) {
+    options.window = window;
+    const Result part = of_pack(pack, scene.cameras.front(), options, 2);
+    const auto& found = std::get<image::Image8>(part.picture);
+    for (int y = window.y0; y < window.y1; ++y) {
+      for (int x = window.x0; x < window.x1; ++x) {
+        const auto at = static_cast<std::size_t>(y * all.width + x);
+        const auto in = static_cast<std::size_t>((y - window.y0) * found.width + x - window.x0);
+        ASSERT_EQ(found.colour.span()[in], all.colour.span()[at]) << x << " " << y;
+      }
     }
   }
 }

@@ -105,10 +105,10 @@ TEST(PackedDrawing, CountsWhatItReads) {
   options.height = 64;
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
     Renderer renderer(pack, pack.scene(), {std::uint64_t{1} << 30, 0});
-    const PackCounts first =
-        *renderer.render(communicator, scene.cameras.front(), options).statistics.pack;
-    const PackCounts second =
-        *renderer.render(communicator, scene.cameras.front(), options).statistics.pack;
+    const packs::CacheCounts first =
+        renderer.render(communicator, scene.cameras.front(), options).statistics.pack->cache;
+    const packs::CacheCounts second =
+        renderer.render(communicator, scene.cameras.front(), options).statistics.pack->cache;
     EXPECT_GT(first.bytes_read, 0U);
     EXPECT_EQ(first.pages_read, first.misses);
     EXPECT_EQ(first.stalls, first.misses);
