@@ -174,6 +174,20 @@ TEST(Pack, IsUnpackedForWhatDoesNotReadPages) {
   }
 }
 
+TEST(Pack, IsReadWhileRaysAreTraced) {
+  const Folder folder;
+  for (const std::string scene : {"gen:terrain:20000", "gen:field:30000"}) {  // with instances
+    ASSERT_EQ(run("delray pack " + scene + " -o s.pack -q --exact-only", folder.path()).exit_code,
+              0);
+    const Json expected = rendered(folder, scene, "--engine raytrace");
+    for (const std::string options : {"--cache 1", "--ranks 3", "--ranks 2 --cache 0.2"}) {
+      const Json found = rendered(folder, "s.pack", "--engine raytrace --data object " + options);
+      EXPECT_EQ(found["image"]["hash"], expected["image"]["hash"]) << scene << " " << options;
+      EXPECT_GT(found["ranks"][0]["data"]["clusters_fetched"], 0) << scene << " " << options;
+    }
+  }
+}
+
 TEST(Pack, AnimationsReadWhatTheyShow) {
   const Folder folder;
   ASSERT_EQ(
