@@ -8,11 +8,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
+#include <thread>
 
 #include "apps/build_id.h"
 #include "apps/options/help.h"
 #include "apps/options/numbers.h"
+#include "apps/options/outputs.h"
 #include "apps/options/usage.h"
+#include "apps/record.h"
 #include "comm/failure.h"
 #include "comm/handshake.h"
 #include "comm/mpi.h"
@@ -94,6 +98,18 @@ void add_timeout_option(CLI::App& command, Launch& launch) {
 void check(const Session& session, const Launch& launch) {
   if (launch.timeout > 0 && !session.under_mpi && launch.ranks <= 1)
     throw UsageError("--timeout has no effect with a single rank, which waits for no other");
+  if (launch.record.empty()) return;
+  if (!session.under_mpi && launch.ranks <= 1)
+    throw UsageError("--record has no effect with a single rank, which sends no messages");
+  if (session.processes > 1 && !session.first_process) return;
+  std::vector<std::string> others;
+  for (const comm::Fact& option : session.options) {
+    if (option.what == "--record" || option.what == "command") continue;
+    others.push_back(option.value);
+    std::istringstream words(option.value);  // of an option that takes several
+    for (std::string one; words >> one;) others.push_back(one);
+  }
+  check_outputs({{"--record", launch.record}}, others);
 }
 
 void add_launch_options(CLI::App& command, Launch& launch) {
@@ -109,6 +125,11 @@ void add_launch_options(CLI::App& command, Launch& launch) {
       ->group(group::kParallel)
       ->transform(count_between(1, 4096));
   add_timeout_option(command, launch);
+  command
+      .add_option("--record", launch.record,
+                  "Ledger of what ranks send, receive and work, as JSON, for delray replay")
+      ->type_name("FILE")
+      ->group(group::kParallel);
 }
 
 int threads_per_rank(const Launch& launch, int ranks) {
@@ -142,15 +163,23 @@ void fail_where_ranks_meet(const Session& session, const std::string& why) {
 bool has_met_ranks() { return met_ranks; }
 
 void run_ranks(const Session& session, const Launch& launch, const std::vector<std::string>& inputs,
-               const std::function<void(comm::Communicator&)>& body, Waiting waiting) {
+               const std::function<void(comm::Communicator&)>& run, Waiting waiting) {
+  const int ranks_here = session.under_mpi ? processes_here() : std::max(1, launch.ranks);
+  const auto body = [&](comm::Communicator& communicator) {
+    if (launch.record.empty()) return run(communicator);
+    const auto busy = static_cast<unsigned>(ranks_here) *
+                      static_cast<unsigned>(threads_per_rank(launch, ranks_here));
+    run_recorded(communicator,
+                 {launch.record, session.command_line, busy <= std::thread::hardware_concurrency()},
+                 run);
+  };
   if (!session.under_mpi) {
-    const int ranks = std::max(1, launch.ranks);
-    comm::run_threads(ranks, threads_per_rank(launch, ranks), body,
+    comm::run_threads(ranks_here, threads_per_rank(launch, ranks_here), body,
                       {.timeout = timeout_of(launch), .on_stuck = end_process});
     return;
   }
   if (launch.ranks > 0) throw UsageError("--ranks: under mpirun the ranks are its processes");
-  const int threads = threads_per_rank(launch, processes_here());
+  const int threads = threads_per_rank(launch, ranks_here);
   comm::MpiOptions options;
   options.timeout = timeout_of(launch);
   met_ranks = true;

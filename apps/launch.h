@@ -16,6 +16,7 @@ struct Launch {
   int ranks = 0;       // 0: not given
   int threads = 0;     // workers per rank; 0: cores / ranks
   double timeout = 0;  // seconds that a rank waits for another; 0: without end
+  std::string record;  // the ledger to write; empty: none
 };
 
 // Finds out whether this process is one of several that an MPI launcher started.
@@ -29,12 +30,14 @@ int processes_here();
 void note_options(const CLI::App& program, const std::vector<std::string>& arguments,
                   Session& session);
 
-// Adds --ranks, --threads and --timeout.
+// Adds --ranks, --threads, --timeout and --record.
 void add_launch_options(CLI::App& command, Launch& launch);
 // --timeout alone.
 void add_timeout_option(CLI::App& command, Launch& launch);
 
-// Throws UsageError for --timeout where no rank waits for another.
+// Throws UsageError for --timeout and --record where no rank waits for another, and for a ledger
+// that would overwrite what the command reads or writes otherwise, FileError where none could be
+// written.
 void check(const Session& session, const Launch& launch);
 
 // The number of threads that each of `ranks` ranks on this machine gets.

@@ -109,6 +109,7 @@ int run(int argc, char** argv) {
   add_pack(program, session);
   add_compose(program, session);
   add_compare(program, session);
+  add_replay(program, session);
   add_completion(program, session);
   add_manual(program, session);
   program.footer(

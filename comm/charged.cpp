@@ -3,6 +3,7 @@
 // charged to nobody (direct execution: Covington et al. 1988).
 #include "comm/charged.h"
 
+#include <chrono>
 #include <utility>
 
 #include "parallel/processor_time.h"
@@ -11,15 +12,38 @@ namespace delray::comm {
 
 using parallel::processor_nanoseconds;
 
+namespace {
+
+std::int64_t clock_nanoseconds() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+void Charged::Clock::go_on() {
+  resumed = processor_nanoseconds();
+  if (!is_real) return;
+  resumed_at = clock_nanoseconds();
+  thread = std::this_thread::get_id();
+}
+
+std::int64_t Charged::Clock::passed() const {
+  if (is_real && (time == ChargedTime::clock || thread != std::this_thread::get_id()))
+    return clock_nanoseconds() - resumed_at;
+  return processor_nanoseconds() - resumed;
+}
+
 // While it lives, the thread does not work for this rank.
 class Charged::Call {
  public:
   explicit Call(const Charged& charged) : clock_(*charged.clock_) {
-    const std::int64_t passed = processor_nanoseconds() - clock_.resumed;
+    const std::int64_t passed = clock_.passed();
     if (passed > 0 && !clock_.is_told())
       charged.inner().work(Work::seconds_e9, static_cast<std::uint64_t>(passed));
   }
-  ~Call() { clock_.resumed = processor_nanoseconds(); }
+  ~Call() { clock_.go_on(); }
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
@@ -30,13 +54,20 @@ class Charged::Call {
 Charged::Charged(Communicator& inner, std::span<const Phase> told)
     : ForwardingCommunicator(inner), clock_(std::make_shared<Clock>()) {
   for (const Phase phase : told) clock_->told |= 1U << static_cast<unsigned>(phase);
-  clock_->resumed = processor_nanoseconds();
+  clock_->go_on();
+}
+
+Charged::Charged(Communicator& inner, ChargedTime time) : Charged(inner) {
+  clock_->is_real = true;
+  clock_->time = time;
+  clock_->go_on();
 }
 
 Charged::Charged(std::unique_ptr<Communicator> inner, std::shared_ptr<Clock> clock)
     : ForwardingCommunicator(std::move(inner)), clock_(std::move(clock)) {}
 
 double Charged::seconds() const {
+  if (clock_->is_real) return inner().seconds();
   const Call call(*this);
   return inner().seconds();
 }

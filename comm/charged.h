@@ -3,24 +3,32 @@
 
 #include <memory>
 #include <span>
+#include <thread>
 
 #include "comm/forwarding.h"
 
 namespace delray::comm {
 
-// Passes on to `inner`, as work, the processor time of the calling thread between one call and the
-// next, so that real code runs on the simulated machine in its own time (direct execution:
-// Covington et al. 1988). What the code itself tells of its work is left out: it is in that time.
-// Only in the phases `told` it is the other way round: there the code only counts what it would do,
-// and what it tells takes the time that it says.
-// Times, and with them the order of what waits for any message, differ from run to run as measured
-// times do.
+// Which time passes between two calls: the processor's at the calling thread, or that of the clock,
+// for code that has a core for each of its threads.
+enum class ChargedTime : std::uint8_t { processor, clock };
+
+// Passes on to `inner`, as work, the time between one call and the next, of the processor at the
+// calling thread, so that real code runs on the simulated machine in its own time (direct
+// execution: Covington et al. 1988), or that a recording of real ranks (comm/recording.h) knows
+// what they did between messages. Where the next call comes from another thread, it is the time of
+// the clock. What the code itself tells of its work is left out: it is in that time. Only in the
+// phases `told` it is the other way round: there the code only counts what it would do, and what it
+// tells takes the time that it says. Times, and with them the order of what waits for any message,
+// differ from run to run as measured times do.
 //
-// REQUIRES: ranks run on one thread, as they do in run_simulated, and loops over parallel/ inside
-// of an arena of one thread, entered before. `inner` outlives this and what is split from it.
+// REQUIRES: on the simulated machine, loops over parallel/ run inside of an arena of one thread,
+// entered before. `inner` outlives this and what is split from it.
 class Charged final : public ForwardingCommunicator {
  public:
   explicit Charged(Communicator& inner, std::span<const Phase> told = {});
+  // Of ranks whose time passes anyway: asking for the time charges nothing.
+  Charged(Communicator& inner, ChargedTime time);
 
   double seconds() const override;
 
@@ -36,9 +44,15 @@ class Charged final : public ForwardingCommunicator {
 
  private:
   struct Clock {
-    std::int64_t resumed = 0;    // processor time of the thread when the rank's code went on
+    std::int64_t resumed = 0;     // processor time of the thread when the rank's code went on
+    std::int64_t resumed_at = 0;  // the clock then
+    std::thread::id thread;       // which it was
+    bool is_real = false;         // time passes without being charged
+    ChargedTime time = ChargedTime::processor;
     std::uint32_t told = 0;      // bit k: of phase k
     Phase phase = Phase::other;  // marked last, on whichever communicator
+    void go_on();
+    std::int64_t passed() const;  // nanoseconds since go_on
     bool is_told() const { return (told >> static_cast<unsigned>(phase) & 1U) != 0; }
   };
   class Call;

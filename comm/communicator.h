@@ -93,7 +93,7 @@ class Communicator {
   virtual void send(int to, Tag tag, Buffer&& message) = 0;
   // Sends one message to several ranks: counts as a send to each, in this order, and is one unless
   // the communicator knows better. A bus that all ranks listen to carries it once
-  // (Network::is_bus).
+  // (Network::is_bus()).
   virtual void multicast(std::span<const int> to, Tag tag, Buffer&& message);
   // Waits for a message and takes it; first in, first out per source and tag.
   virtual Buffer receive(int from_or_any, Tag tag_or_any) = 0;

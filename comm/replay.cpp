@@ -24,9 +24,9 @@ double repeat(Communicator& communicator, const Network& network, const Event& e
       if (goes_on) return 0;
       const bool has_other = std::any_of(peers.begin(), peers.end(),
                                          [&](int peer) { return peer != communicator.rank(); });
-      const double messages = !has_other       ? 0
-                              : network.is_bus ? 1
-                                               : static_cast<double>(peers.size());
+      const double messages = !has_other         ? 0
+                              : network.is_bus() ? 1
+                                                 : static_cast<double>(peers.size());
       communicator.multicast(peers, event.tag, Buffer::standing_for(event.amount, Buffer()));
       peers.clear();
       return messages * handling(event.amount);

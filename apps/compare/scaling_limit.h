@@ -37,10 +37,18 @@ ScalingLimit limit_of(std::span<const ScaledFrame> frames, double alone);
 
 // `parts` are the names of the parts.
 Json limit_json(const ScalingLimit& limit, std::span<const char* const> parts);
+// Speed-up, efficiency, and the fraction that Amdahl's law takes for sequential
+// (parallel::serial_fraction), a dash for one rank: three cells and the columns over them.
+std::vector<report::Column> speed_up_columns(report::Source source);
+std::vector<std::string> speed_up_cells(double speed_up, int ranks);
+// The last as JSON: null for one rank.
+Json serial_fraction_json(double speed_up, int ranks);
+
 // For tables: what limit_cells() gives, after columns of the caller's.
 std::vector<report::Column> limit_columns();
-// Ranks, milliseconds, speed-up, efficiency; then the next number of ranks, its milliseconds, the
-// part that grows, and from what to what. Dashes where there is no next.
+// Ranks, milliseconds, speed-up, efficiency, sequential fraction; then the next number of ranks,
+// its milliseconds, what it gains (parallel::scalability), the part that grows, and from what to
+// what. Dashes where there is no next.
 std::vector<std::string> limit_cells(const ScalingLimit& limit, std::span<const char* const> parts);
 
 }  // namespace delray::apps

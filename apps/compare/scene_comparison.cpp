@@ -10,7 +10,7 @@
 #include "apps/options/help.h"
 #include "apps/options/numbers.h"
 #include "apps/terminal/progress_bar.h"
-#include "comm/network.h"
+#include "comm/network_file.h"
 #include "parallel/arena.h"
 
 namespace delray::apps {
@@ -27,6 +27,7 @@ void check_scene(const CLI::App& command, const Session& session, SceneCompariso
     throw UsageError("--ranks: under mpirun the ranks are its processes");
   std::sort(options.ranks.begin(), options.ranks.end());
   options.ranks.erase(std::unique(options.ranks.begin(), options.ranks.end()), options.ranks.end());
+  options.networks = networks_of(options.network, options.ranks, options.networks);
 }
 
 }  // namespace
@@ -47,6 +48,8 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
       ->delimiter(',')
       ->allow_extra_args(false)
       ->transform(count_between(1, 4096));
+  add_network_option(command, options.network,
+                     "(default: gigabit-ethernet,10-gigabit-ethernet,hdr-infiniband,shared-bus)");
 }
 
 int run_scene_comparison(
@@ -68,17 +71,11 @@ Json scene_json(const SceneComparison& options, const Prepared& prepared) {
   return {{"file", options.render.scene.file.path}, {"triangles", prepared.triangles}};
 }
 
-Json networks_json() {
-  Json networks = Json::array();
-  for (const comm::NamedNetwork& named : comm::networks()) {
-    networks.push_back({{"name", named.name},
-                        {"latency", named.network.latency},
-                        {"overhead", named.network.overhead},
-                        {"seconds_per_byte", named.network.seconds_per_byte},
-                        {"copy_seconds_per_byte", named.network.copy_seconds_per_byte},
-                        {"bus", named.network.is_bus}});
-  }
-  return networks;
+Json networks_json(std::span<const comm::NamedNetwork> networks) {
+  Json result = Json::array();
+  for (const comm::NamedNetwork& named : networks)
+    result.push_back(Json::parse(comm::network_text(named)));
+  return result;
 }
 
 }  // namespace delray::apps

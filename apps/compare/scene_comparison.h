@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/compare/comparison.h"
+#include "apps/options/network_option.h"
 #include "apps/render/render_frames.h"
 
 namespace delray::apps {
@@ -13,12 +14,17 @@ namespace delray::apps {
 struct SceneComparison : ComparisonOptions {
   RenderRequest render;  // scene, camera, size
   std::vector<int> ranks;
+  NetworkChoice network;
+  // Those by default; those chosen when run_scene_comparison() compares.
+  std::vector<comm::NamedNetwork> networks{comm::default_networks().begin(),
+                                           comm::default_networks().end()};
 };
 
 // More ranks than this do not run: they are predicted.
 inline constexpr int kMostMeasuredRanks = 64;
 
-// Adds SCENE, --size, the camera, and --ranks, which says `ranks` of its default and of many.
+// Adds SCENE, --size, the camera, --network, and --ranks, which says `ranks` of its default and of
+// many.
 void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
                                   const std::string& ranks);
 
@@ -29,7 +35,7 @@ int run_scene_comparison(
 
 // "scene" of their JSON.
 Json scene_json(const SceneComparison& options, const Prepared& prepared);
-// "networks": what predictions are of.
-Json networks_json();
+// "networks": what predictions are of, each as a file that --network reads.
+Json networks_json(std::span<const comm::NamedNetwork> networks);
 
 }  // namespace delray::apps

@@ -1,10 +1,11 @@
 // A sequential discrete-event simulation of ranks that are fibers on one thread, under the LogGP
-// model (Alexandrov, Ionescu, Schauser and Scheiman 1995).
+// model (Alexandrov, Ionescu, Schauser and Scheiman 1995), with links that messages wait for.
 //
 // A set orders the ranks that can go on by virtual time, ties by random numbers from the seed. A
 // rank runs until it must wait: for a message from any source it waits until no other rank can send
-// an earlier one, and where ranks share a bus or cores it takes its turn in the order of time.
-// O(log ranks + log messages) per message.
+// an earlier one, and where ranks share a bus or cores it takes its turn in the order of time. On
+// networks with routes a message comes to each of its links in the order of time, too. O(log ranks
+// + log messages) per message, O(log messages on their way) per link of its route.
 //
 // Degenerate: when no rank can go on and some have not returned, they are deadlocked and the first
 // of them is reported.
@@ -24,6 +25,7 @@
 
 #include "comm/collectives.h"
 #include "comm/in_process/fiber.h"
+#include "comm/in_process/flights.h"
 #include "comm/in_process/group.h"
 #include "comm/transport/first_failure.h"
 
@@ -62,7 +64,9 @@ class Machine {
       : network(given),
         ranks(count),
         random_(seed),
+        bus_free_(static_cast<std::size_t>(given.topology.channels)),
         core_free_(static_cast<std::size_t>(given.shared_cores)) {
+    if (kind_of(given.topology.shape).has_routes) flights.emplace(given, count);
     for (std::size_t i = 0; i < ranks.size() && i < options.slowness.size(); ++i) {
       ranks[i].slowness = options.slowness[i];
     }
@@ -71,6 +75,7 @@ class Machine {
   const Network network;
   std::vector<Rank> ranks;  // indexed by world rank
   internal::FirstFailure failure;
+  std::optional<internal::Flights> flights;  // on networks with routes
 
   void schedule(int rank, double wake) {
     Rank& r = ranks[rank];
@@ -82,13 +87,17 @@ class Machine {
   }
 
   // Whether everything that happens before `time` has happened.
-  bool is_settled(double time) const {
-    return ready_.empty() || time < std::get<double>(*ready_.begin());
-  }
+  bool is_settled(double time) const { return time < next_wake() && time < next_flight(); }
 
-  // Runs ranks in the order of their wake times until nobody is left who could.
+  // Runs ranks in the order of their wake times until nobody is left who could, and moves messages
+  // on that come to a link before.
   void run() {
-    while (!ready_.empty() && !failure.happened()) {
+    while (!failure.happened()) {
+      if (next_flight() <= next_wake() && next_flight() < kNever) {
+        if (std::optional<internal::Flight> landed = flights->move_on()) land(std::move(*landed));
+        continue;
+      }
+      if (ready_.empty()) break;
       const int rank = std::get<int>(*ready_.begin());
       ready_.erase(ready_.begin());
       ranks[rank].scheduled = false;
@@ -100,7 +109,7 @@ class Machine {
     }
   }
 
-  bool takes_turns() const { return network.is_bus || network.shared_cores > 0; }
+  bool takes_turns() const { return network.is_bus() || network.shared_cores > 0; }
 
   // The rank's processor is busy for so long, once it gets a core.
   // REQUIRES: where cores are shared, nobody is left who could want one earlier.
@@ -124,17 +133,22 @@ class Machine {
   double arrival(int from, int to, std::size_t bytes) {
     Rank& sender = ranks[from];
     if (from == to) return sender.clock;
-    double& link_free = network.is_bus ? bus_free_ : sender.outgoing_free;
+    double& link_free =
+        network.is_bus() ? *std::ranges::min_element(bus_free_) : sender.outgoing_free;
     link_free =
         std::max(sender.clock, link_free) + network.seconds_per_byte * static_cast<double>(bytes);
-    double time = link_free + network.latency;
-    if (network.jitter > 0) {
-      time += jitter();
-      double& last =
-          last_arrival_[static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint64_t>(to)];
-      time = last = std::max(time, last);
-    }
-    return time;
+    return late(from, to, link_free + network.latency);
+  }
+
+  // Puts a message of a group into the queue of `to`, and wakes that rank if it waits for it.
+  void deliver(const std::shared_ptr<Group>& group, int from, int to, Tag tag, double arrival,
+               Buffer&& message) {
+    group->queues[to].push(from, tag, arrival, std::move(message));
+    const int receiver = group->world_ranks[to];
+    const Rank& r = ranks[receiver];
+    if (r.group != group.get() || !internal::matches(from, tag, r.from, r.tag)) return;
+    const double wake = std::min(r.limit, std::max(r.clock, arrival));
+    if (!r.scheduled || wake < r.wake) schedule(receiver, wake);
   }
 
   // The result of a group's call number `call` of replicate.
@@ -150,7 +164,7 @@ class Machine {
   // REQUIRES: the message has arrived at the receiver's clock.
   void carry_in(int to, const Message& message) {
     Rank& receiver = ranks[to];
-    if (network.is_bus) return;
+    if (network.topology.shape != Shape::crossbar) return;
     const double seconds =
         network.seconds_per_byte * static_cast<double>(message.payload.counted_bytes());
     receiver.incoming_free = std::max(message.arrival - seconds, receiver.incoming_free) + seconds;
@@ -158,6 +172,23 @@ class Machine {
   }
 
  private:
+  double next_wake() const { return ready_.empty() ? kNever : std::get<double>(*ready_.begin()); }
+  double next_flight() const { return flights ? flights->next() : kNever; }
+
+  void land(internal::Flight&& flight) {
+    const std::vector<int>& world = flight.group->world_ranks;
+    const double arrival = late(world[flight.from], world[flight.to], flight.time);
+    deliver(flight.group, flight.from, flight.to, flight.tag, arrival, std::move(flight.message));
+  }
+
+  // When a message of world ranks arrives that would at `time`, which is random with jitter.
+  double late(int from, int to, double time) {
+    if (network.jitter <= 0) return time;
+    double& last =
+        last_arrival_[static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint64_t>(to)];
+    return last = std::max(time + jitter(), last);
+  }
+
   // Log-uniform, so that a message may be late by a little or by more than all others together. No
   // library function that could differ between machines.
   double jitter() {
@@ -191,7 +222,7 @@ class Machine {
   std::mt19937_64 random_;
   std::set<std::tuple<double, std::uint64_t, int>> ready_;
   std::unordered_map<std::uint64_t, double> last_arrival_;
-  double bus_free_ = 0;            // when the bus has carried all so far
+  std::vector<double> bus_free_;   // when each channel of the bus has carried all so far
   std::vector<double> core_free_;  // when each of the shared cores has done all so far
 };
 
@@ -213,6 +244,10 @@ class SimulatedCommunicator final : public Communicator {
     if (machine_.failure.happened()) throw RunEnded{};
     if (to != rank_) {
       occupy(machine_.handling_seconds(message.counted_bytes()));
+      if (machine_.flights) {
+        machine_.flights->start({group_, rank_, to, tag, own_.clock, std::move(message)});
+        return;
+      }
       wait_for_turn();
     }
     const double arrival =
@@ -222,7 +257,7 @@ class SimulatedCommunicator final : public Communicator {
 
   void multicast(std::span<const int> to, Tag tag, Buffer&& message) override {
     const auto other = std::find_if(to.begin(), to.end(), [&](int rank) { return rank != rank_; });
-    if (!machine_.network.is_bus || other == to.end()) {
+    if (!machine_.network.is_bus() || other == to.end()) {
       Communicator::multicast(to, tag, std::move(message));
       return;
     }
@@ -282,12 +317,7 @@ class SimulatedCommunicator final : public Communicator {
 
  private:
   void deliver(int to, Tag tag, double arrival, Buffer&& message) {
-    group_->queues[to].push(rank_, tag, arrival, std::move(message));
-    const int receiver = world_rank(to);
-    const Rank& r = machine_.ranks[receiver];
-    if (r.group != group_.get() || !internal::matches(rank_, tag, r.from, r.tag)) return;
-    const double wake = std::min(r.limit, std::max(r.clock, arrival));
-    if (!r.scheduled || wake < r.wake) machine_.schedule(receiver, wake);
+    machine_.deliver(group_, rank_, to, tag, arrival, std::move(message));
   }
 
   // Lets all ranks go on that are not as far in time, where ranks compete for something.

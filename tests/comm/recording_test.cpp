@@ -168,7 +168,7 @@ TEST_P(RecordingTest, CountsAMulticastAsAMessageToEach) {
   Network bus;
   bus.latency = bus.overhead = 0;
   bus.seconds_per_byte = 1;
-  bus.is_bus = true;
+  bus.topology.shape = Shape::bus;
   const std::vector<double> finished = replay(ledger, bus);
   EXPECT_DOUBLE_EQ(finished[0], 111);
   EXPECT_DOUBLE_EQ(finished[1], 101);

@@ -36,8 +36,8 @@ int power_above(int ranks) { return static_cast<int>(std::bit_ceil(static_cast<u
 
 // The bar is 1.1; 14, 27, 39 and 47 ranks are a hair above it on one network or another.
 TEST(RadixK, IsNoSlowerThanAtTheNextPowerOfTwo) {
-  for (const comm::NamedNetwork& network : comm::networks()) {
-    if (network.network.is_bus) continue;
+  for (const comm::NamedNetwork& network : comm::default_networks()) {
+    if (network.network.is_bus()) continue;
     for (const std::uint64_t pixels : {kSmall, kLarge}) {
       Simulated power;
       int ranks_of_power = 0;

@@ -263,7 +263,7 @@ TEST(ClosedForms, OverABusTheSchemeOfThatNameSendsEachImageOnce) {
   comm::Network network;
   network.latency = network.overhead = 0;
   network.seconds_per_byte = 1.0 / kBytes;
-  network.is_bus = true;
+  network.topology.shape = comm::Shape::bus;
   network.seconds_per_work.fill(0);
   for (const std::string name : {"bus", "direct-send"}) {
     for (int n = 2; n <= 17; ++n) {

@@ -90,7 +90,7 @@ TEST_P(PredictedFrames, HavePartsThatAddUp) {
   for (const int ranks : {1, 6}) {
     const SimulatedFrames frames = simulated(scene, options_of(*GetParam()), ranks);
     for (const SimulatedFrame& frame : frames.frames) {
-      for (const comm::NamedNetwork& named : comm::networks()) {
+      for (const comm::NamedNetwork& named : comm::default_networks()) {
         const PredictedFrame predicted = predict(frame, named.network);
         EXPECT_GT(predicted.seconds, 0);
         EXPECT_NEAR(std::accumulate(predicted.parts.begin(), predicted.parts.end(), 0.0),

@@ -330,7 +330,7 @@ class SchemeRuns {
       const MetadataOnlyImages images = metadata_only(ranks, codec);
       std::array<Machines, kHalves> machines;  // by the half that a scheme is in
       for (std::size_t half = 0; half < kHalves; ++half) {
-        for (const comm::NamedNetwork& named : comm::networks()) {
+        for (const comm::NamedNetwork& named : request_.networks) {
           machines[half].emplace_back(named.name, MachineModel{named.network, costs});
         }
         if (ranks > kMostRanksHere) continue;

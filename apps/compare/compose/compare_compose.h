@@ -14,9 +14,6 @@
 
 namespace delray::apps {
 
-// The network of predictions for threads of this machine.
-inline constexpr const char* kThisMachine = "this-machine";
-
 struct CompareRequest : SceneComparison {
   std::vector<std::string> codecs = {"active"};
   std::vector<std::string> schemes;  // empty: all

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "comm/network.h"
+#include "apps/compare/compose/own_networks.h"
 
 namespace delray::apps {
 namespace {
@@ -76,8 +76,9 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
             {"threads", request.render.launch.threads},
             {"quick", request.quick}}},
           {"unfinished", comparison.unfinished},
-          {"networks", networks_json()},
+          {"networks", networks_json(request.networks)},
           {"left_out", std::move(left_out)},
+          {"own_networks", own_networks_json(on_own_networks(comparison.rows, request.networks))},
           {"rows", std::move(table)}};
 }
 

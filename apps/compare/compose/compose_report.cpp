@@ -12,6 +12,7 @@
 
 #include "apps/compare/compose/compose_answer.h"
 #include "apps/compare/compose/compose_figures.h"
+#include "apps/compare/compose/own_networks.h"
 #include "apps/compare/compose/shown_scheme.h"
 #include "apps/compare/variant_looks.h"
 #include "apps/provenance.h"
@@ -102,7 +103,7 @@ Html bytes(const std::vector<ComparedScheme>& rows) {
   return in_columns(charts);
 }
 
-Html predictions(const ComposeComparison& comparison) {
+Html predictions(const CompareRequest& request, const ComposeComparison& comparison) {
   const std::vector<ComparedScheme>& rows = comparison.rows;
   std::vector<Html> charts;
   for (const std::string& network : networks_of(rows)) {
@@ -122,6 +123,7 @@ Html predictions(const ComposeComparison& comparison) {
                                            : "Nothing is predicted of these layers.");
   }
   return in_columns(charts) + omissions(comparison.left_out) +
+         own_networks_tab(on_own_networks(rows, request.networks)) +
          paragraph(
              "Predicted: the schemes' own code runs on a simulated machine whose ranks "
              "have a core each. On this machine: by a model fitted to the times of the other "
@@ -244,7 +246,7 @@ std::string compose_report(const Session& session, const CompareRequest& request
   result.answer = compose_answer(comparison);
   result.tabs.push_back({"Times", times(rows)});
   result.tabs.push_back({"Bytes", bytes(rows)});
-  result.tabs.push_back({"Predictions", predictions(comparison)});
+  result.tabs.push_back({"Predictions", predictions(request, comparison)});
   if (comparison.shown) result.tabs.push_back({"One run", one_run(*comparison.shown)});
   result.tabs.push_back({"All figures", all_rows(request, rows)});
   result.data = compose_statistics(request, prepared, comparison);

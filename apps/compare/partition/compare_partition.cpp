@@ -34,7 +34,8 @@ constexpr std::uint64_t kFewestPixelsTimed = 1 << 16;
 // Turning frames of ranks that are measured.
 constexpr int kTurning = 3;
 
-DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::string hash) {
+DrawnFrames drawn_of(const SimulatedFrames& frames, std::span<const comm::NamedNetwork> networks,
+                     double alone_work, std::string hash) {
   DrawnFrames result;
   const auto bytes = [](const raster::Statistics& s) {
     std::uint64_t sum = 0;
@@ -72,7 +73,7 @@ DrawnFrames drawn_of(const SimulatedFrames& frames, double alone_work, std::stri
   result.imbalance = spread_of(std::move(imbalance));
   for (std::vector<double>& seconds : by_rank)
     result.busy.push_back(spread_of(std::move(seconds)).median);
-  for (const comm::NamedNetwork& named : comm::networks()) {
+  for (const comm::NamedNetwork& named : networks) {
     const Spread next = seconds_over(frames.next, named.network);
     result.predicted.push_back(
         {named.name, next.median, next, seconds_over(frames.first, named.network)});
@@ -89,7 +90,7 @@ class PartitionRuns {
         prepared_(prepared),
         steps_(progress),
         renderer_(prepared.scene, prepared.shader),
-        scaling_(prepared.triangles) {
+        scaling_(prepared.triangles, request.networks) {
     options_.width = request.render.width;
     options_.height = request.render.height;
   }
@@ -120,6 +121,7 @@ class PartitionRuns {
       result_.unfinished = true;
     }
     result_.scaling = scaling_.result();
+    result_.networks = request_.networks;
     return std::move(result_);
   }
 
@@ -181,7 +183,7 @@ class PartitionRuns {
   void draw_alone() {
     SimulatedFrames frames = draw("sort-first", loadbalance::partitioners()[0].name, 1, 1);
     scaling_.alone(frames);
-    const DrawnFrames alone = drawn_of(frames, 0, {});
+    const DrawnFrames alone = drawn_of(frames, request_.networks, 0, {});
     result_.alone_seconds = alone.busiest.median;
     result_.alone = alone.busiest;
     result_.alone_work = alone.work[0];
@@ -245,7 +247,7 @@ class PartitionRuns {
       SimulatedFrames frames =
           draw("sort-first", partitioner.name, ranks, regions, is_of_strategies);
       if (is_of_strategies) scaling_.timed("sort-first", ranks, frames);
-      row.drawn = drawn_of(frames, result_.alone_work, hash_of(frames.picture));
+      row.drawn = drawn_of(frames, request_.networks, result_.alone_work, hash_of(frames.picture));
       row.finish_seconds =
           row.cut_seconds.median + row.drawn->work_over_share * result_.alone_seconds / ranks;
       const auto& cut = frames.first.statistics.partition;
@@ -280,7 +282,8 @@ class PartitionRuns {
       SimulatedFrames frames = draw(strategy.name, partition, ranks, 1);
       scaling_.timed(strategy.name, ranks, frames);
       result_.strategies.push_back(
-          {strategy.name, ranks, drawn_of(frames, result_.alone_work, hash_of(frames.picture))});
+          {strategy.name, ranks,
+           drawn_of(frames, request_.networks, result_.alone_work, hash_of(frames.picture))});
       steps_.done();
     }
   }

@@ -95,6 +95,7 @@ struct PartitionComparison {
   std::vector<ComparedWall> walls;           // by ranks, where there is a wall
   std::vector<ShownPartition> shown;         // of shown_ranks(request)
   image::Image8 picture;
+  std::vector<comm::NamedNetwork> networks;  // of predictions
   bool unfinished = false;
 };
 

@@ -159,10 +159,11 @@ Html sentence(const PartitionComparison& comparison, int ranks) {
 }
 
 // Over each network, what takes least of all.
-Html fastest_frames(const std::vector<ComparedStrategy>& strategies) {
+Html fastest_frames(const PartitionComparison& comparison) {
+  const std::vector<ComparedStrategy>& strategies = comparison.strategies;
   if (strategies.empty()) return "";
   std::vector<std::string> parts;
-  for (const comm::NamedNetwork& named : comm::networks()) {
+  for (const comm::NamedNetwork& named : comparison.networks) {
     const Strategies best = best_strategies(strategies, 0, named.name);
     const ComparedStrategy& first = *best.front();
     std::vector<std::string> equals;
@@ -184,7 +185,7 @@ Table table_of(const PartitionComparison& comparison, const std::vector<int>& ra
                     {"work over share", true, true, Source::counted},
                     {"least processor time", false, true, Source::measured},
                     {"cut ms", true, true, Source::measured}};
-  for (const comm::NamedNetwork& named : comm::networks())
+  for (const comm::NamedNetwork& named : comparison.networks)
     result.columns.push_back({named.name, false, true, Source::predicted});
   for (const int count : ranks) {
     const PartitionChoice choice = choose_partition(comparison.rows, count);
@@ -195,7 +196,7 @@ Table table_of(const PartitionComparison& comparison, const std::vector<int>& ra
         fmt::format("{}, {} ms", winners_cell(names_of(choice.quick)),
                     milliseconds_cell(choice.quick.front()->drawn->busiest)),
         milliseconds_cell(best.cut_seconds)};
-    for (const comm::NamedNetwork& named : comm::networks()) {
+    for (const comm::NamedNetwork& named : comparison.networks) {
       const Strategies over = best_strategies(comparison.strategies, count, named.name);
       line.push_back(
           over.empty()
@@ -222,7 +223,7 @@ Html partition_answer(const PartitionComparison& comparison) {
       "the "
       "medians of the frames lie overlap.",
       (kAsEven - 1) * 100);
-  return advice_beside(sentence(comparison, ranks.back()) + fastest_frames(comparison.strategies),
+  return advice_beside(sentence(comparison, ranks.back()) + fastest_frames(comparison),
                        paragraph(caption) + table(table_of(comparison, ranks)));
 }
 

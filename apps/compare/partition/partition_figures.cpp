@@ -103,7 +103,7 @@ Json partition_statistics(const PartitionRequest& request, const Prepared& prepa
             {"regions", request.regions},
             {"quick", request.quick}}},
           {"unfinished", comparison.unfinished},
-          {"networks", networks_json()},
+          {"networks", networks_json(request.networks)},
           {"alone", {{"work", comparison.alone_work}, {"seconds", comparison.alone_seconds}}},
           {"rows", std::move(rows)},
           {"strategies", std::move(strategies)},

@@ -230,7 +230,7 @@ Html strategies(const PartitionComparison& comparison) {
       fmt::format("Sort-first and sort-middle with the partition {}, sort-last composited by "
                   "binary-swap with the codec active.",
                   comparison.rows.front().partition));
-  for (const comm::NamedNetwork& named : comm::networks()) {
+  for (const comm::NamedNetwork& named : comparison.networks) {
     result += heading(fmt::format("Over {}: {}", named.name, named.description));
     result += in_columns(
         {lines("A frame after the first", "time, ms", Source::predicted,

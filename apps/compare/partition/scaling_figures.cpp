@@ -31,6 +31,7 @@ Json frame_json(const raster::PredictedFrame& frame, int ranks, double alone) {
   return {{"seconds", frame.seconds},
           {"speed_up", alone / frame.seconds},
           {"efficiency", alone / frame.seconds / ranks},
+          {"serial_fraction", serial_fraction_json(alone / frame.seconds, ranks)},
           {"busiest_rank", frame.busiest},
           {"busiest_rank_seconds", std::move(parts)}};
 }
@@ -60,7 +61,7 @@ Html lines(const StrategyScaling& scaling, const std::string& title, const std::
           }));
 }
 
-Html charts(const StrategyScaling& scaling, const char* network) {
+Html charts(const StrategyScaling& scaling, const std::string& network) {
   std::vector<Html> result;
   for (const Motion motion : kMotions) {
     const double alone = scaling.alone(motion);
@@ -81,7 +82,7 @@ Html limits(const StrategyScaling& scaling) {
     Table text;
     text.columns = {{"network", false, false, {}}, {"strategy", false, false, {}}};
     for (const Column& column : limit_columns()) text.columns.push_back(column);
-    for (const comm::NamedNetwork& named : comm::networks()) {
+    for (const comm::NamedNetwork& named : scaling.networks) {
       for (const std::string& strategy : strategies_of(scaling)) {
         std::vector<std::string> line = {named.name, strategy};
         const ScalingLimit limit = limit_of(scaling, strategy, named.name, motion);
@@ -96,7 +97,7 @@ Html limits(const StrategyScaling& scaling) {
 }
 
 // Where the time of the busiest rank goes, over one network.
-Html splits(const StrategyScaling& scaling, const char* network, Motion motion) {
+Html splits(const StrategyScaling& scaling, const std::string& network, Motion motion) {
   std::vector<Html> figures;
   for (const std::string& strategy : strategies_of(scaling)) {
     StackedBars bars;
@@ -126,9 +127,8 @@ Html all_figures(const StrategyScaling& scaling) {
                   {"ranks", true, false, {}},
                   {"network", false, false, {}},
                   {"frame", false, false, {}},
-                  {"ms", true, true, Source::predicted},
-                  {"speed-up", true, true, Source::predicted},
-                  {"efficiency", true, true, Source::predicted}};
+                  {"ms", true, true, Source::predicted}};
+  for (Column& column : speed_up_columns(Source::predicted)) text.columns.push_back(column);
   for (int p = 0; p < raster::kParts; ++p) {
     text.columns.push_back({fmt::format("{} ms", raster::name(static_cast<raster::Part>(p))), true,
                             true, Source::predicted});
@@ -141,13 +141,10 @@ Html all_figures(const StrategyScaling& scaling) {
       for (const Motion motion : kMotions) {
         const raster::PredictedFrame& frame = over.of(motion);
         const double speed_up = scaling.alone(motion) / frame.seconds;
-        std::vector<std::string> line = {row.strategy,
-                                         std::to_string(row.ranks),
-                                         over.network,
-                                         name(motion),
-                                         milliseconds_text(frame.seconds, 3),
-                                         fmt::format("{:.2f}", speed_up),
-                                         fmt::format("{:.3f}", speed_up / row.ranks)};
+        std::vector<std::string> line = {row.strategy, std::to_string(row.ranks), over.network,
+                                         name(motion), milliseconds_text(frame.seconds, 3)};
+        for (std::string& cell : speed_up_cells(speed_up, row.ranks))
+          line.push_back(std::move(cell));
         for (const double seconds : frame.parts) line.push_back(milliseconds_text(seconds, 3));
         const bool turns = motion == Motion::turning;
         line.push_back(turns ? std::to_string(row.triangles_max) : "");
@@ -183,7 +180,7 @@ Json scaling_json(const StrategyScaling& scaling) {
     rows.push_back(std::move(one));
   }
   for (const std::string& strategy : strategies_of(scaling)) {
-    for (const comm::NamedNetwork& named : comm::networks()) {
+    for (const comm::NamedNetwork& named : scaling.networks) {
       limits.push_back(
           {{"strategy", strategy},
            {"network", named.name},
@@ -204,7 +201,7 @@ Json scaling_json(const StrategyScaling& scaling) {
 
 Html scaling_tab(const StrategyScaling& scaling) {
   // Of the network in the middle, as its parts show most.
-  constexpr const char* kShown = "10-gigabit-ethernet";
+  const std::string& shown = scaling.networks[(scaling.networks.size() - 1) / 2].name;
   const int measured =
       std::max_element(scaling.rows.begin(), scaling.rows.end(), [](const auto& a, const auto& b) {
         return (a.is_priced ? 0 : a.ranks) < (b.is_priced ? 0 : b.ranks);
@@ -225,15 +222,15 @@ Html scaling_tab(const StrategyScaling& scaling) {
                               one.strategy, one.ranks, files::bytes_text(one.bytes)));
   }
   result += limits(scaling);
-  for (const comm::NamedNetwork& named : comm::networks()) {
+  for (const comm::NamedNetwork& named : scaling.networks) {
     result += heading(fmt::format("Over {}: {}", named.name, named.description));
     result += charts(scaling, named.name);
   }
-  result += heading(fmt::format("Where the busiest rank's time goes, over {}", kShown));
+  result += heading(fmt::format("Where the busiest rank's time goes, over {}", shown));
   result += paragraph(
       "The busiest rank works longest before its part of the picture is done. Waiting: for other "
       "ranks and for links. Gather: from then until rank 0 has the whole picture.");
-  for (const Motion motion : kMotions) result += splits(scaling, kShown, motion);
+  for (const Motion motion : kMotions) result += splits(scaling, shown, motion);
   return result + heading("All figures") + all_figures(scaling);
 }
 

@@ -99,7 +99,7 @@ void ScalingRuns::add(const std::string& strategy, int ranks, bool is_priced,
     row.bytes_total += rank.bytes_sent;
     row.messages += rank.messages;
   }
-  for (const comm::NamedNetwork& named : comm::networks()) {
+  for (const comm::NamedNetwork& named : result_.networks) {
     row.over.push_back({named.name, median_of(frames.next, named.network),
                         median_of(frames.turning, named.network)});
   }

@@ -49,6 +49,7 @@ struct StrategyScaling {
   double alone_at_rest = 0, alone_turning = 0;  // seconds of one rank, measured
   std::vector<ScaledStrategy> rows;             // by ascending ranks
   std::vector<NotScaled> left_out;
+  std::vector<comm::NamedNetwork> networks;  // of `over` of the rows
 
   double alone(Motion motion) const {
     return motion == Motion::at_rest ? alone_at_rest : alone_turning;
@@ -58,7 +59,10 @@ struct StrategyScaling {
 // Predicts frames of strategies, one number of ranks after the other, fewest first.
 class ScalingRuns {
  public:
-  explicit ScalingRuns(std::uint64_t primitives) : primitives_(primitives) {}
+  ScalingRuns(std::uint64_t primitives, std::vector<comm::NamedNetwork> networks)
+      : primitives_(primitives) {
+    result_.networks = std::move(networks);
+  }
 
   // REQUIRES: frames of a single rank, of which some turn.
   void alone(const SimulatedFrames& frames);

@@ -170,9 +170,8 @@ class ScheduleRuns {
 
   // The request's first.
   std::vector<const comm::NamedNetwork*> networks() const {
-    std::vector<const comm::NamedNetwork*> result = {comm::find_network(request_.network)};
-    for (const comm::NamedNetwork& named : comm::networks())
-      if (&named != result[0]) result.push_back(&named);
+    std::vector<const comm::NamedNetwork*> result;
+    for (const comm::NamedNetwork& named : request_.networks) result.push_back(&named);
     return result;
   }
 
@@ -309,7 +308,7 @@ class ScheduleRuns {
       spdlog::info("{} ranks, {}", ranks, distribution->name);
       for (const comm::NamedNetwork* named : networks()) {
         steps_.stop_if_asked();
-        if (named->network.is_bus) continue;
+        if (named->network.is_bus()) continue;
         const std::vector<raytrace::SimulatedFrame> frames = raytrace::simulate_frames(
             {prepared_.scene, *prepared_.tracer, prepared_.camera, options_, kDistributedFrames},
             *distribution, ranks, named->network);

@@ -21,7 +21,6 @@ struct ScheduleRequest : SceneComparison {
   std::vector<std::string> schedules;  // empty: all
   // Of a scene that no rank has all of; empty: all of them, none with `quick`.
   std::vector<std::string> distributions;
-  std::string network = "10-gigabit-ethernet";
   int tile = 16;  // pixels, the side
 };
 

@@ -50,6 +50,10 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       "schedule", "Compare schedules of the ray tracer: balance, messages and times");
   const auto request = std::make_shared<ScheduleRequest>();
   request->ranks = {2, 4, 8, 16, 32, 64, 128, 256, 1024};
+  // Counts are for the first.
+  std::ranges::stable_partition(request->networks, [](const comm::NamedNetwork& named) {
+    return named.name == "10-gigabit-ethernet";
+  });
   add_scene_comparison_options(
       *command, *request,
       "(default: 2,4,8,16,32,64,128,256,1024); all are simulated, and those up "
@@ -66,11 +70,6 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       ->group(group::kSharing)
       ->delimiter(',')
       ->allow_extra_args(false);
-  command
-      ->add_option(
-          "--network", request->network,
-          "Network that the counts are for and the report shows (default: 10-gigabit-ethernet)")
-      ->group(group::kSharing);
   std::vector<std::string> distributions;
   for (const raytrace::Distribution& distribution : raytrace::distributions())
     if (!distribution.replicated) distributions.emplace_back(distribution.name);
@@ -83,7 +82,6 @@ void add_compare_schedule(CLI::App& compare, Session& session) {
       ->allow_extra_args(false);
   choose_from(*command, "--data", distributions);
   choose_from(*command, "--schedule", names_in(loadbalance::schedules()));
-  choose_from(*command, "--network", names_in(comm::networks()));
   add_comparison_options(*command, *request, "Measure three frames of each",
                          "schedules, integrators and networks");
   add_common_options(

@@ -42,20 +42,22 @@ Json row_of(const ComparedSchedule& row, double alone) {
   one["spread"] = {{"frame", row.traced ? spread_json(row.traced->seconds) : Json(nullptr)}};
   one["predicted"] = Json::array();
   for (const ScheduleOver& over : row.over) {
-    one["predicted"].push_back({{"network", over.network},
-                                {"ranks", row.ranks},
-                                {"seconds", over.seconds},
-                                {"spread", spread_json(over.spread)},
-                                {"frame_seconds", over.frame_seconds},
-                                {"speed_up", alone / over.frame_seconds},
-                                {"efficiency", alone / over.frame_seconds / row.ranks},
-                                {"busiest_rank_seconds", parts_json(over)},
-                                {"imbalance", over.time_imbalance},
-                                {"idle", over.idle},
-                                {"imbalance_rays", over.ray_imbalance},
-                                {"requests", over.requests},
-                                {"steals", over.steals},
-                                {"messages", over.messages}});
+    one["predicted"].push_back(
+        {{"network", over.network},
+         {"ranks", row.ranks},
+         {"seconds", over.seconds},
+         {"spread", spread_json(over.spread)},
+         {"frame_seconds", over.frame_seconds},
+         {"speed_up", alone / over.frame_seconds},
+         {"efficiency", alone / over.frame_seconds / row.ranks},
+         {"serial_fraction", serial_fraction_json(alone / over.frame_seconds, row.ranks)},
+         {"busiest_rank_seconds", parts_json(over)},
+         {"imbalance", over.time_imbalance},
+         {"idle", over.idle},
+         {"imbalance_rays", over.ray_imbalance},
+         {"requests", over.requests},
+         {"steals", over.steals},
+         {"messages", over.messages}});
   }
   one["image_hash"] = row.traced ? Json(row.traced->hash) : Json(nullptr);
   return one;
@@ -75,6 +77,7 @@ Json distributions_json(const ScheduleComparison& comparison) {
                                   {"frame_seconds", over.frame.seconds},
                                   {"speed_up", speed_up},
                                   {"efficiency", speed_up / row.ranks},
+                                  {"serial_fraction", serial_fraction_json(speed_up, row.ranks)},
                                   {"busiest_rank_seconds", std::move(parts)},
                                   {"bytes_total", over.frame.bytes},
                                   {"messages", over.frame.messages},
@@ -112,10 +115,10 @@ Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepare
             {"spp", request.render.raytrace.samples},
             {"depth", request.render.raytrace.trace.depth},
             {"tile", request.tile},
-            {"network", request.network},
+            {"network", request.networks.front().name},
             {"quick", request.quick}}},
           {"unfinished", comparison.unfinished},
-          {"networks", networks_json()},
+          {"networks", networks_json(request.networks)},
           {"alone", {{"rays", comparison.rays}, {"seconds", comparison.seconds}}},
           {"rows", std::move(rows)},
           {"stops_gaining", std::move(limits)},

@@ -184,7 +184,7 @@ SchedulePoint value_of(std::function<double(const ScheduleOver&)> value, std::si
   };
 }
 
-Html evenness(const ScheduleComparison& comparison) {
+Html evenness(const ScheduleRequest& request, const ScheduleComparison& comparison) {
   const std::string& network = comparison.rows.front().over.front().network;
   Html result = in_columns(
       {chart_by_ranks(comparison, "How even the ranks' work is", "most rays over mean",
@@ -210,7 +210,7 @@ Html evenness(const ScheduleComparison& comparison) {
              "one core. Work is counted in rays and in processor time, not in time that passes. "
              "Where ranks answer others they look for messages after every tile, which takes them "
              "{:.3g} us over this network.",
-             network, frames_of(comparison), comm::find_network(network)->network.overhead * 1e6));
+             network, frames_of(comparison), request.networks.front().network.overhead * 1e6));
 }
 
 Html traced_here(const ScheduleComparison& comparison) {
@@ -388,8 +388,9 @@ Html figures(const ScheduleRequest& request, const ScheduleComparison& compariso
          paragraph(fmt::format(
              "Counts are of the simulated machine over {}. Integrator {}, {} ray{} "
              "per pixel, tiles of {} pixels, size {}.",
-             request.network, request.render.raytrace.integrator, request.render.raytrace.samples,
-             request.render.raytrace.samples == 1 ? "" : "s", request.tile, request.render.size));
+             request.networks.front().name, request.render.raytrace.integrator,
+             request.render.raytrace.samples, request.render.raytrace.samples == 1 ? "" : "s",
+             request.tile, request.render.size));
 }
 
 }  // namespace
@@ -402,7 +403,7 @@ std::string schedule_report(const Session& session, const ScheduleRequest& reque
   result.unfinished = comparison.unfinished;
   result.machine = machine_and_compiler();
   result.answer = first_screen(request, comparison);
-  result.tabs.push_back({"Balance", evenness(comparison)});
+  result.tabs.push_back({"Balance", evenness(request, comparison)});
   result.tabs.push_back({"Tiles", tiles(request, comparison)});
   if (!comparison.shown.empty()) result.tabs.push_back({"Timelines", timelines(comparison)});
   result.tabs.push_back({"Times", times(comparison)});

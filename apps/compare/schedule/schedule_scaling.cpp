@@ -86,20 +86,16 @@ Html all_figures(const ScheduleComparison& comparison) {
   text.columns = {{"schedule", false, false, {}},
                   {"ranks", true, false, {}},
                   {"network", false, false, {}},
-                  {"frame ms", true, true, Source::predicted},
-                  {"speed-up", true, true, Source::predicted},
-                  {"efficiency", true, true, Source::predicted}};
+                  {"frame ms", true, true, Source::predicted}};
+  for (Column& column : speed_up_columns(Source::predicted)) text.columns.push_back(column);
   for (const char* part : kScheduleParts)
     text.columns.push_back({fmt::format("{} ms", part), true, true, Source::predicted});
   for (const ComparedSchedule& row : comparison.rows) {
     for (const ScheduleOver& over : row.over) {
       const double speed_up = comparison.seconds / over.frame_seconds;
-      std::vector<std::string> line = {row.schedule,
-                                       std::to_string(row.ranks),
-                                       over.network,
-                                       milliseconds_text(over.frame_seconds, 3),
-                                       fmt::format("{:.2f}", speed_up),
-                                       fmt::format("{:.3f}", speed_up / row.ranks)};
+      std::vector<std::string> line = {row.schedule, std::to_string(row.ranks), over.network,
+                                       milliseconds_text(over.frame_seconds, 3)};
+      for (std::string& cell : speed_up_cells(speed_up, row.ranks)) line.push_back(std::move(cell));
       for (const double seconds : over.parts) line.push_back(milliseconds_text(seconds, 3));
       text.rows.push_back(std::move(line));
     }

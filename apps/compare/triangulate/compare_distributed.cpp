@@ -87,6 +87,7 @@ class DistributedRuns {
   }
 
   DistributedComparison run() {
+    result_.networks = request_.networks;
     const std::vector<std::size_t> sizes = compared_sizes(points_.size());
     steps_.start(methods_.size() * (sizes.size() - 1 + request_.ranks.size()));
     try {
@@ -115,7 +116,7 @@ class DistributedRuns {
         continue;
       }
       const std::int64_t begin = parallel::processor_nanoseconds();
-      add_row(points_, ranks, comm::networks().size());
+      add_row(points_, ranks, result_.networks.size());
       last = static_cast<double>(parallel::processor_nanoseconds() - begin) * 1e-9;
     }
   }
@@ -137,7 +138,7 @@ class DistributedRuns {
     row.points = points.size();
     for (std::size_t i = 0; i < networks; ++i) {
       steps_.stop_if_asked();
-      const comm::NamedNetwork& network = comm::networks()[i];
+      const comm::NamedNetwork& network = result_.networks[i];
       const SimulatedTriangulation made = simulate_method(points, options_, ranks, network.network);
       row.predicted.push_back({network.name, made.seconds});
       if (i > 0) continue;

@@ -9,6 +9,7 @@
 #include "apps/compare/comparison.h"
 #include "apps/compare/spread.h"
 #include "apps/input/point_input.h"
+#include "apps/options/network_option.h"
 #include "delaunay/points.h"
 #include "delaunay/triangulate.h"
 #include "image/image.h"
@@ -16,6 +17,8 @@
 namespace delray::apps {
 
 struct TriangulateRequest : ComparisonOptions {
+  NetworkChoice network;
+  std::vector<comm::NamedNetwork> networks;  // chosen, where ranks are compared
   PointInput input;
   int dim = 0;                           // 0: as the input is
   std::vector<std::string> methods;      // empty: all of the dimension

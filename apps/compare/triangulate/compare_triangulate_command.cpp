@@ -51,7 +51,10 @@ void check_methods(const TriangulateRequest& request, int dim) {
 void check_ranks(TriangulateRequest& request) {
   if (request.ranks.empty() && !request.distributed.empty())
     throw UsageError("compare triangulate: --distributed goes with --ranks");
+  if (request.ranks.empty() && !request.network.given.empty())
+    throw UsageError("compare triangulate: --network goes with --ranks");
   if (request.ranks.empty()) return;
+  request.networks = networks_of(request.network, request.ranks);
   if (!request.threads.empty() || !request.methods.empty()) {
     throw UsageError(
         "compare triangulate: --ranks compares distributed methods, not --method and --threads");
@@ -147,6 +150,9 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
       ->delimiter(',')
       ->allow_extra_args(false);
   choose_from(*command, "--distributed", names_in(delaunay::distributed_methods()));
+  add_network_option(*command, request->network,
+                     "(default with --ranks: "
+                     "gigabit-ethernet,10-gigabit-ethernet,hdr-infiniband,shared-bus)");
   command->add_option("--seed", request->seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
   choose_from(*command, "--method", names_in(delaunay::methods()));

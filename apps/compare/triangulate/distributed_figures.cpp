@@ -51,8 +51,8 @@ Json distributed_statistics(const TriangulateRequest& request,
 TextTable distributed_table(const DistributedComparison& comparison) {
   TextTable table = {{"method", "points", "ranks", "messages", "bytes", "rounds", "waits",
                       "rollbacks", "points sent", "shared", "shared/sqrt(N)"}};
-  for (const comm::NamedNetwork& network : comm::networks()) {
-    table[0].push_back(std::string(network.name) + " ms, predicted");
+  for (const comm::NamedNetwork& network : comparison.networks) {
+    table[0].push_back(network.name + " ms, predicted");
   }
   for (const ComparedDistribution& row : comparison.rows) {
     std::vector<std::string> line = {row.method,

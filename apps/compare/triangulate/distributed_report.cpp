@@ -77,7 +77,7 @@ Html messages_tab(const OverRanks& over) {
              "of a rank to itself are left out.");
 }
 
-Html waiting_tab(const OverRanks& over) {
+Html waiting_tab(const DistributedComparison& comparison, const OverRanks& over) {
   return in_columns(
              {over.chart("Answers that ranks wait for", "waits", Source::counted,
                          [](const DistributedRow& row) { return double(row.sum.waits); }),
@@ -91,7 +91,7 @@ Html waiting_tab(const OverRanks& over) {
                          [](const DistributedRow& row) { return double(row.sum.rollbacks); })}) +
          paragraph(fmt::format("Of runs over {}. Methods that exchange in rounds wait for no "
                                "single answer.",
-                               comm::networks()[0].name));
+                               comparison.networks[0].name));
 }
 
 Html shared_tab(const DistributedComparison& comparison, const OverRanks& over) {
@@ -118,11 +118,11 @@ Html shared_tab(const DistributedComparison& comparison, const OverRanks& over) 
              "interface-workers one rank has no area.");
 }
 
-Html predictions_tab(const OverRanks& over) {
+Html predictions_tab(const DistributedComparison& comparison, const OverRanks& over) {
   std::vector<Html> charts;
-  for (std::size_t i = 0; i < comm::networks().size(); ++i) {
-    charts.push_back(over.chart(fmt::format("Time over {}", comm::networks()[i].name), "time, ms",
-                                Source::predicted,
+  for (std::size_t i = 0; i < comparison.networks.size(); ++i) {
+    charts.push_back(over.chart(fmt::format("Time over {}", comparison.networks[i].name),
+                                "time, ms", Source::predicted,
                                 [i](const DistributedRow& row) -> std::optional<double> {
                                   if (i >= row.predicted.size()) return std::nullopt;
                                   return row.predicted[i].seconds * 1e3;
@@ -158,14 +158,14 @@ Html distributed_answer(const DistributedComparison& comparison) {
     if (row.points == comparison.points && row.ranks == ranks) rows.push_back(&row);
   }
   Html answer;
-  for (std::size_t i = 0; !rows.empty() && i < comm::networks().size(); ++i) {
+  for (std::size_t i = 0; !rows.empty() && i < comparison.networks.size(); ++i) {
     std::ranges::sort(rows, [i](const DistributedRow* a, const DistributedRow* b) {
       return a->predicted[i].seconds < b->predicted[i].seconds;
     });
     answer += fmt::format(
         "<p>On {} ranks over {} {} takes {:.2f} ms (predicted), with {} messages and {} bytes "
         "(counted){}.</p>\n",
-        ranks, comm::networks()[i].name, strong(rows[0]->method),
+        ranks, comparison.networks[i].name, strong(rows[0]->method),
         rows[0]->predicted[i].seconds * 1e3, rows[0]->sum.messages,
         short_number(static_cast<double>(rows[0]->sum.bytes)),
         rows.size() > 1
@@ -199,9 +199,9 @@ std::string distributed_report(const Session& session, const TriangulateRequest&
   result.unfinished = comparison.unfinished;
   result.answer = distributed_answer(comparison);
   result.tabs.push_back({"Messages", messages_tab(over)});
-  result.tabs.push_back({"Waiting", waiting_tab(over)});
+  result.tabs.push_back({"Waiting", waiting_tab(comparison, over)});
   result.tabs.push_back({"Shared simplices", shared_tab(comparison, over)});
-  result.tabs.push_back({"Predictions", predictions_tab(over)});
+  result.tabs.push_back({"Predictions", predictions_tab(comparison, over)});
   result.tabs.push_back({"All figures", all_figures_tab(comparison)});
   result.data = distributed_statistics(request, comparison);
   return page(result);

@@ -103,8 +103,9 @@ std::string scaling(const TriangulateComparison& comparison, const Row& best) {
   }
   const std::string alone = fmt::format(" One thread takes {}", measured_text(base->seconds));
   if (!differ(base->seconds, best.seconds)) return alone + ": no difference.";
-  return fmt::format("{}: that is a speed-up of {:.2f}.", alone,
-                     base->seconds.median / best.seconds.median);
+  const double times_as_fast = base->seconds.median / best.seconds.median;
+  return fmt::format("{}: that is a speed-up of {:.2f}, an efficiency of {:.2f}.", alone,
+                     times_as_fast, times_as_fast / best.how.threads);
 }
 
 std::string agreement(const TriangulateComparison& comparison, const Row& best) {

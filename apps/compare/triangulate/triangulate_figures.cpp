@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/compare/scaling_limit.h"
 #include "apps/triangulation_json.h"
 
 namespace delray::apps {
@@ -35,7 +36,8 @@ Json statistics_of(const TriangulateComparison& comparison, const ComparedTriang
           {"seconds", seconds},
           {"spread", {{"triangulate", spread_json(row.seconds)}}},
           {"speed_up", ratio(times_as_fast)},
-          {"efficiency", ratio(times_as_fast / how.threads)}};
+          {"efficiency", ratio(times_as_fast / how.threads)},
+          {"serial_fraction", serial_fraction_json(times_as_fast, how.threads)}};
 }
 
 std::string per_point(std::uint64_t count, const ComparedTriangulation& row) {
@@ -71,19 +73,20 @@ Json triangulate_statistics(const TriangulateRequest& request,
 
 TextTable triangulate_table(const TriangulateComparison& comparison) {
   TextTable table = {{"points", "method", "threads", "ms", "least ms", "most ms", "speed-up",
-                      "efficiency", "fragments", "lock calls/point", "waits", "deadlocks",
-                      "history nodes"}};
+                      "efficiency", "sequential", "fragments", "lock calls/point", "waits",
+                      "deadlocks", "history nodes"}};
   for (const ComparedTriangulation& row : comparison.rows) {
     const delaunay::Statistics& statistics = row.statistics;
     const delaunay::Synchronization& sync = statistics.synchronization;
     const double times_as_fast = speed_up(comparison.rows, row);
-    const bool ratios = times_as_fast > 0, locks = sync.lock_calls > 0;
+    const bool locks = sync.lock_calls > 0;
+    const std::vector<std::string> ratios = times_as_fast > 0
+                                                ? speed_up_cells(times_as_fast, row.how.threads)
+                                                : std::vector<std::string>(3, "-");
     table.push_back(
         {std::to_string(row.points), name_of(row.how), std::to_string(row.how.threads),
          milliseconds_text(row.seconds.median, 2), milliseconds_text(row.seconds.least, 2),
-         milliseconds_text(row.seconds.most, 2),
-         ratios ? fmt::format("{:.2f}", times_as_fast) : "-",
-         ratios ? fmt::format("{:.2f}", times_as_fast / row.how.threads) : "-",
+         milliseconds_text(row.seconds.most, 2), ratios[0], ratios[1], ratios[2],
          std::to_string(row.fragments), per_point(sync.lock_calls, row),
          locks ? std::to_string(sync.waits) : "-", locks ? std::to_string(sync.deadlocks) : "-",
          statistics.dag_nodes > 0 ? std::to_string(statistics.dag_nodes) : "-"});

@@ -398,14 +398,18 @@ Html all_rows(const TriangulateComparison& comparison) {
   const TextTable text = triangulate_table(comparison);
   Table result;
   for (const std::string& name : text[0]) {
-    const bool measured = name.ends_with("ms") || name == "speed-up" || name == "efficiency";
+    const bool measured =
+        name.ends_with("ms") || name == "speed-up" || name == "efficiency" || name == "sequential";
     const bool given = name == "points" || name == "method" || name == "threads";
     result.columns.push_back(
         {name, name != "method", !given, measured ? Source::measured : Source::counted});
   }
   result.rows.assign(text.begin() + 1, text.end());
   return table(result) +
-         paragraph("ms is the median; speed-up is over the same method with one thread.");
+         paragraph(
+             "ms is the median; speed-up is over the same method with one thread; "
+             "sequential is the fraction of the work that Amdahl's law takes for it then (Karp and "
+             "Flatt).");
 }
 
 }  // namespace

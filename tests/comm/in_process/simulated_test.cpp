@@ -60,7 +60,7 @@ TEST(Simulated, LinksCarryOneMessageAtATime) {
 
 TEST(Simulated, ABusCarriesOneMessageAtATimeFirstComeFirstServed) {
   Network n = simple();
-  n.is_bus = true;
+  n.topology.shape = Shape::bus;
   // Rank 2 - k sends after k seconds: what is simulated first is not what comes first.
   const auto finished = run_simulated(4, n, 0, [](Communicator& c) {
     if (c.rank() == 3) {
@@ -89,7 +89,7 @@ TEST(Simulated, ABusCarriesOneMessageAtATimeFirstComeFirstServed) {
 TEST(Simulated, ABusCarriesAMulticastOnce) {
   for (const bool is_bus : {true, false}) {
     Network n = simple();
-    n.is_bus = is_bus;
+    n.topology.shape = is_bus ? Shape::bus : Shape::crossbar;
     double sent = 0;
     const auto finished = run_simulated(4, n, 0, [&](Communicator& c) {
       if (c.rank() == 1) {
