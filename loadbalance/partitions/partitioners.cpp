@@ -29,6 +29,10 @@ constexpr std::array kPartitioners = {
         &internal::whelan, "bisection"},
     Partitioner{"roble", "grid cells, of which full ones are halved and empty ones merged (Roble)",
                 &internal::roble, "grid"},
+    Partitioner{
+        "pixel-planes",
+        "square blocks of 128 pixels, the costliest first to who has least (Pixel-Planes 5)",
+        &internal::pixel_planes, "grid"},
     Partitioner{"interlaced", "many square blocks assigned in turn, whatever they cost",
                 &internal::interlaced, "fixed"},
 };

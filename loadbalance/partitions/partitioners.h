@@ -26,6 +26,12 @@ Partition mahd(const Costs& costs, geometry::Rect frame, int parts);
 // row and every column of blocks meets all owners in turn. Costs do not matter. O(blocks).
 Partition interlaced(const Costs& costs, geometry::Rect frame, int parts);
 
+// Square blocks of kPixelPlanesSide pixels (Pixel-Planes 5, Fuchs et al. 1989), the costliest first
+// to the part that has least: none has more than an equal share and one block.
+// O(cells + boxes + blocks log blocks).
+inline constexpr int kPixelPlanesSide = 128;
+Partition pixel_planes(const Costs& costs, geometry::Rect frame, int parts);
+
 // A standard decomposition into `parts` rectangles that is corrected again and again: the region
 // that most primitives overlap is split in half, and the two neighbours with the fewest that form a
 // rectangle become one (Roble 1988). Ends when they would have as many as the region that is split,

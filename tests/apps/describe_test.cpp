@@ -107,7 +107,8 @@ TEST(Completion, OffersWhatOptionsTakeAndNothingElse) {
       {"compare compose", "gen:cornell:100 --quick --size 8x8 -o a.html "},
       {"compare partition", "gen:cornell:100 --quick --size 8x8 -o a.html "},
       {"compare schedule", "gen:cornell:100 --quick --size 8x8 -o a.html "},
-      {"compare triangulate", "p.xyz --quick -o a.html "}};
+      {"compare triangulate", "p.xyz --quick -o a.html "},
+      {"replay", "p.json "}};
   int choosing = 0;
   for (const Completed& completed : completed_options(folder)) {
     const auto found = arguments.find(completed.command);

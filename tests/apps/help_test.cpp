@@ -27,6 +27,7 @@ const std::vector<std::string> kCommands = {"",
                                             "compare triangulate",
                                             "compare partition",
                                             "compare schedule",
+                                            "replay",
                                             "completion",
                                             "manual"};
 

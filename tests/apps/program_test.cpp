@@ -32,9 +32,10 @@ TEST(Program, StartsWithoutWhatOnlyPictureFilesNeed) {
 
 TEST(Program, EverySubcommandHasHelpWithTwoExamples) {
   const Folder folder;
-  for (const std::string name : {"info", "generate points", "generate scene", "triangulate",
-                                 "verify", "render", "pack", "compose", "compare compose",
-                                 "compare triangulate", "compare partition", "compare schedule"}) {
+  for (const std::string name :
+       {"info", "generate points", "generate scene", "triangulate", "verify", "render", "pack",
+        "compose", "compare compose", "compare triangulate", "compare partition",
+        "compare schedule", "replay"}) {
     const Ran ran = run("delray " + name + " --help", folder.path());
     EXPECT_EQ(ran.exit_code, 0) << name;
     const auto examples = ran.out.find("Examples:");
