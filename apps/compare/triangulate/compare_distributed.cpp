@@ -132,7 +132,7 @@ class DistributedRuns {
   }
 
   void add_row(const delaunay::PointCloud& points, int ranks, std::size_t networks) {
-    ComparedDistribution row;
+    ComparedDistributedMethod row;
     row.method = options_.method;
     row.ranks = ranks;
     row.points = points.size();

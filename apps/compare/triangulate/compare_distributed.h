@@ -19,7 +19,7 @@ struct PredictedTriangulation {
 
 // A method by so many ranks, on so many of the points. Counts are those of the run over the first
 // network: where ranks wait for each other, what comes first decides them.
-struct ComparedDistribution {
+struct ComparedDistributedMethod {
   std::string method;
   int ranks = 1;
   std::size_t points = 0;
@@ -36,10 +36,10 @@ struct DistributedComparison {
   std::size_t points = 0;
   std::vector<int> ranks;
 
-  std::vector<ComparedDistribution> rows;    // by method, then points, then ranks
-  std::vector<std::string> left_out;         // "method, ranks": too slow or large
-  std::vector<comm::NamedNetwork> networks;  // of predictions; counts are of the first
-  bool unfinished = false;                   // told to stop before the end
+  std::vector<ComparedDistributedMethod> rows;  // by method, then points, then ranks
+  std::vector<std::string> left_out;            // "method, ranks": too slow or large
+  std::vector<comm::NamedNetwork> networks;     // of predictions; counts are of the first
+  bool unfinished = false;                      // told to stop before the end
 };
 
 // So many ranks of a method have two areas: by them rows with fewer points are counted.

@@ -10,7 +10,7 @@
 
 namespace delray::apps {
 
-double shared_per_root(const ComparedDistribution& row) {
+double shared_per_root(const ComparedDistributedMethod& row) {
   return row.points == 0 ? 0
                          : static_cast<double>(row.sum.shared_simplices) /
                                std::sqrt(static_cast<double>(row.points));
@@ -19,7 +19,7 @@ double shared_per_root(const ComparedDistribution& row) {
 Json distributed_statistics(const TriangulateRequest& request,
                             const DistributedComparison& comparison) {
   Json rows = Json::array();
-  for (const ComparedDistribution& row : comparison.rows) {
+  for (const ComparedDistributedMethod& row : comparison.rows) {
     Json one = {{"method", row.method},
                 {"ranks", row.ranks},
                 {"points", row.points},
@@ -54,7 +54,7 @@ TextTable distributed_table(const DistributedComparison& comparison) {
   for (const comm::NamedNetwork& network : comparison.networks) {
     table[0].push_back(network.name + " ms, predicted");
   }
-  for (const ComparedDistribution& row : comparison.rows) {
+  for (const ComparedDistributedMethod& row : comparison.rows) {
     std::vector<std::string> line = {row.method,
                                      std::to_string(row.points),
                                      std::to_string(row.ranks),

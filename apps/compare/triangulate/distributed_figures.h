@@ -10,6 +10,6 @@ Json distributed_statistics(const TriangulateRequest& request,
 TextTable distributed_table(const DistributedComparison& comparison);
 
 // Over the square root of the points.
-double shared_per_root(const ComparedDistribution& row);
+double shared_per_root(const ComparedDistributedMethod& row);
 
 }  // namespace delray::apps

@@ -24,7 +24,7 @@ namespace delray::apps {
 namespace {
 
 using namespace report;
-using DistributedRow = ComparedDistribution;
+using DistributedRow = ComparedDistributedMethod;
 using RowQuantity = std::function<std::optional<double>(const DistributedRow&)>;
 
 report::Look look_of_distributed(const std::string& name) {
