@@ -16,7 +16,7 @@
 #include "apps/options/numbers.h"
 #include "apps/options/outputs.h"
 #include "apps/options/usage.h"
-#include "apps/record.h"
+#include "apps/replay/record.h"
 #include "comm/failure.h"
 #include "comm/handshake.h"
 #include "comm/mpi.h"

@@ -9,6 +9,7 @@
 
 namespace delray::comm {
 
+// Which places are joined, and how many messages go between them at a time: docs/networks.md.
 enum class Shape : std::uint8_t { crossbar, bus, ring, grid, torus, hypercube, tree, fat_tree };
 
 // How places are joined. Rank k is at place k; places without a rank pass messages on.

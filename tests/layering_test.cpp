@@ -54,6 +54,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"apps/input", {"options"}},
     {"apps/output", {"input", "options"}},
     {"apps/render", {"input", "options"}},
+    {"apps/replay", {"options", "terminal"}},
     {"apps/verify", {"input", "options"}},
     {"apps/compare", {"input", "options", "render", "report", "terminal"}},
     {"comm/in_process", {"transport"}},

@@ -1,6 +1,6 @@
 // Wraps the communicator twice: Charged tells the time between messages as work, Recording writes
 // all down. Clocks of the ranks are set to 0 after a barrier.
-#include "apps/record.h"
+#include "apps/replay/record.h"
 
 #include <algorithm>
 #include <thread>
