@@ -23,6 +23,8 @@ struct UsageError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+struct Found;  // compare/comparison.h
+
 // A run of the program: who speaks, what was asked for, and the wish to stop.
 struct Session {
   bool quiet = false;
@@ -37,6 +39,8 @@ struct Session {
   bool has_ranks = false;           // the subcommand runs on all processes of mpirun together
   parallel::Progress progress;
   std::function<int()> run;  // set by the subcommand that was chosen
+  // Takes what `compare` found, where somebody else than the terminal and files is to have it.
+  std::function<void(Found&&)> take_comparison;
 };
 
 // Adds -q and -v and the examples at the end of --help. `examples` are two lines, without "delray".

@@ -68,7 +68,12 @@ int shown_ranks_of(const std::vector<int>& ranks, int most) {
   return shown > 0 ? shown : ranks.front();
 }
 
-int report_results(const ComparisonOptions& options, Found&& found) {
+int report_results(const Session& session, const ComparisonOptions& options, Found&& found) {
+  if (session.take_comparison) {
+    const bool unfinished = found.unfinished;
+    session.take_comparison(std::move(found));
+    return unfinished ? int{kInterrupted} : int{kDone};
+  }
   if (options.statistics != "-") fmt::print("{}", aligned(found.table, line_width(STDOUT_FILENO)));
   if (!options.output.empty()) files::write_file(options.output, found.page());
   write_statistics(options.statistics, found.statistics);

@@ -75,7 +75,7 @@ struct Found {
   std::function<std::string()> page;  // made only where it is asked for
 };
 
-// Writes what was asked for and gives the exit code.
-int report_results(const ComparisonOptions& options, Found&& found);
+// Writes what was asked for, or gives it to who takes it in the session; returns the exit code.
+int report_results(const Session& session, const ComparisonOptions& options, Found&& found);
 
 }  // namespace delray::apps

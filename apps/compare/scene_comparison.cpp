@@ -64,7 +64,7 @@ int run_scene_comparison(
   if (session.first_process) refuse_overwriting(outputs_of(options), prepared->scene.files);
   Found found = compare(*prepared, session.progress);
   bar.end();
-  return session.first_process ? report_results(options, std::move(found)) : int{kDone};
+  return session.first_process ? report_results(session, options, std::move(found)) : int{kDone};
 }
 
 Json scene_json(const SceneComparison& options, const Prepared& prepared) {

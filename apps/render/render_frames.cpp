@@ -239,6 +239,13 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
   return memory;
 }
 
+void take_scene(scenes::Scene&& scene, Prepared& prepared) {
+  prepared.scene = std::move(scene);
+  prepared.triangles = scenes::triangle_count(prepared.scene);
+  prepared.points = scenes::splat_count(prepared.scene);
+  prepared.vertices = scenes::vertex_count(prepared.scene);
+}
+
 // Loads the scene, or of one that comes in parts what is no geometry.
 std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
                                parallel::Progress* progress) {
@@ -267,10 +274,7 @@ std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
     prepared->vertices = part.vertices;
     prepared->scene = std::move(part.scene);
   } else {
-    prepared->scene = load_scene(request.scene, progress);
-    prepared->triangles = scenes::triangle_count(prepared->scene);
-    prepared->points = scenes::splat_count(prepared->scene);
-    prepared->vertices = scenes::vertex_count(prepared->scene);
+    take_scene(load_scene(request.scene, progress), *prepared);
   }
   return prepared;
 }
@@ -391,6 +395,15 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   Stopwatch watch;
   const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
   const std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
+  choose_cameras(request, extent_of(*prepared), *prepared);
+  build(request, watch, *prepared);
+  return prepared;
+}
+
+std::shared_ptr<const Prepared> prepare(const RenderRequest& request, scenes::Scene&& scene) {
+  Stopwatch watch;
+  const auto prepared = std::make_shared<Prepared>();
+  take_scene(std::move(scene), *prepared);
   choose_cameras(request, extent_of(*prepared), *prepared);
   build(request, watch, *prepared);
   return prepared;

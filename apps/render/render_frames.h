@@ -41,6 +41,8 @@ struct Prepared {
 // Loads the scene, chooses the camera, builds what the engine needs. Parallel in the caller's
 // arena.
 std::shared_ptr<const Prepared> prepare(const RenderRequest& request, parallel::Progress* progress);
+// The same of a scene that is in memory; options of what is read change nothing.
+std::shared_ptr<const Prepared> prepare(const RenderRequest& request, scenes::Scene&& scene);
 
 // Collective: the same on every rank, for ranks that share no memory. Where they make parts of the
 // scene, each makes its own to agree on cameras that show all of it. Throws what all ranks throw.

@@ -76,7 +76,7 @@ int run_distributed(Session& session, const TriangulateRequest& request,
       compare_distributed(request, points, dim, session.progress));
   bar.end();
   return report_results(
-      request,
+      session, request,
       {distributed_table(*comparison), distributed_statistics(request, *comparison),
        comparison->unfinished, [&] { return distributed_report(session, request, *comparison); }});
 }
@@ -105,7 +105,7 @@ int run(Session& session, TriangulateRequest request) {
       compare_triangulate(request, points, dim, session.progress));
   bar.end();
   return report_results(
-      request,
+      session, request,
       {triangulate_table(*comparison), triangulate_statistics(request, *comparison),
        comparison->unfinished, [&] { return triangulate_report(session, request, *comparison); }});
 }
