@@ -68,6 +68,10 @@ foreach(folder IN LISTS folders)
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()
 
+# libdelray.so needs none of them.
+string(APPEND DELRAY_NEEDS "set(delray_c_components)\nset(delray_c_packages)\n")
+list(APPEND folders c)
+
 install(EXPORT delrayTargets NAMESPACE delray::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/delray)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/delrayConfig.cmake.in

@@ -1,0 +1,18 @@
+# The dynamic symbols that LIBRARY defines are the functions of HEADER, and its name is libdelray.so.1.
+execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL " [A-Za-z] [^\n]+" found "${text}")
+list(TRANSFORM found REPLACE "^ [A-Za-z] ([^@]+).*" "\\1")
+list(REMOVE_ITEM found DELRAY_1)  # the version itself
+file(READ ${HEADER} text)
+string(REGEX MATCHALL "DELRAY_API [^;(]*[ *](delray[A-Za-z0-9]+)\\(" declared "${text}")
+list(TRANSFORM declared REPLACE ".*[ *](delray[A-Za-z0-9]+)\\(" "\\1")
+list(SORT found)
+list(SORT declared)
+list(LENGTH declared count)
+if(count LESS 40 OR NOT found STREQUAL declared)
+  message(FATAL_ERROR "shown: ${found}\ndeclared: ${declared}")
+endif()
+execute_process(COMMAND ${READELF} -d ${LIBRARY} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+if(NOT text MATCHES "SONAME[^\n]*\\[libdelray.so.1\\]")
+  message(FATAL_ERROR "no SONAME libdelray.so.1: ${text}")
+endif()
