@@ -9,6 +9,7 @@
 #include "c/guard.h"
 #include "comm/agree_on_failure.h"
 #include "comm/mpi.h"
+#include "composite/codec.h"
 #include "composite/compose_images.h"
 #include "parallel/arena.h"
 
@@ -89,6 +90,8 @@ DelrayStatus delrayCompose(DelrayCommunicator communicator, const DelrayImage* m
         throw std::invalid_argument(
             "mine->type is neither DELRAY_UFIXED8_RGBA_SRGB nor DELRAY_FLOAT32_VEC4");
       }
+      if (given.codec != nullptr && composite::find_codec(given.codec) == nullptr)
+        throw std::invalid_argument(std::string("there is no codec '") + given.codec + "'");
       if (communicator->ranks->rank() != given.root) return;
       c::require(whole, "whole");
       c::require(whole->colour, "whole->colour");

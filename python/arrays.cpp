@@ -13,6 +13,7 @@ bool fits(const py::array& array) {
   const bool aligned =
       (array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0 && array.itemsize() == 8;
   if (!aligned || !array.dtype().is(py::dtype::of<double>())) return false;
+  if (array.shape(0) <= 1) return array.strides(1) == array.itemsize();
   return array.strides(1) == array.itemsize() &&
          array.strides(0) >= array.shape(1) * array.itemsize();
 }
@@ -20,6 +21,10 @@ bool fits(const py::array& array) {
 }  // namespace
 
 delaunay::PointView<double> PointArray::view() const {
+  if (array.shape(0) <= 1) {  // whose distance NumPy leaves open
+    return {static_cast<const std::byte*>(array.data()), static_cast<std::size_t>(array.shape(0)),
+            columns * sizeof(double)};
+  }
   return {static_cast<const std::byte*>(array.data()), static_cast<std::size_t>(array.shape(0)),
           static_cast<std::size_t>(array.strides(0))};
 }

@@ -1,10 +1,12 @@
 // Compositing of arrays over the ranks of an mpi4py communicator.
 #include <pybind11/stl.h>
 
+#include <exception>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "comm/agree_on_failure.h"
 #include "comm/mpi.h"
 #include "composite/codec.h"
 #include "composite/compose_images.h"
@@ -39,40 +41,70 @@ py::object compose_as(MpiRanks& ranks, const py::array& colours, const std::opti
   return py::make_tuple(picture, array_of(std::move(whole.depth), whole.width, whole.height));
 }
 
-py::object compose(MpiRanks& ranks, const py::object& rgba, const py::object& depth,
-                   const std::string& scheme, const std::string& codec, bool interlace, int root,
-                   float empty_depth, std::optional<int> threads) {
-  const py::array colours = py::array::ensure(rgba, py::array::c_style);
+// The arguments of one rank, checked.
+struct Images {
+  py::array colours;
+  std::optional<Depth> depth;
+};
+
+Images checked(const py::object& rgba, const py::object& depth, const std::string& codec) {
+  Images result;
+  result.colours = py::array::ensure(rgba, py::array::c_style);
+  const py::array& colours = result.colours;
   if (!colours || colours.ndim() != 3 || colours.shape(2) != 4) {
     PyErr_Clear();
     throw std::invalid_argument("rgba: not an array of (height, width, 4)");
   }
-  std::optional<Depth> depths;
-  if (!depth.is_none()) {
-    depths.emplace(depth);
-    if (depths->ndim() != 2 || depths->shape(0) != colours.shape(0) ||
-        depths->shape(1) != colours.shape(1)) {
-      throw std::invalid_argument("depth: not an array of (height, width), as rgba is");
-    }
-    for (py::ssize_t i = 0; i < depths->size(); ++i) {
-      if (depths->data()[i] != depths->data()[i])
-        throw std::invalid_argument("depth: that of pixel " + std::to_string(i) +
-                                    " is not a number");
-    }
+  if (!colours.dtype().is(py::dtype::of<std::uint8_t>()) &&
+      !colours.dtype().is(py::dtype::of<float>())) {
+    throw std::invalid_argument("rgba: " + std::string(py::str(colours.dtype())) +
+                                " is neither uint8 nor float32");
+  }
+  if (composite::find_codec(codec) == nullptr)
+    throw std::invalid_argument("there is no codec '" + codec + "'");
+  if (depth.is_none()) return result;
+  result.depth.emplace(depth);
+  const Depth& depths = *result.depth;
+  if (depths.ndim() != 2 || depths.shape(0) != colours.shape(0) ||
+      depths.shape(1) != colours.shape(1)) {
+    throw std::invalid_argument("depth: not an array of (height, width), as rgba is");
+  }
+  for (py::ssize_t i = 0; i < depths.size(); ++i) {
+    if (depths.data()[i] != depths.data()[i])
+      throw std::invalid_argument("depth: that of pixel " + std::to_string(i) + " is not a number");
+  }
+  return result;
+}
+
+py::object compose(MpiRanks& ranks, const py::object& rgba, const py::object& depth,
+                   const std::string& scheme, const std::string& codec, bool interlace, int root,
+                   float empty_depth, std::optional<int> threads) {
+  Images images;
+  std::exception_ptr failure;
+  int workers = 1;
+  try {
+    images = checked(rgba, depth, codec);
+    workers = thread_count(threads.value_or(1));
+  } catch (const std::exception&) {
+    failure = std::current_exception();
+  }
+  {
+    // Nobody waits for a rank whose arguments are wrong.
+    const py::gil_scoped_release unlocked;
+    comm::agree_on_failure(*ranks.communicator, failure, comm::Phase::other);
   }
   composite::ImageOptions options;
-  options.how = depths ? composite::Operator::nearest : composite::Operator::over;
+  options.how = images.depth ? composite::Operator::nearest : composite::Operator::over;
   options.scheme = scheme;
   options.codec = codec;
   options.interlace = interlace;
   options.root = root;
-  const int workers = thread_count(threads.value_or(1));
-  if (colours.dtype().is(py::dtype::of<std::uint8_t>()))
-    return compose_as<image::Rgba8>(ranks, colours, depths, empty_depth, options, workers);
-  if (colours.dtype().is(py::dtype::of<float>()))
-    return compose_as<image::RgbaF>(ranks, colours, depths, empty_depth, options, workers);
-  throw std::invalid_argument("rgba: " + std::string(py::str(colours.dtype())) +
-                              " is neither uint8 nor float32");
+  if (images.colours.dtype().is(py::dtype::of<float>())) {
+    return compose_as<image::RgbaF>(ranks, images.colours, images.depth, empty_depth, options,
+                                    workers);
+  }
+  return compose_as<image::Rgba8>(ranks, images.colours, images.depth, empty_depth, options,
+                                  workers);
 }
 
 template <class Table>

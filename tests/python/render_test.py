@@ -97,7 +97,7 @@ def test_colours_textures_instances_and_points():
     scene.add_instance(blue, [[0.5, 0, 0, 1], [0, 0.5, 0, 0], [0, 0, 1, 0]])
     texture = np.zeros((2, 2, 3), np.uint8)
     texture[0, 0] = 255, 0, 0
-    uvs = [[0, 0], [0.2, 0], [0.2, 0.2], [0, 0.2]]
+    uvs = [[0.25, 0.25]] * 4  # the middle of the first texel
     scene.add_mesh(SQUARE - [1, 0, 1], TRIANGLES, uvs=uvs,
                    material=scene.add_material((1, 1, 1), unlit=True, texture=texture))
     scene.add_points([[0, 1.2, 0]], shape="sphere", radius=0.2, colors=[[1.0, 1, 1]],
@@ -184,7 +184,7 @@ def test_wrong_options_raise_value_errors(options, text):
         (dict(positions=SQUARE, triangles=TRIANGLES, normals=SQUARE[:3]), "normals: 3 rows for 4"),
         (dict(positions=SQUARE, triangles=TRIANGLES, normals=SQUARE * 0), "no length"),
         (dict(positions=SQUARE, triangles=TRIANGLES, material=7), "material: 7 does not exist"),
-        (dict(positions=SQUARE, triangles=TRIANGLES, colors=-SQUARE), "colors: row 0 is below 0"),
+        (dict(positions=SQUARE, triangles=TRIANGLES, colors=-SQUARE), "colors: row 1 is below 0"),
         (dict(positions=SQUARE, triangles=TRIANGLES, transform=np.eye(3)), "transform: the shape"),
     ],
 )
