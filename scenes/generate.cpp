@@ -31,7 +31,13 @@ constexpr std::array kGenerators = {
     Generator{"field", "a thousand instances of four detailed models on a plain", 13'000'000, 1,
               &internal::generate_field},
     Generator{"corner", "glass spheres in a corner of the picture: uneven work for rays", 100'000,
-              1, &internal::generate_corner}};
+              1, &internal::generate_corner},
+    Generator{"machine", "a thousand parts that move: gears, pistons and lamps", 1'000'000, 2,
+              &internal::generate_machine},
+    Generator{"cloth", "a flag in the wind, by morph targets", 200'000, 200,
+              &internal::generate_cloth},
+    Generator{"arm", "an arm that bends, by a skin over a chain of joints", 100'000, 150,
+              &internal::generate_arm}};
 
 [[noreturn]] void refuse(std::string_view name, const std::string& why) {
   std::string message =
@@ -102,7 +108,11 @@ std::uint64_t generated_bytes(std::string_view name) {
 Scene generate(std::string_view name) {
   const Wanted wanted = parsed(name);
   Scene scene = wanted.generator->generate(wanted.triangles, wanted.seed);
-  for (Mesh& mesh : scene.meshes) internal::order_for_locality(mesh);
+  // Meshes that bend have an order that their displacements know of.
+  std::vector<std::uint8_t> bends(scene.meshes.size(), 0);
+  for (const DeformedMesh& deformed : scene.animations.meshes) bends[deformed.mesh] = 1;
+  for (std::size_t i = 0; i < bends.size(); ++i)
+    if (bends[i] == 0) internal::order_for_locality(scene.meshes[i]);
   return scene;
 }
 

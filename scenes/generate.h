@@ -35,7 +35,7 @@ struct Generator {
 // That a generated scene may be asked for: 3e9 corners still have 32-bit numbers.
 inline constexpr std::uint64_t kMostTriangles = 1'000'000'000;
 
-// terrain, cornell, spheres, city, field, corner.
+// terrain, cornell, spheres, city, field, corner, machine, cloth, arm.
 std::span<const Generator> generators();
 
 // "gen:KIND[:TRIANGLES[:SEED]]" -> the scene; numbers as files::parse_count reads them. Throws

@@ -11,11 +11,11 @@
 
 #include "geometry/box.h"
 #include "image/image.h"
+#include "scenes/animation.h"
 #include "scenes/camera.h"
+#include "scenes/none.h"
 
 namespace delray::scenes {
-
-inline constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
 // How the primitives of a mesh look: triangles, or splats of one radius around points or segments.
 struct Shape {
@@ -170,6 +170,7 @@ struct Scene {
   std::vector<std::string> files;
   std::optional<ColourScale> colour_scale;  // where vertices were coloured by one
   geometry::Box3 framed;                    // what cameras around the scene show; empty: all of it
+  Animations animations;                    // how it moves; scenes/pose.h
 };
 
 // Triangles, points and segments, and vertices of all instances. O(instances).

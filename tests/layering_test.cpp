@@ -89,9 +89,10 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"raytrace/sampling", {"scene"}},
     {"raytrace/integrators", {"sampling", "scene"}},
     {"raytrace/distributed", {"integrators", "scene"}},
+    {"scenes/animation", {"geometry"}},
     {"scenes/files", {"geometry"}},
-    {"scenes/generators", {"geometry"}},
-    {"scenes/gltf", {"files", "geometry"}},
+    {"scenes/generators", {"animation", "geometry"}},
+    {"scenes/gltf", {"animation", "files", "geometry"}},
 };
 
 // "folder/sub-folder" of a path in the tree, nothing where it lies directly in the folder.

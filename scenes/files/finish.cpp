@@ -42,15 +42,35 @@ void drop_empty_meshes(Scene& scene) {
     ++kept;
   }
   scene.meshes.resize(kept);
+  Animations& animations = scene.animations;
+  for (DeformedMesh& deformed : animations.meshes) deformed.mesh = number[deformed.mesh];
+  std::vector<std::uint32_t> instance_number(scene.instances.size(), kNone);
+  std::uint32_t instances = 0;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    if (number[scene.instances[i].mesh] != kNone) instance_number[i] = instances++;
+  for (Follower& follower : animations.instances)
+    follower.number = instance_number[follower.number];
+  std::erase_if(animations.instances, [](const Follower& f) { return f.number == kNone; });
   std::erase_if(scene.instances, [&](const Instance& i) { return number[i.mesh] == kNone; });
   for (Instance& instance : scene.instances) instance.mesh = number[instance.mesh];
+}
+
+// Meshes that bend, whose triangles may have no area in one pose and some in another.
+std::vector<std::uint8_t> bending_meshes(const Scene& scene) {
+  std::vector<std::uint8_t> bends(scene.meshes.size(), 0);
+  for (const DeformedMesh& deformed : scene.animations.meshes) bends[deformed.mesh] = 1;
+  return bends;
 }
 
 }  // namespace
 
 void finish(const Source& source, Scene& scene) {
   std::uint64_t degenerate = 0;
-  for (Mesh& mesh : scene.meshes) degenerate += mesh.has_triangles() ? drop_degenerate(mesh) : 0;
+  const std::vector<std::uint8_t> bends = bending_meshes(scene);
+  for (std::size_t i = 0; i < bends.size(); ++i) {
+    Mesh& mesh = scene.meshes[i];
+    if (mesh.has_triangles() && bends[i] == 0) degenerate += drop_degenerate(mesh);
+  }
   drop_empty_meshes(scene);
   if (scene.instances.empty()) {
     source.fail("", degenerate == 0   ? kNoTriangles

@@ -31,4 +31,14 @@ Scene generate_field(std::uint64_t triangles, std::uint64_t seed);
 // for rays that is spread as unevenly as can be. The seed places the spheres.
 Scene generate_corner(std::uint64_t triangles, std::uint64_t seed);
 
+// Up to 1024 moving instances of four models: gears that turn (linear), pistons that slide (cubic
+// spline), lamps that jump (step), once in 4 seconds. The seed changes nothing.
+Scene generate_machine(std::uint64_t triangles, std::uint64_t seed);
+
+// A flag in the wind: two morph targets, once in 2 seconds. The seed changes nothing.
+Scene generate_cloth(std::uint64_t triangles, std::uint64_t seed);
+
+// An arm that bends: a skin over a chain of joints, once in 4 seconds. The seed changes nothing.
+Scene generate_arm(std::uint64_t triangles, std::uint64_t seed);
+
 }  // namespace delray::scenes::internal

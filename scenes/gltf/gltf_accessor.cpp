@@ -253,6 +253,28 @@ std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::
   return values;
 }
 
+std::vector<float> read_floats(const GltfDocument& document, std::size_t number, int components) {
+  const Accessor accessor = accessor_at(document, number);
+  if (accessor.components != components) {
+    accessor.json["type"].fail("has " + std::to_string(accessor.components) + " components, not " +
+                               std::to_string(components));
+  }
+  const auto width = static_cast<std::size_t>(components);
+  document.source.require_memory(accessor.count * width * sizeof(float), accessor.json.place());
+  std::vector<float> values(accessor.count * width);
+  for_each_block(document, accessor,
+                 [&](std::size_t first, std::size_t last, const Elements& elements) {
+                   float* to = values.data() + first * width;
+                   for (std::size_t i = 0; i < last - first; ++i)
+                     for (int k = 0; k < components; ++k) *to++ = elements.real(i, k);
+                 });
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]))
+      accessor.json.fail("element " + std::to_string(i / width) + " is not finite");
+  }
+  return values;
+}
+
 template std::vector<glm::vec2> read_vectors<2>(const GltfDocument&, std::size_t);
 template std::vector<glm::vec3> read_vectors<3>(const GltfDocument&, std::size_t);
 template std::vector<glm::vec4> read_vectors<4>(const GltfDocument&, std::size_t);

@@ -47,6 +47,9 @@ std::string decode_percent(std::string_view uri);
 template <int N>
 std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::size_t number);
 
+// The same with any number of components, element after element: scalars, matrices by column.
+std::vector<float> read_floats(const GltfDocument& document, std::size_t number, int components);
+
 // Whether accessors[number] has no data: all of its elements are zero.
 bool is_all_zero(const GltfDocument& document, std::size_t number);
 

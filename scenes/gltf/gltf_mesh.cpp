@@ -65,10 +65,11 @@ std::vector<glm::uvec3> splats_of(const std::vector<std::uint32_t>& v, std::uint
 }
 
 template <class T>
-void keep(std::vector<T>& values, std::span<const std::uint32_t> kept) {
+void keep(std::vector<T>& values, std::span<const std::uint32_t> kept, std::size_t width = 1) {
   if (values.empty()) return;
-  for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
-  values.resize(kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    for (std::size_t k = 0; k < width; ++k) values[i * width + k] = values[kept[i] * width + k];
+  values.resize(kept.size() * width);
 }
 
 // Whether each vertex is a corner.
@@ -82,7 +83,7 @@ bool all_are_used(const Mesh& mesh) {
   return std::ranges::find(used, 0) == used.end();
 }
 
-void drop_unused_vertices(Mesh& mesh) {
+void drop_unused_vertices(Mesh& mesh, Deformation& deformation) {
   if (all_are_used(mesh)) return;
   std::vector<std::uint32_t> number(mesh.positions.size(), kNone), kept;
   for (const glm::uvec3& t : mesh.triangles) number[t.x] = number[t.y] = number[t.z] = 0;
@@ -97,6 +98,13 @@ void drop_unused_vertices(Mesh& mesh) {
   keep(mesh.uvs2, kept);
   keep(mesh.tangents, kept);
   keep(mesh.colours, kept);
+  for (MorphTarget& target : deformation.targets) {
+    keep(target.positions, kept);
+    keep(target.normals, kept);
+    keep(target.tangents, kept);
+  }
+  keep(deformation.joints, kept, deformation.influences);
+  keep(deformation.weights, kept, deformation.influences);
   for (glm::uvec3& t : mesh.triangles) t = {number[t.x], number[t.y], number[t.z]};
 }
 
@@ -205,20 +213,92 @@ void read_all_uvs(const JsonView& primitive, Attributes& attributes, const GltfD
   if (mesh.uvs.empty()) mesh.uvs.resize(mesh.uvs2.size(), glm::vec2(0));
 }
 
-Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std::uint64_t mode,
-                    std::span<GltfMaterial> materials) {
-  Mesh mesh;
+// Displacements that are all zero take no memory.
+std::vector<MorphTarget> read_targets(const GltfDocument& document, const JsonView& primitive,
+                                      const Mesh& mesh) {
+  const std::size_t accessors = document.root()["accessors"].size();
+  const auto read = [&](const JsonView& json) {
+    std::vector<glm::vec3> values;
+    const std::uint32_t accessor = json.reference(accessors);
+    if (accessor == kNone || is_all_zero(document, accessor)) return values;
+    values = read_vectors<3>(document, accessor);
+    if (values.size() != mesh.positions.size()) {
+      json.fail("has " + std::to_string(values.size()) + " elements for " +
+                std::to_string(mesh.positions.size()) + " vertices");
+    }
+    return values;
+  };
+  const JsonView targets = primitive["targets"];
+  std::vector<MorphTarget> result(targets.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i].positions = read(targets[i]["POSITION"]);
+    if (!mesh.normals.empty()) result[i].normals = read(targets[i]["NORMAL"]);
+    if (!mesh.tangents.empty()) result[i].tangents = read(targets[i]["TANGENT"]);
+  }
+  return result;
+}
+
+// Makes weights sum up to 1; a vertex without any follows its first joint, as elsewhere.
+void make_sums_one(Deformation& deformation, std::size_t vertices) {
+  const std::size_t n = deformation.influences;
+  parallel::parallel_for(0, vertices, kBlock, [&](std::size_t i) {
+    const std::span<float> weights(deformation.weights.data() + i * n, n);
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(sum > 0)) {
+      weights[0] = 1;
+      return;
+    }
+    if (sum == 1) return;
+    for (float& w : weights) w = static_cast<float>(double{w} / sum);
+  });
+}
+
+// JOINTS_0 and WEIGHTS_0, and sets that follow.
+void read_influences(const JsonView& primitive, Attributes& attributes, Deformation& deformation) {
+  constexpr std::size_t kOfSet = 4;
+  std::vector<std::vector<glm::vec4>> joints, weights;
+  for (int set = 0;; ++set) {
+    const std::string suffix = std::to_string(set);
+    const std::string joint = "JOINTS_" + suffix, weight = "WEIGHTS_" + suffix;
+    if (!attributes.has(joint.c_str()) || !attributes.has(weight.c_str())) break;
+    joints.push_back(attributes.read<4>(joint.c_str()));
+    weights.push_back(attributes.read<4>(weight.c_str()));
+  }
+  if (joints.empty()) primitive["attributes"].fail("has no JOINTS_0 and WEIGHTS_0 for its skin");
+  const std::size_t vertices = joints.front().size();
+  deformation.influences = static_cast<std::uint32_t>(joints.size() * kOfSet);
+  deformation.joints.reserve(vertices * deformation.influences);
+  deformation.weights.reserve(vertices * deformation.influences);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    for (std::size_t k = 0; k < deformation.influences; ++k) {
+      const float joint = joints[k / kOfSet][i][static_cast<int>(k % kOfSet)];
+      const float weight = weights[k / kOfSet][i][static_cast<int>(k % kOfSet)];
+      if (!(joint >= 0 && joint <= 65535 && joint == std::floor(joint)))
+        primitive.fail("a joint of vertex " + std::to_string(i) + " is no number of one");
+      if (weight < 0) primitive.fail("a weight of vertex " + std::to_string(i) + " is negative");
+      deformation.joints.push_back(static_cast<std::uint16_t>(joint));
+      deformation.weights.push_back(weight);
+    }
+  }
+  make_sums_one(deformation, vertices);
+}
+
+GltfPrimitive read_primitive(const GltfDocument& document, const JsonView& primitive,
+                             std::uint64_t mode, std::span<GltfMaterial> materials, bool has_skin) {
+  GltfPrimitive result;
+  Mesh& mesh = result.mesh;
   Attributes attributes(document, primitive);
-  if (!attributes.has("POSITION")) return mesh;
+  if (!attributes.has("POSITION")) return result;
   auto compressed = attributes.compressed_indices();
   const std::size_t accessors = document.root()["accessors"].size();
   const std::uint32_t position = primitive["attributes"]["POSITION"].reference(accessors);
   const std::uint32_t index_accessor = primitive["indices"].reference(accessors);
   // Without data all corners are in one place, so nothing of it can be seen.
-  if (!compressed && (is_all_zero(document, position) ||
+  const bool bends = primitive["targets"].size() > 0;
+  if (!compressed && ((is_all_zero(document, position) && !bends) ||
                       (index_accessor != kNone && is_all_zero(document, index_accessor)))) {
     document.source.warn(primitive.place() + ": its corners are all in one place: left out");
-    return mesh;
+    return result;
   }
   mesh.positions = read_positions(primitive, attributes);
 
@@ -274,22 +354,24 @@ Mesh read_primitive(const GltfDocument& document, const JsonView& primitive, std
   read_colours(attributes, mesh);
   document.source.require_memory(mesh.positions.size() * 2 * sizeof(std::uint32_t),
                                  primitive.place());
-  drop_unused_vertices(mesh);
-  return mesh;
+  if (has_skin) read_influences(primitive, attributes, result.deformation);
+  result.deformation.targets = read_targets(document, primitive, mesh);
+  drop_unused_vertices(mesh, result.deformation);
+  return result;
 }
 
 }  // namespace
 
-std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
-                            std::span<GltfMaterial> materials) {
+std::vector<GltfPrimitive> read_mesh(const GltfDocument& document, std::size_t number,
+                                     std::span<GltfMaterial> materials, bool has_skin) {
   const JsonView json = document.root()["meshes"][number];
   const JsonView primitives = json["primitives"];
-  std::vector<Mesh> meshes;
+  std::vector<GltfPrimitive> meshes;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const std::uint64_t mode = primitives[i]["mode"].whole(kTriangles);
     if (mode > kFan) primitives[i]["mode"].fail("should be 0 to 6");
-    meshes.push_back(read_primitive(document, primitives[i], mode, materials));
-    meshes.back().name = json["name"].text();
+    meshes.push_back(read_primitive(document, primitives[i], mode, materials, has_skin));
+    meshes.back().mesh.name = json["name"].text();
   }
   return meshes;
 }

@@ -10,12 +10,19 @@
 
 namespace delray::scenes::internal {
 
+// A primitive, and how its vertices move.
+struct GltfPrimitive {
+  Mesh mesh;
+  Deformation deformation;
+};
+
 // The primitives of meshes[number], each as a mesh of its own; strips, loops and fans are taken
 // apart. Points are 3 pixels wide and lines 1.5, as the file does not say. Vertices that no
 // triangle of the primitive uses are left out. A primitive without a material has material kNone.
 // Texture coordinates are what the material's textures use; that a primitive does not have them is
-// told once for each material, unless TEXCOORD_0 is all that it asks for.
-std::vector<Mesh> read_mesh(const GltfDocument& document, std::size_t number,
-                            std::span<GltfMaterial> materials);
+// told once for each material, unless TEXCOORD_0 is all that it asks for. Joints are read where
+// there is a skin, weights of a vertex sum up to 1.
+std::vector<GltfPrimitive> read_mesh(const GltfDocument& document, std::size_t number,
+                                     std::span<GltfMaterial> materials, bool has_skin);
 
 }  // namespace delray::scenes::internal

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "scenes/animation/followers.h"
 #include "scenes/files/vertex_values.h"
 #include "scenes/geometry/origin.h"
 
@@ -50,7 +51,8 @@ bool exceeds(double distance, double limit) {
 
 }  // namespace
 
-void place_instances(const Source& source, std::span<const glm::dmat4> worlds, Scene& scene) {
+std::vector<glm::dvec3> place_instances(const Source& source, std::span<const glm::dmat4> worlds,
+                                        Scene& scene) {
   std::vector<geometry::Box3d> boxes;
   for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh.positions));
   const Reach reach = reach_of(scene, worlds, boxes);
@@ -61,16 +63,15 @@ void place_instances(const Source& source, std::span<const glm::dmat4> worlds, S
   if (far) scene.origin = origin_of(reach.box);
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     Instance& instance = scene.instances[i];
-    glm::dmat4 world = worlds[i];
-    if (far) {
-      world[3] = world * glm::dvec4(boxes[instance.mesh].centre(), 1.0);
-      world[3] -= glm::dvec4(scene.origin, 0.0);
-    }
-    instance.transform = glm::mat4x3(glm::dmat4x3(world));
+    const glm::dvec3 centre = far ? boxes[instance.mesh].centre() : glm::dvec3(0);
+    instance.transform = placed_at(worlds[i], centre, scene.origin);
   }
   for (std::size_t m = 0; far && m < boxes.size(); ++m) {
     make_relative_to(boxes[m].centre(), scene.meshes[m].positions);
   }
+  std::vector<glm::dvec3> centres(boxes.size(), glm::dvec3(0));
+  for (std::size_t m = 0; far && m < boxes.size(); ++m) centres[m] = boxes[m].centre();
+  return centres;
 }
 
 }  // namespace delray::scenes::internal

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 #include <span>
+#include <vector>
 
 #include "scenes/files/source.h"
 #include "scenes/scene.h"
@@ -13,7 +14,8 @@ namespace delray::scenes::internal {
 // are far from 0 for the size of the scene, chooses Scene::origin and puts the vertices of every
 // mesh relative to its own middle: all sums of large numbers are then made here, in double
 // precision. Else transforms are rounded as they are, and the origin is 0. Warns where vertices are
-// coarse. O(vertices).
-void place_instances(const Source& source, std::span<const glm::dmat4> worlds, Scene& scene);
+// coarse. Returns what the vertices of each mesh are relative to. O(vertices).
+std::vector<glm::dvec3> place_instances(const Source& source, std::span<const glm::dmat4> worlds,
+                                        Scene& scene);
 
 }  // namespace delray::scenes::internal

@@ -2,56 +2,32 @@
 // places cameras and lights after the origin is chosen.
 //
 // A node with two parents is bad input, which also ends cycles. Transforms are multiplied in double
-// precision. Degenerate: rotations of length 0 are left out; without scenes all nodes without a
-// parent are shown.
+// precision. What moves is put at rest. Degenerate: rotations of length 0 are left out; without
+// scenes all nodes without a parent are shown.
 #include "scenes/gltf/load_gltf.h"
 
 #include <algorithm>
-#include <glm/gtc/quaternion.hpp>
 #include <numbers>
 #include <unordered_map>
 
+#include "scenes/animation/deform.h"
+#include "scenes/animation/followers.h"
+#include "scenes/gltf/gltf_animation.h"
 #include "scenes/gltf/gltf_document.h"
 #include "scenes/gltf/gltf_extras.h"
 #include "scenes/gltf/gltf_material.h"
 #include "scenes/gltf/gltf_mesh.h"
+#include "scenes/gltf/gltf_motion.h"
 #include "scenes/gltf/gltf_origin.h"
 
 namespace delray::scenes::internal {
 namespace {
 
-glm::dmat4 local_transform(const JsonView& node) {
-  const JsonView matrix = node["matrix"];
-  glm::dmat4 transform(1.0);
-  if (matrix) {
-    if (matrix.size() != 16) matrix.fail("needs 16 numbers");
-    for (int i = 0; i < 16; ++i) {
-      transform[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)].number(0);
-    }
-    return transform;
-  }
-  const glm::dvec3 translation = node["translation"].vector<3>({0, 0, 0});
-  const glm::dvec4 rotation = node["rotation"].vector<4>({0, 0, 0, 1});
-  const glm::dvec3 scale = node["scale"].vector<3>({1, 1, 1});
-  const double length = glm::length(rotation);
-  if (length > 0) {
-    transform = glm::mat4_cast(glm::dquat(rotation.w, rotation.x, rotation.y, rotation.z) / length);
-  }
-  for (int k = 0; k < 3; ++k) transform[k] *= scale[k];
-  transform[3] = glm::dvec4(translation, 1.0);
-  return transform;
-}
-
-glm::dvec3 unit_or(const glm::dvec3& v, const glm::dvec3& otherwise) {
-  const double length = glm::length(v);
-  return length > 0 ? v / length : otherwise;
-}
-
 // Walks the nodes and places what they hold.
 class Placer {
  public:
   Placer(const GltfDocument& document, Scene& scene)
-      : document_(document), root_(document.root()), scene_(scene) {
+      : document_(document), root_(document.root()), scene_(scene), motion_(document) {
     TextureFiles textures(document.source, scene.textures);
     materials_ = read_materials(document, textures);
     for (const GltfMaterial& m : materials_) scene.materials.push_back(m.material);
@@ -63,30 +39,38 @@ class Placer {
     struct Entry {
       std::uint32_t node;
       glm::dmat4 parent;
+      std::uint32_t parent_number;
     };
     const JsonView nodes = root_["nodes"];
     std::vector<bool> placed(nodes.size(), false);
     std::vector<Entry> stack;
-    for (const std::uint32_t node : top_nodes()) stack.push_back({node, glm::dmat4(1.0)});
+    for (const std::uint32_t node : top_nodes()) stack.push_back({node, glm::dmat4(1.0), kNone});
     while (!stack.empty()) {
       const Entry entry = stack.back();
       stack.pop_back();
       const JsonView node = nodes[entry.node];
       if (placed[entry.node]) node.fail("has two parents");
       placed[entry.node] = true;
-      const glm::dmat4 world = entry.parent * local_transform(node);
-      place(node, world);
+      const AnimatedNode own = read_node(node);
+      const glm::dmat4 local = transform_of(own);
+      const glm::dmat4 world = entry.parent_number == kNone && entry.parent == glm::dmat4(1.0)
+                                   ? local
+                                   : entry.parent * local;
+      const std::uint32_t number = motion_.add(entry.node, entry.parent_number, own);
+      place(node, number, world);
       const JsonView children = node["children"];
       for (std::size_t i = children.size(); i-- > 0;) {
-        stack.push_back({children[i].reference(nodes.size()), world});
+        stack.push_back({children[i].reference(nodes.size()), world, number});
         if (stack.back().node == kNone) children[i].fail("is missing");
       }
     }
-    place_instances(document_.source, worlds_, scene_);
-    for (auto& [node, world] : others_) {
-      world[3] -= glm::dvec4(scene_.origin, 0.0);
-      place_others(node, world);
+    motion_.bend(scene_);
+    const std::vector<glm::dvec3> centres = place_instances(document_.source, worlds_, scene_);
+    for (Other& other : others_) {
+      other.world[3] -= glm::dvec4(scene_.origin, 0.0);
+      place_others(other);
     }
+    motion_.finish(centres, scene_);
   }
 
  private:
@@ -119,37 +103,89 @@ class Placer {
     return top;
   }
 
-  void place(const JsonView& node, const glm::dmat4& world) {
+  // A node with cameras or lights.
+  struct Other {
+    JsonView node;
+    std::uint32_t number;
+    glm::dmat4 world;
+  };
+
+  void place(const JsonView& node, std::uint32_t number, const glm::dmat4& world) {
     const std::uint32_t mesh = node["mesh"].reference(meshes_.size());
+    const std::uint32_t skin = node["skin"].reference(root_["skins"].size());
     if (mesh != kNone) {
-      for (const std::uint32_t part : mesh_parts(mesh)) {
-        scene_.instances.push_back({part});
-        worlds_.push_back(world);
+      const std::size_t targets = target_count(document_, mesh);
+      if (targets > 0 || skin != kNone) {
+        place_deformed(node, number, skin, world);
+      } else {
+        for (const std::uint32_t part : mesh_parts(mesh)) place_mesh(part, number, false, world);
       }
     }
-    if (node["camera"] || node["extensions"]) others_.push_back({node, world});
+    if (node["camera"] || node["extensions"]) others_.push_back({node, number, world});
   }
 
-  void place_others(const JsonView& node, const glm::dmat4& world) {
-    const JsonView cameras = root_["cameras"];
+  void place_mesh(std::uint32_t mesh, std::uint32_t number, bool skinned, const glm::dmat4& world) {
+    scene_.instances.push_back({mesh});
+    worlds_.push_back(skinned ? glm::dmat4(1.0) : world);
+    motion_.add_instance(number, skinned);
+  }
+
+  // Each node has meshes of its own then, since their vertices depend on its weights and joints.
+  void place_deformed(const JsonView& node, std::uint32_t number, std::uint32_t skin,
+                      const glm::dmat4& world) {
+    const std::uint32_t mesh = node["mesh"].reference(meshes_.size());
+    motion_.weights_of(number) = read_weights(document_, node, target_count(document_, mesh));
+    for (GltfPrimitive& part : read_mesh(document_, mesh, materials_, skin != kNone)) {
+      if (part.mesh.triangles.empty()) continue;
+      complete_material(part.mesh);
+      DeformedMesh deformed =
+          make_deformed(part.mesh, std::move(part.deformation), completion_of(part.mesh));
+      deformed.mesh = static_cast<std::uint32_t>(scene_.meshes.size());
+      deformed.node = number;
+      deformed.skin = skin;
+      scene_.meshes.push_back(std::move(part.mesh));
+      place_mesh(deformed.mesh, number, skin != kNone, world);
+      motion_.add_deformed(std::move(deformed));
+    }
+  }
+
+  Completion completion_of(const Mesh& mesh) const {
+    Completion completion;
+    const std::uint32_t texture = scene_.materials[mesh.material].normal_texture;
+    if (texture < scene_.textures.size()) completion.tangents_of_set = scene_.textures[texture].set;
+    return completion;
+  }
+
+  void place_others(const Other& other) {
+    const JsonView cameras = root_["cameras"], &node = other.node;
     const std::uint32_t camera = node["camera"].reference(cameras.size());
-    if (camera != kNone) place_camera(cameras[camera], node["name"].text(), world);
+    if (camera != kNone) {
+      place_camera(cameras[camera], node["name"].text(), other.world);
+      motion_.add_camera(other.number, static_cast<std::uint32_t>(scene_.cameras.size() - 1));
+    }
     const JsonView lights = root_["extensions"]["KHR_lights_punctual"]["lights"];
     const std::uint32_t light =
         node["extensions"]["KHR_lights_punctual"]["light"].reference(lights.size());
-    if (light != kNone) place_light(lights[light], world);
+    if (light != kNone) {
+      place_light(lights[light], other.world);
+      motion_.add_light(other.number, static_cast<std::uint32_t>(scene_.lights.size() - 1));
+    }
+  }
+
+  void complete_material(Mesh& part) {
+    if (part.material == kNone) part.material = default_material();
+    // Light means nothing to them.
+    if (!part.has_triangles() && part.normals.empty()) part.material = unlit(part.material);
   }
 
   const std::vector<std::uint32_t>& mesh_parts(std::uint32_t mesh) {
     if (mesh_is_read_[mesh]) return meshes_[mesh];
     mesh_is_read_[mesh] = true;
-    for (Mesh& part : read_mesh(document_, mesh, materials_)) {
-      if (part.triangles.empty()) continue;
-      if (part.material == kNone) part.material = default_material();
-      // Light means nothing to them.
-      if (!part.has_triangles() && part.normals.empty()) part.material = unlit(part.material);
+    for (GltfPrimitive& part : read_mesh(document_, mesh, materials_, false)) {
+      if (part.mesh.triangles.empty()) continue;
+      complete_material(part.mesh);
       meshes_[mesh].push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
-      scene_.meshes.push_back(std::move(part));
+      scene_.meshes.push_back(std::move(part.mesh));
     }
     return meshes_[mesh];
   }
@@ -177,11 +213,7 @@ class Placer {
   void place_camera(const JsonView& json, const std::string& node_name, const glm::dmat4& world) {
     Camera camera;
     camera.name = node_name.empty() ? json["name"].text() : node_name;
-    camera.eye = glm::dvec3(world[3]);
-    // Far enough from the eye for the direction to keep its precision.
-    const double distance = std::max(1.0, glm::length(glm::dvec3(world[3])));
-    camera.at = glm::dvec3(world[3]) - unit_or(glm::dvec3(world[2]), {0, 0, 1}) * distance;
-    camera.up = unit_or(glm::dvec3(world[1]), {0, 1, 0});
+    follow(world, camera);
     const JsonView orthographic = json["orthographic"], perspective = json["perspective"];
     if (orthographic) {
       // The frame's height is that of the file, its width what the picture's shape asks for.
@@ -203,8 +235,7 @@ class Placer {
     Light light;
     light.colour =
         json["color"].non_negative_vector<3>({1, 1, 1}) * json["intensity"].non_negative(1);
-    light.position = glm::dvec3(world[3]);
-    light.direction = -unit_or(glm::dvec3(world[2]), {0, 0, 1});
+    follow(world, light);
     light.kind = type == "directional" ? Light::Kind::directional : Light::Kind::point;
     if (type == "spot") document_.source.warn(json.place() + ": a spot light shines all around");
     if (type != "directional" && type != "point" && type != "spot") {
@@ -222,7 +253,8 @@ class Placer {
   std::uint32_t default_material_ = kNone;
   std::unordered_map<std::uint32_t, std::uint32_t> unlit_;  // by the material with light
   std::vector<glm::dmat4> worlds_;                          // of the scene's instances
-  std::vector<std::pair<JsonView, glm::dmat4>> others_;     // nodes with cameras and lights
+  std::vector<Other> others_;
+  GltfMotion motion_;
 };
 
 // Their depths are told apart best between the nearest and the farthest that there is.
@@ -252,8 +284,6 @@ Scene load_gltf(const Source& source) {
   const JsonView root = document.root(), scenes = root["scenes"];
   const std::uint32_t chosen = root["scene"].reference(scenes.size());
   if (scenes.size() > 0) read_extras(scenes[chosen == kNone ? 0 : chosen]["extras"], scene);
-  if (root["skins"].size() > 0) source.warn("skins are left out: meshes have their rest shape");
-  if (root["animations"].size() > 0) source.warn("animations are left out");
   return scene;
 }
 

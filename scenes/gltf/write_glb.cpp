@@ -6,15 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "files/atomic_file.h"
 #include "files/error.h"
 #include "geometry/box.h"
 #include "image/io.h"
 #include "scenes/gltf/gltf_extras.h"
+#include "scenes/gltf/write_animation.h"
 #include "scenes/gltf/write_material.h"
 
 namespace delray::scenes {
@@ -25,7 +28,13 @@ using internal::json_of;
 using internal::power_of_two_above;
 
 constexpr std::uint64_t kLargestFile = 0xFFFFFFFFU;  // sizes in the header have 32 bits
-enum : int { kFloat = 5126, kUnsigned = 5125, kVertexBuffer = 34962, kIndexBuffer = 34963 };
+enum : int {
+  kFloat = 5126,
+  kUnsigned = 5125,
+  kShort = 5123,
+  kVertexBuffer = 34962,
+  kIndexBuffer = 34963
+};
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw files::FileError(files::Cause::device, path.string(), "", why);
@@ -53,12 +62,19 @@ class Writer {
   }
 
   std::string write() {
+    const internal::AccessorWriter accessors = accessor_writer();
     add_textures();
     for (const Material& material : scene_.materials) {
       document_["materials"].push_back(internal::write_material(material, scene_, document_));
     }
-    for (const Mesh& mesh : scene_.meshes) add_mesh(mesh);
-    for (const Instance& instance : scene_.instances) add_instance(instance);
+    std::vector<const DeformedMesh*> bends(scene_.meshes.size(), nullptr);
+    for (const DeformedMesh& deformed : scene_.animations.meshes) bends[deformed.mesh] = &deformed;
+    for (std::size_t i = 0; i < bends.size(); ++i) add_mesh(scene_.meshes[i], bends[i], accessors);
+    std::vector<std::uint8_t> placed(scene_.instances.size(), 0);
+    if (!scene_.animations.empty())
+      top_nodes_ = internal::write_nodes(scene_, accessors, document_, placed);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+      if (placed[i] == 0) add_instance(scene_.instances[i]);
     for (const Light& light : scene_.lights) add_light(light);
     for (const Camera& camera : scene_.cameras) add_camera(camera);
     add_scene();
@@ -95,7 +111,41 @@ class Writer {
     return document_["accessors"].size() - 1;
   }
 
-  void add_mesh(const Mesh& mesh) {
+  internal::AccessorWriter accessor_writer() {
+    const auto add = [this](const void* data, std::size_t bytes, int component, std::size_t count,
+                            const char* type) {
+      const std::size_t view = add_view(data, bytes, 0);
+      document_["accessors"].push_back(
+          {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
+      return Json(document_["accessors"].size() - 1);
+    };
+    const auto components = [](std::string_view type) -> std::size_t {
+      if (type == "MAT4") return 16;
+      return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
+    };
+    return {[add, components](std::span<const float> values, const char* type) {
+              return add(values.data(), values.size_bytes(), kFloat,
+                         values.size() / components(type), type);
+            },
+            [add](std::span<const std::uint16_t> fours) {
+              return add(fours.data(), fours.size_bytes(), kShort, fours.size() / 4, "VEC4");
+            }};
+  }
+
+  // Of a mesh that bends what it is before.
+  void add_mesh(const Mesh& posed, const DeformedMesh* deformed,
+                const internal::AccessorWriter& accessors) {
+    if (deformed == nullptr) return add_mesh(posed, {});
+    Mesh mesh = posed;
+    mesh.positions = deformed->positions;
+    mesh.normals = deformed->normal_groups.empty() ? deformed->normals : std::vector<glm::vec3>();
+    mesh.tangents = mesh.normals.empty() ? std::vector<glm::vec4>() : deformed->tangents;
+    add_mesh(mesh, [&](Json& primitive) {
+      internal::write_deformation(*deformed, accessors, primitive);
+    });
+  }
+
+  void add_mesh(const Mesh& mesh, const std::function<void(Json&)>& deform) {
     const auto filled = [](const auto& values) { return !values.empty(); };
     Json primitive = {{"attributes", Json::object()}, {"material", mesh.material}};
     if (filled(mesh.positions)) {
@@ -112,6 +162,7 @@ class Writer {
       if (filled(mesh.uvs2)) attributes["TEXCOORD_1"] = add_accessor<2>(mesh.uvs2);
       if (filled(mesh.colours)) attributes["COLOR_0"] = add_accessor<4>(mesh.colours);
       if (filled(mesh.triangles)) primitive["indices"] = add_indices(mesh.triangles);
+      if (deform) deform(primitive);
     }
     Json json = {{"primitives", Json::array({std::move(primitive)})}};
     if (!mesh.name.empty()) json["name"] = mesh.name;

@@ -5,9 +5,28 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 
 #include "files/error.h"
+#include "scenes/pose.h"
+
+namespace {
+
+// Poses before, between and after the keys, or a range_error that says why there is none.
+void pose_everywhere(delray::scenes::Scene& scene) {
+  using namespace delray;
+  for (std::uint32_t a = 0; a < scene.animations.animations.size() && a < 4; ++a) {
+    try {
+      for (const double part : {-1.0, 0.0, 0.3, 1.0, 2.0})
+        scenes::pose(scene, {a, part * scene.animations.animations[a].duration()});
+    } catch (const std::range_error&) {
+      scenes::pose(scene, {});
+    }
+  }
+}
+
+}  // namespace
 
 // Whatever the bytes, the reader of scenes returns triangles of finite vertices or throws
 // FileError.
@@ -16,7 +35,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::string> warnings;
   try {
     const std::string content(reinterpret_cast<const char*>(data), size);
-    const scenes::Scene scene = scenes::internal::load_content("/nowhere/fuzz", content, warnings);
+    scenes::Scene scene = scenes::internal::load_content("/nowhere/fuzz", content, warnings);
+    pose_everywhere(scene);
     for (const scenes::Instance& i : scene.instances) {
       if (i.mesh >= scene.meshes.size()) std::abort();
     }
