@@ -51,24 +51,33 @@ void commit(RTCDevice device, RTCScene tree) {
   check(device, "building the acceleration structure");
 }
 
+// Has the geometry look at the instance's vertices where they are, or at a copy.
+void share_vertices(RTCGeometry geometry, const GeometryInstance& instance,
+                    EmbreeScene::State::Triangles& triangles) {
+  const glm::vec3* positions = instance.positions;
+  const std::size_t size = instance.mesh->positions.size();
+  const bool moved = !instance.moved.empty();
+  if (!last_vertex_is_readable(positions, size,
+                               moved ? size + 1 : instance.mesh->positions.capacity())) {
+    triangles.copy.reserve(size + 1);
+    triangles.copy.assign(positions, positions + size);
+    positions = triangles.copy.data();
+  }
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
+                             sizeof(glm::vec3), size);
+}
+
 void attach_triangles(const EmbreeScene::State& state, RTCScene tree, unsigned number,
                       const GeometryInstance& instance, EmbreeScene::State::Triangles& triangles) {
   RTCDevice device = state.device;
   const scenes::Mesh& mesh = *instance.mesh;
-  const glm::vec3* positions = instance.positions;
-  const bool moved = !instance.moved.empty();
-  if (!last_vertex_is_readable(positions, mesh.positions.size(),
-                               moved ? mesh.positions.size() + 1 : mesh.positions.capacity())) {
-    triangles.copy.reserve(mesh.positions.size() + 1);
-    triangles.copy.assign(positions, positions + mesh.positions.size());
-    positions = triangles.copy.data();
-  }
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
-                             sizeof(glm::vec3), mesh.positions.size());
+  share_vertices(geometry, instance, triangles);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(glm::uvec3), mesh.triangles.size());
-  rtcSetGeometryBuildQuality(geometry, quality(state.options.quality));
+  const bool refits = instance.deforming && state.options.changing;
+  rtcSetGeometryBuildQuality(geometry,
+                             refits ? RTC_BUILD_QUALITY_REFIT : quality(state.options.quality));
   if (instance.see_through) rtcSetGeometryOccludedFilterFunction(geometry, note_and_pass);
   if (instance.opaque) {
     triangles.opaque = instance.opaque;
@@ -192,6 +201,31 @@ void EmbreeScene::change(std::span<const std::uint32_t> changed,
     has_instances_ = has_instances_ || instance.instanced;
     has_splats_ = has_splats_ || !instance.mesh->has_triangles();
   }
+  state.memory += state.common.memory() - before;
+}
+
+void EmbreeScene::move(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> bent,
+                       bool rebuild, std::span<const GeometryInstance> instances) {
+  State& state = *state_;
+  const std::uint64_t before = state.common.memory();
+  for (const std::uint32_t i : moved) {
+    if (!state.instances[i].attached) continue;
+    RTCGeometry geometry = rtcGetGeometry(state.top.get(), i);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &instances[i].to_world);
+    rtcCommitGeometry(geometry);
+  }
+  for (const std::uint32_t i : bent) {
+    State::Instance& own = state.instances[i];
+    if (!own.attached) continue;
+    RTCGeometry geometry = rtcGetGeometry(state.top.get(), i);
+    share_vertices(geometry, instances[i], own.triangles);
+    rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    // Other triangles than before are never refitted.
+    if (rebuild) rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0);
+    rtcCommitGeometry(geometry);
+  }
+  check(state.device, "moving geometry");
+  commit(state.device, state.top.get());
   state.memory += state.common.memory() - before;
 }
 

@@ -17,8 +17,11 @@ struct BuildOptions {
   enum class Quality : std::uint8_t { low, medium, high } quality = Quality::medium;
   bool robust = true;        // no ray slips between two triangles that share an edge
   bool share_meshes = true;  // meshes placed more than once become Embree instances
-  bool changing = false;     // EmbreeScene::change; half as much memory again
-  std::string isa;           // sse2, sse4.2, avx, avx2, avx512 (where present); empty: the best
+  bool changing = false;     // EmbreeScene::change, move; half as much memory again
+  // A mesh that bends has its structure refitted for as long as a ray is expected to cost no more
+  // than so many times what it cost when that was built (RefitCost; Lauterbach et al. 2006).
+  double refit_limit = 1.4;
+  std::string isa;  // sse2, sse4.2, avx, avx2, avx512 (where present); empty: the best
 };
 
 // One of Embree's devices. Those of many small scenes have one in common: a process has room for
@@ -63,6 +66,14 @@ class EmbreeScene {
   // BuildOptions::changing, else of all. REQUIRES: no rays meanwhile.
   void change(std::span<const std::uint32_t> changed, std::span<const GeometryInstance> instances,
               std::span<const GeometryNumbers> numbers);
+
+  // Instances that have other transforms than before, of those that are Embree instances, and
+  // others whose vertices changed, by their places; `rebuild`: the structure over those is built
+  // anew, otherwise it is refitted. O(changed vertices + instances). REQUIRES: no rays meanwhile;
+  // BuildOptions::changing; vertices of the same number, and instances at the same places as when
+  // they were built; GeometryInstance::deforming of those that bend.
+  void move(std::span<const std::uint32_t> moved, std::span<const std::uint32_t> bent, bool rebuild,
+            std::span<const GeometryInstance> instances);
 
   // Nearest hits; `coherent`: the rays of a packet stay close to each other, which makes it faster
   // and changes nothing else. Where a ray goes through an edge or a corner and meets several

@@ -7,6 +7,7 @@
 
 #include "parallel/parallel_for.h"
 #include "raytrace/scene/opaque_triangles.h"
+#include "scenes/pose.h"
 
 namespace delray::raytrace {
 namespace {
@@ -71,6 +72,7 @@ std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
   for (const scenes::Instance& placed : scene.instances) {
     if (placed.mesh < uses.size()) ++uses[placed.mesh];
   }
+  const std::vector<scenes::MeshMotion> motions = scenes::mesh_motions(scene);
   std::vector<float> reaches(scene.meshes.size());
   parallel::parallel_for(0, reaches.size(), 1,
                          [&](std::size_t i) { reaches[i] = reach(scene.meshes[i]); });
@@ -99,10 +101,28 @@ std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
     look_at_material(instance, shader);
     instance.opaque = opaque[placed.mesh];
     look_at_transform(instance, reaches[placed.mesh]);
-    instance.instanced = share_meshes && uses[placed.mesh] > 1 && instance.mesh->has_triangles();
+    const scenes::MeshMotion motion = motions[placed.mesh];
+    instance.deforming = motion == scenes::MeshMotion::deforming;
+    instance.instanced = share_meshes && instance.mesh->has_triangles() && !instance.deforming &&
+                         (uses[placed.mesh] > 1 || motion == scenes::MeshMotion::rigid);
     if (!instance.instanced && !instance.identity) move_to_world(instance);
   }
   return instances;
+}
+
+void follow(const scenes::Scene& scene, std::uint32_t number, GeometryInstance& instance) {
+  instance.to_world = scene.instances[number].transform;
+  instance.orientation = 1.0F;
+  instance.normal_to_world = glm::mat3(1.0F);
+  instance.transform_scale = 0.0F;
+  look_at_transform(instance, reach(*instance.mesh));
+  if (instance.instanced) return;
+  instance.positions = instance.mesh->positions.data();
+  if (instance.identity) {
+    instance.moved.clear();
+  } else {
+    move_to_world(instance);
+  }
 }
 
 std::uint64_t count_degenerate(std::span<const GeometryInstance> instances) {

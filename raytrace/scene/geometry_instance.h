@@ -13,15 +13,17 @@
 
 namespace delray::raytrace {
 
-// One instance of the scene; element i is instance i of the scene. A mesh that is placed often
-// stays as it is and is reached through a transform at every ray; one that is placed once is moved
-// to the world beforehand, which costs its positions once more and saves the transform.
+// One instance of the scene; element i is instance i of the scene. A mesh that is placed often, or
+// moves as a whole, stays as it is and is reached through a transform at every ray; one that is
+// placed once is moved to the world beforehand, which costs its positions once more and saves the
+// transform.
 struct GeometryInstance {
   const scenes::Mesh* mesh = nullptr;
   const glm::vec3* positions = nullptr;  // of the mesh's vertices: its own, or moved to the world
   std::uint32_t mesh_number = 0;
   std::uint32_t material = 0;
   bool instanced = false;    // positions are the mesh's own, `to_world` brings them to the world
+  bool deforming = false;    // positions change from pose to pose
   bool identity = true;      // normals and tangents need no transform
   bool see_through = false;  // masked, blended or transmitting: shadow rays do not end there
   bool layered = false;      // masked or blended: no ray need end there
@@ -38,6 +40,10 @@ struct GeometryInstance {
 // to the scene, which has to outlive it. Instances of meshes that do not exist get a null mesh.
 std::vector<GeometryInstance> make_instances(const scenes::Scene& scene,
                                              const shading::Shader& shader, bool share_meshes);
+
+// Makes an instance anew what make_instances made of it, after its transform or its vertices have
+// changed. O(vertices) unless it is instanced. REQUIRES: the mesh has as many vertices as before.
+void follow(const scenes::Scene& scene, std::uint32_t number, GeometryInstance& instance);
 
 // The largest magnitude of a coordinate.
 inline float largest_magnitude(const glm::vec3& v) {
