@@ -301,7 +301,8 @@ Result Renderer::render(comm::Communicator& communicator, const scenes::Camera& 
                              options.trace,
                              options.samples,
                              options.scattered,
-                             scenes::pixels_of(view, memory_->bounds())};
+                             scenes::pixels_of(view, memory_->bounds()),
+                             options.part.pixels};
   IntegratorPool pool(integrator(options.integrator), context);
   const int side = tile_side(options);
   check_displays(options.displays, window, communicator.size());

@@ -35,6 +35,9 @@ struct Part {
   // One for each square of kTaskSide pixels of the window, row by row; only those with 1 are
   // rendered. Empty: all.
   std::span<const std::uint8_t> squares;
+  // One for each pixel of the frame, row by row: primary rays go through those with 1 alone, and
+  // others get any colour. The same on every rank. Empty: all.
+  std::span<const std::uint8_t> pixels;
 };
 
 // The size and quality of a frame, and how it is shared out.

@@ -31,6 +31,20 @@ shading::LaneMask inside(const geometry::Rect& pixels, int x, int y) {
   return mask;
 }
 
+// Of those lanes the ones that are to be traced.
+shading::LaneMask chosen(const FrameContext& context, shading::LaneMask lanes, int x, int y) {
+  if (context.traced.empty()) return lanes;
+  shading::LaneMask mask = 0;
+  for (shading::LaneMask rest = lanes; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const auto row = static_cast<std::size_t>(y + i / kBlockSide);
+    const std::size_t pixel = row * static_cast<std::size_t>(context.view.width) +
+                              static_cast<std::size_t>(x + i % kBlockSide);
+    mask |= context.traced[pixel] != 0 ? 1U << i : 0U;
+  }
+  return mask;
+}
+
 // Dimensions of the sampler.
 enum : std::uint32_t { kPosition, kLens, kFirstFree };
 
@@ -57,10 +71,11 @@ void WavefrontIntegrator::enqueue_primary_rays() {
         for (int i = 0; lens && i < kPacketRays; ++i) {
           places.set_lens(i, disc_point(sobol_pair(keys(number).key(i), sample, kLens)));
         }
-        const shading::LaneMask mask = inside(task_.pixels, x, y);
+        const shading::LaneMask mask = chosen(context_, inside(task_.pixels, x, y), x, y);
         RayGroup& group = next_.rays.add();
         set_primary_rays(context_.view, x, y, places, mask, group);
         group.misses =
+            mask == 0 ||
             geometry::intersection(context_.filled, {x, y, x + kBlockSide, y + kBlockSide}).empty();
         rays_.primary += static_cast<std::uint64_t>(std::popcount(mask));
       }

@@ -55,6 +55,7 @@ struct FrameContext {
   bool scattered = false;
   // Primary rays of other pixels meet nothing.
   geometry::Rect filled = {0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+  std::span<const std::uint8_t> traced = {};  // Part::pixels
 };
 
 inline constexpr int kBlockSide = 4;  // 4 x 4 pixels are a block: lane i is (x + i % 4, y + i / 4)

@@ -1,0 +1,59 @@
+// Pictures of an animation made of those before (Walter et al. 1999; Larson and Simmons 1999).
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "image/image.h"
+#include "scenes/camera.h"
+
+namespace delray::raytrace {
+
+// The samples of the last frame, a sample a pixel, at the points where they met the scene. Carried
+// over into another view they make most of its picture, and say which pixels have to be traced:
+// where there are none, where one shows through between nearer ones or stands at a silhouette, and
+// of the rest a share, the oldest first. A sample keeps the point that it was traced at, so that
+// errors of its place do not add up: it is never more than about a pixel off. Pixels that would
+// have to be traced beyond the share get the colour of those around, and what lies far from all
+// surfaces is taken for background until its turn comes: pictures are approximations.
+//
+// Deterministic. For scenes in which nothing moves but the camera, with a sample in the centre of
+// each pixel, no lens and a transparent background.
+class RenderCache {
+ public:
+  // `share`: of the pixels of a frame that may be traced, but for the first frame, above 0 up to 1.
+  RenderCache(int width, int height, double share);
+
+  // Which pixels of the view are to be traced, row by row: 1; all of them the first time.
+  // O(pixels).
+  const std::vector<std::uint8_t>& plan(const scenes::View& view);
+  // Sets the pixels of the same view that were not traced, and keeps the picture for the next one.
+  // O(pixels).
+  void complete(const scenes::View& view, image::ImageF& picture);
+
+  std::uint64_t traced() const { return traced_; }  // pixels of the last plan
+
+ private:
+  struct Sample {
+    glm::vec3 place{0.0F};
+    image::RgbaF colour{};
+    std::uint32_t frame = 0;  // that traced it; 0: there is none
+  };
+
+  void carry_over(const scenes::View& view);
+  std::uint8_t urgency(int x, int y) const;
+  void choose();
+  void fill(image::ImageF& picture) const;
+
+  int width_, height_;
+  double share_;
+  std::uint32_t frame_ = 0;
+  std::vector<Sample> last_, now_;    // by pixel
+  std::vector<float> depth_;          // of now_; infinity where there is none
+  std::vector<std::uint8_t> trace_;   // by pixel
+  std::vector<std::uint8_t> urgent_;  // by pixel: a class, the most urgent last
+  std::uint64_t traced_ = 0;
+};
+
+}  // namespace delray::raytrace
