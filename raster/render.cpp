@@ -281,6 +281,17 @@ void Renderer::recycle(Picture&& picture) {
   const bool is_empty = std::visit([](const auto& image) { return image.width == 0; }, picture);
   if (!is_empty) memory_->scratch.spare = std::move(picture);
 }
+void Renderer::follow(const scenes::Movement& movement) {
+  if (movement.instances.empty() && movement.meshes.empty()) return;
+  for (const std::uint32_t mesh : movement.meshes) memory_->scene.clusters.forget(mesh);
+  FrameMemory& memory = memory_->memory;
+  memory.screen.forget_places();
+  for (GroupTraffic* traffic : {&memory.sorted_first.traffic, &memory.shared_out.traffic})
+    traffic->moved(movement);
+  memory.sorted_middle = {};
+  memory.cells = {};
+}
+
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

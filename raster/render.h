@@ -24,6 +24,7 @@
 #include "packs/pack_reader.h"
 #include "packs/page_cache.h"
 #include "parallel/progress.h"
+#include "scenes/pose.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 
@@ -236,8 +237,8 @@ using PartialImage = std::variant<image::Image8, composite::DeepImage<image::Rgb
 // rank.
 class Renderer {
  public:
-  // Refers to the scene, which must not change. The shader may be shared among ranks; without one
-  // it is made from the scene.
+  // Refers to the scene, which must not change unless `follow` is told. The shader may be shared
+  // among ranks; without one it is made from the scene.
   //
   // REQUIRES: indices of the scene are in range (as scenes::load and the generators leave it).
   explicit Renderer(const scenes::Scene& scene,
@@ -251,6 +252,11 @@ class Renderer {
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
+
+  // The scene has been posed (scenes::pose), and its shader has the lights of the pose. To be told
+  // on every rank, between frames: sort-first and hybrid then send transforms of what moved, and
+  // what bent, and nothing else again. Not of packs; no frame in steps is under way.
+  void follow(const scenes::Movement& movement);
 
   // Collective: every rank calls it with the same scene, camera and options. Uncovered pixels are
   // transparent black with depth image::kEmptyDepth. A pixel's depth is that of the nearest

@@ -58,6 +58,12 @@ class ScreenPartition {
   const CostedGroups& groups(RankContext& rank, const Grouping& grouping,
                              bool with_visible = false);
 
+  // Primitives are elsewhere than in the last frame. To be told on all ranks.
+  void forget_places() {
+    last_inputs_.reset();
+    grouping_.reset();
+  }
+
   // A number for what groups() and cut() gave last: another one where it may not be what they gave
   // before. It changes on all ranks or on none.
   std::uint64_t version() const { return version_; }

@@ -95,6 +95,9 @@ class SceneClusters {
     const bool known = &mesh >= meshes_.data() && &mesh < meshes_.data() + meshes_.size();
     return known ? &clusters_[static_cast<std::size_t>(&mesh - meshes_.data())] : nullptr;
   }
+  // The vertices of mesh number `mesh` have moved: its clusters are made anew when they are needed.
+  // Draw lists that have some of them are void.
+  void forget(std::uint32_t mesh) { clusters_[mesh].blocks.clear(); }
 
  private:
   std::span<const scenes::Mesh> meshes_;
