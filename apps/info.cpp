@@ -128,6 +128,16 @@ Json describe_folder(const std::string& path, const files::MemoryBudget& memory)
   return description;
 }
 
+Json describe_animations(const scenes::Scene& scene) {
+  Json animations = Json::array();
+  for (const scenes::Animation& animation : scene.animations.animations) {
+    animations.push_back({{"name", animation.name},
+                          {"seconds", animation.duration()},
+                          {"channels", animation.channels.size()}});
+  }
+  return animations;
+}
+
 Json describe_scene(const scenes::Scene& scene) {
   const scenes::Description d = scenes::describe(scene);
   Json textures = Json::array();
@@ -148,6 +158,8 @@ Json describe_scene(const scenes::Scene& scene) {
       {"texture_coordinates", d.has_uvs},
       {"second_texture_coordinates", d.has_second_uvs},
       {"vertex_colours", d.has_colours},
+      {"animations", describe_animations(scene)},
+      {"skins", scene.animations.skins.size()},
       {"lights",
        {{"point", d.point_lights}, {"directional", d.directional_lights}, {"area", d.area_lights}}},
       {"cameras", d.cameras.size()},

@@ -39,6 +39,8 @@
 namespace delray::apps {
 namespace {
 
+constexpr const char* kFramesPerSecond = "30";  // of videos whose frames have no times
+
 int print_lists() {
   list_colours();
   list_strategies();
@@ -163,7 +165,9 @@ void prepare_outputs(RenderRequest& request, std::optional<VideoFrames>& video) 
   }
   refuse_to_lose(request.sampling);
   if (!is_video(request.output)) return;
-  video.emplace(request.output);
+  video.emplace(request.output, request.motion.is_animation()
+                                    ? parse_animate(request.motion.animate).frames_per_second
+                                    : kFramesPerSecond);
   request.frames_output = video->frames();
 }
 

@@ -40,6 +40,23 @@ struct Slot {
   double seconds = 0;  // in the stages so far
 };
 
+std::uint64_t triangles_sent(const raster::Statistics& s) { return s.triangles_travelled; }
+std::uint64_t triangles_sent(const raytrace::Statistics&) { return 0; }
+
+raytrace::RayCounts rays_of(const EngineStatistics& statistics) {
+  const auto* const traced = std::get_if<raytrace::Statistics>(&statistics);
+  return traced == nullptr ? raytrace::RayCounts{} : traced->rays;
+}
+
+void add_traffic(const EngineStatistics& statistics, FrameMotion& motion) {
+  std::visit(
+      [&](const auto& s) {
+        for (const auto& rank : s.ranks) motion.bytes += rank.bytes_sent;
+        motion.triangles = triangles_sent(s);
+      },
+      statistics);
+}
+
 }  // namespace
 
 std::string frame_path(const std::string& output, std::size_t frame) {
@@ -64,6 +81,10 @@ std::vector<scenes::Camera> animation_cameras(const RenderRequest& request,
   if (!request.camera_path.empty()) {
     return scenes::interpolate(scenes::read_camera_path(request.camera_path, scene.origin,
                                                         request.scene.file.limits.budget()));
+  }
+  if (request.motion.is_animation()) {
+    const std::size_t frames = parse_animate(request.motion.animate).seconds.size();
+    return std::vector<scenes::Camera>(frames, camera);
   }
   return {};
 }
@@ -90,12 +111,12 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
                         slots[slot].seconds += watch.lap();
                       }});
   };
-  const auto finish = [&](std::size_t i, Slot& slot, Picture&& picture,
+  const auto finish = [&](const scenes::Camera& camera, Slot& slot, Picture&& picture,
                           EngineStatistics&& statistics) {
     slot.picture = std::move(picture);
     if (first_rank) {
       if (shows_nothing(request, slot.picture)) ++animation.empty_frames;
-      put_background_behind(request, prepared, cameras[i], request.window, slot.picture);
+      put_background_behind(request, prepared, camera, request.window, slot.picture);
     }
     animation.frames.statistics = std::move(statistics);
   };
@@ -109,25 +130,30 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
     add("compose", true, [&](std::size_t i, Slot& slot) {
       raster::Result result = slot.steps->compose();
       slot.steps.reset();
-      finish(i, slot, std::move(result.picture), std::move(result.statistics));
+      finish(cameras[i], slot, std::move(result.picture), std::move(result.statistics));
     });
   } else {
     add("render", true, [&](std::size_t i, Slot& slot) {
       slot.seconds = 0;
+      FrameRenderer::Posed posed = renderer.pose(communicator, i);
       double error = request.raster.error;
       if (budget) {
         error = agreed(communicator, budget->error());
         renderer.set_error(error);
       }
       Stopwatch watch;
-      Frame frame = renderer.render(communicator, cameras[i]);
-      if (budget) budget->took(watch.lap());
+      Frame frame = renderer.render(communicator, posed.camera);
+      posed.motion.frame_seconds = watch.lap();
+      if (budget) budget->took(posed.motion.frame_seconds);
       const auto* const drawn = std::get_if<raster::Statistics>(&frame.statistics);
       if (prepared.pack && drawn != nullptr && first_rank) {
         animation.errors.push_back(error);
         animation.triangles.push_back(drawn->triangles_rasterized);
       }
-      finish(i, slot, std::move(frame.picture), std::move(frame.statistics));
+      add_traffic(frame.statistics, posed.motion);
+      animation.rays += rays_of(frame.statistics);
+      if (prepared.motion) animation.motion.push_back(posed.motion);
+      finish(posed.camera, slot, std::move(frame.picture), std::move(frame.statistics));
     });
   }
   const std::size_t collective = stages.size() - 1;

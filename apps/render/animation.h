@@ -31,6 +31,8 @@ struct Animation {
   // Of each frame, where it is a pack's: the bound of error that it had, and triangles drawn.
   std::vector<double> errors;
   std::vector<std::uint64_t> triangles;
+  std::vector<FrameMotion> motion;  // by frame, of a scene that moves
+  raytrace::RayCounts rays;         // of all frames
   std::vector<std::string> stages;
   std::size_t empty_frames = 0;   // that show nothing of the scene
   std::size_t slots = 0;          // frames in the making at the same time

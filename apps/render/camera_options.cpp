@@ -63,6 +63,14 @@ bool shows_all(const CameraOptions& options, const scenes::Scene& scene) {
   return options.camera.empty() && (!options.view.empty() || scene.cameras.empty());
 }
 
+std::uint32_t own_camera(const CameraOptions& options, const scenes::Scene& scene) {
+  if (shows_all(options, scene)) return scenes::kNone;
+  if (options.camera.empty()) return 0;
+  if (scenes::parse_camera(options.camera, scene.origin)) return scenes::kNone;
+  const scenes::Camera* const own = find_camera(scene, options.camera);
+  return own == nullptr ? scenes::kNone : static_cast<std::uint32_t>(own - scene.cameras.data());
+}
+
 scenes::Camera choose_camera(const CameraOptions& options, const scenes::Scene& scene,
                              const scenes::FarthestPoints& farthest, float aspect) {
   if (!options.camera.empty()) {

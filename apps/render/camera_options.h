@@ -22,6 +22,9 @@ void add_camera_options(CLI::App& command, CameraOptions& options);
 // Whether the camera is one that shows all of the scene, not one that somebody placed.
 bool shows_all(const CameraOptions& options, const scenes::Scene& scene);
 
+// The number of the scene's own camera that choose_camera gives; kNone where it gives another.
+std::uint32_t own_camera(const CameraOptions& options, const scenes::Scene& scene);
+
 // The camera of --camera or --view, else the scene's own first camera, else one that shows all of
 // it. `farthest` knows all points of the scene, and is asked for the cameras that show it only.
 // Throws UsageError.

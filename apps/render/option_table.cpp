@@ -155,6 +155,33 @@ std::vector<RenderOption> animation_options() {
           .excludes("--view")
           .reported("camera_path"),
       RenderOption::of(
+          "--animate", [](auto& r) -> auto& { return r.motion.animate; }, group::kCamera,
+          "Animation of a scene that moves, as its file says: FPS frames a second from START up to "
+          "END seconds, such as 0:2:30: IMAGE-0000 and on")
+          .type_name("START:END:FPS")
+          .excludes("--frames")
+          .excludes("--turntable")
+          .excludes("--camera-path")
+          .reported("animate"),
+      RenderOption::of(
+          "--pose-time", [](auto& r) -> auto& { return r.motion.pose_time; }, group::kCamera,
+          "Seconds of the scene's animation to show it at (default: at rest)")
+          .type_name("SECONDS")
+          .excludes("--animate")
+          .in_checkpoint()
+          .reported("pose_time"),
+      RenderOption::of(
+          "--animation", [](auto& r) -> auto& { return r.motion.animation; }, group::kCamera,
+          "Name or number of the scene's animation, for --animate and --pose-time (default: the "
+          "first; info lists them)")
+          .type_name("NAME")
+          .unless([](const RenderRequest& r) -> std::string {
+            const bool moves = r.motion.is_animation() || !r.motion.pose_time.empty();
+            return moves ? "" : "neither --animate nor --pose-time";
+          })
+          .in_checkpoint()
+          .reported("animation"),
+      RenderOption::of(
           "--frames-at-once", [](auto& r) -> auto& { return r.frames_at_once; }, group::kCamera,
           "Frames of an animation to work on at the same time (default: threads + 2, but 4 to 8)")
           .transform(count_between(1, 64))

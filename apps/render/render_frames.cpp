@@ -198,6 +198,8 @@ bool has_glow(const scenes::Scene& scene) {
 
 std::shared_ptr<Prepared> open_pack(const RenderRequest& request) {
   refuse_for_packs(request.scene);
+  if (request.motion.is_animation() || !request.motion.pose_time.empty())
+    throw UsageError("--animate and --pose-time: packs do not move");
   refuse_outside(request.scene.file.path, request.scene.file.limits);
   auto prepared = std::make_shared<Prepared>();
   auto pack = std::make_unique<packs::PackReader>(request.scene.file.path,
@@ -276,6 +278,7 @@ std::shared_ptr<Prepared> load(const RenderRequest& request, bool in_parts,
   } else {
     take_scene(load_scene(request.scene, progress), *prepared);
   }
+  pose_first(request.motion, request.scene.file.path, prepared->scene);
   return prepared;
 }
 
@@ -293,6 +296,7 @@ void choose_cameras(const RenderRequest& request, const scenes::FarthestPoints& 
     const geometry::Box3 box = scenes::bounds(farthest);
     pivot = (glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5;
   }
+  prepared.camera_number = own_camera(request.camera, scene);
   prepared.cameras = animation_cameras(request, scene, prepared.camera, pivot);
   for (scenes::Camera& camera : prepared.cameras) set_lens(request.sampling, camera);
   set_lens(request.sampling, prepared.camera);
@@ -353,16 +357,31 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
   prepared.texture_hash = texture_hash(prepared.scene);
   if (!request.sampling.checkpoint.empty())
     prepared.fingerprint = fingerprint_of(request, prepared);
+  std::shared_ptr<shading::Shader> shader;
+  std::unique_ptr<raytrace::Tracer> tracer;
   if (request.engine == Engine::raster) {
-    prepared.shader = std::make_shared<const shading::Shader>(shading::take_shader(prepared.scene));
+    shader = std::make_shared<shading::Shader>(shading::take_shader(prepared.scene));
   } else if (!is_replicated(request)) {
-    prepared.shader = std::make_shared<const shading::Shader>(shading::make_shader(prepared.scene));
+    shader = std::make_shared<shading::Shader>(shading::make_shader(prepared.scene));
   } else {
     require_memory_for_embree(request, prepared.scene);
-    prepared.tracer = std::make_unique<const raytrace::Tracer>(raytrace::make_tracer(
+    tracer = std::make_unique<raytrace::Tracer>(raytrace::make_tracer(
         prepared.scene, shading::take_shader(prepared.scene), request.raytrace.build));
   }
+  if (request.motion.is_animation()) {
+    prepared.motion = std::make_unique<Motion>(request.motion, request.scene.file.path,
+                                               prepared.scene, shader.get(), tracer.get());
+  }
+  prepared.shader = std::move(shader);
+  prepared.tracer = std::move(tracer);
   prepared.build_seconds = watch.lap();
+}
+
+// What cameras around the scene show.
+scenes::FarthestPoints seen_of(const RenderRequest& request, Prepared& prepared) {
+  if (request.motion.is_animation() && shows_all(request.camera, prepared.scene))
+    return farthest_in_motion(request.motion, request.scene.file.path, prepared.scene);
+  return extent_of(prepared);
 }
 
 // The farthest points of all ranks' scenes; collective.
@@ -395,7 +414,7 @@ std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
   Stopwatch watch;
   const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
   const std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
-  choose_cameras(request, extent_of(*prepared), *prepared);
+  choose_cameras(request, seen_of(request, *prepared), *prepared);
   build(request, watch, *prepared);
   return prepared;
 }
@@ -428,7 +447,7 @@ std::shared_ptr<const Prepared> prepare(comm::Communicator& communicator,
     choose_cameras(request, of_all_ranks(communicator, mine), *prepared);
     part = {};
   } else {
-    on_all([&] { choose_cameras(request, extent_of(*prepared), *prepared); });
+    on_all([&] { choose_cameras(request, seen_of(request, *prepared), *prepared); });
   }
   on_all([&] { build(request, watch, *prepared); });
   return prepared;
@@ -458,21 +477,47 @@ FrameRenderer::FrameRenderer(comm::Communicator& communicator, const Prepared& p
     raytrace_.emplace(*prepared.tracer);
     return;
   }
+  share(communicator);
+}
+
+// Shares the scene out, as it is now.
+void FrameRenderer::share(comm::Communicator& communicator) {
   Stopwatch watch;
-  const raytrace::ShareOptions options = share_options(request);
-  if (prepared.in_parts) {
+  raytrace_.reset();
+  const raytrace::ShareOptions options = share_options(request_);
+  if (prepared_.in_parts) {
     scenes::ScenePart part =
-        scenes::generate_part(request.scene.file.path, communicator.rank(), communicator.size());
-    part.scene.lights = prepared.scene.lights;
-    part.scene.environment = prepared.scene.environment;
-    part.scene.textures = prepared.scene.textures;
+        scenes::generate_part(request_.scene.file.path, communicator.rank(), communicator.size());
+    part.scene.lights = prepared_.scene.lights;
+    part.scene.environment = prepared_.scene.environment;
+    part.scene.textures = prepared_.scene.textures;
     load_seconds_ = watch.lap();
     shared_.emplace(raytrace::SharedScene::make(communicator, std::move(part), options));
   } else {
-    shared_.emplace(raytrace::SharedScene::make(communicator, prepared.scene, options));
+    shared_.emplace(raytrace::SharedScene::make(communicator, prepared_.scene, options));
   }
-  build_seconds_ = watch.lap();
-  raytrace_.emplace(*shared_, *raytrace::find_distribution(request.data));
+  build_seconds_ += watch.lap();
+  raytrace_.emplace(*shared_, *raytrace::find_distribution(request_.data));
+}
+
+FrameRenderer::Posed FrameRenderer::pose(comm::Communicator& communicator, std::size_t frame) {
+  Posed posed{prepared_.cameras[frame], {}};
+  if (!prepared_.motion) return posed;
+  const Motion::Posed now = prepared_.motion->advance(communicator, frame);
+  posed.motion = now.motion;
+  if (frame > 0 && raster_) raster_->follow(now.movement);
+  if (frame > 0 && shared_ && !now.movement.empty()) {
+    Stopwatch watch;
+    share(communicator);
+    posed.motion.follow.build_seconds = watch.lap();
+  }
+  if (prepared_.camera_number != scenes::kNone) {
+    const scenes::Camera& own = prepared_.scene.cameras[prepared_.camera_number];
+    posed.camera.eye = own.eye;
+    posed.camera.at = own.at;
+    posed.camera.up = own.up;
+  }
+  return posed;
 }
 
 Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Camera& camera,
@@ -489,8 +534,7 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
   } else {
     RenderRequest request = request_;
     request.window = window;
-    RayFrame done = render_rays(communicator, *raytrace_, prepared_, request, camera,
-                                raytrace_options(request, ranks, progress_), preview_);
+    RayFrame done = trace(communicator, camera, request);
     frame.picture = std::move(done.picture);
     for (image::ImageF& shown : done.shown) frame.shown.emplace_back(std::move(shown));
     frame.statistics = std::move(done.statistics);
@@ -499,9 +543,31 @@ Frame FrameRenderer::render(comm::Communicator& communicator, const scenes::Came
   return frame;
 }
 
+// With --reuse only pixels that the last frames do not tell.
+RayFrame FrameRenderer::trace(comm::Communicator& communicator, const scenes::Camera& camera,
+                              const RenderRequest& request) {
+  raytrace::RenderOptions options = raytrace_options(request, communicator.size(), progress_);
+  comm::Buffer traced;
+  scenes::View view;
+  const bool keeps = communicator.rank() == 0 && request.sampling.reuse > 0;
+  if (keeps) {
+    view = scenes::make_view(camera, request.width, request.height);
+    if (!cache_) cache_.emplace(request.width, request.height, request.sampling.reuse);
+    traced = comm::Buffer::of(std::span<const std::uint8_t>(cache_->plan(view)));
+  }
+  if (request.sampling.reuse > 0) {
+    traced = comm::broadcast(communicator, 0, std::move(traced));
+    options.part.pixels = traced.as<std::uint8_t>();
+  }
+  RayFrame done =
+      render_rays(communicator, *raytrace_, prepared_, request, camera, options, preview_);
+  if (keeps) cache_->complete(view, done.picture);
+  return done;
+}
+
 bool FrameRenderer::has_steps(int ranks) const {
-  // Frames in steps would be several that read pages at the same time.
-  return raster_ && !prepared_.pack &&
+  // Frames in steps would be several that read pages, or look at poses, at the same time.
+  return raster_ && !prepared_.pack && !prepared_.motion &&
          raster::Renderer::has_steps(raster_options(request_, request_.window, ranks), ranks);
 }
 

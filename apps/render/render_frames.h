@@ -8,10 +8,12 @@
 #include <variant>
 #include <vector>
 
+#include "apps/render/motion.h"
 #include "apps/render/render_options.h"
 #include "comm/communicator.h"
 #include "image/io.h"
 #include "packs/pack_reader.h"
+#include "raytrace/render_cache.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
 
@@ -25,6 +27,8 @@ struct Prepared {
   Background background;                           // not automatic any more
   std::shared_ptr<const shading::Shader> shader;   // rasterizer; ray tracer without a tracer
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
+  std::unique_ptr<Motion> motion;                  // of a scene that moves from frame to frame
+  std::uint32_t camera_number = scenes::kNone;     // among the scene's; kNone: not one of these
   std::unique_ptr<const packs::PackReader> pack;   // of a scene that is read while it is rendered
   // Ranks make parts of the geometry for themselves, and `scene` has none.
   bool in_parts = false;
@@ -69,6 +73,8 @@ struct Frame {
   Extras extras;
 };
 
+struct RayFrame;
+
 // Either engine, ready for any number of frames. One per rank; refers to what it is given.
 class FrameRenderer {
  public:
@@ -80,6 +86,12 @@ class FrameRenderer {
   double build_seconds() const { return build_seconds_; }
   // Is given pictures that are not yet done, as often as the options want it.
   void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
+  // Collective: the scene as it is in a frame of an animation, and where it is seen from.
+  struct Posed {
+    scenes::Camera camera;
+    FrameMotion motion;
+  };
+  Posed pose(comm::Communicator& communicator, std::size_t frame);
   // Collective. The window of the request, or another part of the frame.
   Frame render(comm::Communicator& communicator, const scenes::Camera& camera) {
     return render(communicator, camera, request_.window);
@@ -99,6 +111,10 @@ class FrameRenderer {
                                               const scenes::Camera& camera);
 
  private:
+  void share(comm::Communicator& communicator);
+  RayFrame trace(comm::Communicator& communicator, const scenes::Camera& camera,
+                 const RenderRequest& request);
+
   const Prepared& prepared_;
   const RenderRequest& request_;
   parallel::Progress* progress_;
@@ -107,6 +123,7 @@ class FrameRenderer {
   std::optional<raytrace::SharedScene> shared_;  // of the next, with some --data
   std::optional<raytrace::Renderer> raytrace_;
   std::optional<double> error_;
+  std::optional<raytrace::RenderCache> cache_;  // on rank 0, of an animation that asks for one
   double load_seconds_ = 0, build_seconds_ = 0;
 };
 

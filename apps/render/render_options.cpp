@@ -31,8 +31,8 @@ void check_output(RenderRequest& request) {
   request.frames_output = request.output;
   if (is_video(request.output)) {
     if (request.is_animation()) return;
-    throw UsageError(
-        fmt::format("-o: '{}' is a video, for --turntable or --camera-path", request.output));
+    throw UsageError(fmt::format("-o: '{}' is a video, for --turntable, --camera-path or --animate",
+                                 request.output));
   }
   if (!image::is_picture_suffix(request.output)) {
     std::string legal;
@@ -174,6 +174,7 @@ void check(const CLI::App& command, RenderRequest& request) {
   parse_size(request);
   complete_layout(request);
   check_light(command, request.light);
+  check(request.motion);
   request.behind = parse_background(request.background);
   const bool is_opaque = is_jpeg(request.output) || is_video(request.output);
   if (request.behind.kind == Background::Kind::transparent && is_opaque) {

@@ -12,6 +12,7 @@
 #include "apps/render/camera_options.h"
 #include "apps/render/frame_layout.h"
 #include "apps/render/light_options.h"
+#include "apps/render/motion.h"
 #include "apps/render/sampling_options.h"
 #include "apps/statistics.h"
 #include "raster/render.h"
@@ -52,6 +53,7 @@ struct RenderRequest {
   double cache_mebibytes = 0;       // 0: a tenth of the scene
   double reach = 0;                 // of ambient occlusion; 0: without end
   SamplingOptions sampling;
+  MotionOptions motion;
   FrameLayout layout;
 
   // The size of the pictures that are written: the frame, or a crop of it; of a wall all that its
@@ -62,7 +64,9 @@ struct RenderRequest {
   int picture_height() const {
     return layout.one_file ? layout.wall->rows * layout.wall->height : window.height();
   }
-  bool is_animation() const { return turntable > 0 || !camera_path.empty(); }
+  bool is_animation() const {
+    return turntable > 0 || !camera_path.empty() || motion.is_animation();
+  }
 
   // Set by check:
   std::string frames_output;  // of which frame_path makes the names of an animation's frames

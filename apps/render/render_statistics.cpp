@@ -228,7 +228,24 @@ Json animation_statistics(const Animation& animation) {
                       {"seconds", animation.all.stages[i]},
                       {"seconds_alone", animation.alone.stages[i]}});
   }
+  Json motion = Json::array();
+  for (const FrameMotion& frame : animation.motion) {
+    motion.push_back({{"seconds", frame.seconds},
+                      {"instances", frame.instances},
+                      {"meshes", frame.meshes},
+                      {"pose_seconds", frame.pose_seconds},
+                      {"top_seconds", frame.follow.top_seconds},
+                      {"refitted", frame.follow.refitted},
+                      {"refit_seconds", frame.follow.refit_seconds},
+                      {"built", frame.follow.built},
+                      {"build_seconds", frame.follow.build_seconds},
+                      {"frame_seconds", frame.frame_seconds},
+                      {"bytes_sent", frame.bytes},
+                      {"triangles_sent", frame.triangles}});
+  }
   Json statistics = {
+      {"motion", motion},
+      {"rays", of_rays(animation.rays)},
       {"frames", animation.frames.seconds.size()},
       {"frames_at_once", animation.slots},
       {"stages", stages},

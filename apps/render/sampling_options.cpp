@@ -40,6 +40,18 @@ std::string why_no_colour(const RenderRequest& r) { return shows_colour(r) ? "" 
 std::string why_no_tone(const RenderRequest& r) {
   return shows_colour(r) && writes_exr(r) ? "EXR, which keeps the light itself" : why_no_colour(r);
 }
+// Samples of other frames are of pixels' centres, and of what stands still.
+std::string why_no_reuse(const RenderRequest& r) {
+  const SamplingOptions& s = r.sampling;
+  if (!r.is_animation()) return "a single picture";
+  if (r.motion.is_animation()) return "--animate, whose scene moves";
+  if (r.raytrace.samples > 1) return "more than one sample per pixel";
+  if (s.denoise) return "--denoise";
+  if (!shows_colour(r)) return "--show";
+  if (s.aperture > 0) return "--aperture";
+  if (r.layout.wall) return "--wall";
+  return r.layout.crop.empty() ? "" : "--crop";
+}
 std::string why_no_focus(const RenderRequest& r) {
   return r.sampling.aperture == 0.0 ? "no --aperture" : "";
 }
@@ -131,6 +143,14 @@ std::vector<RenderOption> sampling_options() {
           .in_checkpoint([](const RenderRequest& r) {
             return fmt::format("{}", static_cast<float>(r.sampling.focus));
           }),
+      sampling_option(
+          "--reuse", [](auto& r) -> auto& { return r.sampling.reuse; },
+          "Of animations with --turntable and --camera-path: trace at most this part of the "
+          "pixels, "
+          "such as 0.25, and take the others from the frames before, which is an approximation "
+          "(default: trace all)",
+          "reuse", why_no_reuse)
+          .check(number_between(0.01, 1.0)),
       sampling_option(
           "--seed", [](auto& r) -> auto& { return r.raytrace.trace.seed; },
           "Seed of all random numbers (default: 0)", "seed")

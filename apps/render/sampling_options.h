@@ -15,6 +15,7 @@ namespace delray::apps {
 struct RenderRequest;
 
 struct SamplingOptions {
+  double reuse = 0;      // share of the pixels of a frame that are traced; 0: all of every frame
   double seconds = 0.0;  // 0: no limit
   double noise = 0.0;    // 0: all samples
   double preview_every = 0.0;

@@ -50,8 +50,9 @@ bool is_video(const std::string& path) {
   return suffix == ".mp4";
 }
 
-VideoFrames::VideoFrames(std::string video)
+VideoFrames::VideoFrames(std::string video, std::string frames_per_second)
     : video_(std::move(video)),
+      frames_per_second_(std::move(frames_per_second)),
       target_(fs::absolute(files::output_path(video_).path)),
       ffmpeg_(find_program("ffmpeg")) {
   std::string name = (target_.parent_path() / ".delray-XXXXXX").string();
@@ -78,7 +79,7 @@ std::vector<std::string> VideoFrames::arguments(const Session& session, const fs
                                     "-nostdin",
                                     "-y",
                                     "-framerate",
-                                    std::to_string(kFramesPerSecond),
+                                    frames_per_second_,
                                     "-start_number",
                                     "0",
                                     "-i",

@@ -117,6 +117,50 @@ TEST(RenderCommand, AnimationsWriteEveryFrameHoweverTheWorkIsShared) {
             statistics(base + "--camera 1,1,3.5,0,1,0,0,1,0,45", folder)["image"]["hash"]);
 }
 
+TEST(RenderCommand, FramesOfAMovingSceneAreItsPosesHoweverTheWorkIsShared) {
+  const Folder folder;
+  scenes::write_glb(folder.path() / "flag.glb", scenes::generate("gen:cloth:400"));
+  const std::string base = "delray render flag.glb -o a.png --size 48x32 ";
+  for (const std::string engine : {"--engine raster ", "--engine raytrace "}) {
+    const json still = statistics(base + engine + "--pose-time 0.75", folder);
+    EXPECT_NE(still["image"]["hash"], statistics(base + engine, folder)["image"]["hash"]);
+    const bool rays = engine == "--engine raytrace ";
+    for (const std::string how :
+         {std::string("--ranks 1"), std::string(rays ? "--data object --ranks 2" : "--ranks 3"),
+          std::string(rays ? "--ranks 2" : "--strategy sort-first --ranks 3")}) {
+      const json stats = statistics(base + engine + "--animate 0:1:4 " + how, folder);
+      EXPECT_EQ(stats["image"]["hash"], still["image"]["hash"]) << engine << how;
+      EXPECT_EQ(stats["animation"]["frames"], 4);
+      EXPECT_EQ(stats["animation"]["motion"].size(), 4U);
+      EXPECT_EQ(stats["animation"]["motion"][3]["seconds"], 0.75);
+      EXPECT_EQ(stats["animation"]["motion"][3]["meshes"], 1);
+    }
+  }
+  const Ran info = run("delray info flag.glb", folder.path());
+  EXPECT_NE(info.out.find(R"({"channels":1,"name":"wave","seconds":2.0})"), std::string::npos)
+      << info.out;
+  EXPECT_EQ(statistics(base + "--animation wave --pose-time 9", folder)["image"]["hash"],
+            statistics(base + "--animation 0 --pose-time 2", folder)["image"]["hash"]);
+  for (const std::string wrong :
+       {"--animate 0:1", "--animate 1:0:5", "--animate 0:1:0", "--pose-time soon",
+        "--animation walk --pose-time 1", "--animation wave", "--animate 0:1:2 --turntable 3"}) {
+    EXPECT_EQ(run(base + wrong, folder.path()).exit_code, 2) << wrong;
+  }
+  EXPECT_EQ(run("delray render gen:cornell -o a.png --pose-time 1", folder.path()).exit_code, 2);
+}
+
+TEST(RenderCommand, ReuseTracesAPartOfATurntable) {
+  const Folder folder;
+  const std::string base =
+      "delray render gen:cornell:100 -o a.png --size 48x32 --engine raytrace --turntable 4 ";
+  const json all = statistics(base, folder)["animation"]["rays"];
+  for (const std::string how : {"", "--ranks 2", "--data object --ranks 2"}) {
+    const json part = statistics(base + "--reuse 0.25 " + how, folder)["animation"]["rays"];
+    EXPECT_NEAR(part["primary"].get<double>(), 0.4375 * all["primary"].get<double>(), 100) << how;
+  }
+  EXPECT_EQ(run(base + "--reuse 0.25 --spp 4", folder.path()).exit_code, 2);
+}
+
 TEST(RenderCommand, CamerasOfTheSceneByNameAndNumber) {
   const Folder folder;
   scenes::Scene scene = scenes::generate("gen:cornell:100");
