@@ -17,6 +17,7 @@
 #include <map>
 #include <utility>
 
+#include "comm/bad_message.h"
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
 #include "parallel/processor_time.h"
@@ -474,7 +475,25 @@ void SharedScene::give_away(std::uint32_t cluster) {
 
 void SharedScene::take_over(std::uint32_t cluster, ClusterData&& data) {
   owned_.emplace(cluster, std::make_shared<const Cluster>(std::move(data), shader_, alphas_));
+  taken_over_.push_back(cluster);
   note_bytes();
+}
+
+void SharedScene::learn_owners(comm::Communicator& communicator) {
+  const std::span<const std::uint32_t> mine = taken_over_;
+  const std::vector<comm::Buffer> messages =
+      comm::all_gather(communicator, comm::Buffer::of(std::as_bytes(mine)));
+  for (int rank = 0; rank < communicator.size(); ++rank) {
+    const comm::Buffer& message = messages[static_cast<std::size_t>(rank)];
+    comm::check_message(message.size() % sizeof(std::uint32_t) == 0);
+    for (std::size_t at = 0; at < message.size(); at += sizeof(std::uint32_t)) {
+      std::uint32_t cluster = 0;
+      std::memcpy(&cluster, message.data() + at, sizeof cluster);
+      comm::check_message(cluster < owners_.size());
+      owners_[cluster] = rank;
+    }
+  }
+  taken_over_.clear();
 }
 
 // Most of the cache is for clusters that most rays met, until the next frame.

@@ -122,6 +122,8 @@ class SharedScene {
   // when one that was taken over becomes resident.
   void give_away(std::uint32_t cluster);
   void take_over(std::uint32_t cluster, ClusterData&& data);
+  // Collective, between frames. Until then owner() is who had a cluster before.
+  void learn_owners(comm::Communicator& communicator);
   bool owns(std::uint32_t cluster) const { return owned_.contains(cluster); }
   const std::unordered_map<std::uint32_t, std::shared_ptr<const Cluster>>& owned() const {
     return owned_;
@@ -189,7 +191,8 @@ class SharedScene {
   std::unordered_map<std::uint32_t, Cached> cached_;
   std::list<std::uint32_t> uses_;  // clusters that may be dropped, what was used last at the front
   std::uint64_t cached_bytes_ = 0, most_bytes_ = 0, cache_limit_ = 0, evicted_ = 0;
-  std::uint64_t given_bytes_ = 0;  // of clusters that are resident, but not owned any more
+  std::vector<std::uint32_t> taken_over_;  // clusters, whose owners others do not know yet
+  std::uint64_t given_bytes_ = 0;          // of clusters that are resident, but not owned any more
   Joined joined_ = Joined::none;
   std::vector<std::uint8_t> is_kept_;  // by cluster: stays in the cache until the next frame
   bool has_room_for_all_ = false;

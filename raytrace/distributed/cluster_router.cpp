@@ -43,8 +43,6 @@ class ClusterRouter final : public RayRouter {
     }
   }
 
-  bool is_new_here(const Progression&) const override { return true; }
-
   void receive(int from, const MessageHeader& header, std::span<const std::byte> content) override {
     if (header.kind == MessageKind::fetch) {
       MessageHeader answer;

@@ -70,6 +70,7 @@ DistributedTracer::DistributedTracer(comm::Communicator& communicator, SharedSce
       messenger_(communicator, termination_) {
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t threads = static_cast<std::size_t>(parallel::arena_threads());
+  if (distribution.decide == nullptr) scene_.learn_owners(communicator);
   scene_.begin_frame(distribution.chooses);
   if (scene_.elsewhere().empty()) ready_at_once_ = threads == 1 ? 1 : kReadyForThread * threads;
   waiting_.to_intersect.resize(ranks);
@@ -184,8 +185,6 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
   switch (header.kind) {
     case MessageKind::intersect: {
       RayQueue queue = unpack_rays(message, header);
-      take_known(queue.rays);
-      take_known(queue.shadows);
       if (!queue.empty()) waiting_.at_resident.push_back(std::move(queue));
       note_travel(header.rays + header.shadows, start);
       break;
@@ -206,21 +205,6 @@ void DistributedTracer::receive(const comm::Envelope& envelope) {
           envelope.source, header,
           {message.data() + sizeof(MessageHeader), message.size() - sizeof(MessageHeader)});
   }
-}
-
-// Rays that have been intersected with the resident clusters go on; the others stay.
-template <class Message>
-void DistributedTracer::take_known(std::vector<Message>& messages) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < messages.size(); ++i) {
-    if (!router_->is_new_here(messages[i].ray.way)) {
-      choose_next(messages[i]);
-      route(std::move(messages[i]));
-    } else if (kept++ != i) {
-      messages[kept - 1] = std::move(messages[i]);
-    }
-  }
-  messages.resize(kept);
 }
 
 bool DistributedTracer::advance_pixel_tasks() {
@@ -311,8 +295,9 @@ void DistributedTracer::route(Message&& message) {
   const std::uint32_t next = message.ray.way.next;
   const int rank = communicator_.rank(), home = message.return_address.rank;
   if (next == RayRouter::kOnward) {
-    const int to = (rank + 1) % communicator_.size();
-    waiting_.to_intersect[static_cast<std::size_t>(to)].push(std::move(message));
+    const auto hops = static_cast<std::size_t>(message.ray.way.hops);
+    const std::size_t to = (static_cast<std::size_t>(home) + hops) % waiting_.to_intersect.size();
+    waiting_.to_intersect[to].push(std::move(message));
   } else if (next != kMiss) {
     waiting_.by_cluster[next].push(std::move(message));
   } else if (home == rank) {

@@ -88,8 +88,6 @@ class DistributedTracer {
   void send_all(bool idle);
 
   template <class Message>
-  void take_known(std::vector<Message>& messages);
-  template <class Message>
   void choose_next(Message& message) const;
   template <class Message>
   void route(Message&& message);

@@ -35,7 +35,7 @@ struct Progression {
 
   ClusterHit last{-1.0F, 0};
   std::uint32_t next = kMiss;  // the cluster that it waits for; kMiss: none, it is done
-  std::uint32_t hops = 0;      // ring: ranks that it has gone on to
+  std::uint32_t hops = 0;      // ring: from its own rank to the one that it is at or goes to
 
   // The last few ranks that it has been at. A ray that goes to an earlier one once more learns
   // nothing there, and loses nothing.

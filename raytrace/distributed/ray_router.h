@@ -69,7 +69,7 @@ struct RoutingContext {
 
 class RayRouter {
  public:
-  // Progression::next: to the next rank of the ring.
+  // Progression::next: to the rank of the ring that is Progression::hops behind the ray's own.
   static constexpr std::uint32_t kOnward = kMiss - 1;
 
   virtual ~RayRouter() = default;
@@ -82,8 +82,6 @@ class RayRouter {
   // Any thread: sets way.next to the cluster that a ray has to be intersected with next, kOnward or
   // kMiss; way.last accordingly.
   virtual void choose_next(const Line& line, Progression& way) const = 0;
-  // Whether a ray that came has not been intersected with this rank's resident clusters.
-  virtual bool is_new_here(const Progression& way) const = 0;
   // A message that is neither rays nor answers.
   virtual void receive(int from, const MessageHeader& header,
                        std::span<const std::byte> content) = 0;

@@ -1,10 +1,11 @@
-// Ring distribution (Kim et al. 1996): a ray visits rank after rank, unless no cluster elsewhere is
-// in its way, and returns to its own with the nearest hit. Clusters move to the next rank where
-// that is less loaded.
+// Ring distribution (Kim et al. 1996): a ray visits rank after rank in the order of the ring,
+// passes over those that have nothing in its way, and returns to its own with the nearest hit.
+// Clusters move to the next rank where that is less loaded.
 //
 // A cluster moves once a frame, at most, and only if it was resident when the frame began: rays of
-// that frame meet it there still, wherever it goes meanwhile, so that none is missed. Degenerate:
-// alone there is nobody to go round.
+// that frame meet it there still, wherever it goes meanwhile, so that none is missed. Before the
+// next one all ranks learn where it is. Degenerate: alone there is nobody to go round.
+#include <algorithm>
 #include <cstddef>
 
 #include "raytrace/distributed/ray_router.h"
@@ -28,19 +29,25 @@ class RingRouter final : public RayRouter {
 
   Progression start() const override { return {}; }
 
+  // To the next rank of the ring that has a cluster in its way, up to its nearest hit so far.
   void choose_next(const Line& line, Progression& way) const override {
     way.next = kMiss;
-    if (is_back(way)) return;
-    // On its own rank a ray that meets nothing else is done.
-    if (way.hops == 0 && context_.scene.elsewhere().next(line, kBegin).cluster == kNoCluster)
-      return;
-    if (context_.messenger.ranks() == 1) return;
-    ++way.hops;
-    way.last = kBegin;
+    const auto ranks = static_cast<std::uint32_t>(context_.messenger.ranks());
+    const auto rank = static_cast<std::uint32_t>(context_.messenger.rank());
+    const std::uint32_t home = (rank + ranks - way.hops) % ranks;
+    std::uint32_t hops = ranks;
+    ClusterHit hit = kBegin;
+    while (hops > way.hops + 1) {
+      hit = context_.scene.elsewhere().next(line, hit);
+      if (hit.cluster == kNoCluster) break;
+      const auto owner = static_cast<std::uint32_t>(context_.scene.owner(hit.cluster));
+      const std::uint32_t hops_there = (owner + ranks - home) % ranks;
+      if (hops_there > way.hops) hops = std::min(hops, hops_there);
+    }
+    if (hops == ranks) return;
+    way.hops = hops;
     way.next = kOnward;
   }
-
-  bool is_new_here(const Progression& way) const override { return !is_back(way); }
 
   void receive(int, const MessageHeader& header, std::span<const std::byte> content) override {
     if (header.kind == MessageKind::load) return loads_.hear(header.load);
@@ -62,10 +69,6 @@ class RingRouter final : public RayRouter {
   }
 
  private:
-  bool is_back(const Progression& way) const {
-    return way.hops == static_cast<std::uint32_t>(context_.messenger.ranks());
-  }
-
   // Gives a cluster to the next rank, whose next frame begins with it.
   void give(std::uint64_t load) {
     for (const auto& [number, cluster] : context_.scene.owned()) {

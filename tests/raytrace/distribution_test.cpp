@@ -221,7 +221,7 @@ TEST(SharedScene, FewRaysTravelBetweenNeighbours) {
   RenderOptions options = small(192, 128);
   options.tile = 16;
   options.integrator = "direct";
-  for (const char* data : {"ray", "hybrid"}) {
+  for (const char* data : {"ray", "hybrid", "ring"}) {
     for (const int ranks : {2, 4}) {
       const Result result =
           shared_out(scene, options, *find_distribution(data), ShareOptions{}, ranks, 1);
