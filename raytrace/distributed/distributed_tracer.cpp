@@ -275,7 +275,8 @@ void DistributedTracer::end_task(std::uint32_t index) {
     const double for_answer = answers_ > 0 ? waiting_seconds_ / static_cast<double>(answers_) : 0.0;
     const std::uint32_t number = tile->pixels.tile;
     planned_.push_back({number, owner_of_tile(frame_, scene_, communicator_.rank(), number),
-                        tile->pixels.busy + for_answer * static_cast<double>(tile->answers)});
+                        tile->pixels.busy + for_answer * static_cast<double>(tile->answers),
+                        communicator_.rank()});
   }
   done_.push_back(std::move(tile->pixels));
   std::erase_if(open_tiles_, [tile](const auto& open) { return open.get() == tile; });

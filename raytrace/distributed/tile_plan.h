@@ -10,19 +10,24 @@
 
 namespace delray::raytrace {
 
-// A tile of the last frame: whose clusters it shows, and the seconds that it took.
+inline constexpr std::int32_t kNoPlan = -1;
+
+// A tile of the last frame: whose clusters it shows, the seconds that it took, and who traced it,
+// kNoPlan where nobody remembers.
 struct PlannedTile {
   std::uint32_t tile = 0;
   std::int32_t owner = 0;
   double seconds = 0.0;
+  std::int32_t rank = kNoPlan;
 };
 
 // Ranks keep tiles that show their own clusters, but for those beyond an equal share of all
-// seconds: the last ones of each such rank go to ranks that have less. Element i: the rank of tile
-// i of `count`, kNoPlan where no tile is known. O(tiles + ranks).
+// seconds: the last ones of each such rank go to ranks that have less. Where shares of the last
+// frame were about equal, and no more tiles were away from their owners than need be, all stay
+// where they were: what they need is there. Element i: the rank of tile i of `count`, kNoPlan where
+// no tile is known. O(tiles + ranks).
 //
 // REQUIRES: tiles are by ascending number.
-inline constexpr std::int32_t kNoPlan = -1;
 std::vector<std::int32_t> plan_tiles(std::span<const PlannedTile> tiles, std::uint32_t count,
                                      int ranks);
 

@@ -23,6 +23,23 @@ TEST(TilePlan, StaysWithOwnersWhereSharesAreEqualOrNothingIsKnown) {
   EXPECT_EQ(plan_tiles({}, 2, 3), (std::vector<std::int32_t>{kNoPlan, kNoPlan}));
 }
 
+// Shares differ a little from frame to frame, and tiles stay; a little more, or owners elsewhere,
+// and they do not.
+TEST(TilePlan, KeepsTheRanksOfTheLastFrameWhereTheyDo) {
+  std::vector<PlannedTile> tiles;
+  for (std::uint32_t i = 0; i < 20; ++i) tiles.push_back({i, 0, 1.0, i % 2 == 0 ? 0 : 1});
+  std::vector<std::int32_t> last;
+  for (const PlannedTile& tile : tiles) last.push_back(tile.rank);
+  EXPECT_EQ(plan_tiles(tiles, 20, 2), last);
+  tiles[0].seconds = 1.9;
+  EXPECT_EQ(plan_tiles(tiles, 20, 2), last);
+  tiles[0].seconds = 9.0;
+  EXPECT_NE(plan_tiles(tiles, 20, 2), last);
+  tiles[0].seconds = 1.0;
+  for (PlannedTile& tile : tiles) tile.owner = 1 - tile.rank;
+  EXPECT_NE(plan_tiles(tiles, 20, 2), last);
+}
+
 TEST(TilePlan, SharesOfRandomTilesDifferByATileAtMost) {
   std::random_device device;
   const unsigned seed = device();
