@@ -58,12 +58,12 @@ TEST(Pack, OfModelsRendersAsTheyDo) {
 }
 
 // Points with heights, some of them far off the others.
-std::string points_with_heights(int n) {
+std::string points_with_heights(int n, double far_off) {
   std::mt19937 random(20261127);
   std::string text;
   for (int i = 0; i < n; ++i) {
     const double x = random() % 100000 * 1e-2 + 5e5, y = random() % 100000 * 1e-2 + 4e6;
-    const double far = i % 997 == 5 ? 1e5 : 0;
+    const double far = i % 997 == 5 ? far_off : 0;
     text += std::to_string(x + far) + " " + std::to_string(y) + " " +
             std::to_string(100 * std::sin(x * 0.02) * std::cos(y * 0.013)) + "\n";
   }
@@ -72,7 +72,7 @@ std::string points_with_heights(int n) {
 
 TEST(Pack, OfAFolderHasThePictureOfItsMesh) {
   const Folder folder;
-  folder.write("p.xyz", points_with_heights(3000));
+  folder.write("p.xyz", points_with_heights(3000, 1e5));
   for (const std::string format : {"", " --pieces ply"}) {
     ASSERT_EQ(run("delray triangulate p.xyz -o m/ --tiles 7 -q" + format, folder.path()).exit_code,
               0);
@@ -97,7 +97,7 @@ TEST(Pack, OfAFolderHasThePictureOfItsMesh) {
 
 TEST(Pack, OfPointsHasTheirPicture) {
   const Folder folder;
-  folder.write("p.xyz", points_with_heights(2000));
+  folder.write("p.xyz", points_with_heights(2000, 0));
   for (const std::string how :
        {" --show-as points", " --show-as discs --point-size 3", " --show-as spheres --radius 4"}) {
     ASSERT_EQ(run("delray pack p.xyz -o p.pack -q" + how, folder.path()).exit_code, 0) << how;
