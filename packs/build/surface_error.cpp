@@ -1,9 +1,7 @@
 // Nearest points by a tree of boxes over triangles (Ericson 2005, 5.1.5 for one triangle), the
 // place at hand first where the last one was found. Two-sided, as Cignoni, Rocchini and Scopigno
-// (1998) measure it, but not from random samples: from the vertices of the fine mesh, and the
-// vertices, edges and middles of the simplified one, each once. A triangle of the fine mesh is
-// farthest from a flat piece of the other at a corner, and between two such pieces an edge has
-// samples of its own.
+// (1998) measure it, but not from random samples: from vertices and the middles of edges and
+// triangles of both, each once.
 //
 // Errors of what lies beneath are added where they are, by the triangle inequality, and not the
 // largest to the largest: those are rarely at one place.
@@ -193,8 +191,8 @@ struct Samples {
   std::vector<std::uint32_t> triangles;
 };
 
-// Corners and, unless `corners_only`, middles of edges and of triangles, each once.
-Samples samples_of(const scenes::Mesh& mesh, bool corners_only) {
+// Corners, middles of edges and of triangles, each once.
+Samples samples_of(const scenes::Mesh& mesh) {
   constexpr float kHalf = 0.5F, kThird = 1.0F / 3.0F;
   constexpr std::array<Weights, 3> kCorners = {Weights{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   constexpr std::array<Weights, 3> kEdges = {
@@ -211,8 +209,7 @@ Samples samples_of(const scenes::Mesh& mesh, bool corners_only) {
       const std::uint64_t a = mesh.triangles[t][static_cast<int>(k)];
       const std::uint64_t b = mesh.triangles[t][static_cast<int>((k + 1) % 3)];
       keys.push_back({a << 32 | a, t, k});
-      if (!corners_only && a != b)
-        keys.push_back({std::min(a, b) << 32 | std::max(a, b), t, k + 3});
+      if (a != b) keys.push_back({std::min(a, b) << 32 | std::max(a, b), t, k + 3});
     }
   }
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
@@ -228,7 +225,7 @@ Samples samples_of(const scenes::Mesh& mesh, bool corners_only) {
       samples.triangles.push_back(keys[i].triangle);
     samples.places.push_back(sample);
   }
-  for (std::uint32_t t = 0; t < triangles && !corners_only; ++t) {
+  for (std::uint32_t t = 0; t < triangles; ++t) {
     samples.places.push_back(
         {t, {kThird, kThird, kThird}, static_cast<std::uint32_t>(samples.triangles.size()), 1});
     samples.triangles.push_back(t);
@@ -269,13 +266,13 @@ SurfaceErrors surface_errors(const scenes::Mesh& fine, std::span<const float> be
     errors.largest = std::max(errors.largest, error);
   };
   using Triangles = std::span<const std::uint32_t>;
-  for_each_error(fine, samples_of(fine, true), simplified, attribute_scale,
+  for_each_error(fine, samples_of(fine), simplified, attribute_scale,
                  [&](Triangles from, std::uint32_t nearest, float error) {
                    float most = 0;
                    for (const std::uint32_t t : from) most = std::max(most, of_fine(t));
                    add(nearest, most + error);
                  });
-  for_each_error(simplified, samples_of(simplified, false), fine, attribute_scale,
+  for_each_error(simplified, samples_of(simplified), fine, attribute_scale,
                  [&](Triangles from, std::uint32_t nearest, float error) {
                    for (const std::uint32_t t : from) add(t, of_fine(nearest) + error);
                  });

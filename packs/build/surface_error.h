@@ -15,8 +15,8 @@ struct SurfaceErrors {
       triangles;  // of the simplified mesh: the errors of places on, or nearest to, each
 };
 
-// How far places on either mesh are from the nearest one on the other, measured from corners of
-// both, and middles of edges and triangles of the simplified one, and what lies beneath: `before`
+// How far places on either mesh are from the nearest one on the other, measured from corners and
+// middles of edges and triangles of both, and what lies beneath: `before`
 // has, for each triangle of the fine mesh, how far it is from what it was itself made of; empty:
 // nothing. Attributes count as further dimensions: where normals, colours or texture coordinates
 // there differ by 1, that is as far as `attribute_scale`. O(n log n) for meshes that are much
