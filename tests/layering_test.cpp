@@ -59,6 +59,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"apps/output", {"input", "options"}},
     {"apps/render", {"input", "options"}},
     {"apps/replay", {"options", "terminal"}},
+    {"apps/triangulate", {"input", "options", "output"}},
     {"apps/verify", {"input", "options"}},
     {"apps/compare", {"input", "options", "render", "report", "terminal"}},
     {"comm/in_process", {"transport"}},

@@ -1,3 +1,4 @@
+// Environment variables by which Open MPI chooses how messages travel within a machine.
 #include "comm/mpi/open_mpi_choices.h"
 
 #include <sys/uio.h>

@@ -1,3 +1,4 @@
+// Looks for D + 1 points that are not on one line or plane.
 #include "delaunay/verify/flat_points.h"
 
 #include <array>

@@ -1,5 +1,5 @@
 // The options of `triangulate`, and what they demand of each other.
-#include "apps/triangulate_options.h"
+#include "apps/triangulate/triangulate_options.h"
 
 #include <fmt/format.h>
 

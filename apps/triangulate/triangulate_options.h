@@ -17,6 +17,7 @@ class App;
 
 namespace delray::apps {
 
+// What the command line says.
 struct TriangulateOptions {
   PointInput input;
   TriangulationOutput output;
