@@ -8,6 +8,7 @@
 #include <cstring>
 #include <optional>
 #include <random>
+#include <string_view>
 
 #include "comm/simulated.h"
 #include "comm/threads.h"
@@ -233,7 +234,9 @@ TEST(SharedScene, FewRaysTravelBetweenNeighbours) {
       }
       EXPECT_EQ(tiles, 96U) << data;
       EXPECT_GT(sent, 0U) << data << ' ' << ranks;
-      EXPECT_LT(sent * 5, rays) << data << ' ' << ranks;
+      // Rays of the ring come to ranks in its order, and so to more of them.
+      const std::uint64_t share = std::string_view(data) == "ring" ? 4 : 5;
+      EXPECT_LT(sent * share, rays) << data << ' ' << ranks;
     }
   }
 }
