@@ -1,5 +1,7 @@
 """Functions of points: against SciPy's where there are such, and against what they promise."""
 
+import threading
+
 import delray
 import numpy as np
 import pytest
@@ -131,6 +133,21 @@ def test_dynamic_follows(random, dim):
         dynamic.insert([np.nan] * dim)
     with pytest.raises(ValueError):
         delray.Dynamic(4)
+
+
+def test_threads_share_a_dynamic_triangulation(random):
+    dynamic = delray.Dynamic()
+    points = random.random((400, 2))
+
+    def work(part):
+        for row in dynamic.insert(part[:100]):
+            assert dynamic.is_live(row)
+        dynamic.insert(part[100:])
+
+    threads = [threading.Thread(target=work, args=(part,)) for part in (points[:200], points[200:])]
+    [t.start() for t in threads]
+    [t.join() for t in threads]
+    assert len(dynamic) == 400 and len(dynamic.simplices) == delray.Delaunay(points).nsimplex
 
 
 def test_files(tmp_path, random):
