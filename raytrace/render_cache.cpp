@@ -20,13 +20,13 @@ namespace {
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 // Steps of depth between neighbours that are taken for silhouettes, as a part of the depth.
-constexpr float kStep = 0.03F;
+constexpr float kDepthStep = 0.03F;
 // Pixels around surfaces where others may have come into sight.
-constexpr int kReach = 24;
+constexpr int kSurfaceReach = 24;
 // Squares of up to 16 x 16 pixels.
 constexpr int kFillLevels = 4;
 // Frames after which a sample is as urgent as those at silhouettes.
-constexpr std::uint32_t kOld = 12;
+constexpr std::uint32_t kOldAge = 12;
 // Classes of pixels.
 enum : std::uint8_t { kEmpty, kKnown, kNearSurface, kOldSample, kEdge, kHole, kClasses };
 
@@ -93,15 +93,15 @@ std::uint8_t RenderCache::urgency(int x, int y) const {
       ++around;
       if (other == kNowhere) continue;
       ++known;
-      nearer += other < own * (1 - kStep) ? 1 : 0;
-      farther += other > own * (1 + kStep) ? 1 : 0;
+      nearer += other < own * (1 - kDepthStep) ? 1 : 0;
+      farther += other > own * (1 + kDepthStep) ? 1 : 0;
     }
   }
   if (own == kNowhere) return 2 * known >= around ? kHole : known > 0 ? kEdge : kEmpty;
   if (nearer > 2 || known < around || farther > 2) return kEdge;
   const Sample& sample = now_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                               static_cast<std::size_t>(x)];
-  return frame_ - sample.frame >= kOld ? kOldSample : kKnown;
+  return frame_ - sample.frame >= kOldAge ? kOldSample : kKnown;
 }
 
 // Marks the pixels to trace, the most urgent ones first.
@@ -115,23 +115,23 @@ void RenderCache::choose() {
   // Distances from surfaces, along rows and then along columns: a square around each.
   std::vector<std::uint8_t> close(urgent_.size(), 0);
   parallel::parallel_for(0, static_cast<std::size_t>(height_), kRows, [&](std::size_t y) {
-    int since = kReach + 1;
+    int since = kSurfaceReach + 1;
     const auto look = [&](std::size_t x) {
       since = depth_[y * width + x] == kNowhere ? since + 1 : 0;
-      if (since <= kReach) close[y * width + x] = 1;
+      if (since <= kSurfaceReach) close[y * width + x] = 1;
     };
     for (std::size_t x = 0; x < width; ++x) look(x);
-    since = kReach + 1;
+    since = kSurfaceReach + 1;
     for (std::size_t x = width; x-- > 0;) look(x);
   });
   parallel::parallel_for(0, width, kRows, [&](std::size_t x) {
     const auto pass = [&](bool down) {
-      int since = kReach + 1;
+      int since = kSurfaceReach + 1;
       for (std::size_t i = 0; i < static_cast<std::size_t>(height_); ++i) {
         const std::size_t y = down ? i : static_cast<std::size_t>(height_) - 1 - i;
         since = close[y * width + x] == 1 ? 0 : since + 1;
         std::uint8_t& urgent = urgent_[y * width + x];
-        if (since <= kReach && urgent == kEmpty) urgent = kNearSurface;
+        if (since <= kSurfaceReach && urgent == kEmpty) urgent = kNearSurface;
       }
     };
     pass(true);

@@ -25,20 +25,20 @@ std::size_t array_bytes(const scenes::Mesh& mesh) {
          array_bytes(mesh.tangents);
 }
 
-using Clock = std::chrono::steady_clock;
+using BuildClock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double elapsed_since(BuildClock::time_point start) {
+  return std::chrono::duration<double>(BuildClock::now() - start).count();
 }
 
-bool moves(const scenes::Scene& scene) {
+bool any_mesh_moves(const scenes::Scene& scene) {
   return std::ranges::any_of(scenes::mesh_motions(scene), [](scenes::MeshMotion motion) {
     return motion != scenes::MeshMotion::still;
   });
 }
 
 // Whether its structure can be refitted.
-bool bends(const GeometryInstance& instance) {
+bool is_refittable(const GeometryInstance& instance) {
   return instance.deforming && instance.mesh != nullptr && instance.mesh->has_triangles() &&
          !instance.mesh->triangles.empty();
 }
@@ -47,7 +47,7 @@ std::span<const glm::vec3> positions_of(const GeometryInstance& instance) {
   return {instance.positions, instance.mesh->positions.size()};
 }
 
-RefitCost cost_of(const GeometryInstance& instance) {
+RefitCost refit_cost_of(const GeometryInstance& instance) {
   return {instance.mesh->triangles, positions_of(instance)};
 }
 
@@ -71,7 +71,7 @@ Moved what_moved(const scenes::Scene& scene, const scenes::Movement& movement,
     moved.all.push_back(i);
     if (instances[i].instanced) {
       moved.instanced.push_back(i);
-    } else if (bends(instances[i])) {
+    } else if (is_refittable(instances[i])) {
       moved.bent.push_back(i);
     } else {
       moved.attached_anew.push_back(i);
@@ -96,17 +96,17 @@ Tracer make_tracer(const scenes::Scene& scene, const BuildOptions& options) {
 
 Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader,
                    const BuildOptions& options) {
-  const Clock::time_point start = Clock::now();
+  const BuildClock::time_point start = BuildClock::now();
   std::vector<GeometryInstance> instances = make_instances(scene, shader, options.share_meshes);
   const std::uint64_t degenerate = count_degenerate(instances);
   BuildOptions build = options;
-  build.changing = options.changing || moves(scene);
+  build.changing = options.changing || any_mesh_moves(scene);
   EmbreeScene embree(instances, build);
   LightTable lights(scene, shader);
   std::unordered_map<std::uint32_t, RefitCost> costs;
   for (std::uint32_t i = 0; i < instances.size(); ++i)
-    if (bends(instances[i])) costs.try_emplace(i, cost_of(instances[i]));
-  const double seconds = seconds_since(start);
+    if (is_refittable(instances[i])) costs.try_emplace(i, refit_cost_of(instances[i]));
+  const double seconds = elapsed_since(start);
   std::size_t bytes = 0;
   for (const scenes::Mesh& mesh : scene.meshes) bytes += array_bytes(mesh);
   const bool large = is_large(bytes);
@@ -125,7 +125,7 @@ Tracer make_tracer(const scenes::Scene& scene, shading::Shader shader,
 }
 
 FollowCounts follow(Tracer& tracer, const scenes::Scene& scene, const scenes::Movement& movement) {
-  const Clock::time_point start = Clock::now();
+  const BuildClock::time_point start = BuildClock::now();
   FollowCounts counts;
   const Moved moved = what_moved(scene, movement, tracer.instances);
   counts.moved = static_cast<std::uint32_t>(movement.instances.size());
@@ -138,14 +138,14 @@ FollowCounts follow(Tracer& tracer, const scenes::Scene& scene, const scenes::Mo
     const bool is_good =
         cost.growth(instance.mesh->triangles, positions_of(instance)) <= tracer.refit_limit;
     (is_good ? refitted : built).push_back(i);
-    if (!is_good) cost = cost_of(instance);
+    if (!is_good) cost = refit_cost_of(instance);
   }
   counts.refitted = static_cast<std::uint32_t>(refitted.size());
   counts.built = static_cast<std::uint32_t>(built.size());
-  Clock::time_point before = Clock::now();
+  BuildClock::time_point before = BuildClock::now();
   const auto take = [&](double& seconds) {
-    seconds += seconds_since(before);
-    before = Clock::now();
+    seconds += elapsed_since(before);
+    before = BuildClock::now();
   };
   if (!moved.attached_anew.empty()) {
     tracer.embree.change(moved.attached_anew, tracer.instances, {});
@@ -167,7 +167,7 @@ FollowCounts follow(Tracer& tracer, const scenes::Scene& scene, const scenes::Mo
   if (movement.lights) tracer.shader.lights = scene.lights;
   if (movement.lights || moved_glows(tracer, moved.all))
     tracer.lights = LightTable(scene, tracer.shader);
-  counts.seconds = seconds_since(start);
+  counts.seconds = elapsed_since(start);
   return counts;
 }
 

@@ -125,7 +125,7 @@ TEST(RenderCommand, FramesOfAMovingSceneAreItsPosesHoweverTheWorkIsShared) {
     const json still = statistics(base + engine + "--pose-time 0.75", folder);
     EXPECT_NE(still["image"]["hash"], statistics(base + engine, folder)["image"]["hash"]);
     const bool rays = engine == "--engine raytrace ";
-    for (const std::string how :
+    for (const std::string& how :
          {std::string("--ranks 1"), std::string(rays ? "--data object --ranks 2" : "--ranks 3"),
           std::string(rays ? "--ranks 2" : "--strategy sort-first --ranks 3")}) {
       const json stats = statistics(base + engine + "--animate 0:1:4 " + how, folder);
