@@ -13,7 +13,7 @@
 namespace delray::packs {
 namespace {
 
-constexpr std::size_t kPagesAtOnce = 1024;
+constexpr std::size_t kPagesCheckedAtOnce = 1024;
 
 }  // namespace
 
@@ -21,9 +21,9 @@ void check_pack(const PackReader& pack, parallel::Progress* progress) {
   const std::size_t pages = pack.pages().size();
   if (progress != nullptr) progress->start(pages);
   std::uint64_t end = internal::kHeaderBytes;
-  std::vector<std::exception_ptr> failures(std::min(kPagesAtOnce, pages));
-  for (std::size_t first = 0; first < pages; first += kPagesAtOnce) {
-    const std::size_t count = std::min(kPagesAtOnce, pages - first);
+  std::vector<std::exception_ptr> failures(std::min(kPagesCheckedAtOnce, pages));
+  for (std::size_t first = 0; first < pages; first += kPagesCheckedAtOnce) {
+    const std::size_t count = std::min(kPagesCheckedAtOnce, pages - first);
     parallel::parallel_for(0, count, 1, [&](std::size_t i) {
       try {
         pack.read(static_cast<std::uint32_t>(first + i));
