@@ -19,15 +19,15 @@ class BuildByCMake(build_ext):
         package = Path(self.get_ext_fullpath(extension.name)).resolve().parent
         build = Path(os.environ.get("DELRAY_BUILD") or Path(self.build_temp) / "delray").resolve()
         if "DELRAY_BUILD" not in os.environ:
-            self.run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+            self.call("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                      "-DDELRAY_TESTS=OFF", "-DDELRAY_PYTHON=ON",
                      f"-DPython_EXECUTABLE={sys.executable}")
-        self.run("cmake", "--build", build, "--target", "delray_python")
-        self.run("cmake", "--install", build, "--component", "python", "--strip",
+        self.call("cmake", "--build", build, "--target", "delray_python")
+        self.call("cmake", "--install", build, "--component", "python", "--strip",
                  "--prefix", package.parent)
 
     @staticmethod
-    def run(*command):
+    def call(*command):
         subprocess.run([str(part) for part in command], check=True)
 
 
