@@ -117,8 +117,8 @@ scenes::FarthestPoints farthest_in_motion(const MotionOptions& options, const st
   };
 }
 
-Motion::Motion(const MotionOptions& options, std::string path, scenes::Scene& scene,
-               shading::Shader* shader, raytrace::Tracer* tracer)
+MovingScene::MovingScene(const MotionOptions& options, std::string path, scenes::Scene& scene,
+                         shading::Shader* shader, raytrace::Tracer* tracer)
     : options_(options),
       path_(std::move(path)),
       scene_(scene),
@@ -129,7 +129,7 @@ Motion::Motion(const MotionOptions& options, std::string path, scenes::Scene& sc
   posed_.motion.seconds = seconds_.front();
 }
 
-Motion::Posed Motion::advance(comm::Communicator& communicator, std::size_t frame) {
+MovingScene::Posed MovingScene::advance(comm::Communicator& communicator, std::size_t frame) {
   comm::barrier(communicator);
   Posed result;
   comm::all_or_none(communicator, comm::Phase::load, [&] {

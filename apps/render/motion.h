@@ -56,11 +56,11 @@ scenes::FarthestPoints farthest_in_motion(const MotionOptions& options, const st
 
 // The scene of a process and what renderers made of it, from frame to frame. Ranks of one process
 // share it.
-class Motion {
+class MovingScene {
  public:
   // Refers to all of them; a tracer or shader may be null.
-  Motion(const MotionOptions& options, std::string path, scenes::Scene& scene,
-         shading::Shader* shader, raytrace::Tracer* tracer);
+  MovingScene(const MotionOptions& options, std::string path, scenes::Scene& scene,
+              shading::Shader* shader, raytrace::Tracer* tracer);
 
   // Collective: the scene as it is in frame i. Returns what has changed since the last call.
   // Throws what all ranks throw.

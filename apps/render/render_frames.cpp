@@ -369,8 +369,8 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
         prepared.scene, shading::take_shader(prepared.scene), request.raytrace.build));
   }
   if (request.motion.is_animation()) {
-    prepared.motion = std::make_unique<Motion>(request.motion, request.scene.file.path,
-                                               prepared.scene, shader.get(), tracer.get());
+    prepared.motion = std::make_unique<MovingScene>(request.motion, request.scene.file.path,
+                                                    prepared.scene, shader.get(), tracer.get());
   }
   prepared.shader = std::move(shader);
   prepared.tracer = std::move(tracer);
@@ -503,7 +503,7 @@ void FrameRenderer::share(comm::Communicator& communicator) {
 FrameRenderer::Posed FrameRenderer::pose(comm::Communicator& communicator, std::size_t frame) {
   Posed posed{prepared_.cameras[frame], {}};
   if (!prepared_.motion) return posed;
-  const Motion::Posed now = prepared_.motion->advance(communicator, frame);
+  const MovingScene::Posed now = prepared_.motion->advance(communicator, frame);
   posed.motion = now.motion;
   if (frame > 0 && raster_) raster_->follow(now.movement);
   if (frame > 0 && shared_ && !now.movement.empty()) {

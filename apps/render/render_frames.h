@@ -27,7 +27,7 @@ struct Prepared {
   Background background;                           // not automatic any more
   std::shared_ptr<const shading::Shader> shader;   // rasterizer; ray tracer without a tracer
   std::unique_ptr<const raytrace::Tracer> tracer;  // ray tracer, where ranks have the whole scene
-  std::unique_ptr<Motion> motion;                  // of a scene that moves from frame to frame
+  std::unique_ptr<MovingScene> motion;             // of a scene that moves from frame to frame
   std::uint32_t camera_number = scenes::kNone;     // among the scene's; kNone: not one of these
   std::unique_ptr<const packs::PackReader> pack;   // of a scene that is read while it is rendered
   // Ranks make parts of the geometry for themselves, and `scene` has none.
