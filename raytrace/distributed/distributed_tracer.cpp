@@ -298,7 +298,7 @@ void DistributedTracer::route(Message&& message) {
   if (next == RayRouter::kOnward) {
     const auto hops = static_cast<std::size_t>(message.ray.way.hops);
     const std::size_t to = (static_cast<std::size_t>(home) + hops) % waiting_.to_intersect.size();
-    waiting_.to_intersect[to].push(std::move(message));
+    waiting_.to_intersect[to].push(std::forward<Message>(message));
   } else if (next != kMiss) {
     waiting_.by_cluster[next].push(std::move(message));
   } else if (home == rank) {
