@@ -14,7 +14,7 @@ using ShapeKind = scenes::Shape::Kind;
 // random then leave exp(-pi kCovering^2) of a surface bare.
 constexpr float kCovering = 1.0F;
 
-constexpr std::array kTable = {
+constexpr std::array kWaysToShow = {
     ShowAs{"relief", "the surface of heights over x and y", ShapeKind::triangle, true},
     ShowAs{"points", "round spots of one colour and depth", ShapeKind::point, false},
     ShowAs{"discs", "flat discs that face the viewer", ShapeKind::disc, false},
@@ -23,7 +23,7 @@ constexpr std::array kTable = {
 
 }  // namespace
 
-std::span<const ShowAs> show_as() { return kTable; }
+std::span<const ShowAs> show_as() { return kWaysToShow; }
 
 void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene) {
   scenes::Mesh& mesh = scene.meshes[0];
