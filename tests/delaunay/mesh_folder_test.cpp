@@ -36,7 +36,7 @@ void write(const fs::path& path, const MeshFolderOptions& options,
   writer.commit(counts);
 }
 
-std::string content(const fs::path& path) {
+std::string content_of_piece(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return (std::ostringstream() << file.rdbuf()).str();
 }
@@ -122,7 +122,7 @@ TEST(MeshFolder, PiecesArePlainFiles) {
     EXPECT_EQ(mesh.triangulation.vertices, vtu.pieces[2].simplices);
     EXPECT_EQ(mesh.points.size(), vtu.pieces[2].points.size());
   }
-  const std::string summary = content(vtu.path() / "mesh.pvtu");
+  const std::string summary = content_of_piece(vtu.path() / "mesh.pvtu");
   const MeshFolder folder(vtu.path());
   for (const MeshPiece& piece : folder.index().pieces) {
     EXPECT_NE(summary.find("<Piece Source=\"" + piece.file + "\"/>"), std::string::npos);
@@ -162,7 +162,7 @@ TEST(MeshFolder, RefusesWhatPiecesAreNot) {
 TEST(MeshFolder, RefusesIndexesThatLie) {
   for (const std::string format : {"vtu", "ply"}) {
     const Sample sample(2, format);
-    const std::string good = content(sample.path() / "mesh.json");
+    const std::string good = content_of_piece(sample.path() / "mesh.json");
     ASSERT_EQ(error_of(sample.path()), "");
     const MeshIndex index = MeshFolder(sample.path()).index();
     const std::string points = "\"points\":" + std::to_string(index.pieces[1].points);
@@ -212,7 +212,7 @@ TEST(MeshFolder, RefusesPiecesThatAreDamaged) {
   for (const std::string format : {"vtu", "ply"}) {
     const Sample sample(2, format);
     const fs::path piece = sample.path() / ("tile-000003." + format);
-    const std::string good = content(piece);
+    const std::string good = content_of_piece(piece);
     const auto expect_bad = [&](const std::string& bad, const std::string& why) {
       std::ofstream(piece, std::ios::binary) << bad;
       const std::string error = error_of(sample.path());
