@@ -12,8 +12,8 @@
 namespace delray::raster {
 namespace {
 
-Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
-                const RenderOptions& options, int ranks = 1) {
+Result rendered_in_parallel(const scenes::Scene& scene, const scenes::Camera& camera,
+                            const RenderOptions& options, int ranks = 1) {
   Result result;
   comm::run_threads(ranks, 1, [&](comm::Communicator& communicator) {
     Result mine = render(communicator, scene, camera, options);
@@ -50,7 +50,7 @@ TEST(Orthographic, WhatIsFarIsAsLargeAsWhatIsNear) {
   options.width = 80;
   options.height = 40;
   options.float_pixels = true;
-  const Result result = rendered(scene, camera, options);
+  const Result result = rendered_in_parallel(scene, camera, options);
   const auto& picture = std::get<image::ImageF>(result.picture);
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 80; ++x) {
@@ -74,12 +74,13 @@ TEST(Orthographic, AllStrategiesGiveTheSamePicture) {
     RenderOptions base;
     base.width = 70;
     base.height = 50;
-    const Result expected = rendered(scene, camera(), base);
+    const Result expected = rendered_in_parallel(scene, camera(), base);
     EXPECT_GT(expected.statistics.fragments, 1000U);
     int turn = 0;
     for (const RenderOptions& options : combinations(base)) {
       if (++turn % 4 != 0) continue;
-      EXPECT_TRUE(same_bytes(rendered(scene, camera(), options, 3).picture, expected.picture))
+      EXPECT_TRUE(
+          same_bytes(rendered_in_parallel(scene, camera(), options, 3).picture, expected.picture))
           << name_of(options);
     }
   }
@@ -92,12 +93,14 @@ TEST(Orthographic, EveryInstructionSetAndShadeGivesTheSamePicture) {
     options.width = 133;
     options.height = 77;
     options.lighting = lighting;
-    const Result expected = rendered(scene, camera(), options);
+    const Result expected = rendered_in_parallel(scene, camera(), options);
     options.shade = Shade::immediate;
-    EXPECT_TRUE(same_bytes(rendered(scene, camera(), options).picture, expected.picture));
+    EXPECT_TRUE(
+        same_bytes(rendered_in_parallel(scene, camera(), options).picture, expected.picture));
     options.shade = Shade::deferred;
     tests::for_each_target([&] {
-      EXPECT_TRUE(same_bytes(rendered(scene, camera(), options).picture, expected.picture));
+      EXPECT_TRUE(
+          same_bytes(rendered_in_parallel(scene, camera(), options).picture, expected.picture));
     });
   }
 }

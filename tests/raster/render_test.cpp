@@ -21,8 +21,8 @@
 namespace delray::raster {
 namespace {
 
-Result rendered(const scenes::Scene& scene, const scenes::Camera& camera,
-                const RenderOptions& options, int ranks = 1, int threads = 1) {
+Result rendered_alone(const scenes::Scene& scene, const scenes::Camera& camera,
+                      const RenderOptions& options, int ranks = 1, int threads = 1) {
   Result result;
   comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
     Result mine = render(communicator, scene, camera, options);
@@ -55,10 +55,10 @@ TEST(Render, ShadingAtOnceGivesTheSamePictureAndShadesMore) {
         options.height = 67;
         options.lighting = lighting;
         options.supersampling = samples;
-        const Result deferred = rendered(scene, random_scene_camera(), options);
+        const Result deferred = rendered_alone(scene, random_scene_camera(), options);
         EXPECT_GE(deferred.statistics.shaded, deferred.statistics.fragments);
         options.shade = Shade::immediate;
-        const Result immediate = rendered(scene, random_scene_camera(), options, 1, 3);
+        const Result immediate = rendered_alone(scene, random_scene_camera(), options, 1, 3);
         EXPECT_TRUE(same_bytes(immediate.picture, deferred.picture));
         // Deferred shades what is below glass twice.
         if (!transparent) {
@@ -77,12 +77,12 @@ TEST(Render, AveragesSamplesInLinearLight) {
     options.height = 22;
     options.float_pixels = true;
     options.supersampling = n;
-    const Result averaged = rendered(scene, random_scene_camera(), options);
+    const Result averaged = rendered_alone(scene, random_scene_camera(), options);
     const auto& pixels = std::get<image::ImageF>(averaged.picture);
     options.supersampling = 1;
     options.width *= n;
     options.height *= n;
-    const Result fine = rendered(scene, random_scene_camera(), options);
+    const Result fine = rendered_alone(scene, random_scene_camera(), options);
     const auto& samples = std::get<image::ImageF>(fine.picture);
     for (int y = 0; y < pixels.height; ++y) {
       for (int x = 0; x < pixels.width; ++x) {
@@ -108,7 +108,7 @@ TEST(Render, AveragesSamplesInLinearLight) {
     options.width = 30;
     options.height = 22;
     options.supersampling = n;
-    const auto coded = rendered(scene, random_scene_camera(), options);
+    const auto coded = rendered_alone(scene, random_scene_camera(), options);
     const auto& bytes = std::get<image::Image8>(coded.picture);
     for (std::size_t i = 0; i < bytes.pixels(); ++i) {
       // The samples were rounded to codes before, and dark ones are far apart; lights beyond 1 were
@@ -150,7 +150,7 @@ TEST(Render, BlendsFrontToBack) {
   for (const RenderOptions& options : some_combinations(base, 1)) {
     for (const int ranks : {1, 2, 3, 8}) {
       SCOPED_TRACE(described(options, ranks, 1));
-      const Result result = rendered(scene, camera, options, ranks);
+      const Result result = rendered_alone(scene, camera, options, ranks);
       const auto& picture = std::get<image::ImageF>(result.picture);
       for (int y = 0; y < 10; ++y) {
         for (int x = 0; x < 20; ++x) {
@@ -173,7 +173,7 @@ TEST(Render, SimulatedRanksGiveTheSamePicture) {
   RenderOptions base;
   base.width = 70;
   base.height = 50;
-  const Result expected = rendered(scene, random_scene_camera(), base);
+  const Result expected = rendered_alone(scene, random_scene_camera(), base);
   for (const RenderOptions& options : some_combinations(base, 2)) {
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       Picture picture;
@@ -193,10 +193,10 @@ TEST(Render, EveryInstructionSetGivesTheSamePicture) {
   RenderOptions options;
   options.width = 133;
   options.height = 77;
-  const Result expected = rendered(scene, random_scene_camera(), options);
+  const Result expected = rendered_alone(scene, random_scene_camera(), options);
   tests::for_each_target([&] {
-    EXPECT_TRUE(
-        same_bytes(rendered(scene, random_scene_camera(), options).picture, expected.picture));
+    EXPECT_TRUE(same_bytes(rendered_alone(scene, random_scene_camera(), options).picture,
+                           expected.picture));
   });
 }
 
@@ -210,7 +210,7 @@ TEST(Render, MemoryOfOneFrameLeavesNoTraceInTheNext) {
   small.strategy = "sort-first";
   scenes::Camera other = random_scene_camera();
   other.eye = {-3, 0.5F, 1};
-  const Result expected = rendered(scene, random_scene_camera(), small);
+  const Result expected = rendered_alone(scene, random_scene_camera(), small);
   comm::run_threads(1, 2, [&](comm::Communicator& communicator) {
     Renderer renderer(scene);
     renderer.recycle(renderer.render(communicator, other, large).picture);
@@ -240,14 +240,14 @@ TEST(Render, EmptyScenesAndTinyPicturesWork) {
     for (const RenderOptions& options : some_combinations(base, 3)) {
       for (const int ranks : {1, 2, 7}) {
         SCOPED_TRACE(described(options, ranks, 1));
-        const Result empty = rendered(nothing, {}, options, ranks);
+        const Result empty = rendered_alone(nothing, {}, options, ranks);
         const auto& blank = std::get<image::Image8>(empty.picture);
         ASSERT_EQ(blank.pixels(), static_cast<std::size_t>(width * height));
         for (std::size_t i = 0; i < blank.pixels(); ++i) {
           EXPECT_EQ(blank.colour[i], image::Rgba8());
           EXPECT_EQ(blank.depth[i], image::kEmptyDepth);
         }
-        const Result full = rendered(one, {}, options, ranks);
+        const Result full = rendered_alone(one, {}, options, ranks);
         const auto& covered = std::get<image::Image8>(full.picture);
         for (std::size_t i = 0; i < covered.pixels(); ++i) {
           EXPECT_EQ(covered.colour[i].a, 255);
@@ -282,7 +282,7 @@ TEST(Render, NearerWinsAndEqualDepthsGoToTheFirst) {
   for (const RenderOptions& options : some_combinations(base, 4)) {
     for (const int ranks : {1, 2, 3, 6}) {
       SCOPED_TRACE(described(options, ranks, 1));
-      const Result result = rendered(scene, camera, options, ranks);
+      const Result result = rendered_alone(scene, camera, options, ranks);
       const auto& picture = std::get<image::ImageF>(result.picture);
       for (int y = 0; y < 10; ++y) {
         for (int x = 0; x < 20; ++x) {
@@ -322,7 +322,7 @@ TEST(Render, CullsBackFacesOnlyOfSingleSidedMaterialsWhenAsked) {
           options.cull_single_sided = cull;
           // A mirrored instance is inside out: its outside is where the triangle runs clockwise.
           const bool hidden = mesh == 1 && cull && behind != mirror;
-          EXPECT_EQ(rendered(scene, camera, options).statistics.fragments, hidden ? 0U : 81U)
+          EXPECT_EQ(rendered_alone(scene, camera, options).statistics.fragments, hidden ? 0U : 81U)
               << mesh << mirror << behind << cull;
         }
       }
@@ -336,7 +336,7 @@ TEST(Render, CountsWhatTravels) {
   options.width = 128;
   options.height = 128;
   options.scheme = "centralized";
-  const Result last = rendered(scene, random_scene_camera(), options, 3);
+  const Result last = rendered_alone(scene, random_scene_camera(), options, 3);
   const std::uint64_t image_bytes = 128 * 128 * 8;
   EXPECT_GE(last.statistics.ranks[1].bytes_sent, image_bytes);
   EXPECT_LE(last.statistics.ranks[1].bytes_sent, image_bytes + 1000);
@@ -344,9 +344,9 @@ TEST(Render, CountsWhatTravels) {
   EXPECT_EQ(last.statistics.triangles_in, scenes::triangle_count(scene));
 
   options.strategy = "sort-first";
-  const Result geometry = rendered(scene, random_scene_camera(), options, 3);
+  const Result geometry = rendered_alone(scene, random_scene_camera(), options, 3);
   options.travel = Travel::numbers;
-  const Result numbers = rendered(scene, random_scene_camera(), options, 3);
+  const Result numbers = rendered_alone(scene, random_scene_camera(), options, 3);
   EXPECT_GT(numbers.statistics.triangles_travelled, 0U);
   EXPECT_EQ(geometry.statistics.triangles_travelled, numbers.statistics.triangles_travelled);
   const auto sent = [](const Statistics& statistics) {
@@ -435,19 +435,19 @@ TEST(Render, TexturesOfASecondSetLookAsThoseOfTheFirst) {
       options.width = 97;
       options.height = 61;
       options.lighting = lighting;
-      const Result expected = rendered(scene, random_scene_camera(), options);
+      const Result expected = rendered_alone(scene, random_scene_camera(), options);
       const scenes::Scene moved = with_second_uvs(scene);
-      EXPECT_TRUE(
-          same_bytes(rendered(moved, random_scene_camera(), options).picture, expected.picture));
+      EXPECT_TRUE(same_bytes(rendered_alone(moved, random_scene_camera(), options).picture,
+                             expected.picture));
       for (const RenderOptions& way : some_combinations(options, ++turn)) {
-        EXPECT_TRUE(
-            same_bytes(rendered(moved, random_scene_camera(), way, 3).picture, expected.picture))
+        EXPECT_TRUE(same_bytes(rendered_alone(moved, random_scene_camera(), way, 3).picture,
+                               expected.picture))
             << described(way, 3, 1);
       }
       if (lighting == Lighting::gouraud) continue;
       options.shade = Shade::composited;
-      EXPECT_TRUE(
-          same_bytes(rendered(moved, random_scene_camera(), options, 3).picture, expected.picture));
+      EXPECT_TRUE(same_bytes(rendered_alone(moved, random_scene_camera(), options, 3).picture,
+                             expected.picture));
     }
   }
 }
@@ -459,10 +459,10 @@ TEST(Render, PicturesOfGeneratedScenesDoNotDependOnRanks) {
     RenderOptions options;
     options.width = 257;
     options.height = 190;
-    const Result expected = rendered(scene, scene.cameras[0], options, 1, 2);
+    const Result expected = rendered_alone(scene, scene.cameras[0], options, 1, 2);
     for (const RenderOptions& way : some_combinations(options, 5)) {
       EXPECT_TRUE(
-          same_bytes(rendered(scene, scene.cameras[0], way, 4, 1).picture, expected.picture))
+          same_bytes(rendered_alone(scene, scene.cameras[0], way, 4, 1).picture, expected.picture))
           << name << " " << described(way, 4, 1);
     }
   }

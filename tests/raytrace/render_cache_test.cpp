@@ -27,7 +27,7 @@ RenderOptions transparent() {
 }
 
 // Some balls in front of nothing.
-scenes::Scene balls() {
+scenes::Scene cached_balls() {
   scenes::Scene scene;
   for (int i = 0; i < 5; ++i) {
     const auto x = static_cast<float>(i % 3 - 1), z = static_cast<float>(i / 2 - 1);
@@ -101,7 +101,7 @@ TEST(RenderCache, SurfacesStayAsTheyAreWhileTheCameraStands) {
 
 // Six degrees a frame, as a turntable of 60 frames has them.
 TEST(RenderCache, AQuarterOfTheRaysIsAboutThePicture) {
-  const scenes::Scene scene = balls();
+  const scenes::Scene scene = cached_balls();
   const std::vector<scenes::Camera> cameras = scenes::turntable(scene.cameras[0], 60);
   const Difference turned = difference_over(scene, std::span(cameras).first(12), 0.25);
   EXPECT_LE(turned.mean, 1);
