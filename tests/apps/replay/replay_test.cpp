@@ -27,22 +27,22 @@ TEST(Replay, PredictsARecordedRunOverNetworksOfTheTableAndOfFiles) {
   const std::string command = "delray replay l.json --network this-machine,own.json,hypercube";
   const Ran ran = run(command + " --stats -", folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json json = Json::parse(ran.out);
-  EXPECT_EQ(json["schema"], "delray.replay/1");
-  EXPECT_EQ(json["ledger"]["ranks"], 3);
-  EXPECT_GT(json["ledger"]["bytes"], 0);
-  EXPECT_GT(json["ledger"]["seconds"], 0);
-  ASSERT_EQ(json["rows"].size(), 3U);
-  EXPECT_EQ(json["rows"][1]["network"], "own");
-  EXPECT_EQ(json["networks"][1]["topology"], "ring");
-  for (const Json& row : json["rows"]) EXPECT_GT(row["seconds"], 0);
-  EXPECT_GT(json["rows"][1]["seconds"], 1e-4);
+  const Json outcome = Json::parse(ran.out);
+  EXPECT_EQ(outcome["schema"], "delray.replay/1");
+  EXPECT_EQ(outcome["ledger"]["ranks"], 3);
+  EXPECT_GT(outcome["ledger"]["bytes"], 0);
+  EXPECT_GT(outcome["ledger"]["seconds"], 0);
+  ASSERT_EQ(outcome["rows"].size(), 3U);
+  EXPECT_EQ(outcome["rows"][1]["network"], "own");
+  EXPECT_EQ(outcome["networks"][1]["topology"], "ring");
+  for (const Json& row : outcome["rows"]) EXPECT_GT(row["seconds"], 0);
+  EXPECT_GT(outcome["rows"][1]["seconds"], 1e-4);
   EXPECT_NE(run(command, folder.path()).out.find("hypercube"), std::string::npos);
   // What stands in the statistics is a network that can be read.
-  folder.write("again.json", json["networks"][1].dump());
+  folder.write("again.json", outcome["networks"][1].dump());
   const Ran again = run("delray replay l.json --network again.json --stats -", folder.path());
   ASSERT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_EQ(Json::parse(again.out)["rows"][0]["seconds"], json["rows"][1]["seconds"]);
+  EXPECT_EQ(Json::parse(again.out)["rows"][0]["seconds"], outcome["rows"][1]["seconds"]);
 }
 
 TEST(Replay, RefusesWhatItCannotDo) {
@@ -94,16 +94,16 @@ TEST(Replay, ComparisonsTellOfTheNetworksThatWereAskedFor) {
           "--network own.json,tree,ring --stats -",
           folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json json = Json::parse(ran.out);
-  for (const Json& row : json["rows"]) {
+  const Json outcome = Json::parse(ran.out);
+  for (const Json& row : outcome["rows"]) {
     std::set<std::string> networks;
     for (const Json& predicted : row["predicted"])
       networks.insert(predicted["network"].get<std::string>());
     EXPECT_EQ(networks, (std::set<std::string>{"own", "tree", "ring", "this-machine"}));
   }
   // own.json has links of its own: nothing to compare with.
-  ASSERT_EQ(json["own_networks"].size(), 2U);
-  for (const Json& one : json["own_networks"])
+  ASSERT_EQ(outcome["own_networks"].size(), 2U);
+  for (const Json& one : outcome["own_networks"])
     EXPECT_EQ(one["network"], one["scheme"] == "tree" ? "tree" : "ring");
 }
 
