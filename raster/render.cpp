@@ -169,7 +169,7 @@ struct Renderer::Frame {
   Frame(Memory& memory, Scratch& scratch, comm::Communicator& communicator,
         const scenes::Camera& camera, const RenderOptions& whole, parallel::Progress* progress)
       : options((check(whole, communicator.size()), check(camera), check_packed(memory, whole),
-                 options_of_window(whole))),
+                 check_parts(memory, whole), options_of_window(whole))),
         screen(screen_of(camera, whole)),
         recording(communicator, events),
         rank{recording, memory.scene, screen, options, progress, scratch, memory.memory} {}
@@ -212,6 +212,15 @@ struct Renderer::Frame {
         options.blend == Blend::by_cell || !options.displays.empty()) {
       throw std::invalid_argument(
           "packs are rendered by sort-first and sort-last, without schedules, cells and displays");
+    }
+  }
+
+  static void check_parts(const Memory& memory, const RenderOptions& options) {
+    if (!memory.scene.is_part) return;
+    if (!find_strategy(options.strategy)->parts || options.groups != Groups::one ||
+        options.blend == Blend::by_cell) {
+      throw std::invalid_argument(
+          "scenes in parts are rendered by sort-last and sort-middle, without groups and cells");
     }
   }
 
@@ -269,6 +278,11 @@ class Renderer::Steps final : public FrameInSteps {
 
 Renderer::Renderer(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader) {
   memory_ = std::unique_ptr<Memory>(new Memory{PreparedScene(scene, std::move(shader))});
+}
+Renderer::Renderer(comm::Communicator& communicator, const scenes::ScenePart& part,
+                   std::shared_ptr<const shading::Shader> shader) {
+  memory_ =
+      std::unique_ptr<Memory>(new Memory{PreparedScene(communicator, part, std::move(shader))});
 }
 Renderer::Renderer(const packs::PackReader& pack, const scenes::Scene& scene,
                    const PackMemory& memory, std::shared_ptr<const shading::Shader> shader)

@@ -26,6 +26,7 @@
 #include "parallel/progress.h"
 #include "scenes/pose.h"
 #include "scenes/scene.h"
+#include "scenes/scene_part.h"
 #include "shading/shader.h"
 
 namespace delray::raster {
@@ -243,6 +244,11 @@ class Renderer {
   // REQUIRES: indices of the scene are in range (as scenes::load and the generators leave it).
   explicit Renderer(const scenes::Scene& scene,
                     std::shared_ptr<const shading::Shader> shader = nullptr);
+  // Renders a scene of which every rank has a part: ascending runs of its triangles, that of rank 0
+  // first. Refers to the part. Only strategies that say so render parts, with one group of ranks
+  // and not blended by cell. Collective; draw_share and costs are not for parts.
+  Renderer(comm::Communicator& communicator, const scenes::ScenePart& part,
+           std::shared_ptr<const shading::Shader> shader = nullptr);
   // Renders a pack, of which no more than some pages are in memory. `scene` is what the pack has
   // besides (packs::PackReader::scene), with whatever light. Refers to both. Only strategies that
   // say so render packs, without schedules, not in steps, without displays, and not blended by

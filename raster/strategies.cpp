@@ -16,7 +16,8 @@ constexpr std::array kStrategies = {
         .render = sort_last,
         .steps = sort_last_steps,
         .composites = true,
-        .packs = true},
+        .packs = true,
+        .parts = true},
     Strategy{.name = "sort-first",
              .description = "primitives go to the ranks whose regions of the screen they touch, "
                             "before they are drawn",
@@ -32,7 +33,8 @@ constexpr std::array kStrategies = {
              .render = sort_middle,
              .partitions = true,
              .groups = true,
-             .displays = true},
+             .displays = true,
+             .parts = true},
     Strategy{
         .name = "hybrid",
         .description = "each primitive is drawn by one rank; pixels go to the ranks that own them",

@@ -39,6 +39,7 @@ struct Strategy {
   bool groups = false;      // groups, geometry_ranks, redistribution
   bool displays = false;    // owners_draw
   bool packs = false;       // reads packs, each rank what it draws
+  bool parts = false;       // renders scenes of which every rank has a part
 };
 
 // The table: --list, tests, benchmarks and reports iterate over it.

@@ -7,16 +7,9 @@
 #include <string_view>
 
 #include "scenes/scene.h"
+#include "scenes/scene_part.h"
 
 namespace delray::scenes {
-
-// A run of the triangles of a whole scene, in their order there, with vertices of its own and all
-// that is no geometry.
-struct ScenePart {
-  Scene scene;                                // one mesh, placed once
-  std::uint32_t first_triangle = 0;           // of the whole mesh
-  std::uint64_t triangles = 0, vertices = 0;  // of the whole scene
-};
 
 // An entry of the table of generated scenes.
 struct Generator {

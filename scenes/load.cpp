@@ -57,9 +57,7 @@ Scene read(Format format, std::string_view start, const Source& source,
   const SceneReader* const reader = reader_of(format);
   if (reader == nullptr) source.fail("", no_scene());
   Scene scene = reader->read(source);
-  scene.files = std::move(source.named);
-  std::ranges::sort(scene.files);
-  scene.files.erase(std::unique(scene.files.begin(), scene.files.end()), scene.files.end());
+  scene.files = internal::named_files(source);
   if (progress) progress->advance();
   finish(source, scene);
   const bool says_up = format == Format::gltf || format == Format::glb;  // y

@@ -26,7 +26,7 @@ const std::map<std::string, Names>& arrows() {
         {"comm", {"parallel"}},
         {"image", {"parallel"}},
         {"loadbalance", {"parallel", "comm"}},
-        {"scenes", {"image", "parallel"}},
+        {"scenes", {"image", "comm", "parallel"}},
         {"packs", {"scenes", "image", "parallel"}},
         {"delaunay", {"parallel", "loadbalance", "comm"}},
         {"shading", {"scenes", "image", "parallel"}},
@@ -94,6 +94,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"scenes/files", {"geometry"}},
     {"scenes/generators", {"animation", "geometry"}},
     {"scenes/gltf", {"animation", "files", "geometry"}},
+    {"scenes/parts", {"files", "geometry"}},
 };
 
 // "folder/sub-folder" of a path in the tree, nothing where it lies directly in the folder.

@@ -358,10 +358,13 @@ void refuse_options_of_points(const SceneInput& input, InputKind kind) {
   }
 }
 
+bool is_plain(const SceneInput& input) {
+  return !input.file.given() && input.show_as.empty() && !has_size(input) &&
+         input.colour_by.empty() && input.exaggeration == 1;
+}
+
 void refuse_for_packs(const SceneInput& input) {
-  const bool given = input.file.given() || !input.show_as.empty() || has_size(input) ||
-                     !input.colour_by.empty() || input.exaggeration != 1;
-  if (!given) return;
+  if (is_plain(input)) return;
   throw UsageError(fmt::format(
       "options of points, --show-as, --color-by and --exaggeration are for delray pack; {} "
       "is packed already",

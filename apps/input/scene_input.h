@@ -51,6 +51,9 @@ void check_reach(const SceneInput& input, std::span<const glm::dvec3> points,
 // Says so in the log where so many points have outliers.
 void warn_of_outliers(const SceneInput& input, const Inliers& inliers, std::uint64_t points);
 
+// Whether no option changes what the file of a scene holds, but for which way is up.
+bool is_plain(const SceneInput& input);
+
 // Throws UsageError for options that change how a scene is made, which a pack has behind it.
 void refuse_for_packs(const SceneInput& input);
 

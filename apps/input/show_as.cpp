@@ -14,6 +14,9 @@ using ShapeKind = scenes::Shape::Kind;
 // random then leave exp(-pi kCovering^2) of a surface bare.
 constexpr float kCovering = 1.0F;
 
+// The radius of points that are alone, in pixels.
+constexpr float kAlonePixels = 4.0F;
+
 constexpr std::array kWaysToShow = {
     ShowAs{"relief", "the surface of heights over x and y", ShapeKind::triangle, true},
     ShowAs{"points", "round spots of one colour and depth", ShapeKind::point, false},
@@ -30,8 +33,12 @@ void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene)
   scenes::make_points(mesh, {how.kind, true, size.pixels * 0.5F});
   if (size.radius >= 0)
     mesh.shape = {how.kind, false, size.radius};
-  else if (!(size.pixels > 0))
-    mesh.shape = {how.kind, false, kCovering * scenes::point_spacing(mesh)};
+  else if (!(size.pixels > 0)) {
+    // Points that are all in one place have no spacing.
+    const float spacing = scenes::point_spacing(mesh);
+    mesh.shape = spacing > 0 ? scenes::Shape{how.kind, false, kCovering * spacing}
+                             : scenes::Shape{how.kind, true, kAlonePixels};
+  }
   scene.materials[mesh.material].unlit = !how.lit;
 }
 

@@ -80,11 +80,14 @@ std::string why_no_wall(const RenderRequest& r) { return r.layout.grid.empty() ?
 
 std::string why_not_at_home(const RenderRequest& r) {
   if (r.layout.grid.empty()) return "no --wall";
-  if (r.layout.one_file) return "--one-file, which rank 0 gets";
-  if (is_raytrace(r)) return "--engine raytrace";
-  if (!raster::find_strategy(r.raster.strategy)->displays) return "--strategy " + r.raster.strategy;
-  if (!r.sharing.schedule.empty()) return "--schedule";
-  return r.raster.groups == raster::Groups::two ? "--groups two" : "";
+  if (r.layout.one_file) return "--one-file, which rank 0 writes, so that pixels travel to it";
+  if (is_raytrace(r)) return "--engine raytrace, whose ranks trace any part of the picture";
+  if (!raster::find_strategy(r.raster.strategy)->displays) {
+    return fmt::format("--strategy {}: choose one that cuts the screen, sort-first or sort-middle",
+                       r.raster.strategy);
+  }
+  if (!r.sharing.schedule.empty()) return "--schedule, which hands blocks to any rank";
+  return r.raster.groups == raster::Groups::two ? "--groups two, of which one draws nothing" : "";
 }
 
 }  // namespace

@@ -89,15 +89,16 @@ int width_of(const std::vector<std::string>& texts) {
   return static_cast<int>(longest) * kGlyphWidth;
 }
 
+// Each draws nothing where there is no room for it, and says so.
 template <class Colour>
-void draw_bar(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
+bool draw_bar(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
   const std::vector<std::string> texts = tick_texts(scale.low, scale.high);
   const int width =
       2 * kPadding + std::max(width_of({scale.title}), kBarWidth + kGap + width_of(texts));
   const int top = kPadding + kLine + kGlyphHeight / 2;
   const int height = top + kBarHeight + kGlyphHeight / 2 + kPadding;
   Canvas<Colour> canvas(picture, width, height);
-  if (!canvas.fits()) return;
+  if (!canvas.fits()) return false;
   canvas.fill(0, 0, width, height, kPaper);
   canvas.write(kPadding, kPadding, scale.title);
   for (int j = 0; j < kBarHeight; ++j) {
@@ -110,15 +111,16 @@ void draw_bar(const scenes::ColourScale& scale, image::BasicImage<Colour>& pictu
     canvas.write(kPadding + kBarWidth + kGap, y - kGlyphHeight / 2,
                  texts[static_cast<std::size_t>(k)]);
   }
+  return true;
 }
 
 template <class Colour>
-void draw_classes(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
+bool draw_classes(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
   const int size = std::max(1, picture.height / kRowsPerSize);
   const int room = (picture.height / size - 2 * kMargin - 2 * kPadding) / kLine - 1;
   std::vector<std::string> texts;
   for (const auto& c : scale.classes) texts.push_back(c.name);
-  if (room < 2) return;
+  if (room < 2) return false;
   std::size_t shown = texts.size();
   if (shown > static_cast<std::size_t>(room)) {
     shown = static_cast<std::size_t>(room) - 1;
@@ -129,7 +131,7 @@ void draw_classes(const scenes::ColourScale& scale, image::BasicImage<Colour>& p
       2 * kPadding + std::max(width_of({scale.title}), kSwatch + kGap + width_of(texts));
   const int height = 2 * kPadding + kLine * (static_cast<int>(texts.size()) + 1);
   Canvas<Colour> canvas(picture, width, height);
-  if (!canvas.fits()) return;
+  if (!canvas.fits()) return false;
   canvas.fill(0, 0, width, height, kPaper);
   canvas.write(kPadding, kPadding, scale.title);
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -139,20 +141,30 @@ void draw_classes(const scenes::ColourScale& scale, image::BasicImage<Colour>& p
     }
     canvas.write(kPadding + kSwatch + kGap, y, texts[i]);
   }
+  return true;
+}
+
+// A number that is everywhere the same has one colour.
+scenes::ColourScale as_class(const scenes::ColourScale& scale) {
+  scenes::ColourScale one;
+  one.title = scale.title;
+  one.classes.push_back({fmt::format("{:.7g}", scale.low), scale.colour(0)});
+  return one;
 }
 
 template <class Colour>
-void draw(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
-  if (scale.colour != nullptr) {
-    draw_bar(scale, picture);
-  } else {
-    draw_classes(scale, picture);
-  }
+bool draw(const scenes::ColourScale& scale, image::BasicImage<Colour>& picture) {
+  if (scale.colour == nullptr) return draw_classes(scale, picture);
+  return scale.high > scale.low ? draw_bar(scale, picture) : draw_classes(as_class(scale), picture);
 }
 
 }  // namespace
 
-void draw_legend(const scenes::ColourScale& scale, image::Image8& picture) { draw(scale, picture); }
-void draw_legend(const scenes::ColourScale& scale, image::ImageF& picture) { draw(scale, picture); }
+bool draw_legend(const scenes::ColourScale& scale, image::Image8& picture) {
+  return draw(scale, picture);
+}
+bool draw_legend(const scenes::ColourScale& scale, image::ImageF& picture) {
+  return draw(scale, picture);
+}
 
 }  // namespace delray::apps

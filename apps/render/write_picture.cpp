@@ -1,7 +1,9 @@
 // Pictures in files: what equal pictures have in common, and no more unless --metadata is given.
 #include "apps/render/write_picture.h"
 
+#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 
 #include "apps/options/help.h"
@@ -57,7 +59,13 @@ void put_background_behind(const RenderRequest& request, const Prepared& prepare
                      image::tone_curve(sampling.tone));
   }
   if (request.legend) {
-    std::visit([&](auto& pixels) { draw_legend(*prepared.scene.colour_scale, pixels); }, picture);
+    std::visit(
+        [&](auto& pixels) {
+          if (draw_legend(*prepared.scene.colour_scale, pixels)) return;
+          spdlog::warn("{}: {} x {} pixels are too few for the legend, which is left out",
+                       request.output, pixels.width, pixels.height);
+        },
+        picture);
   }
 }
 

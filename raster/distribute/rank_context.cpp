@@ -6,6 +6,7 @@
 #include "raster/distribute/rank_context.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "comm/collectives.h"
 #include "raster/distribute/gather_regions.h"
@@ -21,13 +22,28 @@ PreparedScene::PreparedScene(const scenes::Scene& source,
                           ? std::move(given)
                           : std::make_shared<const shading::Shader>(shading::make_shader(scene))),
       first_primitives(scenes::first_primitives(scene)),
+      primitives(first_primitives.back()),
       transparent(std::any_of(
           scene.meshes.begin(), scene.meshes.end(),
           [&](const scenes::Mesh& mesh) { return is_blended(*shader_of_scene, mesh); })),
       clusters(scene.meshes) {}
 
+PreparedScene::PreparedScene(comm::Communicator& communicator, const scenes::ScenePart& part,
+                             std::shared_ptr<const shading::Shader> given)
+    : PreparedScene(part.scene, std::move(given)) {
+  for (std::uint64_t& first : first_primitives) first += part.first_triangle;
+  primitives = part.triangles;
+  is_part = true;
+  transparent = comm::all_reduce_value(communicator, std::uint8_t{transparent},
+                                       [](auto a, auto b) { return std::max(a, b); }) != 0;
+}
+
 std::pair<std::uint64_t, std::uint64_t> RankContext::own_primitives(int holders) const {
-  const std::uint64_t all = prepared.first_primitives.back();
+  if (prepared.is_part) {
+    assert(holders == ranks());
+    return {prepared.first_primitives.front(), prepared.first_primitives.back()};
+  }
+  const std::uint64_t all = prepared.primitives;
   const int k = number();
   if (k >= holders) return {all, all};
   return {begin_of_equal_share(all, holders, k), begin_of_equal_share(all, holders, k + 1)};

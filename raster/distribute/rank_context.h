@@ -12,6 +12,7 @@
 #include "raster/distribute/regions.h"
 #include "raster/render.h"
 #include "raster/strategies.h"
+#include "scenes/scene_part.h"
 
 namespace delray::raster {
 
@@ -22,13 +23,18 @@ class PackedScene;
 struct PreparedScene {
   // Without a shader one is made.
   PreparedScene(const scenes::Scene& scene, std::shared_ptr<const shading::Shader> shader);
+  // Of a part, where other ranks have the rest. Collective.
+  PreparedScene(comm::Communicator& communicator, const scenes::ScenePart& part,
+                std::shared_ptr<const shading::Shader> shader);
 
   const shading::Shader& shader() const { return *shader_of_scene; }
 
   const scenes::Scene& scene;
   std::shared_ptr<const shading::Shader> shader_of_scene;
-  std::vector<std::uint64_t> first_primitives;  // scenes::first_primitives(scene)
-  bool transparent;                             // some mesh of the scene is blended
+  std::vector<std::uint64_t> first_primitives;  // scenes::first_primitives(scene), of the part
+  std::uint64_t primitives;                     // of all of the scene
+  bool is_part = false;
+  bool transparent;  // some mesh of the scene is blended
   SceneClusters clusters;
   PackedScene* packed = nullptr;  // of a scene whose triangles are in a pack
 };
@@ -57,9 +63,11 @@ struct RankContext {
   int number() const { return communicator.rank(); }
   int ranks() const { return communicator.size(); }
 
-  // The primitives that this rank has before anything travels: an equal part of all, in order.
+  // The primitives that this rank has before anything travels: its part of a scene in parts, else
+  // an equal part of all, in order.
   std::pair<std::uint64_t, std::uint64_t> own_primitives() const { return own_primitives(ranks()); }
-  // The primitives that this rank has if the first `holders` ranks have them all.
+  // The primitives that this rank has if the first `holders` ranks have them all. REQUIRES: these
+  // are all ranks where the scene is in parts.
   std::pair<std::uint64_t, std::uint64_t> own_primitives(int holders) const;
   // Whether depths are distances at once: those of a single rank, which are not composited.
   bool depths_are_distances() const { return ranks() == 1; }

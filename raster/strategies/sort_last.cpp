@@ -285,11 +285,11 @@ class Steps final : public FrameSteps {
       return cells.pieces;
     }
     // Frames in steps overlap, and none knows what the one before took; of a wall it was another
-    // display's.
-    const auto [begin, end] = rank_.in_steps || !rank_.options.displays.empty()
-                                  ? rank_.own_primitives()
-                                  : rank_.memory.primitive_shares.next(
-                                        rank_.communicator, rank_.prepared.first_primitives.back());
+    // display's; and parts stay where they are.
+    const bool same = rank_.in_steps || !rank_.options.displays.empty() || rank_.prepared.is_part;
+    const auto [begin, end] =
+        same ? rank_.own_primitives()
+             : rank_.memory.primitive_shares.next(rank_.communicator, rank_.prepared.primitives);
     return pieces_of(rank_.prepared.scene, rank_.prepared.first_primitives, begin, end);
   }
 

@@ -288,7 +288,7 @@ Picture render(RankContext& rank) {
   ScreenPartition& screen = rank.memory.screen;
   const CostedGroups& costed = screen.groups(
       rank, {begin, end,
-             ScreenPartition::group_triangles(rank.prepared.first_primitives.back(),
+             ScreenPartition::group_triangles(rank.prepared.primitives,
                                               drawing_ranks * rank.options.regions_per_rank)});
 
   communicator.mark(comm::Phase::redistribute, 0);

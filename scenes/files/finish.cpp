@@ -14,12 +14,7 @@ namespace {
 constexpr std::size_t kTrianglesPerBlock = 1 << 14;  // tens of microseconds
 
 std::uint64_t drop_degenerate(Mesh& mesh) {
-  const auto same = [&mesh](std::uint32_t a, std::uint32_t b) {
-    return a == b || mesh.positions[a] == mesh.positions[b];
-  };
-  const auto degenerate = [&](const glm::uvec3& t) {
-    return same(t.x, t.y) || same(t.y, t.z) || same(t.z, t.x);
-  };
+  const auto degenerate = [&](const glm::uvec3& t) { return is_degenerate(mesh, t); };
   const auto count = parallel::parallel_reduce(
       0, mesh.triangles.size(), kTrianglesPerBlock, std::uint64_t{0},
       [&](std::size_t first, std::size_t last) {
@@ -63,6 +58,14 @@ std::vector<std::uint8_t> bending_meshes(const Scene& scene) {
 }
 
 }  // namespace
+
+bool is_degenerate(const Mesh& mesh, const glm::uvec3& triangle) {
+  const auto same = [&mesh](std::uint32_t a, std::uint32_t b) {
+    return a == b || mesh.positions[a] == mesh.positions[b];
+  };
+  return same(triangle.x, triangle.y) || same(triangle.y, triangle.z) ||
+         same(triangle.z, triangle.x);
+}
 
 void finish(const Source& source, Scene& scene) {
   std::uint64_t degenerate = 0;

@@ -11,4 +11,7 @@ namespace delray::scenes::internal {
 // material where there is none.
 void finish(const Source& source, Scene& scene);
 
+// Whether two corners are in one place.
+bool is_degenerate(const Mesh& mesh, const glm::uvec3& triangle);
+
 }  // namespace delray::scenes::internal

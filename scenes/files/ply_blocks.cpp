@@ -168,4 +168,19 @@ std::vector<PlyBlock> PlyBlocks::next_of_text(const PlyElement& element) {
   return blocks;
 }
 
+void PlyBlocks::require_end() const {
+  if (!file_.is_text() || rows_before_.back() <= row_) return;
+  const auto after = std::ranges::upper_bound(rows_before_, row_);
+  const auto range = static_cast<std::size_t>(after - rows_before_.begin()) - 1;
+  std::string buffer;
+  std::string_view line;
+  Lines lines(file_.bytes.read(range_begins_[range],
+                               range_begins_[range + 1] - range_begins_[range], buffer),
+              lines_before_[range]);
+  for (std::uint64_t row = rows_before_[range]; row <= row_; ++row) {
+    lines.next_with_words(line, '\0');
+  }
+  file_.source.fail(lines.place(), "the file has more rows than its header says");
+}
+
 }  // namespace delray::scenes::internal

@@ -22,6 +22,8 @@ class PlyBlocks {
   // have one. Empty where they cannot be. Does not move on.
   std::vector<PlyBlock> even(const PlyElement& element) const;
   std::uint64_t begin() const { return at_; }
+  // Fails where text has more rows than its elements.
+  void require_end() const;
   // Moves on to where an element that was read otherwise ends.
   void move_to(std::uint64_t byte) { at_ = byte; }
 

@@ -165,4 +165,19 @@ PlyHeader read_ply_header(const Source& source, std::string_view start, std::uin
   return header;
 }
 
+// Headers are rarely longer than the first megabyte.
+PlyHeader read_ply_header(const Source& source, const files::FileBytes& bytes,
+                          std::string& buffer) {
+  for (std::uint64_t limit = std::uint64_t{1} << 20;; limit *= 8) {
+    const bool all = limit >= bytes.size();
+    const std::string_view start = bytes.read(0, all ? bytes.size() : limit, buffer);
+    try {
+      PlyHeader header = read_ply_header(source, start, bytes.size());
+      if (all || header.size + 1 < start.size()) return header;
+    } catch (const files::FileError&) {
+      if (all) throw;
+    }
+  }
+}
+
 }  // namespace delray::scenes::internal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -45,5 +46,8 @@ struct PlyHeader {
 // the first line. Names are views of `start`, which has all of the header, of a file of so many
 // bytes.
 PlyHeader read_ply_header(const Source& source, std::string_view start, std::uint64_t bytes);
+
+// The same, of a file of which no more is read than the header needs, into `start`.
+PlyHeader read_ply_header(const Source& source, const files::FileBytes& bytes, std::string& start);
 
 }  // namespace delray::scenes::internal

@@ -95,6 +95,10 @@ void PlyRows::next_list(const PlyProperty& property, std::vector<double>& values
   }
 }
 
+void PlyRows::end_row() {
+  if (is_text_ && !words_.next().empty()) fail("the line has too many values");
+}
+
 void PlyRows::fail(const std::string& what) const {
   if (is_text_) {
     file_.source.fail("line " + std::to_string(block_.line - 1 + lines_.number()), what);

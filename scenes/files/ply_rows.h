@@ -41,6 +41,8 @@ class PlyRows {
   void start_row();
   double next(PlyType type);
   void next_list(const PlyProperty& property, std::vector<double>& values);
+  // Fails where a line of text has more values.
+  void end_row();
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

@@ -9,9 +9,9 @@
 
 namespace delray::scenes::internal {
 
-// One mesh for each material, and for faces with and without normals; groups and objects are one
-// mesh. Materials are those of MTL files beside it. Lines, points and free forms are left out with
-// a warning.
+// One mesh for each material, and for faces with and without normals, lines (1.5 pixels wide) and
+// points (3 pixels); groups and objects are one mesh. Materials are those of MTL files beside it.
+// Free forms are left out with a warning.
 Scene read_obj(const Source& source);
 
 // ASCII and binary of either byte order: faces and triangle strips (Stanford's, with -1 between

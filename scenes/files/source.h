@@ -59,4 +59,12 @@ struct Source {
   void warn(const std::string& what) const { warnings.push_back(path.string() + ": " + what); }
 };
 
+// As Scene::files has them.
+inline std::vector<std::string> named_files(const Source& source) {
+  std::vector<std::string> files = source.named;
+  std::ranges::sort(files);
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
 }  // namespace delray::scenes::internal

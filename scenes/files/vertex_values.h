@@ -50,6 +50,10 @@ void normalize_or_clear(std::vector<T>& directions) {
   if (!usable) directions.clear();
 }
 
+// How points and lines look whose file does not say how large they are.
+inline constexpr Shape kPointShape{Shape::Kind::point, true, 1.5F};
+inline constexpr Shape kLineShape{Shape::Kind::line, true, 0.75F};
+
 // The material of things that have none: grey, or white under the colours of vertices.
 Material plain_material(bool has_colours);
 

@@ -19,8 +19,7 @@ namespace {
 
 // A mesh below this is taken as a whole.
 constexpr std::size_t kLeastTriangles = 1024;
-// Triangles in the runs that are compared.
-constexpr std::size_t kRun = 128;
+constexpr std::size_t kRun = kTrianglesOfRun;
 // The order is changed where runs become so much smaller.
 constexpr double kWorthwhile = 0.8;
 // It is not asked for where the sides of a run's box add up to no more than so many times the side
@@ -98,11 +97,6 @@ void order_in_parallel(std::span<Place> places) {
   parallel::parallel_for(0, parts.size(), 1, [&](std::size_t i) { order_all(parts[i]); });
 }
 
-// Sums over all runs: the sides of its box, and the side of a square with its area.
-struct RunSizes {
-  double box = 0, square = 0;
-};
-
 // triangle(t) is the t-th in order.
 template <class Triangle>
 RunSizes sizes_of_runs(const Mesh& mesh, Triangle&& triangle) {
@@ -169,11 +163,16 @@ void number_vertices_as_used(Mesh& mesh) {
 
 }  // namespace
 
+RunSizes sizes_of_runs(const Mesh& mesh) {
+  return sizes_of_runs(mesh, [&](std::size_t t) -> const glm::uvec3& { return mesh.triangles[t]; });
+}
+
+bool are_compact(const RunSizes& sizes) { return sizes.box < kCompact * sizes.square; }
+
 void order_for_locality(Mesh& mesh) {
   if (mesh.triangles.size() < kLeastTriangles) return;
-  const RunSizes before =
-      sizes_of_runs(mesh, [&](std::size_t t) -> const glm::uvec3& { return mesh.triangles[t]; });
-  if (before.box < kCompact * before.square) return;
+  const RunSizes before = sizes_of_runs(mesh);
+  if (are_compact(before)) return;
   std::vector<Place> places = places_of(mesh);
   order_in_parallel(places);
   const RunSizes after = sizes_of_runs(

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "parallel/parallel_for.h"
 
@@ -15,11 +16,6 @@ constexpr double kLowest = 0.01;                     // part of the height that 
 constexpr double kFootprint = 1.0 / 7;               // part of the footprint that a base covers
 constexpr std::size_t kTrianglesPerBlock = 1 << 14;  // tens of microseconds
 constexpr double kFacing = 0.9;  // cosine to the axis of a triangle that faces along it
-
-// The area of triangles that lie flat at the low end of y and of z.
-struct FlatAreas {
-  double y = 0, z = 0;
-};
 
 // Triangles that face up count too: not every file winds them the same way.
 FlatAreas flat_areas(const Scene& scene, const Instance& instance, double low_y, double low_z) {
@@ -44,9 +40,7 @@ FlatAreas flat_areas(const Scene& scene, const Instance& instance, double low_y,
         }
         return areas;
       },
-      [](const FlatAreas& a, const FlatAreas& b) {
-        return FlatAreas{a.y + b.y, a.z + b.z};
-      });
+      std::plus<>());
 }
 
 // Whether so much area at the low end of `axis` is a base.
@@ -57,18 +51,24 @@ bool is_base(double area, const glm::dvec3& size, int axis) {
 
 }  // namespace
 
-bool guess_z_up(const Scene& scene, bool usual) {
-  const geometry::Box3 box = bounds(scene);
+FlatAreas flat_areas(const Scene& scene, const geometry::Box3& box) {
   const glm::dvec3 low(box.low), size(box.size());
   FlatAreas areas;
   for (const Instance& instance : scene.instances) {
-    const FlatAreas more =
-        flat_areas(scene, instance, low.y + kLowest * size.y, low.z + kLowest * size.z);
-    areas.y += more.y;
-    areas.z += more.z;
+    areas = areas + flat_areas(scene, instance, low.y + kLowest * size.y, low.z + kLowest * size.z);
   }
+  return areas;
+}
+
+bool guess_z_up(const geometry::Box3& box, const FlatAreas& areas, bool usual) {
+  const glm::dvec3 size(box.size());
   const bool on_y = is_base(areas.y, size, 1), on_z = is_base(areas.z, size, 2);
   return on_y == on_z ? usual : on_z;
+}
+
+bool guess_z_up(const Scene& scene, bool usual) {
+  const geometry::Box3 box = bounds(scene);
+  return guess_z_up(box, flat_areas(scene, box), usual);
 }
 
 }  // namespace delray::scenes::internal

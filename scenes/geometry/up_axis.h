@@ -10,4 +10,16 @@ namespace delray::scenes::internal {
 // hundredth cover a seventh of the box's footprint. O(triangles).
 bool guess_z_up(const Scene& scene, bool usual);
 
+// The area of triangles that lie flat at the low end of y and of z.
+struct FlatAreas {
+  double y = 0, z = 0;
+
+  FlatAreas operator+(const FlatAreas& b) const { return {y + b.y, z + b.z}; }
+};
+
+// Of a scene, or a part of one that is in such a box. O(triangles), parallel.
+FlatAreas flat_areas(const Scene& scene, const geometry::Box3& box);
+// As the scene of this box and such areas.
+bool guess_z_up(const geometry::Box3& box, const FlatAreas& areas, bool usual);
+
 }  // namespace delray::scenes::internal

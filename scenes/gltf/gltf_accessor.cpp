@@ -136,14 +136,19 @@ Accessor accessor_at(const GltfDocument& document, std::size_t number) {
   return accessor;
 }
 
+ElementRange dense_elements(const GltfDocument& document, const Accessor& accessor) {
+  ElementRange dense = elements_at(document, accessor.json, accessor.count, accessor.component,
+                                   accessor.element_size());
+  dense.normalized = accessor.normalized;
+  return dense;
+}
+
 // Calls store(first, last, elements) for blocks of the dense part in parallel, where `elements`
 // begin with the first, and then for each element that the sparse part replaces.
 template <class Store>
 void for_each_block(const GltfDocument& document, const Accessor& accessor, Store&& store) {
   if (accessor.json["bufferView"] && accessor.count > 0) {
-    ElementRange dense = elements_at(document, accessor.json, accessor.count, accessor.component,
-                                     accessor.element_size());
-    dense.normalized = accessor.normalized;
+    const ElementRange dense = dense_elements(document, accessor);
     const auto block =
         static_cast<std::size_t>(std::max<std::uint64_t>(kBlockBytes / dense.stride, 1));
     parallel::parallel_blocks(0, accessor.count, block, [&](std::size_t first, std::size_t last) {
@@ -180,12 +185,34 @@ bool copy_as_they_are(const Elements& elements, bool same_type, std::span<T> to)
   return true;
 }
 
+template <int N>
+void decode(const Elements& elements, std::span<glm::vec<N, float>> to) {
+  if (copy_as_they_are(elements, elements.component.is_real, to)) return;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    for (int k = 0; k < N; ++k) to[i][k] = elements.real(i, k);
+  }
+}
+
+void decode(const Elements& elements, std::span<std::uint32_t> to) {
+  if (copy_as_they_are(elements, elements.component.size == 4, to)) return;
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = elements.whole(i, 0);
+}
+
+template <int N>
+Accessor vector_accessor_at(const GltfDocument& document, std::size_t number) {
+  Accessor accessor = accessor_at(document, number);
+  if (accessor.components != N) {
+    accessor.json["type"].fail("has " + std::to_string(accessor.components) + " components, not " +
+                               std::to_string(N));
+  }
+  return accessor;
+}
+
 Accessor index_accessor_at(const GltfDocument& document, std::size_t number) {
   const Accessor accessor = accessor_at(document, number);
   if (accessor.components != 1 || accessor.component.is_signed) {
     accessor.json.fail("indices must be unsigned scalars");
   }
-  document.source.require_memory(accessor.count * sizeof(std::uint32_t), accessor.json.place());
   return accessor;
 }
 
@@ -193,9 +220,7 @@ Accessor index_accessor_at(const GltfDocument& document, std::size_t number) {
 void read_indices(const GltfDocument& document, const Accessor& accessor, std::uint32_t* indices) {
   for_each_block(document, accessor,
                  [&](std::size_t first, std::size_t last, const Elements& elements) {
-                   const std::span<std::uint32_t> to(indices + first, last - first);
-                   if (copy_as_they_are(elements, elements.component.size == 4, to)) return;
-                   for (std::size_t i = 0; i < to.size(); ++i) to[i] = elements.whole(i, 0);
+                   decode(elements, std::span(indices + first, last - first));
                  });
 }
 
@@ -207,6 +232,15 @@ std::size_t first_not_finite(std::span<const glm::vec<N, float>> values) {
     if (sum != 0) return i;
   }
   return values.size();
+}
+
+template <int N>
+void require_finite(const GltfDocument& document, std::size_t number, std::uint64_t first,
+                    std::span<const glm::vec<N, float>> values) {
+  const std::size_t wrong = first_not_finite(values);
+  if (wrong == values.size()) return;
+  document.root()["accessors"][number].fail("element " + std::to_string(first + wrong) +
+                                            " is not finite");
 }
 
 }  // namespace
@@ -222,22 +256,14 @@ int component_count(const GltfDocument& document, std::size_t number) {
 
 template <int N>
 std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::size_t number) {
-  const Accessor accessor = accessor_at(document, number);
-  if (accessor.components != N) {
-    accessor.json["type"].fail("has " + std::to_string(accessor.components) + " components, not " +
-                               std::to_string(N));
-  }
+  const Accessor accessor = vector_accessor_at<N>(document, number);
   document.source.require_memory(accessor.count * sizeof(glm::vec<N, float>),
                                  accessor.json.place());
   std::vector<glm::vec<N, float>> values;
   parallel::grow(values, accessor.count);
   for_each_block(document, accessor,
                  [&](std::size_t first, std::size_t last, const Elements& elements) {
-                   const std::span<glm::vec<N, float>> to(values.data() + first, last - first);
-                   if (copy_as_they_are(elements, elements.component.is_real, to)) return;
-                   for (std::size_t i = 0; i < to.size(); ++i) {
-                     for (int k = 0; k < N; ++k) to[i][k] = elements.real(i, k);
-                   }
+                   decode<N>(elements, std::span(values.data() + first, last - first));
                  });
   const std::size_t wrong = parallel::parallel_reduce(
       0, values.size(), kBlockBytes / sizeof(values[0]), values.size(),
@@ -275,12 +301,45 @@ std::vector<float> read_floats(const GltfDocument& document, std::size_t number,
   return values;
 }
 
+template <int N>
+std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::size_t number,
+                                             std::uint64_t first, std::uint64_t last) {
+  const ElementRange dense = dense_elements(document, vector_accessor_at<N>(document, number));
+  std::vector<glm::vec<N, float>> values(last - first);
+  if (values.empty()) return values;
+  std::string buffer;
+  decode<N>(dense.read(first, last, buffer), std::span(values));
+  require_finite<N>(document, number, first, values);
+  return values;
+}
+
+bool is_dense(const GltfDocument& document, std::size_t number) {
+  const JsonView accessor = document.root()["accessors"][number];
+  return accessor["bufferView"] && !accessor["sparse"];
+}
+
+void read_index_triples(const GltfDocument& document, std::size_t number, std::uint64_t first,
+                        std::span<glm::uvec3> to) {
+  const ElementRange dense = dense_elements(document, index_accessor_at(document, number));
+  if (to.empty()) return;
+  std::string buffer;
+  decode(dense.read(3 * first, 3 * (first + to.size()), buffer),
+         std::span(&to[0].x, 3 * to.size()));
+}
+
+template std::vector<glm::vec2> read_vectors<2>(const GltfDocument&, std::size_t, std::uint64_t,
+                                                std::uint64_t);
+template std::vector<glm::vec3> read_vectors<3>(const GltfDocument&, std::size_t, std::uint64_t,
+                                                std::uint64_t);
+template std::vector<glm::vec4> read_vectors<4>(const GltfDocument&, std::size_t, std::uint64_t,
+                                                std::uint64_t);
 template std::vector<glm::vec2> read_vectors<2>(const GltfDocument&, std::size_t);
 template std::vector<glm::vec3> read_vectors<3>(const GltfDocument&, std::size_t);
 template std::vector<glm::vec4> read_vectors<4>(const GltfDocument&, std::size_t);
 
 std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_t number) {
   const Accessor accessor = index_accessor_at(document, number);
+  document.source.require_memory(accessor.count * sizeof(std::uint32_t), accessor.json.place());
   std::vector<std::uint32_t> values;
   parallel::grow(values, accessor.count);
   read_indices(document, accessor, values.data());
@@ -289,6 +348,7 @@ std::vector<std::uint32_t> read_indices(const GltfDocument& document, std::size_
 
 std::vector<glm::uvec3> read_index_triples(const GltfDocument& document, std::size_t number) {
   const Accessor accessor = index_accessor_at(document, number);
+  document.source.require_memory(accessor.count * sizeof(std::uint32_t), accessor.json.place());
   static_assert(sizeof(glm::uvec3) == 3 * sizeof(std::uint32_t));
   std::vector<glm::uvec3> values;
   parallel::grow(values, (accessor.count + 2) / 3);

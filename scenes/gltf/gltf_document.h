@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,16 @@ std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::
 
 // The same with any number of components, element after element: scalars, matrices by column.
 std::vector<float> read_floats(const GltfDocument& document, std::size_t number, int components);
+
+// Whether accessors[number] has all of its elements in a buffer, so that some can be read.
+bool is_dense(const GltfDocument& document, std::size_t number);
+// Elements [first, last) of one that is_dense, as read_vectors. REQUIRES: there are so many.
+template <int N>
+std::vector<glm::vec<N, float>> read_vectors(const GltfDocument& document, std::size_t number,
+                                             std::uint64_t first, std::uint64_t last);
+// Triples of its elements from the first-th on. REQUIRES: there are so many; is_dense.
+void read_index_triples(const GltfDocument& document, std::size_t number, std::uint64_t first,
+                        std::span<glm::uvec3> to);
 
 // Whether accessors[number] has no data: all of its elements are zero.
 bool is_all_zero(const GltfDocument& document, std::size_t number);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "parallel/parallel_for.h"
 #include "scenes/files/vertex_values.h"
@@ -17,9 +18,6 @@ namespace delray::scenes::internal {
 namespace {
 
 constexpr std::uint64_t kPoints = 0, kLines = 1, kLoop = 2, kTriangles = 4, kStrip = 5, kFan = 6;
-// The file does not say how large.
-constexpr Shape kPointShape{Shape::Kind::point, true, 1.5F};
-constexpr Shape kLineShape{Shape::Kind::line, true, 0.75F};
 constexpr std::size_t kBlock = 1 << 15;  // vertices or triangles: tens of microseconds
 
 // The first i below `count` that is_wrong(i), or `count`.
@@ -116,6 +114,10 @@ class Attributes {
       : document_(document),
         json_(primitive["attributes"]),
         draco_(DracoPrimitive::read(document, primitive)) {}
+  // Only those of vertices [first, last). REQUIRES: they are not compressed, and dense.
+  Attributes(const GltfDocument& document, const JsonView& primitive, std::uint64_t first,
+             std::uint64_t last)
+      : document_(document), json_(primitive["attributes"]), range_(std::pair(first, last)) {}
 
   bool has(const char* name) const { return find(name) != kNone; }
   int components(const char* name) const {
@@ -126,6 +128,7 @@ class Attributes {
   std::vector<glm::vec<N, float>> read(const char* name) {
     const std::uint32_t accessor = find(name);
     if (accessor == kNone) return {};
+    if (range_) return read_vectors<N>(document_, accessor, range_->first, range_->second);
     const JsonView normalized = document_.root()["accessors"][accessor]["normalized"];
     std::vector<glm::vec<N, float>> values = is_compressed(name)
                                                  ? draco_->vectors<N>(name, normalized.flag(false))
@@ -153,6 +156,7 @@ class Attributes {
   JsonView json_;
   std::optional<DracoPrimitive> draco_;
   std::optional<std::size_t> vertices_;
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> range_;
 };
 
 std::vector<glm::vec3> read_positions(const JsonView& primitive, Attributes& attributes) {
@@ -361,6 +365,43 @@ GltfPrimitive read_primitive(const GltfDocument& document, const JsonView& primi
 }
 
 }  // namespace
+
+bool has_runs(const GltfDocument& document, const JsonView& primitive,
+              const GltfMaterial& material) {
+  const JsonView attributes = primitive["attributes"];
+  const std::size_t accessors = document.root()["accessors"].size();
+  const std::uint32_t position = attributes["POSITION"].reference(accessors);
+  const std::uint32_t indices = primitive["indices"].reference(accessors);
+  if (primitive["mode"].whole(kTriangles) != kTriangles || primitive["extensions"] ||
+      position == kNone || indices == kNone || !is_dense(document, indices) ||
+      element_count(document, indices) % 3 != 0) {
+    return false;
+  }
+  for (const std::string& name : attributes.keys()) {
+    const std::uint32_t accessor = attributes[name.c_str()].reference(accessors);
+    if (accessor == kNone || !is_dense(document, accessor) ||
+        element_count(document, accessor) != element_count(document, position)) {
+      return false;
+    }
+  }
+  const bool first_set = material.uvs.size() == 1 && material.uvs[0].set == 0;
+  return first_set || std::ranges::all_of(material.uvs, [&](const UvUse& use) {
+           return static_cast<bool>(attributes[attribute_of(use).c_str()]);
+         });
+}
+
+Mesh read_vertices(const GltfDocument& document, const JsonView& primitive,
+                   const GltfMaterial& material, std::uint64_t first, std::uint64_t last) {
+  Attributes attributes(document, primitive, first, last);
+  Mesh mesh;
+  mesh.positions = read_positions(primitive, attributes);
+  mesh.normals = attributes.read<3>("NORMAL");
+  if (!mesh.normals.empty()) mesh.tangents = attributes.read<4>("TANGENT");
+  GltfMaterial with_all = material;
+  read_all_uvs(primitive, attributes, document, with_all, mesh);
+  read_colours(attributes, mesh);
+  return mesh;
+}
 
 std::vector<GltfPrimitive> read_mesh(const GltfDocument& document, std::size_t number,
                                      std::span<GltfMaterial> materials, bool has_skin) {

@@ -25,4 +25,13 @@ struct GltfPrimitive {
 std::vector<GltfPrimitive> read_mesh(const GltfDocument& document, std::size_t number,
                                      std::span<GltfMaterial> materials, bool has_skin);
 
+// Whether a primitive is triangles of which runs can be read, and their vertices: with indices, as
+// the file has them, and all the texture coordinates that its material asks for.
+bool has_runs(const GltfDocument& document, const JsonView& primitive,
+              const GltfMaterial& material);
+// Vertices [first, last) of such a primitive, directions not yet normalized. REQUIRES: there are so
+// many; has_runs.
+Mesh read_vertices(const GltfDocument& document, const JsonView& primitive,
+                   const GltfMaterial& material, std::uint64_t first, std::uint64_t last);
+
 }  // namespace delray::scenes::internal

@@ -31,7 +31,7 @@ struct Reach {
 };
 
 Reach reach_of(const Scene& scene, std::span<const glm::dmat4> worlds,
-               const std::vector<geometry::Box3d>& boxes) {
+               std::span<const geometry::Box3d> boxes) {
   Reach reach;
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     const geometry::Box3d& box = boxes[scene.instances[i].mesh];
@@ -49,17 +49,25 @@ bool exceeds(double distance, double limit) {
   return distance > limit && distance <= kLargestCoordinate;
 }
 
+bool reaches_far(const Reach& reach) {
+  return exceeds(std::max({internal::reach_of(reach.box), reach.vertices, reach.nodes}),
+                 kFar * glm::length(reach.box.size()));
+}
+
 }  // namespace
+
+bool is_far(const Scene& scene, std::span<const glm::dmat4> worlds,
+            std::span<const geometry::Box3d> boxes) {
+  return reaches_far(reach_of(scene, worlds, boxes));
+}
 
 std::vector<glm::dvec3> place_instances(const Source& source, std::span<const glm::dmat4> worlds,
                                         Scene& scene) {
   std::vector<geometry::Box3d> boxes;
   for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh.positions));
   const Reach reach = reach_of(scene, worlds, boxes);
-  const double diagonal = glm::length(reach.box.size());
-  const bool far = exceeds(std::max({internal::reach_of(reach.box), reach.vertices, reach.nodes}),
-                           kFar * diagonal);
-  if (far) warn_if_coarse(source, reach.vertices, diagonal);
+  const bool far = reaches_far(reach);
+  if (far) warn_if_coarse(source, reach.vertices, glm::length(reach.box.size()));
   if (far) scene.origin = origin_of(reach.box);
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     Instance& instance = scene.instances[i];

@@ -7,11 +7,16 @@
 #include "scenes/gltf/load_gltf.h"
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
+#include "parallel/parallel_for.h"
 #include "scenes/animation/deform.h"
 #include "scenes/animation/followers.h"
+#include "scenes/files/triangle_file.h"
 #include "scenes/gltf/gltf_animation.h"
 #include "scenes/gltf/gltf_document.h"
 #include "scenes/gltf/gltf_extras.h"
@@ -26,8 +31,15 @@ namespace {
 // Walks the nodes and places what they hold.
 class Placer {
  public:
-  Placer(const GltfDocument& document, Scene& scene)
-      : document_(document), root_(document.root()), scene_(scene), motion_(document) {
+  // Meshes are as `read` gives them.
+  using ReadMesh = std::vector<GltfPrimitive>(std::size_t mesh, std::span<GltfMaterial> materials,
+                                              bool has_skin);
+  Placer(const GltfDocument& document, Scene& scene, std::function<ReadMesh> read)
+      : document_(document),
+        root_(document.root()),
+        scene_(scene),
+        read_(std::move(read)),
+        motion_(document) {
     TextureFiles textures(document.source, scene.textures);
     materials_ = read_materials(document, textures);
     for (const GltfMaterial& m : materials_) scene.materials.push_back(m.material);
@@ -35,7 +47,8 @@ class Placer {
     mesh_is_read_.resize(meshes_.size(), false);
   }
 
-  void place_all() {
+  // Finds instances and their transforms; what bends has its shape at rest.
+  void find_all() {
     struct Entry {
       std::uint32_t node;
       glm::dmat4 parent;
@@ -65,7 +78,11 @@ class Placer {
       }
     }
     motion_.bend(scene_);
-    const std::vector<glm::dvec3> centres = place_instances(document_.source, worlds_, scene_);
+  }
+  std::span<const glm::dmat4> worlds() const { return worlds_; }
+  std::span<const GltfMaterial> materials() const { return materials_; }
+  // After that, and the choice of an origin; the vertices of meshes are relative to `centres`.
+  void place_others_and_finish(std::span<const glm::dvec3> centres) {
     for (Other& other : others_) {
       other.world[3] -= glm::dvec4(scene_.origin, 0.0);
       place_others(other);
@@ -135,7 +152,7 @@ class Placer {
                       const glm::dmat4& world) {
     const std::uint32_t mesh = node["mesh"].reference(meshes_.size());
     motion_.weights_of(number) = read_weights(document_, node, target_count(document_, mesh));
-    for (GltfPrimitive& part : read_mesh(document_, mesh, materials_, skin != kNone)) {
+    for (GltfPrimitive& part : read_(mesh, materials_, skin != kNone)) {
       if (part.mesh.triangles.empty()) continue;
       complete_material(part.mesh);
       DeformedMesh deformed =
@@ -181,7 +198,7 @@ class Placer {
   const std::vector<std::uint32_t>& mesh_parts(std::uint32_t mesh) {
     if (mesh_is_read_[mesh]) return meshes_[mesh];
     mesh_is_read_[mesh] = true;
-    for (GltfPrimitive& part : read_mesh(document_, mesh, materials_, false)) {
+    for (GltfPrimitive& part : read_(mesh, materials_, false)) {
       if (part.mesh.triangles.empty()) continue;
       complete_material(part.mesh);
       meshes_[mesh].push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
@@ -247,6 +264,7 @@ class Placer {
   const GltfDocument& document_;
   JsonView root_;
   Scene& scene_;
+  std::function<ReadMesh> read_;
   std::vector<GltfMaterial> materials_;
   std::vector<std::vector<std::uint32_t>> meshes_;  // the scene's meshes of each mesh of the file
   std::vector<bool> mesh_is_read_;
@@ -274,17 +292,110 @@ void set_depths_of_orthographic_cameras(Scene& scene) {
   }
 }
 
+void read_extras_of(const GltfDocument& document, Scene& scene) {
+  const JsonView root = document.root(), scenes = root["scenes"];
+  const std::uint32_t chosen = root["scene"].reference(scenes.size());
+  if (scenes.size() > 0) read_extras(scenes[chosen == kNone ? 0 : chosen]["extras"], scene);
+}
+
+// One mesh of one primitive that is placed once, in a document where nothing moves.
+class GltfTriangleFile final : public TriangleFile {
+ public:
+  explicit GltfTriangleFile(const Source& source) : document_(read_document(source)) {}
+
+  // Whether it is that.
+  bool open() {
+    if (has_motion(document_)) return false;
+    Placer placer(document_, rest_, [&](std::size_t mesh, std::span<GltfMaterial>, bool) {
+      meshes_.push_back(mesh);
+      Mesh stands_for_it;
+      const JsonView json = document_.root()["meshes"][mesh], primitives = json["primitives"];
+      stands_for_it.name = json["name"].text();
+      stands_for_it.triangles.resize(1);
+      stands_for_it.material =
+          primitives.size() == 1
+              ? primitives[std::size_t{0}]["material"].reference(rest_.materials.size())
+              : kNone;
+      return std::vector{GltfPrimitive{std::move(stands_for_it), {}}};
+    });
+    placer.find_all();
+    if (rest_.instances.size() != 1) return false;
+    rest_.meshes[0].triangles.clear();
+    const JsonView primitives = document_.root()["meshes"][meshes_[0]]["primitives"];
+    if (primitives.size() != 1) return false;
+    const std::uint32_t material =
+        primitives[std::size_t{0}]["material"].reference(placer.materials().size());
+    if (material != kNone) material_ = placer.materials()[material];
+    if (!has_runs(document_, primitives[std::size_t{0}], material_)) return false;
+    primitive_.emplace(primitives[std::size_t{0}]);
+    const std::size_t accessors = document_.root()["accessors"].size();
+    indices_ = primitives[std::size_t{0}]["indices"].reference(accessors);
+    triangles_ = element_count(document_, indices_) / 3;
+    vertices_ = element_count(
+        document_, primitives[std::size_t{0}]["attributes"]["POSITION"].reference(accessors));
+    world_ = placer.worlds()[0];
+    const glm::dvec3 centre(0);
+    rest_.instances[0].transform = placed_at(world_, centre, rest_.origin);
+    placer.place_others_and_finish({&centre, 1});
+    read_extras_of(document_, rest_);
+    return std::ranges::none_of(rest_.cameras, &Camera::orthographic);
+  }
+
+  bool read_triangles(std::uint64_t first, std::span<glm::uvec3> to) const override {
+    constexpr std::size_t kBlock = 1 << 14;  // triangles: some hundred kilobytes
+    const auto count = static_cast<std::uint32_t>(vertices_);
+    std::atomic<bool> good{true};
+    parallel::parallel_blocks(0, to.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      const std::span<glm::uvec3> block = to.subspan(begin, end - begin);
+      read_index_triples(document_, indices_, first + begin, block);
+      const bool fits = std::ranges::all_of(
+          block, [&](const glm::uvec3& t) { return t.x < count && t.y < count && t.z < count; });
+      if (!fits) good = false;
+    });
+    return good;
+  }
+
+  Mesh read_vertices(std::uint64_t first, std::uint64_t last) const override {
+    return internal::read_vertices(document_, *primitive_, material_, first, last);
+  }
+
+  std::optional<glm::dvec3> origin(const geometry::Box3d&,
+                                   const geometry::Box3d& used) const override {
+    if (internal::is_far(rest_, {&world_, 1}, {&used, 1})) return std::nullopt;
+    return glm::dvec3(0);
+  }
+  void warn(const geometry::Box3d&) const override {}
+
+ private:
+  GltfDocument document_;
+  std::vector<std::size_t> meshes_;
+  GltfMaterial material_;
+  std::optional<JsonView> primitive_;
+  std::uint32_t indices_ = 0;
+  glm::dmat4 world_{1.0};
+};
+
 }  // namespace
 
 Scene load_gltf(const Source& source) {
   const GltfDocument document = read_document(source);
   Scene scene;
-  Placer(document, scene).place_all();
+  const auto read = [&](std::size_t mesh, std::span<GltfMaterial> materials, bool has_skin) {
+    return read_mesh(document, mesh, materials, has_skin);
+  };
+  Placer placer(document, scene, read);
+  placer.find_all();
+  const std::vector<glm::dvec3> centres = place_instances(source, placer.worlds(), scene);
+  placer.place_others_and_finish(centres);
   set_depths_of_orthographic_cameras(scene);
-  const JsonView root = document.root(), scenes = root["scenes"];
-  const std::uint32_t chosen = root["scene"].reference(scenes.size());
-  if (scenes.size() > 0) read_extras(scenes[chosen == kNone ? 0 : chosen]["extras"], scene);
+  read_extras_of(document, scene);
   return scene;
+}
+
+std::unique_ptr<TriangleFile> open_gltf_triangles(const Source& source) {
+  auto file = std::make_unique<GltfTriangleFile>(source);
+  if (!file->open()) return nullptr;
+  return file;
 }
 
 }  // namespace delray::scenes::internal

@@ -59,10 +59,10 @@ TEST(Limits, PicturesStructuresAndGeneratedScenesArePartOfThePromise) {
            {"render gen:city:100000000 --memory 500MB", "gen:city:100000000: takes 9.78 GiB"},
            {"info gen:city:100000000 --memory 500MB", "gen:city:100000000: takes 9.78 GiB"},
            {"render gen:cornell --size 32768x32768 --memory 1GiB",
-            "32768 x 32768 pixels: takes 12"},
-           {"render gen:cornell --size 32768x32768 --ranks 4 --memory 1GiB", "pixels: takes 36"},
+            "32768 x 32768 pixels (as .tif or .exr they would be written in bands): takes 12"},
+           {"render gen:cornell --size 32768x32768 --ranks 4 --memory 1GiB", "in bands): takes 36"},
            {"render gen:cornell --size 30000x30000 --engine raytrace --memory 1GiB",
-            "30000 x 30000 pixels: takes 27"},
+            "30000 x 30000 pixels (as .tif or .exr they would be written in bands): takes 27"},
            {"render gen:city:1000000 --engine raytrace --size 16x16 --memory 180MB",
             "Embree's structures of 999996 triangles: takes 62.0 MiB"}}) {
     const bool writes = command.starts_with("render");

@@ -96,10 +96,10 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 TEST(Ranks, WarnOnce) {
   const Folder folder;
-  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
   const Ran ran = run(mpirun(3) + "delray render a.obj -o a.png --size 32x24", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_EQ(count(ran.err, "1 points and lines left out"), 1U) << ran.err;
+  EXPECT_EQ(count(ran.err, "1 faces of fewer than 3 corners"), 1U) << ran.err;
 }
 
 TEST(Ranks, CommandsWithoutThemSaySo) {

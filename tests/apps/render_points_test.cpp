@@ -315,5 +315,28 @@ TEST(RenderCommand, RanksAgreeOnViewsOfScenesInParts) {
   EXPECT_EQ(run(mpirun(2) + base + "--data ray --view inside", folder.path()).exit_code, 2);
 }
 
+// Processes read a part of a file each, and give the picture that one gives.
+TEST(RenderCommand, ProcessesReadPartsOfAFile) {
+  const Folder folder;
+  ASSERT_EQ(run("delray generate scene terrain -n 4000 -o t.glb -q", folder.path()).exit_code, 0);
+  const auto image = [&](const std::string& before, const std::string& options, int parts) {
+    const Ran ran =
+        run(before + "delray render t.glb -o a.png --size 96x54 --view iso --stats s.json -q " +
+                options,
+            folder.path());
+    EXPECT_EQ(ran.exit_code, 0) << options << "\n" << ran.err;
+    const json stats = json::parse(folder.read("s.json"));
+    EXPECT_EQ(stats["scene"]["parts"], parts) << options;
+    EXPECT_EQ(stats["scene"]["triangles"].get<int>() > 3500, true);
+    return stats["image"]["hash"].get<std::string>();
+  };
+  const std::string raster = image("", "", 1);
+  EXPECT_EQ(image(mpirun(3), "--strategy sort-last", 3), raster);
+  EXPECT_EQ(image(mpirun(2), "--strategy sort-middle --up y", 2), raster);
+  EXPECT_EQ(image(mpirun(2), "--strategy sort-first", 1), raster);
+  EXPECT_EQ(image(mpirun(3), "--engine raytrace --data object", 3),
+            image("", "--engine raytrace", 1));
+}
+
 }  // namespace
 }  // namespace delray::tests

@@ -356,10 +356,10 @@ TEST(RenderCommand, PointsBecomeAReliefInOneCommand) {
 
 TEST(RenderCommand, WarningsNameTheFileOnce) {
   const Folder folder;
-  folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
-  const Ran ran = run("delray render line.obj -o line.png --size 16x16", folder.path());
+  folder.write("edge.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
+  const Ran ran = run("delray render edge.obj -o edge.png --size 16x16", folder.path());
   EXPECT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_NE(ran.err.find("warning: line.obj: 1 points and lines left out\n"), std::string::npos)
+  EXPECT_NE(ran.err.find("warning: edge.obj: 1 faces of fewer than 3 corners"), std::string::npos)
       << ran.err;
 }
 

@@ -254,7 +254,7 @@ TEST(BrokenFile, DeepNestingIsNoDanger) {
 TEST(BrokenFile, NoTriangles) {
   const tests::TemporaryFolder folder;
   for (const auto& [name, content] : {std::pair{"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"},
-                                      std::pair{"b.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"},
+                                      std::pair{"b.obj", "v 0 0 0\nv 1 0 0\nf 1 2\nl 1\n"},
                                       std::pair{"a.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"},
                                       std::pair{"a.stl", "solid\nendsolid\n"}}) {
     refusal(folder, name, content);

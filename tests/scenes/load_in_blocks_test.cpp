@@ -183,6 +183,53 @@ TEST(LoadInBlocks, NumbersVerticesOfObjByTheirFirstCorners) {
   expect_same(direct, load_with(folder.write("c.obj", obj(model, false, " \\\n # \r\n")), 3));
 }
 
+// Corners with texture coordinates and normals, in materials and polygons, over several ranges of
+// the text: the same for every number of threads, and corner by corner what the lines say.
+TEST(LoadInBlocks, JoinsCornersOfObjForAnyNumberOfThreads) {
+  constexpr unsigned kSeed = 11;
+  std::mt19937 random(kSeed);
+  const RandomModel model = random_grid(kSeed, true);
+  std::string text;
+  for (const glm::vec3& p : model.positions) text += "v " + line_of(p) + "\n";
+  for (int i = 0; i < 64; ++i) {
+    text += "vt " + std::to_string(i) + " 0\nvn " + std::to_string(i + 1) + " 1 0\n";
+  }
+  std::size_t corners = 0, triangles = 0;
+  for (std::size_t f = 0; f < model.faces.size(); ++f) {
+    if (f % 20000 == 500) text += "usemtl m" + std::to_string(f % 3) + "\n";
+    const bool normals = f % 5 != 0;
+    text += "f";
+    for (const std::uint32_t v : model.faces[f]) {
+      const std::string one = std::to_string(v % 64 + 1), uv = random() % 9 == 0 ? "" : one;
+      text += " " + std::to_string(v + 1) + "/" + uv + (normals ? "/" + one : "");
+      ++corners;
+    }
+    triangles += model.faces[f].size() - 2;
+    if (f % 1000 == 0) text += "\nl 1 2 3";
+    text += "\n";
+  }
+  const tests::TemporaryFolder folder;
+  const Scene one = load_with(folder.write("a.obj", text), 1);
+  EXPECT_EQ(triangle_count(one), triangles);
+  EXPECT_EQ(splat_count(one), 2 * ((model.faces.size() + 999) / 1000));
+  for (const Mesh& mesh : one.meshes) {
+    EXPECT_LT(mesh.positions.size(), corners);
+    for (std::size_t i = 0; i < mesh.positions.size() && !mesh.normals.empty(); ++i) {
+      const auto v = static_cast<std::uint32_t>(mesh.positions[i].x + mesh.positions[i].y * kSide);
+      const glm::vec3 normal = glm::normalize(glm::vec3(v % 64 + 1, 1, 0));
+      ASSERT_LT(glm::distance(mesh.normals[i], normal), 1e-6F);
+      ASSERT_TRUE(mesh.uvs[i].x == static_cast<float>(v % 64) || mesh.uvs[i] == glm::vec2(0));
+    }
+  }
+  const Scene five = load_with(folder / "a.obj", 5);
+  expect_same(one, five);
+  for (std::size_t m = 0; m < one.meshes.size(); ++m) {
+    EXPECT_TRUE(one.meshes[m].normals == five.meshes[m].normals);
+    EXPECT_TRUE(one.meshes[m].uvs == five.meshes[m].uvs);
+    EXPECT_EQ(one.meshes[m].material, five.meshes[m].material);
+  }
+}
+
 TEST(LoadInBlocks, CutsPolygonsAlikeInEveryCoding) {
   constexpr unsigned kSeed = 7;
   const RandomModel model = random_grid(kSeed, true);

@@ -184,7 +184,7 @@ TEST(Load, SaysWhyNothingIsLeft) {
                   .ends_with("its 1 triangle has two corners in one place"));
   EXPECT_TRUE(reason("v 1 0 0\nv 2 0 0\nv 1 0 0\nf 1 2 3\nf 3 2 1\n")
                   .ends_with("its 2 triangles have two corners in one place"));
-  EXPECT_NE(reason("v 1 0 0\nv 2 0 0\nv 3 0 0\nl 1 2 3\n").find("no triangles in the file"),
+  EXPECT_NE(reason("v 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2\n").find("no triangles in the file"),
             std::string::npos);
 }
 

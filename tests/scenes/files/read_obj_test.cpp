@@ -68,14 +68,37 @@ TEST(ReadObj, APolygonOfAHundredThousandCorners) {
   EXPECT_EQ(triangle_count(read_obj_text(obj + face + "\n").scene), kCorners - 2U);
 }
 
-TEST(ReadObj, LinesPointsAndFreeFormsAreLeftOutWithAWarning) {
+TEST(ReadObj, LinesAndPointsAreMeshesOfTheirOwn) {
+  const Loaded l = read_obj_text(kSquare +
+                                 "usemtl a\nl 1 2 3\nf 1 2 3\np 4 2\nusemtl b\nl 3 4\nl -1/1 -2\n"
+                                 "vt 0 0\np 1\nusemtl a\nl 1 4\n");
+  EXPECT_TRUE(l.warnings.empty());
+  EXPECT_EQ(triangle_count(l.scene), 1U);
+  EXPECT_EQ(splat_count(l.scene), 8U);
+  ASSERT_EQ(l.scene.meshes.size(), 5U);
+  using Kind = Shape::Kind;
+  const Kind kinds[] = {Kind::line, Kind::triangle, Kind::point, Kind::line, Kind::point};
+  for (std::size_t m = 0; m < 5; ++m) {
+    const Mesh& mesh = l.scene.meshes[m];
+    EXPECT_EQ(mesh.shape.kind, kinds[m]) << m;
+    EXPECT_EQ(mesh.name, m < 3 ? "a" : "b") << m;
+    EXPECT_EQ(l.scene.materials[mesh.material].unlit, kinds[m] != Kind::triangle) << m;
+  }
+  EXPECT_EQ(l.scene.meshes[0].triangles,
+            (std::vector<glm::uvec3>{{0, 1, 1}, {1, 2, 2}, {0, 3, 3}}));
+  EXPECT_EQ(l.scene.meshes[2].positions, (std::vector<glm::vec3>{{0, 1, 0}, {1, 0, 0}}));
+  EXPECT_EQ(l.scene.meshes[3].triangles, (std::vector<glm::uvec3>{{0, 1, 1}, {1, 0, 0}}));
+  EXPECT_EQ(splat_count(read_obj_text(kSquare + "p 1 2 3 4\n").scene), 4U);
+  EXPECT_THROW(read_obj_text(kSquare + "l 1 5\n"), files::FileError);
+}
+
+TEST(ReadObj, ShortElementsAndFreeFormsAreLeftOutWithAWarning) {
   const Loaded l =
-      read_obj_text(kSquare + "l 1 2 3\np 1 2\nf 1 2\nf 1 2 3\ncurv 0 1 1 2 3\nsurf 0 1 0 1 1 2\n");
+      read_obj_text(kSquare + "l 1\nf 1 2\nf 1 2 3\ncurv 0 1 1 2 3\nsurf 0 1 0 1 1 2\n");
   EXPECT_EQ(triangle_count(l.scene), 1U);
   ASSERT_EQ(l.warnings.size(), 2U);
-  EXPECT_NE(l.warnings[0].find("3 points and lines"), std::string::npos);
+  EXPECT_NE(l.warnings[0].find("2 faces of fewer than 3 corners"), std::string::npos);
   EXPECT_NE(l.warnings[1].find("2 free-form"), std::string::npos);
-  EXPECT_THROW(read_obj_text(kSquare + "l 1 2 3\np 1\n"), files::FileError);
 }
 
 TEST(ReadObj, ColoursOfVerticesAndWeights) {

@@ -126,5 +126,27 @@ TEST(ReadPly, TextureCoordinatesOfCornersSplitVertices) {
   EXPECT_NE(scene.materials[mesh.material].base_colour_texture, kNone);
 }
 
+TEST(ReadPly, TextHasNoMoreValuesOrRowsThanTheHeaderSays) {
+  const auto complaint = [](const std::string& vertex, const std::string& face,
+                            const std::string& rest) {
+    try {
+      read_ply_text("ply\nformat ascii 1.0\nelement vertex 3\n" + kXyz +
+                    "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                    vertex + "0 1 0\n1 0 0\n" + face + rest);
+    } catch (const files::FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(complaint("0 0 0\n", "3 0 1 2\n", "\n \n"), "");
+  EXPECT_NE(complaint("0 0 0 1\n", "3 0 1 2\n", "").find("line 9: the line has too many values"),
+            std::string::npos);
+  EXPECT_NE(complaint("0 0 0\n", "3 0 1 2 0\n", "").find("line 12: the line has too many values"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint("0 0 0\n", "3 0 1 2\n", "\n3 0 1 2\n").find("line 14: the file has more rows"),
+      std::string::npos);
+}
+
 }  // namespace
 }  // namespace delray::scenes
