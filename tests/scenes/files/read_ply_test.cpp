@@ -139,12 +139,12 @@ TEST(ReadPly, TextHasNoMoreValuesOrRowsThanTheHeaderSays) {
     return std::string();
   };
   EXPECT_EQ(complaint("0 0 0\n", "3 0 1 2\n", "\n \n"), "");
-  EXPECT_NE(complaint("0 0 0 1\n", "3 0 1 2\n", "").find("line 9: the line has too many values"),
+  EXPECT_NE(complaint("0 0 0 1\n", "3 0 1 2\n", "").find("line 10: the line has too many values"),
             std::string::npos);
-  EXPECT_NE(complaint("0 0 0\n", "3 0 1 2 0\n", "").find("line 12: the line has too many values"),
+  EXPECT_NE(complaint("0 0 0\n", "3 0 1 2 0\n", "").find("line 13: the line has too many values"),
             std::string::npos);
   EXPECT_NE(
-      complaint("0 0 0\n", "3 0 1 2\n", "\n3 0 1 2\n").find("line 14: the file has more rows"),
+      complaint("0 0 0\n", "3 0 1 2\n", "\n3 0 1 2\n").find("line 15: the file has more rows"),
       std::string::npos);
 }
 
