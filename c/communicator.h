@@ -5,6 +5,7 @@
 
 #include "comm/communicator.h"
 
+// What the handle points to.
 struct DelrayCommunicator_ {
   std::unique_ptr<delray::comm::Communicator> ranks;
 };

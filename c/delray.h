@@ -1,21 +1,21 @@
-/* Delray for C and for whatever calls C: exact Delaunay triangulations, compositing over MPI, and
- * rendering with the objects, parameters and the commit model of Khronos ANARI 1.0.
- *
- * Errors. Functions that return DelrayStatus give DELRAY_SUCCESS or why not; those that return a
- * handle or an address give NULL. delrayErrorText() says why in a sentence, until the same thread's
- * next call that fails. No exception leaves the library, and what fails leaves its outputs as they
- * were.
- *
- * Memory. Arrays of arguments are borrowed for the call, unless it is said that they are kept.
- * Results that a function points to belong to the handle, and live as long.
- *
- * Threads. Handles of triangulations are read by any number of threads at a time. Calls for one
- * device may come from any thread; they take turns, and a frame that is rendered is one turn.
- * Different handles and devices have nothing in common. Calls over an MPI communicator are
- * collective, and made by one thread of each process.
- *
- * The library starts no thread that outlives a call, but for oneTBB's workers, and installs no
- * signal handler. */
+// Delray for C and for whatever calls C: exact Delaunay triangulations, compositing over MPI, and
+// rendering with the objects, parameters and the commit model of Khronos ANARI 1.0.
+//
+// Errors. Functions that return DelrayStatus give DELRAY_SUCCESS or why not; those that return a
+// handle or an address give NULL. delrayErrorText() says why in a sentence, until the same thread's
+// next call that fails. No exception leaves the library, and what fails leaves its outputs as they
+// were.
+//
+// Memory. Arrays of arguments are borrowed for the call, unless it is said that they are kept.
+// Results that a function points to belong to the handle, and live as long.
+//
+// Threads. Handles of triangulations are read by any number of threads at a time. Calls for one
+// device may come from any thread; they take turns, and a frame that is rendered is one turn.
+// Different handles and devices have nothing in common. Calls over an MPI communicator are
+// collective, and made by one thread of each process.
+//
+// The library starts no thread that outlives a call, but for oneTBB's workers, and installs no
+// signal handler.
 #ifndef DELRAY_H
 #define DELRAY_H
 

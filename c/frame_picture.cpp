@@ -1,3 +1,4 @@
+// Colours become bytes or floats, depths distances along rays.
 #include "c/frame_picture.h"
 
 #include <algorithm>

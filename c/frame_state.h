@@ -26,6 +26,7 @@ struct Built {
   std::unique_ptr<const raytrace::Tracer> tracer;
 };
 
+// What a frame keeps between renderings.
 struct FrameState {
   std::unique_ptr<Built> built;
   const void* mpi_communicator = nullptr;  // whose duplicate `ranks` is

@@ -1,3 +1,4 @@
+// One catch for each kind of exception, the most special first.
 #include "c/guard.h"
 
 #include <new>

@@ -92,6 +92,7 @@ std::string subtypes_of(DelrayDataType kind);
 
 }  // namespace delray::c
 
+// What a handle points to: one object with its committed parameters.
 struct DelrayObject_ {
   DelrayObject_(DelrayDevice of, DelrayDataType what, std::string which);
   ~DelrayObject_();

@@ -1,3 +1,4 @@
+// Strides of NumPy may be anything; what the libraries cannot walk over is copied once.
 #include "python/arrays.h"
 
 #include <stdexcept>

@@ -1,3 +1,5 @@
+// FileError is OSError where a device fails and ValueError where content is wrong, with the same
+// text.
 #include "python/errors.h"
 
 #include <pybind11/pybind11.h>

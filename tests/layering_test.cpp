@@ -38,6 +38,7 @@ const std::map<std::string, Names>& arrows() {
     Names lower;
     for (const auto& [folder, ignored] : t) lower.insert(folder);
     t["c"] = lower;  // the doors: no algorithms of their own
+    for (const std::string& name : kAnybody) t["c"].erase(name);
     t["apps"] = lower;
     lower.insert("apps");
     t["python"] = lower;
@@ -57,10 +58,11 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"apps/options", {"terminal"}},
     {"apps/input", {"options"}},
     {"apps/output", {"input", "options"}},
+    {"apps/pack", {"input"}},
     {"apps/render", {"input", "options"}},
     {"apps/replay", {"options", "terminal"}},
     {"apps/triangulate", {"input", "options", "output"}},
-    {"apps/verify", {"input", "options"}},
+    {"apps/verify", {"input", "options", "terminal"}},
     {"apps/compare", {"input", "options", "render", "report", "terminal"}},
     {"comm/in_process", {"transport"}},
     {"comm/mpi", {"transport"}},
@@ -68,6 +70,8 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/predicates", {"mesh"}},
     {"delaunay/order", {"mesh", "predicates"}},
     {"delaunay/insertion", {"mesh", "order", "predicates"}},
+    {"delaunay/construction", {"flip", "insertion", "mesh", "order", "predicates", "tiles"}},
+    {"delaunay/dimensions", {"mesh", "predicates"}},
     {"delaunay/flip", {"insertion", "mesh", "predicates"}},
     {"delaunay/history", {"flip", "insertion", "mesh", "predicates"}},
     {"delaunay/cavity", {"insertion", "mesh", "order", "predicates"}},
@@ -81,7 +85,7 @@ const std::map<std::string, Names> kArrowsWithin = {
     {"delaunay/tiles", {"mesh"}},
     {"delaunay/raster", {"mesh", "natural_neighbours", "tiles"}},
     {"delaunay/verify", {"files", "mesh"}},
-    {"delaunay/distributed", {"insertion", "mesh", "predicates", "tiles"}},
+    {"delaunay/distributed", {"construction", "insertion", "mesh", "predicates", "tiles"}},
     {"packs/build", {"format"}},
     {"raster/shading", {"pipeline"}},
     {"raster/distribute", {"pipeline", "shading"}},

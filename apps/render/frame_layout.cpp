@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "apps/options/help.h"
-#include "apps/render/option_table.h"
+#include "apps/render/options/option_table.h"
 #include "raster/strategies.h"
 
 namespace delray::apps {

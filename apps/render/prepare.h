@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/render/motion.h"
-#include "apps/render/render_options.h"
+#include "apps/render/options/render_options.h"
 #include "comm/communicator.h"
 #include "packs/pack_reader.h"
 #include "scenes/scene_part.h"

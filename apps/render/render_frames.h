@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "apps/render/motion.h"
+#include "apps/render/options/render_options.h"
 #include "apps/render/prepare.h"
-#include "apps/render/render_options.h"
 #include "comm/communicator.h"
 #include "image/io.h"
 #include "packs/pack_reader.h"

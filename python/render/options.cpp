@@ -1,3 +1,4 @@
+// The option table parses a command line that is made of the keywords.
 #include "python/render/options.h"
 
 #include <algorithm>

@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
+#include "apps/render/options/render_options.h"
 #include "apps/render/render_frames.h"
-#include "apps/render/render_options.h"
 #include "apps/render/render_statistics.h"
 #include "apps/render/write_picture.h"
 #include "comm/threads.h"

@@ -9,7 +9,7 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
-#include "apps/render/render_options.h"
+#include "apps/render/options/render_options.h"
 #include "comm/network.h"
 #include "raster/strategies.h"
 

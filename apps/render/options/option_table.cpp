@@ -1,6 +1,6 @@
 // Each option of `delray render`, described once: what it sets, what it takes, its help, its key in
 // statistics, and which capability of a strategy, schedule, integrator or distribution it needs.
-#include "apps/render/option_table.h"
+#include "apps/render/options/option_table.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/options/option_row.h"
-#include "apps/render/render_options.h"
+#include "apps/render/options/render_options.h"
 
 namespace delray::apps {
 

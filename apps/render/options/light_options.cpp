@@ -1,5 +1,5 @@
 // --light, --light-rotation and --light-strength: pictures of environments, the default light.
-#include "apps/render/light_options.h"
+#include "apps/render/options/light_options.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Options of the ray tracer's sampling and of its result, as rows of `delray render`'s options.
-#include "apps/render/sampling_options.h"
+#include "apps/render/options/sampling_options.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 
 #include "apps/options/help.h"
 #include "apps/options/numbers.h"
-#include "apps/render/option_table.h"
+#include "apps/render/options/option_table.h"
 #include "apps/render/shown_channel.h"
 #include "image/io.h"
 #include "image/tone.h"

@@ -1,5 +1,5 @@
 // Completes the options of `delray render`, and checks what goes together.
-#include "apps/render/render_options.h"
+#include "apps/render/options/render_options.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/scheme_option.h"
-#include "apps/render/option_table.h"
-#include "apps/render/sampling_options.h"
+#include "apps/render/options/option_table.h"
+#include "apps/render/options/sampling_options.h"
 #include "apps/render/video.h"
 #include "image/io.h"
 #include "raster/strategies.h"

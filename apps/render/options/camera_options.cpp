@@ -1,6 +1,6 @@
 // Parses the camera that an option gives, or finds it among the scene's own by name or number;
 // messages list those that there are.
-#include "apps/render/camera_options.h"
+#include "apps/render/options/camera_options.h"
 
 #include <fmt/format.h>
 
