@@ -52,7 +52,8 @@ SetUpOutcome set_up(const ClusterOnScreen& cluster, std::uint32_t place, std::ui
   const PreparedDraw& draw = cluster.draw;
   if (draw.splats.any()) {
     const geometry::Rect pixels =
-        make_splat(screen, draw.splats, cluster.cluster.first + place, number).pixels;
+        make_splat(screen, draw.splats, *draw.draw->mesh, cluster.cluster.first + place, number)
+            .pixels;
     if (pixels.empty()) return SetUpOutcome::culled;
     emit(half_of(pixels, screen, number), pixels);
     return SetUpOutcome::whole;

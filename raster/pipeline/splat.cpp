@@ -38,11 +38,11 @@ bool project(const Screen& screen, const glm::vec3& v, ScreenVertex& vertex) {
   return true;
 }
 
-Splat make_spot(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
-                std::uint32_t number) {
+Splat make_spot(const Screen& screen, const SplatDraw& draw, const scenes::Mesh& mesh,
+                std::uint32_t t, std::uint32_t number) {
   Splat splat;
   splat.number = number;
-  const glm::vec3 v = draw.to_view(draw.draw->mesh->positions[draw.draw->mesh->triangles[t].x]);
+  const glm::vec3 v = draw.to_view(mesh.positions[mesh.triangles[t].x]);
   if (!project(screen, v, splat.centre)) return splat;
   float radius = draw.radius;
   if (!draw.in_samples) radius *= screen.view.scale / (screen.view.orthographic ? 1.0F : v.z);
@@ -240,7 +240,6 @@ std::uint32_t blocks_of(int i0, int j0, int i1, int j1) {
 SplatDraw make_splat_draw(const Screen& screen, const Draw& draw) {
   const scenes::Shape& shape = draw.mesh->shape;
   SplatDraw result;
-  result.draw = &draw;
   result.kind = shape.kind;
   if (!result.any()) return result;
   const scenes::View& view = screen.view;
@@ -271,10 +270,9 @@ SplatDraw make_splat_draw(const Screen& screen, const Draw& draw) {
   return result;
 }
 
-Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
-                 std::uint32_t number) {
-  if (draw.is_spot()) return make_spot(screen, draw, t, number);
-  const scenes::Mesh& mesh = *draw.draw->mesh;
+Splat make_splat(const Screen& screen, const SplatDraw& draw, const scenes::Mesh& mesh,
+                 std::uint32_t t, std::uint32_t number) {
+  if (draw.is_spot()) return make_spot(screen, draw, mesh, t, number);
   const glm::uvec3& corners = mesh.triangles[t];
   Splat splat;
   splat.kind = draw.kind;

@@ -17,7 +17,6 @@ namespace delray::raster {
 
 // What the splats of a draw have in common. Kind triangle: it has none.
 struct SplatDraw {
-  const Draw* draw = nullptr;  // whose mesh may become another one of that shape
   scenes::Shape::Kind kind = scenes::Shape::Kind::triangle;
   bool in_samples = false;  // the radius is in samples of the screen, else in the world's units
   float radius = 0;
@@ -50,10 +49,10 @@ struct Splat {
   float nearest = -1;  // no depth of it is less
 };
 
-// Of primitive t of the draw's mesh. Spots whose centres are before the near plane or outside of
-// the guard band are empty, as is what is not finite.
-Splat make_splat(const Screen& screen, const SplatDraw& draw, std::uint32_t t,
-                 std::uint32_t number);
+// Of primitive t of the draw's mesh, which pages may have replaced. Spots whose centres are before
+// the near plane or outside of the guard band are empty, as is what is not finite.
+Splat make_splat(const Screen& screen, const SplatDraw& draw, const scenes::Mesh& mesh,
+                 std::uint32_t t, std::uint32_t number);
 
 // Where the ray through a pixel's centre meets a splat that is no spot, in view coordinates.
 struct SplatHit {

@@ -166,16 +166,16 @@ void set_up_splats(const ClusterToSetUp& cluster, ScreenVertices& vertices, SetU
                           mesh_cluster.vertices == mesh_cluster.count;
   if (!by_vectors) {
     for (std::uint32_t place = cluster.begin; place < cluster.end; ++place) {
-      append_splat(
-          cluster,
-          make_splat(screen, splats, mesh_cluster.first + place, cluster.first_number + place),
-          result);
+      append_splat(cluster,
+                   make_splat(screen, splats, *draw.draw->mesh, mesh_cluster.first + place,
+                              cluster.first_number + place),
+                   result);
     }
     return;
   }
   // A vertex at each place: primitives are numbered by vertices as these are first used.
   const std::span<const std::uint32_t> which = block.vertices_of(mesh_cluster);
-  const std::vector<glm::vec3>& positions = splats.draw->mesh->positions;
+  const std::vector<glm::vec3>& positions = draw.draw->mesh->positions;
   if (mesh_cluster.consecutive)
     transform(splats.to_view, screen, std::span(positions).subspan(which[0], which.size()),
               vertices);

@@ -124,7 +124,9 @@ void find_splat_boxes(const ClusterOnScreen& cluster, TriangleBoxes& boxes) {
     boxes.x1[place] = boxes.y1[place] = INT32_MIN;
     if (place >= cluster.cluster.count) continue;
     const geometry::Rect pixels =
-        make_splat(cluster.screen, cluster.draw.splats, cluster.cluster.first + place, 0).pixels;
+        make_splat(cluster.screen, cluster.draw.splats, *cluster.draw.draw->mesh,
+                   cluster.cluster.first + place, 0)
+            .pixels;
     if (pixels.empty()) continue;
     const bool large = pixels.area() > kLargeBox;
     boxes.pixels[place] = large ? TriangleBoxes::kAlone : static_cast<std::int32_t>(pixels.area());

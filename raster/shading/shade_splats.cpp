@@ -73,7 +73,7 @@ SeenPoint splat_point(const FrameShading& frame, std::uint32_t number, int x, in
     hit.position = splats.to_view(mesh.positions[corners.x]);
     if (!mesh.normals.empty()) hit.normal = splats.normal_to_view * mesh.normals[corners.x];
   } else {
-    meets(frame.screen, make_splat(frame.screen, splats, t, number), x, y, hit);
+    meets(frame.screen, make_splat(frame.screen, splats, mesh, t, number), x, y, hit);
   }
   SeenPoint seen;
   seen.material = static_cast<std::uint32_t>(&shading::material(frame.shader, mesh.material) -

@@ -84,11 +84,6 @@ FrameShading make_frame_shading(const Screen& screen, const shading::Shader& sha
 }
 
 void add_draws(FrameShading& frame) {
-  // The list may have moved in memory as it grew.
-  for (std::size_t i = 0; i < frame.draws.size(); ++i) {
-    SplatDraw& splats = frame.draws[i].splats;
-    if (splats.draw != nullptr) splats.draw = &frame.list.draws[i];
-  }
   for (std::size_t i = frame.draws.size(); i < frame.list.draws.size(); ++i) {
     const Draw& draw = frame.list.draws[i];
     frame.draws.push_back(make_shaded_draw(frame.screen.view, draw));

@@ -273,7 +273,7 @@ TEST(Splats, AreTheSameByVectorsAndOneByOne) {
     const SplatDraw splats = make_splat_draw(screen, draw);
     std::vector<std::int64_t> keys(std::size_t{201} * 140, kEmptyKey);
     for (std::uint32_t t = 0; t < 3000; ++t) {
-      const Splat splat = make_splat(screen, splats, t, t);
+      const Splat splat = make_splat(screen, splats, mesh, t, t);
       for (int y = splat.pixels.y0; y < splat.pixels.y1; ++y) {
         for (int x = splat.pixels.x0; x < splat.pixels.x1; ++x) {
           float depth;
