@@ -48,8 +48,9 @@ void add_scene_comparison_options(CLI::App& command, SceneComparison& options,
       ->delimiter(',')
       ->allow_extra_args(false)
       ->transform(count_between(1, 4096));
-  add_network_option(command, options.network,
-                     "(default: gigabit-ethernet,10-gigabit-ethernet,hdr-infiniband,shared-bus)");
+  add_network_option(
+      command, options.network,
+      "(default: gigabit-ethernet, 10-gigabit-ethernet, hdr-infiniband, shared-bus)");
 }
 
 int run_scene_comparison(

@@ -137,7 +137,7 @@ void add_replay(CLI::App& program, Session& session) {
                       "Ledger that --record, or libdelray_record.so under any MPI program, wrote");
   add_network_option(*command, request->network,
                      "(default: this-machine, as its messages were recorded, "
-                     "gigabit-ethernet,10-gigabit-ethernet,hdr-infiniband,shared-bus)",
+                     "gigabit-ethernet, 10-gigabit-ethernet, hdr-infiniband, shared-bus)",
                      true);
   command
       ->add_option("--stats", request->statistics,

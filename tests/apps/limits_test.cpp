@@ -28,7 +28,7 @@ TEST(Limits, MemoryIsPromisedBeforeItIsTaken) {
   folder.write("a.obj", "mtllib a.mtl\n" + kObj);
   for (const std::string command :
        {"delray info a.obj", "delray render a.obj -o b.png --size 16x16",
-        "delray triangulate big.png -o b.ply", "delray render big.png -o b.png --size 16x16"}) {
+        "delray triangulate big.png -o b.obj", "delray render big.png -o b.png --size 16x16"}) {
     const Ran ran = run(command + " --memory 90MB", folder.path());
     EXPECT_EQ(ran.exit_code, 1) << command << ran.err;
     EXPECT_NE(ran.err.find("big.png: takes "), std::string::npos) << command << ran.err;

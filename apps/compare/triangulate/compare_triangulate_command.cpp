@@ -151,8 +151,8 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
       ->allow_extra_args(false);
   choose_from(*command, "--distributed", names_in(delaunay::distributed_methods()));
   add_network_option(*command, request->network,
-                     "(default with --ranks: "
-                     "gigabit-ethernet,10-gigabit-ethernet,hdr-infiniband,shared-bus)");
+                     "(with --ranks, unless told: "
+                     "gigabit-ethernet, 10-gigabit-ethernet, hdr-infiniband, shared-bus)");
   command->add_option("--seed", request->seed, "Seed of all random numbers (default: 1)")
       ->transform(any_count());
   choose_from(*command, "--method", names_in(delaunay::methods()));
