@@ -228,11 +228,12 @@ void add_verify(CLI::App& program, Session& session) {
       "verify", "Check a triangulation against its points, with exact arithmetic, or a pack");
   const auto options = std::make_shared<VerifyOptions>();
   command
-      ->add_option("MESH", options->mesh,
-                   "Triangulation to check, a file or a folder of pieces: the exit code is 0 if it "
-                   "is what the options demand, 4 if it is "
-                   "not, 3 if a vertex is none of the points. A pack is checked by itself: 3 if any "
-                   "of it is damaged")
+      ->add_option(
+          "MESH", options->mesh,
+          "Triangulation to check, a file or a folder of pieces: the exit code is 0 if it "
+          "is what the options demand, 4 if it is "
+          "not, 3 if a vertex is none of the points. A pack is checked by itself: 3 if any "
+          "of it is damaged")
       ->group(group::kInput);
   add_points_argument(*command, "--points", options->points,
                       "Points that MESH should be the triangulation of: files, folders, patterns");
