@@ -47,6 +47,13 @@ if(DELRAY_SANITIZE)
   if(DELRAY_SANITIZE MATCHES undefined)
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
+  # What the code asks for; compilers spell it differently.
+  if(DELRAY_SANITIZE MATCHES address)
+    add_compile_definitions(DELRAY_ASAN)
+  endif()
+  if(DELRAY_SANITIZE MATCHES thread)
+    add_compile_definitions(DELRAY_TSAN)
+  endif()
 endif()
 
 # The instruction sets that Highway compiles for. Not for SSSE3: processors without SSE4, the last of

@@ -6,7 +6,7 @@
 namespace delray::comm {
 
 bool Buffer::is_pooled([[maybe_unused]] std::size_t size) {
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef DELRAY_ASAN
   return false;  // it could not tell when memory is used that was given back
 #else
   constexpr std::size_t kSmallestPooled = std::size_t{1} << 16;  // below malloc has some at hand

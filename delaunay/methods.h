@@ -27,11 +27,13 @@ struct Method {
   std::string_view group;  // of methods that work alike; reports show these in one colour
   std::vector<int> dims;
   // The choices that go with the method, the default first; empty if it leaves none.
-  std::vector<std::string_view> locations, splits, orders;
+  std::vector<std::string_view> locations = {}, splits = {}, orders = {};
   std::vector<std::string_view> deadlocks = {};
   bool alone = false;   // works with one thread, whatever the options say
   bool seeded = true;   // `seed` decides about something
   bool queued = false;  // `queue` does
+  // Takes quadratic time where many points lie near a common circle or sphere, or two lines.
+  bool quadratic = false;
   // Leaves `created_by` empty where one thread made everything.
   // REQUIRES: options that resolve() returned.
   Result (*triangulate)(PointView<double> points, const Options& options);

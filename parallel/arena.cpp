@@ -9,11 +9,10 @@
 #include <algorithm>
 
 #include "parallel/stack.h"
-#include "parallel/threads/plain_threads.h"
 
 namespace delray::parallel {
 
-#ifdef DELRAY_PLAIN_THREADS
+#ifdef DELRAY_TSAN
 namespace {
 // Loops run on plain threads; what libraries do in oneTBB's tasks, as Embree does, stays on the
 // thread that waits for it. ThreadSanitizer sees nothing of what orders the tasks of several.

@@ -20,7 +20,7 @@ void cut(std::size_t begin, std::size_t end, std::size_t grain, std::vector<std:
 }
 
 void run_tasks(std::size_t tasks, FunctionRef<void(std::size_t)> f) {
-#ifdef DELRAY_PLAIN_THREADS
+#ifdef DELRAY_TSAN
   run_on_plain_threads(tasks, f);
 #else
   tbb::parallel_for(std::size_t{0}, tasks, f);
@@ -33,7 +33,7 @@ void parallel_blocks(std::size_t begin, std::size_t end, std::size_t grain,
                      FunctionRef<void(std::size_t, std::size_t)> f) {
   if (begin >= end) return;
   if (end - begin <= grain) return f(begin, end);  // the scheduler takes longer than many a block
-#ifdef DELRAY_PLAIN_THREADS
+#ifdef DELRAY_TSAN
   std::vector<std::size_t> ends = {begin};
   internal::cut(begin, end, grain, ends);
   internal::run_on_plain_threads(ends.size() - 1,

@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 // In a context of its own: the pipeline's is cancelled by an exception, and loops within would then
 // return with half of their work undone.
 void run_whole(const PipelineStage& stage, std::size_t item, std::size_t slot) {
-#ifdef DELRAY_PLAIN_THREADS
+#ifdef DELRAY_TSAN
   stage.run(item, slot);
 #else
   tbb::task_group_context own(tbb::task_group_context::isolated);
@@ -38,7 +38,7 @@ void run_whole(const PipelineStage& stage, std::size_t item, std::size_t slot) {
 #endif
 }
 
-#ifdef DELRAY_PLAIN_THREADS
+#ifdef DELRAY_TSAN
 // A thread for each slot takes every slots-th item through all stages.
 template <class RunStage>
 void run_on_threads(std::size_t items, std::size_t slots, std::span<const PipelineStage> stages,
@@ -101,7 +101,7 @@ PipelineTimes run_pipeline(std::size_t items, std::size_t slots,
     times.stages[stage] += seconds;
   };
   const Clock::time_point start = Clock::now();
-#ifdef DELRAY_PLAIN_THREADS
+#ifdef DELRAY_TSAN
   run_on_threads(items, slots, stages, run_stage);
 #else
   std::size_t next = 0;

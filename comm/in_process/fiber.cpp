@@ -12,25 +12,10 @@
 #include <memory>
 #include <utility>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define DELRAY_FIBER_ASAN 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define DELRAY_FIBER_ASAN 1
-#endif
-#endif
-#if defined(__SANITIZE_THREAD__)
-#define DELRAY_FIBER_TSAN 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define DELRAY_FIBER_TSAN 1
-#endif
-#endif
-
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
 #include <sanitizer/common_interface_defs.h>
 #endif
-#if defined(DELRAY_FIBER_TSAN)
+#ifdef DELRAY_TSAN
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -55,43 +40,43 @@ void exchange_exceptions(ExceptionState& state) {
 struct Fiber::State {
   boost::context::fiber own, owner;  // the one that is not running; `own` is none when finished
   ExceptionState exceptions;         // of that one
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
   const void* stack = nullptr;
   const void* owner_stack = nullptr;
   std::size_t stack_bytes = 0, owner_stack_bytes = 0;
 #endif
-#if defined(DELRAY_FIBER_TSAN)
+#ifdef DELRAY_TSAN
   void* own_fiber = nullptr;
   void* owner_fiber = nullptr;
 #endif
 
   void enter() {
-#if defined(DELRAY_FIBER_TSAN)
+#ifdef DELRAY_TSAN
     owner_fiber = __tsan_get_current_fiber();
     __tsan_switch_to_fiber(own_fiber, 0);
 #endif
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
     void* fake_stack = nullptr;
     __sanitizer_start_switch_fiber(&fake_stack, stack, stack_bytes);
 #endif
     own = std::move(own).resume();
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
     __sanitizer_finish_switch_fiber(fake_stack, nullptr, nullptr);
 #endif
   }
 
   // `fake_stack`: null when the fiber leaves for good.
   void announce_leaving([[maybe_unused]] void** fake_stack) const {
-#if defined(DELRAY_FIBER_TSAN)
+#ifdef DELRAY_TSAN
     __tsan_switch_to_fiber(owner_fiber, 0);
 #endif
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
     __sanitizer_start_switch_fiber(fake_stack, owner_stack, owner_stack_bytes);
 #endif
   }
 
   void announce_entering([[maybe_unused]] void* fake_stack) {
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
     __sanitizer_finish_switch_fiber(fake_stack, &owner_stack, &owner_stack_bytes);
 #endif
   }
@@ -103,11 +88,11 @@ Fiber::Fiber(std::size_t stack_bytes, std::function<void()> body)
   State& state = *state_;
   context::protected_fixedsize_stack stacks(stack_bytes);
   const context::stack_context stack = stacks.allocate();
-#if defined(DELRAY_FIBER_ASAN)
+#ifdef DELRAY_ASAN
   state.stack = static_cast<const std::byte*>(stack.sp) - stack.size;
   state.stack_bytes = stack.size;
 #endif
-#if defined(DELRAY_FIBER_TSAN)
+#ifdef DELRAY_TSAN
   state.own_fiber = __tsan_create_fiber(0);
 #endif
   state.own = context::fiber(std::allocator_arg, context::preallocated(stack.sp, stack.size, stack),
@@ -121,7 +106,7 @@ Fiber::Fiber(std::size_t stack_bytes, std::function<void()> body)
 }
 
 Fiber::~Fiber() {
-#if defined(DELRAY_FIBER_TSAN)
+#ifdef DELRAY_TSAN
   __tsan_destroy_fiber(state_->own_fiber);
 #endif
 }

@@ -94,7 +94,7 @@ struct Own {
 };
 
 Own make() {
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef DELRAY_ASAN
   return {};  // it knows nothing of such blocks
 #endif
   if (!has_address_space() || !may_be_as_large()) return {};

@@ -15,11 +15,12 @@ namespace delray::delaunay::internal {
 namespace {
 
 // Each operation rounds to nearest: an ulp more on either side holds the exact result.
-Interval widened(double low, double high) {
-  constexpr double kUlp = std::numeric_limits<double>::epsilon();
-  constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+Interval widened(long double low, long double high) {
+  constexpr long double kUlp = std::numeric_limits<long double>::epsilon();
+  constexpr long double kLeast = std::numeric_limits<long double>::denorm_min();
   if (!(std::isfinite(low) && std::isfinite(high))) {
-    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    return {-std::numeric_limits<long double>::infinity(),
+            std::numeric_limits<long double>::infinity()};
   }
   return {low - std::abs(low) * kUlp - kLeast, high + std::abs(high) * kUlp + kLeast};
 }
@@ -30,15 +31,15 @@ Interval operator-(const Interval& a, const Interval& b) {
   return widened(a.low - b.high, a.high - b.low);
 }
 Interval operator*(const Interval& a, const Interval& b) {
-  const std::array<double, 4> products = {a.low * b.low, a.low * b.high, a.high * b.low,
-                                          a.high * b.high};
-  for (const double product : products) {
+  const std::array<long double, 4> products = {a.low * b.low, a.low * b.high, a.high * b.low,
+                                               a.high * b.high};
+  for (const long double product : products) {
     if (std::isnan(product)) return widened(product, product);
   }
   return widened(*std::ranges::min_element(products), *std::ranges::max_element(products));
 }
 Interval root(const Interval& a) {
-  return widened(std::sqrt(std::max(a.low, 0.0)), std::sqrt(std::max(a.high, 0.0)));
+  return widened(std::sqrt(std::max(a.low, 0.0L)), std::sqrt(std::max(a.high, 0.0L)));
 }
 Interval exactly(double x) { return {x, x}; }
 // +1 or -1, or 0 if the interval does not tell.
@@ -105,11 +106,11 @@ TopOfCircle::TopOfCircle(const glm::dvec2& a, const glm::dvec2& b, const glm::dv
   const auto relative = [](double x, double y) { return exactly(x) - exactly(y); };
   const auto [d, x, y] =
       circle_of(relative(b.x, a.x), relative(b.y, a.y), relative(c.x, a.x), relative(c.y, a.y));
-  const double infinity = std::numeric_limits<double>::infinity();
+  const long double infinity = std::numeric_limits<long double>::infinity();
   y_ = {-infinity, infinity};
   if (sign_of(d) <= 0) return;
   const Interval height = y + root(x * x + y * y);
-  const Interval inverse = widened(0.5 / d.high, 0.5 / d.low);
+  const Interval inverse = widened(0.5L / d.high, 0.5L / d.low);
   y_ = exactly(a.y) + height * inverse;
 }
 

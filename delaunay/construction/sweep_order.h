@@ -6,9 +6,10 @@
 
 namespace delray::delaunay::internal {
 
-// A closed interval that holds a number.
+// A closed interval that holds a number; in long double, whose exponents hold products of any
+// doubles where they have 15 bits.
 struct Interval {
-  double low = 0, high = 0;
+  long double low = 0, high = 0;
 };
 
 // Whether the parabolas of `left` and `right`, the points as far from them as from the line through

@@ -12,14 +12,7 @@
 #include "image/io.h"
 #include "image/openimageio/input_file.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define DELRAY_LEAK_CHECKER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define DELRAY_LEAK_CHECKER 1
-#endif
-#endif
-#ifdef DELRAY_LEAK_CHECKER
+#ifdef DELRAY_ASAN
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -78,7 +71,7 @@ std::string format_of_suffix(const std::filesystem::path& path) {
 
 // OpenImageIO 2.4's PNG reader leaks a message where a file ends early (libpng jumps over the
 // string's destructor); that must not turn a refused file into a failed check for leaks.
-#ifdef DELRAY_LEAK_CHECKER
+#ifdef DELRAY_ASAN
 using ForgiveLeaks = __lsan::ScopedDisabler;
 #else
 struct ForgiveLeaks {

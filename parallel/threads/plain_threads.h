@@ -7,14 +7,6 @@
 
 #include "parallel/function_ref.h"
 
-#if defined(__SANITIZE_THREAD__)
-#define DELRAY_PLAIN_THREADS 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define DELRAY_PLAIN_THREADS 1
-#endif
-#endif
-
 namespace delray::parallel::internal {
 
 // Calls f(task) for every task of [0, tasks), the caller's thread among as many as its arena has.

@@ -131,7 +131,7 @@ TEST(Ranks, TimeoutIsForRanksThatWaitForOthers) {
 }
 
 TEST(Ranks, OutOfMemoryWhileRenderingIsNoLostRank) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(DELRAY_ASAN) || defined(DELRAY_TSAN)
   GTEST_SKIP() << "the sanitizer takes address space without end";
 #endif
   const Folder folder;

@@ -81,7 +81,7 @@ TEST(Buffer, MayBeDestroyedByAnotherThread) {
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)
+#ifndef DELRAY_ASAN
 TEST(Buffer, TakesLargeMemoryAgainThatWasGivenBack) {
   const std::byte* before = nullptr;
   {

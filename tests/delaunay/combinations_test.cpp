@@ -12,6 +12,7 @@
 #include "delaunay/generate.h"
 #include "delaunay/methods.h"
 #include "tests/delaunay/same_simplices.h"
+#include "tests/delaunay/takes_long.h"
 
 namespace delray::delaunay {
 namespace {
@@ -44,14 +45,6 @@ TEST(Combinations, GiveTheSameSimplicesWithAnyNumberOfThreads) {
   }
 }
 
-// Where coordinates differ by hundreds of orders of magnitude these methods compare each point with
-// all, by numbers of thousands of bits; small sets show whether they are right.
-bool takes_long(const Options& options, const std::string& kind, std::size_t n) {
-  return n > 100 && kind == "of all sizes" &&
-         (options.method == "gift-wrapping" || options.method == "dewall" ||
-          options.method == "sweep");
-}
-
 // Every combination meets every kind and every number of threads, if not all at once.
 template <int D>
 void expect_same_with_threads_in_turn(std::size_t n, std::uint64_t seed) {
@@ -61,7 +54,7 @@ void expect_same_with_threads_in_turn(std::size_t n, std::uint64_t seed) {
     const Triangulation expected = expected_of(points, D);
     ++turn;
     for (Options options : combinations(D)) {
-      if (takes_long(options, kind.name, n)) continue;
+      if (takes_long(method_of(options), n, kind.name)) continue;
       options.seed = seed;
       options.threads = kThreads[turn++ % kThreads.size()];
       ASSERT_NO_FATAL_FAILURE(expect_same(points, expected, options, kind.name));

@@ -46,7 +46,7 @@ TEST(MemoryBudget, AddsUpWhatIsSmall) {
   EXPECT_THROW(for (int i = 0; i < 100; ++i) nothing.require(kMebibyte / 50, "a"), FileError);
 }
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef DELRAY_ASAN
 // What was freed counts as free although the allocator has not given it back.
 TEST(MemoryBudget, TakesBackWhatTheAllocatorKeeps) {
   constexpr std::size_t kBlock = 100000, kBlocks = 400;

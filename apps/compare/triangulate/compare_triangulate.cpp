@@ -40,18 +40,40 @@ struct Repetitions {
 constexpr Repetitions kUsual = {3, 9, 120}, kQuick = {1, 3, 25};
 // The method whose splits are compared, as in the report.
 constexpr std::string_view kOfSplits = "optimistic";
+// Above it, methods of quadratic time have to be asked for by name.
+constexpr std::size_t kMostForQuadratic = 20'000;  // points
 // The report's sequential algorithm.
 constexpr std::string_view kSequential = "insertion", kOfSequential = "dag";
 
-// Every way to triangulate that goes with the request.
-std::vector<delaunay::Options> ways(const TriangulateRequest& request, int dim,
-                                    const std::vector<int>& threads, int shown_threads) {
-  std::vector<delaunay::Options> result;
+// The methods of a dimension that the request names; without names, those that do not take too
+// long.
+std::vector<const delaunay::Method*> compared_methods(const TriangulateRequest& request,
+                                                      std::size_t points, int dim) {
+  std::vector<const delaunay::Method*> result;
+  std::string left_out;
   for (const delaunay::Method& method : delaunay::methods()) {
     if (std::ranges::find(method.dims, dim) == method.dims.end()) continue;
-    if (!request.methods.empty() &&
-        std::ranges::find(request.methods, method.name) == request.methods.end())
+    if (!request.methods.empty()) {
+      if (std::ranges::find(request.methods, method.name) == request.methods.end()) continue;
+    } else if (method.quadratic && points > kMostForQuadratic) {
+      left_out += (left_out.empty() ? "" : ", ") + std::string(method.name);
       continue;
+    }
+    result.push_back(&method);
+  }
+  if (!left_out.empty()) {
+    spdlog::info("left out above {} points, unless --method names them: {}", kMostForQuadratic,
+                 left_out);
+  }
+  return result;
+}
+
+// Every way to triangulate that goes with the request.
+std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size_t points, int dim,
+                                    const std::vector<int>& threads, int shown_threads) {
+  std::vector<delaunay::Options> result;
+  for (const delaunay::Method* const entry : compared_methods(request, points, dim)) {
+    const delaunay::Method& method = *entry;
     delaunay::Options how;
     how.dim = dim;
     how.method = method.name;
@@ -98,7 +120,7 @@ class TriangulationRuns {
     result_.shown_threads = result_.threads.front();
     for (const int count : result_.threads)
       if (count <= kMostShownThreads) result_.shown_threads = count;
-    ways_ = ways(request, dim, result_.threads, result_.shown_threads);
+    ways_ = ways(request, points.size(), dim, result_.threads, result_.shown_threads);
   }
 
   TriangulateComparison run() {

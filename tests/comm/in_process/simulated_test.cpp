@@ -289,7 +289,7 @@ TEST(Simulated, SeedsGiveEveryOrderAndEqualSeedsEqualRuns) {
 }
 
 TEST(Simulated, RunsThousandsOfRanks) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(DELRAY_ASAN) || defined(DELRAY_TSAN)
   const int ranks = 128, rounds = 7;
 #else
   const int ranks = 4096, rounds = 12;
