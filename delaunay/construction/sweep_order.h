@@ -6,10 +6,10 @@
 
 namespace delray::delaunay::internal {
 
-// A closed interval that holds a number; in long double, whose exponents hold products of any
-// doubles where they have 15 bits.
+// A closed interval that holds a number.
+template <class Float>
 struct Interval {
-  long double low = 0, high = 0;
+  Float low = 0, high = 0;
 };
 
 // Whether the parabolas of `left` and `right`, the points as far from them as from the line through
@@ -27,8 +27,11 @@ class TopOfCircle {
   int compare(double y) const;
 
  private:
+  template <class Float>
+  Interval<Float> bounds() const;  // of y
+
   std::array<glm::dvec2, 3> points_;
-  Interval y_;
+  Interval<double> y_;
 };
 
 }  // namespace delray::delaunay::internal

@@ -50,11 +50,11 @@ template <int D>
 void expect_same_with_threads_in_turn(std::size_t n, std::uint64_t seed) {
   std::size_t turn = 0;
   for (const auto& kind : hard_points_of<D>()) {
-    const auto points = kind.make(n, ++seed);
+    const auto points = kind.make(size_for(kind.name, n), ++seed);
     const Triangulation expected = expected_of(points, D);
     ++turn;
     for (Options options : combinations(D)) {
-      if (takes_long(method_of(options), n, kind.name)) continue;
+      if (takes_long(method_of(options), points.size(), kind.name)) continue;
       options.seed = seed;
       options.threads = kThreads[turn++ % kThreads.size()];
       ASSERT_NO_FATAL_FAILURE(expect_same(points, expected, options, kind.name));

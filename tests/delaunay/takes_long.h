@@ -8,6 +8,12 @@
 
 namespace delray::delaunay {
 
+// The size of a set of a kind of hard_points() among others of n: coordinates "of all sizes" are
+// numbers of thousands of bits, with which everything takes long.
+inline std::size_t size_for(std::string_view kind, std::size_t n) {
+  return kind == "of all sizes" ? (n + 3) / 4 : n;
+}
+
 // Whether a method of quadratic time would take seconds for so many points of a kind of
 // hard_points(); small sets show whether it is right. Coordinates "of all sizes" are numbers of
 // thousands of bits.

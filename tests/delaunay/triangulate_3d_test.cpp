@@ -67,7 +67,7 @@ TEST(Triangulate3d, IsTheBruteForceTriangulationOfHardPoints) {
 
 TEST(Triangulate3d, SimplicesArePositivelyOriented) {
   for (const HardPoints3d& kind : hard_points_3d()) {
-    const auto points = kind.make(80, 7);
+    const auto points = kind.make(50, 7);
     for (const Options& options : combinations()) {
       const Triangulation result = triangulate(view(points), options).triangulation;
       EXPECT_EQ(result.dim, 3);
@@ -108,7 +108,7 @@ TEST(Triangulate3d, NamesTheRowThatIsNotFinite) {
 }
 
 TEST(Triangulate3d, CountsPhasesOnlyWhenAsked) {
-  const auto points = hard_points_3d().front().make(3000, 2);
+  const auto points = hard_points_3d().front().make(1000, 2);
   for (Options options : combinations()) {
     EXPECT_EQ(triangulate(view(points), options).statistics.order, 0) << name_of(options);
     options.statistics = true;

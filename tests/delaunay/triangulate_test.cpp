@@ -78,7 +78,7 @@ TEST(Triangulate, TrianglesTurnLeftAndTheHullHasTheEdgesOfEulersFormula) {
 
 TEST(Triangulate, TheVerifierFindsLargerSetsCanonical) {
   for (const HardPoints& kind : hard_points()) {
-    const Points points = kind.make(1000, 11);
+    const Points points = kind.make(size_for(kind.name, 1000), 11);
     const Triangulation expected = triangulate(view(points)).triangulation;
     const Verdict verdict = verify_triangles(view(points), expected.vertices);
     EXPECT_TRUE(verdict.canonical) << kind.name << ": " << verdict.reason;
@@ -126,7 +126,7 @@ TEST(Triangulate, ManyPointsInOneCellOfTheGrid) {
 
 TEST(Triangulate, DoesNotDependOnTheNumberOfThreads) {
   for (const HardPoints& kind : {hard_points().front(), hard_points().back()}) {
-    const Points points = kind.make(8000, 6);
+    const Points points = kind.make(4000, 6);
     const Hash128 expected = hash(triangulate(view(points)).triangulation);
     for (Options options : locations_and_orders(2)) {
       for (const int threads : {2, 3, 8}) {
@@ -174,7 +174,7 @@ TEST(Triangulate, ReadsTheFirstTwoCoordinatesOfStridedPoints) {
 }
 
 TEST(Triangulate, CountsPhasesOnlyWhenAsked) {
-  const Points points = hard_points().front().make(5000, 2);
+  const Points points = hard_points().front().make(2000, 2);
   for (Options options : locations_and_orders(2)) {
     EXPECT_EQ(triangulate(view(points), options).statistics.order, 0) << name_of(options);
     options.statistics = true;
