@@ -44,7 +44,7 @@ typedef enum DelrayStatus {
 } DelrayStatus;
 
 DELRAY_API int delrayApiVersion(void);      /* of the library, to compare with DELRAY_API_VERSION */
-DELRAY_API const char* delrayVersion(void); /* "0.1.0" */
+DELRAY_API const char* delrayVersion(void); /* "0.2.0" */
 DELRAY_API const char* delrayErrorText(
     void); /* of this thread's last failure; "" before the first */
 
