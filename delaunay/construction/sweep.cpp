@@ -13,7 +13,7 @@
 
 #include "delaunay/construction/beach_line.h"
 #include "delaunay/construction/distinct_points.h"
-#include "delaunay/construction/lawson.h"
+#include "delaunay/construction/flip_edges.h"
 #include "delaunay/construction/sweep_order.h"
 #include "delaunay/mesh/build_mesh.h"
 #include "delaunay/mesh/extract.h"

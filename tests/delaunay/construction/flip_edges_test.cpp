@@ -1,5 +1,5 @@
 // Any triangulation becomes the Delaunay triangulation.
-#include "delaunay/construction/lawson.h"
+#include "delaunay/construction/flip_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ std::uint64_t shuffle(Mesh<2>& mesh, const Points& points, std::mt19937_64& rand
   return flips;
 }
 
-TEST(Lawson, MakesAnyTriangulationDelaunay) {
+TEST(FlipEdges, MakesAnyTriangulationDelaunay) {
   std::uint64_t seed = 0, shuffled = 0;
   for (const HardPoints& kind : hard_points()) {
     std::mt19937_64 random(++seed);

@@ -16,4 +16,10 @@ namespace delray::delaunay::internal {
 // REQUIRES: the finite triangles fill the convex hull of the points.
 std::uint64_t flip_to_delaunay(Mesh<2>& mesh, std::span<const glm::dvec2> points);
 
+// Flips edges whose two triangles get a larger smallest angle by it, until there is none (Lawson
+// 1977). Among points on a common circle all edges are alike, and what is there stays.
+//
+// REQUIRES: the finite triangles fill the convex hull of the points.
+std::uint64_t flip_to_largest_angles(Mesh<2>& mesh, std::span<const glm::dvec2> points);
+
 }  // namespace delray::delaunay::internal
