@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "delaunay/dimensions.h"
 #include "delaunay/files/input.h"
 #include "delaunay/points.h"
 #include "delaunay/read_mesh.h"
@@ -53,5 +54,8 @@ PointMesh read_stl_mesh(const Input& input);
 PointMesh read_vtu_mesh(const Input& input);
 // `input` is the .node file, `elements` the .ele file.
 PointMesh read_node_mesh(const Input& input, const Input& elements);
+// As of dimensions.h.
+PointTable read_point_table(const Input& input);
+TableMesh read_table_mesh(const Input& input, const Input& elements);
 
 }  // namespace delray::delaunay

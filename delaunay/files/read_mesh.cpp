@@ -87,4 +87,15 @@ PointMesh read_mesh(const std::filesystem::path& path, const files::MemoryBudget
   return mesh;
 }
 
+PointTable read_point_table(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  return read_point_table(Content(path, Format::node, memory).input);
+}
+
+TableMesh read_table_mesh(const std::filesystem::path& path, const files::MemoryBudget& memory) {
+  const Content nodes(std::filesystem::path(path).replace_extension(".node"), Format::node, memory);
+  const Content elements(std::filesystem::path(path).replace_extension(".ele"), Format::node,
+                         memory);
+  return read_table_mesh(nodes.input, elements.input);
+}
+
 }  // namespace delray::delaunay

@@ -2,6 +2,7 @@
 // markers", then rows "number coordinates attributes marker"; "n corners attributes", then rows
 // "number corners attributes". Numbers begin with 0 or 1. Of points in the plane the first
 // attribute is taken as z.
+#include "delaunay/dimensions.h"
 #include "delaunay/files/point_readers.h"
 #include "delaunay/files/text_rows.h"
 
@@ -49,7 +50,11 @@ std::int64_t first_number(const Input& input, const Table& table) {
 
 PointCloud read_points_of(const Input& input, const Table& table, std::int64_t base) {
   if (table.columns != 2 && table.columns != 3) {
-    fail(input, "", "points of dimension 2 or 3 are expected");
+    fail(input, "",
+         table.columns > 3 && table.columns <= kMostDimensions
+             ? "points of dimension 2 or 3 are expected; `triangulate --dim " +
+                   std::to_string(table.columns) + "` takes these"
+             : "points of dimension 2 or 3 are expected");
   }
   PointCloud cloud;
   cloud.has_z = table.columns == 3 || table.attributes > 0;
@@ -64,7 +69,68 @@ PointCloud read_points_of(const Input& input, const Table& table, std::int64_t b
   return cloud;
 }
 
+// The corners of elements, rows of `points` points whose numbers begin with `base`.
+std::vector<std::uint32_t> read_elements(const Input& elements, const Table& table,
+                                         std::int64_t base, std::size_t points) {
+  const auto corners = static_cast<std::size_t>(table.columns);
+  std::vector<std::uint32_t> vertices;
+  elements.require_memory(table.rows.count * corners * sizeof vertices[0]);
+  vertices.resize(table.rows.count * corners);
+  for_each_row(elements, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
+    fields.integer();
+    for (std::size_t k = 0; k < corners; ++k) {
+      const std::int64_t vertex = fields.integer() - base;
+      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= points) {
+        fields.fail("refers to a point that is not there");
+      }
+      vertices[i * corners + k] = static_cast<std::uint32_t>(vertex);
+    }
+  });
+  return vertices;
+}
+
+PointTable read_table_of(const Input& input, const Table& table, std::int64_t base) {
+  if (table.columns < 2 || table.columns > kMostDimensions) {
+    fail(input, "",
+         "points of dimension 2 to " + std::to_string(kMostDimensions) + " are expected, not " +
+             std::to_string(table.columns));
+  }
+  PointTable points;
+  points.dim = static_cast<int>(table.columns);
+  const auto dim = static_cast<std::size_t>(points.dim);
+  input.require_memory(table.rows.count * dim * sizeof(double));
+  points.coordinates.resize(table.rows.count * dim);
+  for_each_row(input, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
+    if (fields.integer() != static_cast<std::int64_t>(i) + base) {
+      fields.fail("points are not numbered one after the other");
+    }
+    for (std::size_t k = 0; k < dim; ++k) points.coordinates[i * dim + k] = fields.number();
+  });
+  return points;
+}
+
 }  // namespace
+
+PointTable read_point_table(const Input& input) {
+  const Table table = find_table(input, "points");
+  return read_table_of(input, table, first_number(input, table));
+}
+
+TableMesh read_table_mesh(const Input& input, const Input& elements) {
+  const Table table = find_table(input, "points");
+  const std::int64_t base = first_number(input, table);
+  TableMesh mesh;
+  mesh.points = read_table_of(input, table, base);
+  const Table simplices = find_table(elements, "elements");
+  if (simplices.columns != table.columns + 1) {
+    fail(elements, "",
+         "elements of " + std::to_string(table.columns + 1) + " corners are expected, not " +
+             std::to_string(simplices.columns));
+  }
+  mesh.triangulation.dim = mesh.points.dim;
+  mesh.triangulation.vertices = read_elements(elements, simplices, base, mesh.points.size());
+  return mesh;
+}
 
 PointCloud read_node_points(const Input& input) {
   const Table table = find_table(input, "points");
@@ -80,21 +146,8 @@ PointMesh read_node_mesh(const Input& input, const Input& elements) {
   if (table.columns != 3 && table.columns != 4) {
     fail(elements, "", "elements of 3 or 4 corners are expected");
   }
-  const auto corners = static_cast<std::size_t>(table.columns);
-  mesh.triangulation.dim = static_cast<int>(corners) - 1;
-  std::vector<std::uint32_t>& vertices = mesh.triangulation.vertices;
-  input.require_memory(table.rows.count * corners * sizeof vertices[0]);
-  vertices.resize(table.rows.count * corners);
-  for_each_row(elements, table.rows, is_data_row, [&](std::size_t i, Fields& fields) {
-    fields.integer();
-    for (std::size_t k = 0; k < corners; ++k) {
-      const std::int64_t vertex = fields.integer() - base;
-      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= mesh.points.size()) {
-        fields.fail("refers to a point that is not there");
-      }
-      vertices[i * corners + k] = static_cast<std::uint32_t>(vertex);
-    }
-  });
+  mesh.triangulation.dim = static_cast<int>(table.columns) - 1;
+  mesh.triangulation.vertices = read_elements(elements, table, base, mesh.points.size());
   return mesh;
 }
 
