@@ -9,11 +9,15 @@
 #include <vector>
 
 #include "delaunay/cavity/cavity_insertion.h"
+#include "delaunay/cavity/chrisochoides.h"
+#include "delaunay/cavity/spielman.h"
 #include "delaunay/construction/bowyer_watson.h"
 #include "delaunay/construction/dewall.h"
 #include "delaunay/construction/gift_wrapping.h"
+#include "delaunay/construction/incode.h"
 #include "delaunay/construction/quickhull.h"
 #include "delaunay/construction/sweep.h"
+#include "delaunay/construction/teng.h"
 #include "delaunay/divide_and_conquer/divide.h"
 #include "delaunay/history/batch.h"
 #include "delaunay/history/burglary.h"
@@ -158,6 +162,33 @@ std::span<const Method> methods() {
        .seeded = false,
        .quadratic = true,
        .triangulate = internal::dewall},
+      {.name = "spielman",
+       .description = "inserts, in rounds and without locks, points whose cavities share nothing",
+       .group = "rounds",
+       .dims = {2, 3},
+       .triangulate = internal::insert_independent_sets},
+      {.name = "chrisochoides",
+       .description = "threads insert the points of their regions of the mesh, and lock other "
+                      "regions that a cavity reaches into",
+       .group = "locks",
+       .dims = {2, 3},
+       .triangulate = internal::insert_in_regions},
+      {.name = "incode",
+       .description = "threads make all simplices with a corner in their areas; those that several "
+                      "have made are dropped at the end",
+       .group = "parts",
+       .dims = {2, 3},
+       .seeded = false,
+       .quadratic = true,
+       .triangulate = internal::incode},
+      {.name = "teng",
+       .description = "makes the simplices on all open facets at once, in rounds, after which "
+                      "threads tell each other what they have made",
+       .group = "rounds",
+       .dims = {2, 3},
+       .seeded = false,
+       .quadratic = true,
+       .triangulate = internal::teng},
       {.name = "guibas-stolfi",
        .description = "divide and conquer by vertical lines alone, as published first",
        .group = "parts",

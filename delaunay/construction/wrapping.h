@@ -69,7 +69,8 @@ class OpenFacets {
     while (!open_.contains(key_of(stack_.back()))) stack_.pop_back();
     return stack_.back();
   }
-  std::vector<FacetCorners<D>> all() const {
+  // All, and forgets those that were closed. O(open and closed since the last call).
+  std::vector<FacetCorners<D>> all() {
     std::vector<FacetCorners<D>> facets;
     std::unordered_set<FacetCorners<D>, CornersHash> seen;
     for (const FacetCorners<D>& facet : stack_) {
@@ -77,6 +78,7 @@ class OpenFacets {
         facets.push_back(facet);
       }
     }
+    stack_ = facets;
     return facets;
   }
 

@@ -129,6 +129,13 @@ std::span<const DistributedMethod> distributed_methods() {
        .dims = {2},
        .triangulates_parts = true,
        .triangulate = chen},
+      {.name = "lee-1997",
+       .description = "every rank knows all points, and makes the triangles at edges that rank 0 "
+                      "collects and shares out, in rounds",
+       .dims = {2},
+       .cuts_areas = false,
+       .triangulate = lee_1997,
+       .count_shared = count_shared_rows},
       {.name = "hardwick",
        .description =
            "halves the points along paths of Delaunay edges, found as lower hulls, until "

@@ -36,6 +36,9 @@ std::unique_ptr<OnlineTriangulation> administrators_on_line(comm::Communicator& 
                                                             const DistributedOptions& options);
 
 // Kohout (2004), 5.3: methods that others had published. In the plane only.
+DistributedTriangulation lee_1997(comm::Communicator& communicator,
+                                  std::span<const RowPoint> points,
+                                  const DistributedOptions& options);
 DistributedTriangulation chen(comm::Communicator& communicator, std::span<const RowPoint> points,
                               const DistributedOptions& options);
 DistributedTriangulation hardwick(comm::Communicator& communicator,
