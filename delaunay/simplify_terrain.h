@@ -26,14 +26,18 @@ struct SimplifiedTerrain {
 // lie exactly on the surface. Of several rows at one place the lowest counts, as everywhere. The
 // result depends on nothing but the points. Nothing is kept of places that are all on one line.
 //
+// With several threads points are inserted in rounds: the farthest point of each triangle whose
+// insertion changes no triangle that a farther one changes. That keeps some more points, the same
+// ones for every number of threads above one, and the same bound.
+//
 // O(n log n) for usual terrains, O(n) a point that is kept at worst; about 50 bytes a point.
 // `progress`, if not null, counts the points that are settled.
 //
 // Errors: std::invalid_argument for a coordinate that is not finite (names the row), for a bound
-// that is negative or not finite, for points without three coordinates, for more than 2^29 points;
-// parallel::Interrupted.
+// that is negative or not finite, for threads below 1 or above kMostThreads, for points without
+// three coordinates, for more than 2^29 points; parallel::Interrupted.
 SimplifiedTerrain simplify_terrain(PointView<double> points, double max_error,
-                                   parallel::Progress* progress = nullptr);
+                                   parallel::Progress* progress = nullptr, int threads = 1);
 
 // The rows of a cloud, with all their attributes, in the order of `rows`.
 PointCloud select_rows(const PointCloud& cloud, const std::vector<std::uint32_t>& rows);

@@ -49,8 +49,8 @@ mpq_class exact_error(const Terrain& terrain, const Triangulation& surface, cons
   return -1;
 }
 
-void expect_within(const Terrain& terrain, double bound) {
-  const SimplifiedTerrain result = simplify_terrain(view(terrain), bound);
+void expect_within(const Terrain& terrain, double bound, int threads) {
+  const SimplifiedTerrain result = simplify_terrain(view(terrain), bound, nullptr, threads);
   Terrain kept;
   for (const std::uint32_t row : result.kept) kept.push_back(terrain[row]);
   Triangulation expected = triangulate(view(kept)).triangulation;
@@ -68,6 +68,10 @@ void expect_within(const Terrain& terrain, double bound) {
     EXPECT_LE(error.get_d(), result.largest_error + 1e-9 * (std::abs(q.z) + bound) + 1e-300);
   }
   EXPECT_LE(result.largest_error, bound);
+}
+
+void expect_within(const Terrain& terrain, double bound) {
+  for (const int threads : {1, 2}) expect_within(terrain, bound, threads);
 }
 
 TEST(SimplifyTerrain, KeepsTheBoundOnHills) {
@@ -159,6 +163,23 @@ TEST(SimplifyTerrain, KeepsTheSamePointsWhateverTheirRows) {
   EXPECT_EQ(kept(), expected);
   std::ranges::shuffle(terrain, std::mt19937_64(2));
   EXPECT_EQ(kept(), expected);
+}
+
+TEST(SimplifyTerrain, KeepsTheSamePointsWithAnyNumberOfThreadsAboveOne) {
+  const Terrain terrain = lattice(60, hills);
+  for (const double bound : {0.0, 0.02, 0.5}) {
+    const SimplifiedTerrain alone = simplify_terrain(view(terrain), bound);
+    const SimplifiedTerrain two = simplify_terrain(view(terrain), bound, nullptr, 2);
+    for (const int threads : {3, 8}) {
+      const SimplifiedTerrain more = simplify_terrain(view(terrain), bound, nullptr, threads);
+      EXPECT_EQ(more.kept, two.kept) << bound;
+      EXPECT_EQ(hash(more.triangulation), hash(two.triangulation)) << bound;
+      EXPECT_EQ(more.largest_error, two.largest_error) << bound;
+    }
+    // Rounds choose worse than one point after the other, but not much.
+    EXPECT_LE(two.kept.size(), alone.kept.size() + alone.kept.size() / 4 + 8) << bound;
+  }
+  EXPECT_THROW(simplify_terrain(view(terrain), 1, nullptr, 0), std::invalid_argument);
 }
 
 TEST(SimplifyTerrain, ALineHasNoSurface) {

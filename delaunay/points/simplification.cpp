@@ -1,0 +1,190 @@
+// The triangulation starts with the hull's corners. A priority queue gives the worst candidate of
+// all, which is inserted by flips, and the places of the changed triangles are shared out among
+// those around the new vertex. O(n log n) for usual terrains, O(n) for each kept point at worst.
+#include "delaunay/points/simplification.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "delaunay/flip/flip_2d.h"
+#include "delaunay/insertion/walk.h"
+#include "delaunay/mesh/start_mesh.h"
+#include "delaunay/predicates.h"
+
+namespace delray::delaunay::internal {
+namespace {
+
+// z + bound, or the next double below where that is none.
+double sum_from_below(double z, double bound) {
+  const double sum = z + bound;
+  if (sum == std::numeric_limits<double>::infinity()) return std::numeric_limits<double>::max();
+  // The error that rounding added (Knuth 1969).
+  const double part = sum - z;
+  const double lost = (z - (sum - part)) + (bound - part);
+  return lost < 0 ? std::nextafter(sum, -std::numeric_limits<double>::infinity()) : sum;
+}
+
+}  // namespace
+
+void Simplification::reserve(std::size_t triangles) {
+  if (triangles <= mesh_.size()) return;
+  mesh_.grow(std::max<std::size_t>(triangles, 2 * mesh_.size()));
+  first_.resize(mesh_.size(), kNoPlace);
+  candidates_.resize(mesh_.size());
+}
+
+void Simplification::insert(std::uint32_t place, SimplexNumber triangle) {
+  reserve(std::size_t{access_.used()} + 2);
+  subdivide(mesh_, triangle, place, access_, suspects_);
+  legalize(mesh_, places_.points, access_, suspects_);
+  is_kept_[place] = 1;
+}
+
+// In floating point, and infinite where that fails.
+double Simplification::error(SimplexNumber triangle, std::uint32_t place) const {
+  const glm::dvec3 q = at(place);
+  std::array<glm::dvec3, 3> p;
+  for (unsigned k = 0; k < 3; ++k) p[k] = at(mesh_.vertex(corner_of(triangle, k))) - q;
+  const auto area = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.y - a.y * b.x; };
+  const double a = area(p[1], p[2]), b = area(p[2], p[0]), c = area(p[0], p[1]);
+  const double result = std::abs((a * p[0].z + b * p[1].z + c * p[2].z) / (a + b + c));
+  return std::isfinite(result) ? result : std::numeric_limits<double>::infinity();
+}
+
+bool Simplification::is_beyond(SimplexNumber triangle, std::uint32_t place) const {
+  const glm::dvec3 a = at(mesh_.vertex(corner_of(triangle, 0)));
+  const glm::dvec3 b = at(mesh_.vertex(corner_of(triangle, 1)));
+  const glm::dvec3 c = at(mesh_.vertex(corner_of(triangle, 2)));
+  glm::dvec3 q = at(place);
+  const double z = q.z;
+  q.z = sum_from_below(z, max_error_);
+  if (orient3d(a, b, c, q) < 0) return true;
+  q.z = -sum_from_below(-z, max_error_);
+  return orient3d(a, b, c, q) > 0;
+}
+
+void Simplification::find_candidate(SimplexNumber triangle) {
+  Candidate best;
+  for (std::uint32_t place = first_[triangle]; place != kNoPlace; place = next_[place]) {
+    const Candidate candidate{error(triangle, place), place};
+    if (best.place != kNoPlace && !(Entry{best, 0} < Entry{candidate, 0})) continue;
+    if (is_beyond(triangle, place)) best = candidate;
+  }
+  candidates_[triangle] = best;
+}
+
+void Simplification::start(const std::vector<std::uint32_t>& corners) {
+  const auto turn =
+      orient2d(places_.points[corners[0]], places_.points[corners[1]], places_.points[corners[2]]);
+  reserve(2 * corners.size());
+  start_mesh(mesh_, {corners[0], corners[turn > 0 ? 1 : 2], corners[turn > 0 ? 2 : 1]});
+  for (int k = 0; k < 3; ++k) is_kept_[corners[k]] = 1;
+  std::uint32_t random = 1;
+  SimplexNumber near = 0;
+  for (std::size_t i = 3; i < corners.size(); ++i) {
+    const glm::dvec2& q = places_.points[corners[i]];
+    near = walk(mesh_, places_.points, near, q, random).simplex;
+    insert(corners[i], near);
+  }
+  for (std::uint32_t place = 0; place < places_.points.size(); ++place) {
+    constexpr std::uint32_t kPlacesPerLook = 1024;
+    if (progress_ != nullptr && place % kPlacesPerLook == 0) progress_->advance(0);
+    if (is_kept_[place] != 0) continue;
+    near = walk(mesh_, places_.points, near, places_.points[place], random).simplex;
+    own(near, place);
+  }
+  for (SimplexNumber triangle = 0; triangle < access_.used(); ++triangle) find_candidate(triangle);
+}
+
+void Simplification::take_places(SimplexNumber triangle, std::uint32_t but,
+                                 std::vector<std::uint32_t>& taken) {
+  std::uint32_t& owned = first_[triangle];
+  for (; owned != kNoPlace; owned = next_[owned]) {
+    if (owned != but) taken.push_back(owned);
+  }
+}
+
+void Simplification::find_star(std::uint32_t place, SimplexNumber triangle,
+                               std::vector<CornerNumber>& star) const {
+  CornerNumber corner = corner_of(triangle, 0);
+  while (mesh_.vertex(corner) != place) corner = next_corner(corner);
+  star.clear();
+  const CornerNumber first = corner;
+  do {
+    star.push_back(corner);
+    corner = next_corner(mesh_.neighbour(next_corner(corner)));
+  } while (corner != first);
+}
+
+// By turning about the vertex from where the place before was.
+void Simplification::share_out(std::uint32_t place, const std::vector<CornerNumber>& star,
+                               const std::vector<std::uint32_t>& orphans) {
+  const glm::dvec2& centre = places_.points[place];
+  const auto side = [&](CornerNumber end, const glm::dvec2& q) {
+    const VertexNumber vertex = mesh_.vertex(end);
+    return vertex == kInfiniteVertex ? 0 : orient2d(centre, places_.points[vertex], q);
+  };
+  std::size_t i = 0;
+  while (mesh_.is_ghost(simplex_of(star[i]))) ++i;
+  for (const std::uint32_t orphan : orphans) {
+    const glm::dvec2& q = places_.points[orphan];
+    while (side(next_corner(star[i]), q) < 0) i = (i == 0 ? star.size() : i) - 1;
+    while (side(previous_corner(star[i]), q) > 0) i = i + 1 == star.size() ? 0 : i + 1;
+    own(simplex_of(star[i]), orphan);
+  }
+  for (const CornerNumber changed : star) find_candidate(simplex_of(changed));
+}
+
+void Simplification::refine() {
+  for (SimplexNumber triangle = 0; triangle < access_.used(); ++triangle) {
+    if (candidates_[triangle].place != kNoPlace) queue_.push({candidates_[triangle], triangle});
+  }
+  while (!queue_.empty()) {
+    const Entry entry = queue_.top();
+    queue_.pop();
+    if (candidates_[entry.triangle] != entry.candidate) continue;
+    if (progress_ != nullptr) progress_->advance();
+    insert(entry.candidate.place, entry.triangle);
+    // The triangles that an insertion changed are those around the new vertex.
+    find_star(entry.candidate.place, entry.triangle, star_);
+    orphans_.clear();
+    for (const CornerNumber corner : star_) {
+      take_places(simplex_of(corner), entry.candidate.place, orphans_);
+    }
+    share_out(entry.candidate.place, star_, orphans_);
+    for (const CornerNumber corner : star_) {
+      const SimplexNumber triangle = simplex_of(corner);
+      if (candidates_[triangle].place != kNoPlace) queue_.push({candidates_[triangle], triangle});
+    }
+  }
+}
+
+SimplifiedTerrain Simplification::result() const {
+  SimplifiedTerrain result;
+  Triangulation& triangulation = result.triangulation;
+  triangulation.distinct = places_.points.size();
+  for (std::uint32_t place = 0; place < places_.points.size(); ++place) {
+    if (is_kept_[place] != 0) result.kept.push_back(places_.rows[place]);
+  }
+  std::ranges::sort(result.kept);
+  for (SimplexNumber triangle = 0; triangle < access_.used(); ++triangle) {
+    if (mesh_.is_dead(triangle)) continue;
+    if (mesh_.is_ghost(triangle)) {
+      ++triangulation.hull_facets;
+      continue;
+    }
+    for (unsigned k = 0; k < 3; ++k) {
+      triangulation.vertices.push_back(places_.rows[mesh_.vertex(corner_of(triangle, k))]);
+    }
+    for (std::uint32_t place = first_[triangle]; place != kNoPlace; place = next_[place]) {
+      // They are all within the bound, whatever rounding says.
+      result.largest_error =
+          std::max(result.largest_error, std::min(error(triangle, place), max_error_));
+    }
+  }
+  return result;
+}
+
+}  // namespace delray::delaunay::internal
