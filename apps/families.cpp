@@ -7,6 +7,7 @@
 #include "composite/codec.h"
 #include "composite/scheme.h"
 #include "delaunay/distributed.h"
+#include "delaunay/improve.h"
 #include "delaunay/methods.h"
 #include "image/tone.h"
 #include "loadbalance/partition.h"
@@ -60,6 +61,10 @@ void list_methods() { print_table("Methods of triangulation (--method)", delauna
 void list_distributed_methods() {
   print_table("Distributed methods: how ranks share one triangulation (--distributed)",
               delaunay::distributed_methods());
+}
+
+void list_criteria() {
+  print_table("Criteria of flips that improve a mesh (--criterion)", delaunay::criteria());
 }
 
 void list_colours() {

@@ -13,11 +13,13 @@
 #include "apps/output/triangulation_output.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
+#include "apps/triangulate/beyond_space.h"
+#include "apps/triangulate/improve_mesh.h"
+#include "apps/triangulate/run_statistics.h"
 #include "apps/triangulate/triangulate_options.h"
 #include "apps/triangulate_distributed.h"
 #include "apps/triangulate_parts.h"
 #include "apps/triangulate_tiles.h"
-#include "apps/triangulation_json.h"
 #include "comm/agree_on_failure.h"
 #include "delaunay/distributed.h"
 #include "delaunay/simplify_terrain.h"
@@ -27,10 +29,6 @@
 namespace delray::apps {
 namespace {
 
-struct Seconds {
-  double read = 0, triangulate = 0;
-};
-
 // Replaces the points by those that are kept, and the vertices, which are their rows, by their new
 // rows.
 void keep_rows(const std::vector<std::uint32_t>& kept, delaunay::PointCloud& points,
@@ -39,58 +37,6 @@ void keep_rows(const std::vector<std::uint32_t>& kept, delaunay::PointCloud& poi
   for (std::uint32_t& vertex : result.vertices) {
     vertex = static_cast<std::uint32_t>(std::ranges::lower_bound(kept, vertex) - kept.begin());
   }
-}
-
-// What statistics say however a triangulation was made.
-Json statistics_of(const TriangulateOptions& options, std::size_t points,
-                   const delaunay::Triangulation& result, std::uint64_t simplices,
-                   const delaunay::Hash128& hash, const Seconds& seconds) {
-  const delaunay::Options& how = options.how;
-  return {
-      {"schema", "delray.triangulate/1"},
-      {"input",
-       {{"file", options.input.path},
-        {"points", points},
-        {"distinct", result.distinct},
-        {"dim", how.dim}}},
-      {"options",
-       {{"method", how.method},
-        {"location", how.location},
-        {"split", how.split},
-        {"order", how.order},
-        {"deadlocks", how.deadlocks},
-        {"threads", how.threads},
-        {"seed", how.seed},
-        {"duplicates", options.input.duplicates.empty() ? "first" : options.input.duplicates}}},
-      {"result",
-       {{"simplices", simplices}, {"hull_facets", result.hull_facets}, {"hash", to_string(hash)}}},
-      {"seconds",
-       {{"read", seconds.read}, {"triangulate", seconds.triangulate}, {"write", 0.0}}},  // not yet
-      {"memory", {{"peak_rss", peak_memory()}}},
-  };
-}
-
-void add_phases(const delaunay::Statistics& phases, Json& statistics) {
-  statistics["seconds"].update(phases_json(phases));
-  Json& sync = statistics["sync"] = synchronization_json(phases.synchronization);
-  sync.update({{"dag_nodes", phases.dag_nodes}, {"dag_node_bytes", phases.dag_node_bytes}});
-}
-
-// Of a raster.
-void add_output(const Json& output, Json& statistics) {
-  if (!output.is_null()) statistics["raster"] = output;
-}
-
-void warn_of_no_simplices(const TriangulateOptions& options, std::uint64_t simplices) {
-  if (simplices > 0) return;
-  spdlog::warn("{}: all points are equal or on one {}: no simplices", options.input.path,
-               options.how.dim == 2 ? "line" : "plane");
-}
-
-void tell_result(int dim, std::size_t rows, std::uint64_t distinct, std::uint64_t simplices,
-                 double seconds) {
-  spdlog::info("{} points ({} distinct), {} {}, {:.3f} s", rows, distinct, simplices,
-               dim == 2 ? "triangles" : "tetrahedra", seconds);
 }
 
 // Collective. What a distributed method took goes to `statistics`.
@@ -234,9 +180,12 @@ int run(Session& session, TriangulateOptions options) {
     list_methods();
     list_method_options();
     list_distributed_methods();
+    list_criteria();
     return kDone;
   }
   check(session, options);
+  if (!options.improve.empty()) return improve_mesh(options);
+  if (is_beyond_space(options)) return triangulate_beyond_space(session, options);
   tell_left_out(options.input);
   if (options.output.path == "-" && options.how.dim == 3 &&
       memory_beyond_limit(options.input, options.how.dim) > 0) {
@@ -268,8 +217,8 @@ int run(Session& session, TriangulateOptions options) {
     parallel::Arena arena(how.threads);
     watch.lap();
     if (options.max_error) {
-      simplified =
-          simplify_terrain(delaunay::view(points.positions), *options.max_error, &session.progress);
+      simplified = simplify_terrain(delaunay::view(points.positions), *options.max_error,
+                                    &session.progress, how.threads);
       result = std::move(simplified->triangulation);
     } else {
       made = arena.execute([&] { return triangulate(delaunay::view(points.positions), how); });
@@ -314,8 +263,10 @@ void add_triangulate(CLI::App& program, Session& session) {
   add_common_options(*command, session,
                      "triangulate points.las -o mesh.ply --dim 2 --duplicates mean\n"
                      "triangulate points.las -o terrain.tif --cell-size 1\n"
+                     "triangulate --improve other.off -o mesh.ply\n"
                      "generate points gauss -n 100000 -o - | delray triangulate - -o mesh.vtu");
-  command->callback([&session, options] {
+  command->callback([&session, options, command] {
+    options->dim_given = command->count("--dim") > 0;
     session.run = [&session, options] { return run(session, *options); };
   });
 }

@@ -11,6 +11,7 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/outputs.h"
+#include "apps/verify/verify_beyond_space.h"
 #include "apps/verify/verify_folder.h"
 #include "apps/verify/verify_json.h"
 #include "apps/verify/verify_pack.h"
@@ -207,6 +208,7 @@ int run(Session& session, const VerifyOptions& options) {
   check_outputs({{"--stats", options.statistics}}, inputs);
   tell_left_out(options.points);
   check(session, options.launch);
+  if (options.dim > 3) return verify_beyond_space(session, options);
   if (delaunay::is_mesh_folder(options.mesh)) return verify_folder(session, options);
   refuse_parts_of_folders(options.mesh);
   if (options.launch.ranks > 1 || session.processes > 1 || !options.scratch.empty()) {
@@ -237,8 +239,10 @@ void add_verify(CLI::App& program, Session& session) {
       ->group(group::kInput);
   add_points_argument(*command, "--points", options->points,
                       "Points that MESH should be the triangulation of: files, folders, patterns");
-  command->add_option("--dim", options->dim, "Dimension: 2 (default) or 3")
-      ->check(one_of({"2", "3"}));
+  command
+      ->add_option("--dim", options->dim,
+                   "Dimension: 2 (default) or 3, or 4 to 6 of .node and .ele")
+      ->check(one_of({"2", "3", "4", "5", "6"}));
   command->add_flag(
       "--canonical", options->canonical,
       "Also demand the choice that delray makes among cocircular or cospherical points");

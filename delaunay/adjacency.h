@@ -2,8 +2,10 @@
 // the convex hull that it ends at.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "delaunay/triangulation.h"
@@ -42,5 +44,13 @@ std::vector<std::uint32_t> vertices_around(const Triangulation& triangulation,
 //
 // The facets themselves are what hull_facets() of write_mesh.h gives.
 std::vector<std::uint32_t> hull_vertices(const Triangulation& triangulation);
+
+// Connected sets of simplices that one thread made (Kohout 2004, 7.9): at best as many as there are
+// threads. created_by[i] is the thread that made simplex i (Result::created_by). 0 for no
+// simplices. O(n) expected.
+//
+// REQUIRES: a creator for each simplex; vertices are below `rows`.
+std::uint64_t count_fragments(const Triangulation& triangulation,
+                              std::span<const std::uint16_t> created_by, std::size_t rows);
 
 }  // namespace delray::delaunay

@@ -13,7 +13,9 @@
 #include "apps/options/help.h"
 #include "apps/options/list.h"
 #include "apps/options/numbers.h"
+#include "apps/triangulate/beyond_space.h"
 #include "delaunay/distributed.h"
+#include "delaunay/improve.h"
 #include "delaunay/methods.h"
 
 namespace delray::apps {
@@ -27,11 +29,39 @@ void require_plain(const TriangulateOptions& options) {
   if (how.method != defaults.method || how.location != defaults.location ||
       how.split != defaults.split || how.order != defaults.order ||
       how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
-      how.seed != defaults.seed || options.launch.threads != 0 || options.makers) {
+      how.seed != defaults.seed || options.makers) {
     throw UsageError(
-        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed, "
-        "threads and makers");
+        "--max-error leaves no choice of method, location, split, order, deadlocks, queue, seed "
+        "and makers");
   }
+}
+
+// Throws UsageError for options that mean nothing to a mesh that is improved.
+void check_improve(const Session& session, TriangulateOptions& options) {
+  const delaunay::Options defaults;
+  const delaunay::Options& how = options.how;
+  if (!options.input.path.empty()) {
+    throw UsageError("--improve: the points are those of " + options.improve + "; not " +
+                     options.input.path);
+  }
+  if (how.method != defaults.method || how.location != defaults.location ||
+      how.split != defaults.split || how.order != defaults.order ||
+      how.deadlocks != defaults.deadlocks || how.queue != defaults.queue ||
+      how.seed != defaults.seed || options.makers || options.max_error ||
+      !options.distributed.empty() || options.input.choice.given() || options.input.terrain_rgb ||
+      !options.input.duplicates.empty() || !options.launch.record.empty()) {
+    throw UsageError(
+        "--improve leaves no choice of method, location, split, order, deadlocks, queue, seed, "
+        "makers, max-error, distributed, duplicates, record and of points");
+  }
+  if (is_tiled(session, options)) throw UsageError("--improve: not with several ranks or tiles");
+  if (how.dim > 3) throw UsageError("--improve: meshes are of 2 or 3 dimensions");
+  options.input.path = options.improve;
+  options.input.paths = {options.improve};
+  check_output(options.output, options.input, how.dim);
+  check(session, options.launch);
+  options.how.threads = threads_per_rank(options.launch, 1);
+  check_output_paths(options.output, options.statistics, {options.improve});
 }
 
 // Names in a table, or that which leaves the choice to the program.
@@ -101,11 +131,16 @@ bool is_tiled(const Session& session, const TriangulateOptions& options) {
 }
 
 void check(const Session& session, TriangulateOptions& options) {
-  if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
   const OutputKind output = options.output.kind();
   if (output == OutputKind::none && options.statistics.empty()) {
     throw UsageError("triangulate: -o MESH is missing");
   }
+  if (!options.improve.empty()) return check_improve(session, options);
+  if (!options.criterion.empty()) {
+    throw UsageError("--criterion: only --improve has a criterion of flips");
+  }
+  if (options.input.path.empty()) throw UsageError("triangulate: POINTS is missing");
+  if (is_beyond_space(options)) return check_beyond_space(session, options);
   check_output(options.output, options.input, options.how.dim);
   if (options.max_error && output == OutputKind::folder) {
     throw UsageError("--max-error: a simplified terrain goes to one file");
@@ -137,7 +172,8 @@ void check(const Session& session, TriangulateOptions& options) {
                     : threads_per_rank(options.launch, std::max(1, options.launch.ranks));
   if (options.max_error) {
     require_plain(options);
-    how.threads = 1;
+    // Several threads keep other points, so that they have to be asked for.
+    if (options.launch.threads == 0) how.threads = 1;
   }
   try {
     how = resolve(how);
@@ -156,8 +192,9 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
   add_output_options(command, options.output);
   command
       .add_option("--dim", options.how.dim,
-                  "Dimension: 2, over x and y, where z is kept as height (default), or 3")
-      ->check(one_of({"2", "3"}));
+                  "Dimension: 2, over x and y, where z is kept as height (default), 3, or 4 to 6 "
+                  "from .node to .node and .ele")
+      ->check(one_of({"2", "3", "4", "5", "6"}));
   command.add_option("--method", options.how.method,
                      "Method (--list describes them; default: auto, the fastest of the dimension)");
   command.add_option(
@@ -179,8 +216,17 @@ void add_triangulate_options(CLI::App& command, TriangulateOptions& options) {
   command
       .add_option("--max-error", options.max_error,
                   "Simplify a terrain: keep just enough points for all others to be within this "
-                  "above or below the mesh, in units of z")
+                  "above or below the mesh, in units of z; with --threads above 1 in rounds, which "
+                  "keep some more")
       ->check(non_negative_number());
+  command
+      .add_option("--improve", options.improve,
+                  "Mesh, with its points, to be made Delaunay by flips, in place of POINTS")
+      ->type_name("MESH")
+      ->group(group::kInput);
+  command.add_option("--criterion", options.criterion,
+                     "What --improve flips by: circle (default), or angle in 2D");
+  choose_from(command, "--criterion", names_in(delaunay::criteria()));
   add_launch_options(command, options.launch);
   add_tiles_options(command, options.tiles);
   command

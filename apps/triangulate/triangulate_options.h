@@ -27,7 +27,10 @@ struct TriangulateOptions {
   Launch launch;
   TilesChoice tiles;
   std::string distributed;  // a method of delaunay/distributed.h; empty: tiles
-  bool makers = false;      // go to the mesh
+  std::string improve;      // a mesh, in place of points; empty: none
+  std::string criterion;    // of delaunay/improve.h; empty: circle
+  bool dim_given = false;
+  bool makers = false;  // go to the mesh
   bool list = false;
 };
 

@@ -1,10 +1,8 @@
 // Counts connected components by depth-first search over neighbours with the same creator.
-#include "delaunay/fragments.h"
+#include "delaunay/adjacency.h"
 
 #include <cassert>
 #include <vector>
-
-#include "delaunay/adjacency.h"
 
 namespace delray::delaunay {
 

@@ -161,6 +161,33 @@ TEST(CompareTriangulate, TakesPointsWithAZForPointsInSpaceUnlessTold) {
   }
 }
 
+TEST(CompareTriangulate, ComparesOnEachInput) {
+  const Folder folder;
+  generate(folder, "uniform -n 120 --dim 2 -o uniform.xyz");
+  generate(folder, "gauss -n 130 --dim 2 -o gauss.xyz");
+  const std::string arguments =
+      "delray compare triangulate uniform.xyz gauss.xyz --dim 2 --quick --threads 1,2 --method "
+      "spielman,batch,optimistic";
+  const Ran ran = run(arguments + " --each --stats f.json -o report.html", folder.path());
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json json = Json::parse(folder.read("f.json"));
+  ASSERT_EQ(json["inputs"].size(), 2U);
+  EXPECT_EQ(json["rows"], json["inputs"][0]["rows"]);
+  EXPECT_EQ(json["inputs"][0]["input"]["points"], 120);
+  EXPECT_EQ(json["inputs"][1]["input"]["file"], "gauss.xyz");
+  EXPECT_EQ(json["inputs"][0]["rows"].back()["hash"], hash_of(folder, "uniform.xyz --dim 2"));
+  EXPECT_EQ(json["inputs"][1]["rows"].back()["hash"], hash_of(folder, "gauss.xyz --dim 2"));
+  const std::string page = folder.read("report.html");
+  for (const char* part :
+       {"spielman, efficiency", "gauss.xyz", "and 1 more inputs", "law makes of it",
+        "The queue of the batch method", "optimistic, priorities"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  const Ran as_one = run(arguments + " --stats -", folder.path());
+  EXPECT_EQ(Json::parse(as_one.out)["input"]["points"], 250);
+  EXPECT_EQ(run(arguments + " --each --ranks 2", folder.path()).exit_code, 2);
+}
+
 TEST(CompareTriangulate, LivesWithFewPointsAndFlatOnes) {
   const Folder folder;
   folder.write("three.xyz", "0 0\n1 0\n0 1\n");

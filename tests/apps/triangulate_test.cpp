@@ -162,12 +162,18 @@ TEST(TriangulateCommand, MaxErrorKeepsWhatTheBoundNeeds) {
   EXPECT_EQ(run("delray verify m.ply --points m.ply --canonical", folder.path()).exit_code, 0);
   folder.write("flat.xyz", "0 0\n1 0\n0 1\n");
   for (const std::string arguments :
-       {"p.xyz --max-error 1 --dim 3", "p.xyz --max-error 1 --threads 2",
-        "flat.xyz --max-error 1"}) {
+       {"p.xyz --max-error 1 --dim 3", "p.xyz --max-error 1 --seed 2", "flat.xyz --max-error 1"}) {
     const Ran refused = run("delray triangulate " + arguments + " -o n.ply", folder.path());
     EXPECT_EQ(refused.exit_code, 2) << arguments << refused.err;
   }
   EXPECT_EQ(folder.files().size(), 3U);
+  const Ran rounds =
+      run("delray triangulate p.xyz -o m.ply --max-error 0.5 --threads 2 --stats -", folder.path());
+  ASSERT_EQ(rounds.exit_code, 0) << rounds.err;
+  const json by_rounds = json::parse(rounds.out);
+  EXPECT_LE(by_rounds["result"]["largest_error"], 0.5);
+  EXPECT_EQ(by_rounds["options"]["threads"], 2);
+  EXPECT_EQ(run("delray verify m.ply --points p.xyz --canonical", folder.path()).exit_code, 0);
 }
 
 TEST(VerifyCommand, FindsAWrongMesh) {

@@ -1,5 +1,5 @@
 // Who made which simplex, and what lies together.
-#include "delaunay/fragments.h"
+#include "delaunay/adjacency.h"
 
 #include <gtest/gtest.h>
 

@@ -20,7 +20,7 @@
 
 #include "apps/compare/triangulate/makers_picture.h"
 #include "apps/compare/verdict.h"
-#include "delaunay/fragments.h"
+#include "delaunay/adjacency.h"
 #include "delaunay/methods.h"
 #include "delaunay/simplify_terrain.h"
 #include "parallel/arena.h"
@@ -38,8 +38,10 @@ struct Repetitions {
   double seconds;
 };
 constexpr Repetitions kUsual = {3, 9, 120}, kQuick = {1, 3, 25};
-// The method whose splits are compared, as in the report.
+// The method whose splits and deadlock strategies are compared, as in the report.
 constexpr std::string_view kOfSplits = "optimistic";
+// Capacities of queues that are compared, in points, as in the report.
+constexpr std::size_t kQueues[] = {16, 256, 4096};
 // Above it, methods of quadratic time have to be asked for by name.
 constexpr std::size_t kMostForQuadratic = 20'000;  // points
 // The report's sequential algorithm.
@@ -89,8 +91,16 @@ std::vector<delaunay::Options> ways(const TriangulateRequest& request, std::size
       how.threads = count;
       result.push_back(resolve(how));
     }
-    if (method.name != kOfSplits) continue;
     how.threads = shown_threads;
+    for (const std::size_t queue : kQueues) {
+      if (!method.queued || shown_threads < 2) break;
+      how.queue = queue;
+      result.push_back(resolve(how));
+    }
+    if (method.name != kOfSplits) continue;
+    how.deadlocks = method.deadlocks.back();
+    result.push_back(resolve(how));
+    how.deadlocks = method.deadlocks.front();
     for (std::size_t i = 1; i < method.splits.size(); ++i) {
       how.split = method.splits[i];
       result.push_back(resolve(how));
@@ -255,7 +265,17 @@ std::string name_of(const delaunay::Options& how) {
   std::string name = how.method;
   if (how.location != plain.location) name += ", " + how.location;
   if (how.split != plain.split) name += ", " + how.split;
+  if (how.deadlocks != plain.deadlocks) name += ", " + how.deadlocks;
+  if (how.queue != plain.queue) name += fmt::format(", queue of {}", how.queue);
   return name;
+}
+
+bool is_plain(const delaunay::Options& how) {
+  delaunay::Options plain;
+  plain.dim = how.dim;
+  plain.method = how.method;
+  plain = resolve(plain);
+  return how.split == plain.split && how.deadlocks == plain.deadlocks && how.queue == plain.queue;
 }
 
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row) {

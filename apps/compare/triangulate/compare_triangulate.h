@@ -26,6 +26,7 @@ struct TriangulateRequest : ComparisonOptions {
   std::vector<int> ranks;                // ascending; with any, distributed methods are compared
   std::vector<std::string> distributed;  // those; empty: all of the dimension
   std::uint64_t seed = 1;                // of the random subsets and of the methods
+  bool each = false;                     // each of the inputs is compared by itself
 };
 
 // 1, 2, 4 and 8 as far as there are cores, the cores, and with fewer than 8 of them twice as many.
@@ -69,6 +70,8 @@ struct TriangulateComparison {
 
 // The method, and what is not its default: "optimistic, slabs".
 std::string name_of(const delaunay::Options& how);
+// Whether split, queue and deadlock strategy are those that the method takes without being told.
+bool is_plain(const delaunay::Options& how);
 
 // Its time with one thread over its time; 0 where that was not measured.
 double speed_up(const std::vector<ComparedTriangulation>& rows, const ComparedTriangulation& row);

@@ -1,4 +1,6 @@
 // delray compare triangulate: the command line.
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -7,8 +9,7 @@
 #include "apps/compare/triangulate/compare_triangulate.h"
 #include "apps/compare/triangulate/distributed_figures.h"
 #include "apps/compare/triangulate/distributed_report.h"
-#include "apps/compare/triangulate/triangulate_figures.h"
-#include "apps/compare/triangulate/triangulate_report.h"
+#include "apps/compare/triangulate/inputs_report.h"
 #include "apps/families.h"
 #include "apps/input/point_parts_input.h"
 #include "apps/options/help.h"
@@ -96,18 +97,36 @@ int run(Session& session, TriangulateRequest request) {
   request.threads.erase(std::unique(request.threads.begin(), request.threads.end()),
                         request.threads.end());
   if (request.dim > 0) check_methods(request, request.dim);
-  int dim = request.dim;
-  const delaunay::PointCloud points = load(request.input, dim);
-  if (!request.ranks.empty()) return run_distributed(session, request, points, dim);
-  check_methods(request, dim);
+  if (request.each && !request.ranks.empty())
+    throw UsageError("compare triangulate: --each compares methods of threads, not --ranks");
+  const auto inputs = std::make_shared<std::vector<ComparedInput>>();
+  std::vector<delaunay::PointCloud> points;
+  for (const std::string& path : request.each ? request.input.paths : std::vector{std::string()}) {
+    inputs->push_back({request, {}});
+    PointInput& input = inputs->back().request.input;
+    if (request.each) {
+      input.paths = {path};
+      input.name_paths();
+    }
+    int& dim = inputs->back().comparison.dim = request.dim;
+    points.push_back(load(input, dim));
+    check_methods(request, dim);
+  }
+  if (!request.ranks.empty())
+    return run_distributed(session, request, points[0], inputs->front().comparison.dim);
   ProgressBar bar(session, "compare");
-  const auto comparison = std::make_shared<const TriangulateComparison>(
-      compare_triangulate(request, points, dim, session.progress));
+  for (std::size_t i = 0; i < inputs->size(); ++i) {
+    ComparedInput& one = (*inputs)[i];
+    if (request.each) spdlog::info("{}", one.request.input.path);
+    const int dim = one.comparison.dim;
+    one.comparison = compare_triangulate(one.request, points[i], dim, session.progress);
+    if (one.comparison.unfinished) inputs->resize(i + 1);
+  }
   bar.end();
   return report_results(
       session, request,
-      {triangulate_table(*comparison), triangulate_statistics(request, *comparison),
-       comparison->unfinished, [&] { return triangulate_report(session, request, *comparison); }});
+      {inputs_table(*inputs), inputs_statistics(*inputs), inputs->back().comparison.unfinished,
+       [&] { return report::page(inputs_page(session, *inputs)); }});
 }
 
 }  // namespace
@@ -125,6 +144,9 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
           "Dimension: 2, over x and y, where z is kept as height, or 3 (default: 3 for points with "
           "a z, but 2 for LAS files and elevation pictures, which are terrain)")
       ->check(one_of({"2", "3"}));
+  command->add_flag(
+      "--each", request->each,
+      "Compare on each of POINTS by itself, on one page, instead of on all as one input");
   command
       ->add_option("--threads", request->threads,
                    "Numbers of threads to compare, separated by commas (default: 1,2,4,8 as far as "
@@ -162,6 +184,7 @@ void add_compare_triangulate(CLI::App& compare, Session& session) {
   add_common_options(*command, session,
                      "compare triangulate points.las -o report.html\n"
                      "compare triangulate points.las --ranks 1,4,16,64 -o ranks.html\n"
+                     "compare triangulate uniform.xyz gauss.xyz --each -o inputs.html\n"
                      "compare triangulate model.obj --dim 3 --threads 1,2,4,8 --quick --stats -");
   command->callback([&session, request] {
     session.run = [&session, request] { return run(session, *request); };

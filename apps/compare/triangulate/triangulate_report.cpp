@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "apps/compare/triangulate/scaling_laws.h"
 #include "apps/compare/triangulate/triangulate_answer.h"
 #include "apps/compare/triangulate/triangulate_figures.h"
 #include "apps/compare/triangulate/triangulate_rows.h"
@@ -40,13 +41,9 @@ int threads_of_own(const TriangulateComparison& comparison) {
     if (count <= comparison.cores) result = count;
   return result;
 }
-// Not one of the splits that are there beside the one that a method takes without being told.
-bool has_own_split(const Row& row) {
-  delaunay::Options plain;
-  plain.dim = row.how.dim;
-  plain.method = row.how.method;
-  return row.how.split == resolve(plain).split;
-}
+// Not one of those that are there to be compared with the way that a method takes without being
+// told.
+bool is_plain_row(const Row& row) { return is_plain(row.how); }
 
 using TriangulationPoint = std::function<std::optional<ChartPoint>(const Row&)>;
 
@@ -98,7 +95,7 @@ Html over_points(const Rows& rows, const Shown& shown, const TriangulationPoint&
 }
 
 Html times(const TriangulateComparison& comparison) {
-  const Rows rows = rows_of(comparison.rows, has_own_split);
+  const Rows rows = rows_of(comparison.rows, is_plain_row);
   const std::size_t points = most_points(rows);
   const int threads = threads_of_own(comparison);
   return in_columns(
@@ -120,7 +117,7 @@ Html times(const TriangulateComparison& comparison) {
 }
 
 Html speed_ups(const TriangulateComparison& comparison) {
-  const Rows all = rows_of(comparison.rows, has_own_split);
+  const Rows all = rows_of(comparison.rows, is_plain_row);
   const std::size_t points = most_points(all);
   const Rows several = rows_of(all, [](const Row& row) { return !is_alone(row); });
   const Rows most = rows_of(several, [&](const Row& row) { return row.points == points; });
@@ -162,10 +159,35 @@ Html speed_ups(const TriangulateComparison& comparison) {
   }
   std::erase(charts, Html());
   if (charts.empty()) return paragraph("One number of threads tells nothing about speed-up.");
-  return in_columns(charts) + paragraph(
-                                  "Of measured times; the upright lines are what the spread of the "
-                                  "repetitions makes of them." +
-                                  crowded_text(comparison));
+  return in_columns(charts) +
+         paragraph(
+             "Of measured times; the upright lines are what the spread of the repetitions makes of "
+             "them." +
+             crowded_text(comparison)) +
+         scaling_laws(all, most);
+}
+
+// Capacities of queues against time (the report's Figure 7.6); empty where there are none.
+Html queues(const TriangulateComparison& comparison) {
+  Rows rows = rows_of(comparison.rows, [](const Row& row) { return row.how.queue > 0; });
+  std::ranges::stable_sort(rows, {}, [](const Row& row) { return row.how.queue; });
+  if (rows.empty()) return {};
+  return heading("The queue of the batch method") +
+         chart_of({"Time against the capacity of the queue, " + threads_text(rows[0].how.threads),
+                   "time, ms"},
+                  "points in the queue",
+                  series_by(
+                      rows,
+                      [](const Row& row) {
+                        return fmt::format("{}, {} points", row.how.method, row.points);
+                      },
+                      look, Source::measured,
+                      [](const Row& row) -> std::optional<ChartPoint> {
+                        return time_at(static_cast<double>(row.how.queue), row);
+                      })) +
+         paragraph(
+             "Threads that locate points wait while the queue is full, and the one that inserts "
+             "them while it is empty. Without being told the queue goes by the number of points.");
 }
 
 StackedBar phases_of(const std::string& name, const Row& row) {
@@ -207,7 +229,7 @@ Html phases(const TriangulateComparison& comparison) {
     }
     result.push_back(stacked_bars(chart));
   }
-  return in_columns(result) +
+  return in_columns(result) + queues(comparison) +
          paragraph(
              "Seconds of one run each, summed over threads; who waits for a lock waits in "
              "the phase that needs it. divide-and-conquer does everything but sorting and "
@@ -425,8 +447,8 @@ report::Page page_of_triangulations(const Session& session, const TriangulateReq
   return result;
 }
 
-std::string triangulate_report(const Session& session, const TriangulateRequest& request,
-                               const TriangulateComparison& comparison) {
+report::Page triangulate_page(const Session& session, const TriangulateRequest& request,
+                              const TriangulateComparison& comparison) {
   Page result = page_of_triangulations(
       session, request, fmt::format(", {} points in {}D", comparison.points, comparison.dim));
   result.unfinished = comparison.unfinished;
@@ -439,7 +461,7 @@ std::string triangulate_report(const Session& session, const TriangulateRequest&
   result.tabs.push_back({"History", history(comparison)});
   result.tabs.push_back({"All figures", all_rows(comparison)});
   result.data = triangulate_statistics(request, comparison);
-  return page(result);
+  return result;
 }
 
 }  // namespace delray::apps

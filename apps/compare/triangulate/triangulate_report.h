@@ -13,7 +13,7 @@ namespace delray::apps {
 report::Page page_of_triangulations(const Session& session, const TriangulateRequest& request,
                                     const std::string& what);
 
-std::string triangulate_report(const Session& session, const TriangulateRequest& request,
-                               const TriangulateComparison& comparison);
+report::Page triangulate_page(const Session& session, const TriangulateRequest& request,
+                              const TriangulateComparison& comparison);
 
 }  // namespace delray::apps
