@@ -10,6 +10,7 @@ void add_generate(CLI::App& program, Session& session);
 void add_triangulate(CLI::App& program, Session& session);
 void add_verify(CLI::App& program, Session& session);
 void add_render(CLI::App& program, Session& session);
+void add_view(CLI::App& program, Session& session);
 void add_pack(CLI::App& program, Session& session);
 void add_compose(CLI::App& program, Session& session);
 void add_compare(CLI::App& program, Session& session);

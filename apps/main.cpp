@@ -106,6 +106,7 @@ int run(int argc, char** argv) {
   add_triangulate(program, session);
   add_verify(program, session);
   add_render(program, session);
+  add_view(program, session);
   add_pack(program, session);
   add_compose(program, session);
   add_compare(program, session);

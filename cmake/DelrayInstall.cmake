@@ -20,7 +20,7 @@ endforeach()
 # What libraries link besides each other: the target, the package that has it, its flags for pkg-config.
 set(packages
     "Threads::Threads,Threads,-pthread" "TBB::tbb,TBB,-ltbb" "glm::glm,glm," "hwy::hwy,hwy,-lhwy"
-    "fmt::fmt,fmt,-lfmt" "PNG::PNG,PNG,-lpng" "draco::draco,draco,-ldraco"
+    "fmt::fmt,fmt,-lfmt" "PNG::PNG,PNG,-lpng" "JPEG::JPEG,JPEG,-ljpeg" "draco::draco,draco,-ldraco"
     "nlohmann_json::nlohmann_json,nlohmann_json," "meshoptimizer::meshoptimizer,meshoptimizer,-lmeshoptimizer" "MPI::MPI_C,MPI," "Boost::context,Boost,-lboost_context"
     "embree,embree,-lembree${embree_VERSION_MAJOR}")
 foreach(package IN LISTS packages)

@@ -105,6 +105,10 @@ void write_bytes(const std::filesystem::path& path, std::span<const std::byte> b
 
 }  // namespace
 
+std::vector<std::byte> encode_png(const Image8& image, std::span<const Attribute> attributes) {
+  return encode_png(image.width, image.height, straight(image), attributes);
+}
+
 struct PictureRows::File {
   files::AtomicFile target;
   bool is_exr;
@@ -211,8 +215,7 @@ void write_image(const std::filesystem::path& path, const Image8& image,
   const std::string suffix = picture_suffix(path);
   if (suffix == ".exr") return write_image(path, to_float(image), options);
   if (suffix == ".png") {
-    return write_bytes(path,
-                       encode_png(image.width, image.height, straight(image), options.attributes));
+    return write_bytes(path, encode_png(image, options.attributes));
   }
   if (suffix == ".jpg" || suffix == ".jpeg") {
     return write_bytes(path, codec().encode_jpeg(path.string(), image, options));

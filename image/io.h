@@ -114,5 +114,7 @@ void write_image(const std::filesystem::path& path, const ImageF& image,
 // REQUIRES: texels.size() == width * height, both >= 1.
 std::vector<std::byte> encode_png(int width, int height, std::span<const Rgba8> texels,
                                   std::span<const Attribute> attributes = {});
+// The PNG that write_image would write, in memory.
+std::vector<std::byte> encode_png(const Image8& image, std::span<const Attribute> attributes = {});
 
 }  // namespace delray::image

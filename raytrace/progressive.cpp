@@ -28,6 +28,9 @@ using Clock = std::chrono::steady_clock;
 // Samples of features: as many as smooth their edges; more where a lens blurs them.
 constexpr int kFeatureSamples = 16, kLensSamples = 16;
 
+// A pass in parts begins with such a part of it, as nobody knows how long it will take.
+constexpr double kFirstParts = 64;
+
 // A pass, which rank 0 decides on and broadcasts. No samples: stop.
 struct Pass {
   int first = 0, samples = 0;
@@ -68,6 +71,31 @@ Pass next_pass(const Film& film, const ProgressiveOptions& options) {
   }
   if (any) pass.samples = std::min(chunk_size(pass.first), options.frame.samples - pass.first);
   return pass;
+}
+
+bool has_cells(const std::vector<std::uint8_t>& cells) {
+  return std::ranges::find(cells, 1) != cells.end();
+}
+
+// What is left of a pass, whose cells have as many samples as each other.
+Pass rest_of_pass(const Film& film, const ProgressiveOptions& options,
+                  const std::vector<std::uint8_t>& cells_left) {
+  Pass pass;
+  pass.cells = cells_left;
+  const auto cell = std::ranges::find(cells_left, 1) - cells_left.begin();
+  pass.first = static_cast<int>(film.samples()[static_cast<std::size_t>(cell)]);
+  pass.samples = std::min(chunk_size(pass.first), options.frame.samples - pass.first);
+  return pass;
+}
+
+// Leaves the first cells of a pass, of about so many samples in all but at least one cell.
+void shorten(const Film& film, double samples, Pass& pass) {
+  double taken = 0;
+  for (std::size_t c = 0; c < pass.cells.size(); ++c) {
+    if (pass.cells[c] == 0) continue;
+    if (taken > 0 && taken >= samples) pass.cells[c] = 0;
+    taken += static_cast<double>(film.cell(c).area()) * pass.samples;
+  }
 }
 
 std::uint64_t work(const Film& film, const Pass& pass) {
@@ -158,6 +186,29 @@ struct PassTime {
   }
 };
 
+// The next pass, or part of one, on rank 0; without samples where there is to be none.
+Pass choose_pass(const ProgressiveOptions& options, double elapsed, const PassTime& last,
+                 ProgressiveResult& result) {
+  const Film& film = result.film;
+  const bool is_rest = has_cells(result.cells_left);
+  Pass pass = is_rest ? rest_of_pass(film, options, result.cells_left) : next_pass(film, options);
+  if (pass.samples == 0) return pass;
+  result.out_of_time =
+      last.work > 0 && elapsed + last.seconds_for(work(film, pass)) > options.seconds;
+  result.stopped = !result.out_of_time && options.goes_on && !options.goes_on();
+  if (result.out_of_time || result.stopped) {
+    pass.samples = 0;
+    return pass;
+  }
+  if (std::isfinite(options.part_seconds)) {
+    if (!is_rest) result.cells_left = pass.cells;
+    const double samples = last.work > 0 ? last.work_in(options.part_seconds)
+                                         : static_cast<double>(work(film, pass)) / kFirstParts;
+    shorten(film, samples, pass);
+  }
+  return pass;
+}
+
 // Shows how much of a rendering in several passes is done. `left`: the work from this pass on.
 void show_progress(const Film& film, bool first_pass, double left, parallel::Progress& whole) {
   if (first_pass) {
@@ -185,7 +236,7 @@ bool one_pass_does(const ProgressiveOptions& options) {
   const int samples = options.frame.samples;
   return samples <= chunk_size(0) && std::has_single_bit(static_cast<unsigned>(samples)) &&
          !(options.noise > 0.0F) && !options.film && !options.features && !options.resume &&
-         !options.after_pass && !options.on_interruption;
+         !options.after_pass && !options.on_interruption && !options.goes_on;
 }
 
 }  // namespace
@@ -237,7 +288,10 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
     result.passes = 1;
     return result;
   }
-  if (root) result.film = options.resume != nullptr ? *options.resume : Film(film_window);
+  if (root) {
+    result.film = options.resume != nullptr ? *options.resume : Film(film_window);
+    result.cells_left.assign(options.resume_cells.begin(), options.resume_cells.end());
+  }
   Film& film = result.film;
   parallel::Progress* const whole = options.frame.progress;
   parallel::Progress part(whole);
@@ -250,12 +304,7 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
     while (true) {
       Pass pass;
       if (root) {
-        pass = next_pass(film, options);
-        if (pass.samples > 0 && last.work > 0 &&
-            elapsed() + last.seconds_for(work(film, pass)) > options.seconds) {
-          pass.samples = 0;
-          result.out_of_time = true;
-        }
+        pass = choose_pass(options, elapsed(), last, result);
       }
       pass = broadcast(communicator, std::move(pass));
       if (pass.samples == 0) {
@@ -280,7 +329,9 @@ ProgressiveResult render_progressively(comm::Communicator& communicator, Rendere
         film.add(traced.image, pass.samples, pass.cells);
         renderer.recycle(std::move(traced.image));
         add_costs(traced.tile_costs, {film_window, side, side}, pass, film);
-        if (options.after_pass) options.after_pass(film);
+        for (std::size_t c = 0; c < result.cells_left.size(); ++c)
+          if (pass.cells[c] != 0) result.cells_left[c] = 0;
+        if (!has_cells(result.cells_left) && options.after_pass) options.after_pass(film);
         last.seconds = elapsed() - before;
         if (several) whole->advance(last.work);
       }

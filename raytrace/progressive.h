@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "raytrace/features.h"
 #include "raytrace/film.h"
@@ -25,6 +27,11 @@ struct ProgressiveOptions {
   // No pass begins that would not end within so many seconds of the call, but for the first.
   double seconds = std::numeric_limits<double>::infinity();
 
+  // A pass is rendered in parts of about so many seconds (cells, row by row). Before each of them
+  // `goes_on`, on rank 0, may end the call.
+  double part_seconds = std::numeric_limits<double>::infinity();
+  std::function<bool()> goes_on;
+
   bool features = false;
   bool film =
       true;  // whether the result is to have one; a call of a single pass is quicker without
@@ -32,6 +39,7 @@ struct ProgressiveOptions {
   // On rank 0, where there may be a film of an earlier call with the same options and scene, which
   // is gone on from: with the same result as if nothing had happened.
   const Film* resume = nullptr;
+  std::span<const std::uint8_t> resume_cells;        // cells_left of that call
   std::function<void(const Film&)> after_pass;       // on rank 0
   std::function<void(const Film&)> on_interruption;  // on rank 0, before anything is thrown
 };
@@ -45,6 +53,10 @@ struct ProgressiveResult {
   Statistics statistics;  // of all passes together
   int passes = 0;         // of this call
   bool out_of_time = false;
+  bool stopped = false;  // by goes_on
+  // Of a pass that was cut short, by cell: 1 if its part of the pass is missing; empty where
+  // none was.
+  std::vector<std::uint8_t> cells_left;
 };
 
 // The smallest window around `window`, a part of `frame`, that can be rendered by itself with the

@@ -314,7 +314,7 @@ void build(const RenderRequest& request, Stopwatch& watch, Prepared& prepared) {
     scenes::set_radii_in_units(prepared.scene, prepared.camera, request.height);
   const bool is_lit = prepared.pack && prepared.pack->lit_by_emission();
   if (!is_lit || !request.light.light.empty())
-    complete_light(request.light, prepared.camera, prepared.scene);
+    prepared.lit_by_default = complete_light(request.light, prepared.camera, prepared.scene);
   warn_of_glow(request, prepared);
   prepared.load_seconds = watch.lap();
   require_memory_for_textures(request, prepared.scene);
@@ -366,6 +366,28 @@ scenes::FarthestPoints of_all_ranks(comm::Communicator& communicator,
 
 }  // namespace
 
+void add_tracer(const RenderRequest& request, Prepared& prepared) {
+  require_memory_for_embree(request, prepared.scene);
+  // Rays want radii in units; what the rasterizer draws stays as it is.
+  std::vector<scenes::Shape> shapes;
+  for (const scenes::Mesh& mesh : prepared.scene.meshes) shapes.push_back(mesh.shape);
+  scenes::set_radii_in_units(prepared.scene, prepared.camera, request.height);
+  prepared.tracer = std::make_unique<raytrace::Tracer>(
+      raytrace::make_tracer(prepared.scene, *prepared.shader, request.raytrace.build));
+  for (std::size_t i = 0; i < shapes.size(); ++i) prepared.scene.meshes[i].shape = shapes[i];
+}
+
+void follow_camera(const RenderRequest& request, const scenes::Camera& camera, Prepared& prepared) {
+  if (!prepared.lit_by_default) return;
+  scenes::Scene& scene = prepared.scene;
+  scene.lights.pop_back();
+  scenes::add_default_light(scene, camera, static_cast<float>(request.light.strength));
+  prepared.shader->lights = scene.lights;
+  scenes::Movement movement;
+  movement.lights = true;
+  if (prepared.tracer) raytrace::follow(*prepared.tracer, scene, movement);
+}
+
 bool wants_floats(const RenderRequest& request) {
   return image::picture_suffix(request.output) == ".exr";
 }
@@ -378,11 +400,10 @@ std::uint64_t picture_bytes_per_pixel(const RenderRequest& request, int ranks_he
   return bytes_per_pixel(request) + others * layer;
 }
 
-std::shared_ptr<const Prepared> prepare(const RenderRequest& request,
-                                        parallel::Progress* progress) {
+std::shared_ptr<Prepared> prepare(const RenderRequest& request, parallel::Progress* progress) {
   Stopwatch watch;
   const bool in_parts = comes_in_parts(request) && request.camera.view.empty();
-  const std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
+  std::shared_ptr<Prepared> prepared = load(request, in_parts, progress);
   choose_cameras(request, seen_of(request, *prepared), *prepared);
   build(request, watch, *prepared);
   return prepared;

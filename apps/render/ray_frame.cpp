@@ -116,12 +116,29 @@ Extras extras_of(const raytrace::ProgressiveResult& result, const RenderRequest&
   return extras;
 }
 
+// Has every pass shown, and the rendering end where nobody wants the next part of one.
+void grow(Growth& growth, const RenderRequest& request, raytrace::ProgressiveOptions& options) {
+  constexpr double kPart = 0.03;  // seconds: a frame of a picture that moves
+  if (!growth.film.pixels().empty()) options.resume = &growth.film;
+  options.resume_cells = growth.cells_left;
+  options.film = true;
+  options.part_seconds = kPart;
+  options.goes_on = growth.goes_on;
+  options.after_pass = [&growth, window = request.window](const raytrace::Film& film) {
+    const auto pixels = static_cast<double>(std::max<std::size_t>(1, film.pixels().size()));
+    growth.show(raytrace::cut(raytrace::mean(film), film.window(), window),
+                static_cast<double>(film.total_samples()) / pixels);
+  };
+}
+
 }  // namespace
 
 RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& renderer,
                      const Prepared& prepared, const RenderRequest& request,
                      const scenes::Camera& camera, const raytrace::RenderOptions& frame,
-                     const Preview& preview) {
+                     const Onlookers& onlookers) {
+  const Preview& preview = onlookers.preview;
+  Growth* const growth = onlookers.growth;
   const SamplingOptions& sampling = request.sampling;
   const bool root = communicator.rank() == 0;
   raytrace::ProgressiveOptions options;
@@ -149,6 +166,7 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   };
   Every preview_due(sampling.preview_every > 0.0 && preview ? sampling.preview_every : -1.0);
   Every checkpoint_due(sampling.checkpoint.empty() ? -1.0 : sampling.checkpoint_every);
+  if (growth != nullptr) grow(*growth, request, options);
   if (!sampling.checkpoint.empty() || sampling.preview_every > 0.0) {
     options.after_pass = [&](const raytrace::Film& film) {
       if (checkpoint_due.due()) save(film);
@@ -171,6 +189,14 @@ RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& rende
   done.statistics = std::move(result.statistics);
   done.shown = std::move(result.shown);
   if (!root) return done;
+  if (growth != nullptr) {
+    growth->is_done = !result.stopped;
+    growth->cells_left = std::move(result.cells_left);
+    if (result.stopped) {
+      growth->film = std::move(result.film);
+      return done;
+    }
+  }
   if (!sampling.checkpoint.empty()) save(result.film);
   done.extras = extras_of(result, request, frame.samples);
   done.picture = std::move(result.image);

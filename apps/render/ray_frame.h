@@ -12,6 +12,12 @@ namespace delray::apps {
 // Shows a picture that is not yet done, on rank 0.
 using Preview = std::function<void(Picture&& picture)>;
 
+// What looks at a picture while it is made; both may be left out.
+struct Onlookers {
+  Preview preview;           // as often as the options want it
+  Growth* growth = nullptr;  // after every pass
+};
+
 // On rank 0; elsewhere all but the statistics and the displays is empty.
 struct RayFrame {
   image::ImageF picture;             // of the window; of size 0 where there are displays
@@ -24,6 +30,6 @@ struct RayFrame {
 RayFrame render_rays(comm::Communicator& communicator, raytrace::Renderer& renderer,
                      const Prepared& prepared, const RenderRequest& request,
                      const scenes::Camera& camera, const raytrace::RenderOptions& frame,
-                     const Preview& preview);
+                     const Onlookers& onlookers);
 
 }  // namespace delray::apps

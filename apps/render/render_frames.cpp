@@ -204,8 +204,8 @@ RayFrame FrameRenderer::trace(comm::Communicator& communicator, const scenes::Ca
     traced = comm::broadcast(communicator, 0, std::move(traced));
     options.part.pixels = traced.as<std::uint8_t>();
   }
-  RayFrame done =
-      render_rays(communicator, *raytrace_, prepared_, request, camera, options, preview_);
+  RayFrame done = render_rays(communicator, *raytrace_, prepared_, request, camera, options,
+                              {preview_, growth_});
   if (keeps) cache_->complete(view, done.picture);
   return done;
 }

@@ -14,6 +14,7 @@
 #include "comm/communicator.h"
 #include "image/io.h"
 #include "packs/pack_reader.h"
+#include "raytrace/film.h"
 #include "raytrace/render_cache.h"
 #include "scenes/scene.h"
 #include "shading/shader.h"
@@ -42,6 +43,17 @@ struct Frame {
 
 struct RayFrame;
 
+// A ray traced picture that grows while somebody looks at it: pass by pass, until it is done or
+// something else is wanted. It goes on from where it was left. Of rank 0, but for goes_on and show
+// not being empty.
+struct Growth {
+  std::function<bool()> goes_on;  // asked some 30 times a second; false: ends
+  std::function<void(Picture&& picture, double samples)> show;  // samples per pixel, on average
+  bool is_done = false;
+  raytrace::Film film;                   // of a picture that was left
+  std::vector<std::uint8_t> cells_left;  // of its last pass
+};
+
 // Either engine, ready for any number of frames. One per rank; refers to what it is given.
 class FrameRenderer {
  public:
@@ -53,6 +65,9 @@ class FrameRenderer {
   double build_seconds() const { return build_seconds_; }
   // Is given pictures that are not yet done, as often as the options want it.
   void set_preview(std::function<void(Picture&&)> preview) { preview_ = std::move(preview); }
+  // Ray traced frames grow, from the next one on; null: they do not. A frame that is left before it
+  // is done has a picture of size 0.
+  void set_growth(Growth* growth) { growth_ = growth; }
   // Collective: the scene as it is in a frame of an animation, and where it is seen from.
   struct Posed {
     scenes::Camera camera;
@@ -86,6 +101,7 @@ class FrameRenderer {
   const RenderRequest& request_;
   parallel::Progress* progress_;
   std::function<void(Picture&&)> preview_;
+  Growth* growth_ = nullptr;
   std::optional<raster::Renderer> raster_;       // one of the two
   std::optional<raytrace::SharedScene> shared_;  // of the next, with some --data
   std::optional<raytrace::Renderer> raytrace_;

@@ -313,5 +313,37 @@ TEST(Progressive, AWallShowsThePicture) {
   }
 }
 
+// Left between any two parts of passes and gone on from, a picture is the one that was never left.
+TEST(Progressive, GoesOnFromWhereItWasLeft) {
+  for (const float noise : {0.0F, 0.02F}) {
+    ProgressiveOptions whole = balls_of(24);
+    whole.noise = noise;
+    const ProgressiveResult expected = render_by(1, whole);
+    for (const int ranks : {1, 3}) {
+      Film film;
+      std::vector<std::uint8_t> cells_left;
+      int calls = 0, passes = 0;
+      ProgressiveResult result;
+      do {
+        ProgressiveOptions part = whole;
+        part.part_seconds = 1e-9;  // a cell at a time
+        int parts = 0;
+        part.goes_on = [&] { return ++parts <= 7; };
+        part.after_pass = [&](const Film&) { ++passes; };
+        if (calls > 0) part.resume = &film;
+        part.resume_cells = cells_left;
+        result = render_by(ranks, part);
+        film = result.film;
+        cells_left = result.cells_left;
+        ++calls;
+      } while (result.stopped);
+      EXPECT_GT(calls, 3);
+      EXPECT_EQ(passes, expected.passes);
+      EXPECT_FALSE(result.out_of_time);
+      expect_same(result.image, expected.image);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace delray::raytrace

@@ -98,11 +98,12 @@ void load_light(const LightOptions& options, const files::MemoryBudget& memory,
   scene.textures.push_back(texture_of(picture, options));
 }
 
-void complete_light(const LightOptions& options, const scenes::Camera& camera,
+bool complete_light(const LightOptions& options, const scenes::Camera& camera,
                     scenes::Scene& scene) {
   const bool wanted =
       options.light == "default" || (options.light.empty() && !scenes::has_light(scene));
   if (wanted) scenes::add_default_light(scene, camera, static_cast<float>(options.strength));
+  return wanted;
 }
 
 }  // namespace delray::apps

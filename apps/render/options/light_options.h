@@ -32,8 +32,8 @@ void load_light(const LightOptions& options, const files::MemoryBudget& memory,
                 scenes::Scene& scene);
 
 // Adds the default light where the options want it, or leave it open and nothing else lights the
-// scene.
-void complete_light(const LightOptions& options, const scenes::Camera& camera,
+// scene. Returns whether it has.
+bool complete_light(const LightOptions& options, const scenes::Camera& camera,
                     scenes::Scene& scene);
 
 }  // namespace delray::apps

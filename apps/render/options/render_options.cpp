@@ -149,6 +149,14 @@ void add_options(std::initializer_list<std::string_view> names, CLI::App& comman
   }
 }
 
+std::map<std::string, OptionState> option_states(const CLI::App& command, RenderRequest request) {
+  complete(command, request);
+  std::map<std::string, OptionState> states;
+  for (const RenderOption& option : all_options())
+    states[option.flag()] = {option.value(request), option.why_idle(request)};
+  return states;
+}
+
 Json chosen_options(const RenderRequest& request) {
   Json chosen;
   for (const RenderOption& option : all_options()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,6 +85,14 @@ void add_render_options(CLI::App& command, RenderRequest& request);
 // Some of them, for commands that have no others.
 void add_options(std::initializer_list<std::string_view> names, CLI::App& command,
                  RenderRequest& request);
+
+// An option beside the others of a request.
+struct OptionState {
+  Json value;            // that it has, given or not
+  std::string why_idle;  // why it changes nothing; empty: it does
+};
+// By long name, of those that are rows. `request` is as the command line has set it.
+std::map<std::string, OptionState> option_states(const CLI::App& command, RenderRequest request);
 
 // The options that were chosen, by their names in statistics: those that the engine and the
 // strategy look at.

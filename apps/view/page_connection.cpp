@@ -1,0 +1,149 @@
+// The page's half of the connection: frames in, cameras out.
+#include "apps/view/page.h"
+
+namespace delray::apps::view::internal {
+
+const char* const kConnection = R"js(
+let socket = null, retry = 500, shown = 0, number = 0, isMoving = false, isChanged = false, quiet = 0;
+let lastFile = null, lastHeader = null;
+const own = new Map();  // options of this page alone, as it has set them
+const recent = [];      // times of frames that move
+const drawn = canvas.getContext('2d');
+
+const say = message => {
+  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+};
+
+let noteTimer = 0;
+const note = (text, good = false) => {
+  const box = element('note');
+  box.textContent = text;
+  box.className = text ? 'shown' + (good ? ' good' : '') : '';
+  clearTimeout(noteTimer);
+  noteTimer = setTimeout(() => { box.className = ''; }, good ? 3000 : 9000);
+};
+const wait = (text, done = 0, total = 0) => {
+  element('waiting').classList.toggle('hidden', !text);
+  if (!text) return;
+  element('waitingtext').textContent = text;
+  const bar = element('progress');
+  if (total > 0) { bar.max = total; bar.value = Math.min(done, total); } else bar.removeAttribute('value');
+};
+
+const size = () => {
+  const dense = window.devicePixelRatio || 1, side = x => Math.max(1, Math.min(8192, Math.round(x * dense)));
+  return {width: side(canvas.clientWidth), height: side(canvas.clientHeight)};
+};
+
+const sendCamera = () => {
+  if (!camera) return;
+  say({type: 'camera', number: ++number, moving: isMoving, eye: camera.eye, at: camera.at, up: camera.up,
+       fov: camera.fov, height: camera.height});
+};
+// At most once for each picture that the screen shows.
+const changed = () => {
+  drawOverlay();
+  if (isChanged) return;
+  isChanged = true;
+  requestAnimationFrame(() => { isChanged = false; sendCamera(); });
+};
+// A gesture goes on, or has ended: only then better pictures are worth while.
+const moving = () => { isMoving = true; clearTimeout(quiet); };
+const rested = (after = 0) => {
+  clearTimeout(quiet);
+  quiet = setTimeout(() => { isMoving = false; sendCamera(); }, after);
+};
+const movedOnce = () => { moving(); changed(); rested(160); };
+
+const watch = () => say({type: 'watch', visible: !document.hidden, figures: element('ranks').getAttribute('aria-pressed') === 'true'});
+
+const tellNumbers = () => {
+  if (!lastHeader) return;
+  const h = lastHeader, now = performance.now();
+  while (recent.length && now - recent[0] > 1000) recent.shift();
+  const parts = [h.width + ' \u00d7 ' + h.height];
+  if (h.stage === 'moving') parts.push(recent.length + ' frames/s');
+  else if (h.samples) parts.push(Math.round(h.samples) + ' samples' + (h.complete ? '' : ', growing'));
+  parts.push((1000 * h.render_seconds).toFixed(h.render_seconds < 0.1 ? 1 : 0) + ' ms');
+  element('numbers').textContent = parts.join(' \u00b7 ');
+};
+
+const takeFrame = async bytes => {
+  const view = new DataView(bytes), length = view.getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
+  const file = new Blob([new Uint8Array(bytes, 4 + length)], {type: header.type});
+  const bitmap = await createImageBitmap(file);
+  say({type: 'seen', frame: header.frame});
+  if (header.frame < shown) return bitmap.close();
+  shown = header.frame;
+  if (canvas.width !== header.width || canvas.height !== header.height) {
+    canvas.width = header.width;
+    canvas.height = header.height;
+  } else drawn.clearRect(0, 0, canvas.width, canvas.height);
+  drawn.drawImage(bitmap, 0, 0);
+  bitmap.close();
+  if (header.stage === 'moving') recent.push(performance.now());
+  lastHeader = header;
+  lastFile = header.complete ? file : null;
+  wait('');
+  tellNumbers();
+  document.body.dataset.stage = header.stage;
+  document.body.dataset.complete = header.complete;
+  document.body.dataset.frame = header.frame;
+};
+
+const handlers = {
+  scene: m => {
+    scene = m;
+    element('name').textContent = m.name.replace(/^.*\//, '');
+    document.title = m.name.replace(/^.*\//, '') + ' \u2013 delray view';
+    const count = n => n.toLocaleString('en').replace(/,/g, '\u202f');
+    element('name').title = [m.triangles && count(m.triangles) + ' triangles', m.points && count(m.points) + ' points',
+      m.instances > 1 && count(m.instances) + ' instances'].filter(Boolean).join(', ');
+    element('views').replaceChildren(new Option('View', ''), ...m.views.map(v => new Option(v, v)));
+    wait('Rendering');
+  },
+  // A page that comes back keeps its camera.
+  camera: m => {
+    if (camera && !awaitsView) return sendCamera();
+    awaitsView = false;
+    camera = {eye: m.eye, at: m.at, up: m.up, fov: m.fov, height: m.height};
+    drawOverlay();
+  },
+  panel: m => showPanel(m),
+  pick: m => showPick(m),
+  figures: m => showFigures(m),
+  command: m => copied(m.text),
+  progress: m => wait(m.text, m.done, m.total),
+  error: m => { note(m.text); if (lastHeader) wait(''); },
+};
+let awaitsView = true;
+
+const connect = () => {
+  socket = new WebSocket('ws://' + location.host + '/socket' + location.search);
+  socket.binaryType = 'arraybuffer';
+  socket.onopen = () => {
+    retry = 500;
+    shown = 0;
+    document.body.dataset.connected = true;
+    if (!lastHeader) wait('Waiting for the scene');
+    say({type: 'hello', ...size(), options: Object.fromEntries(own)});
+    watch();
+    sendCamera();
+  };
+  socket.onmessage = event => {
+    if (typeof event.data !== 'string') return takeFrame(event.data);
+    const message = JSON.parse(event.data), handle = handlers[message.type];
+    if (handle) handle(message);
+  };
+  socket.onclose = event => {
+    delete document.body.dataset.connected;
+    wait(event.reason ? 'Disconnected: ' + event.reason : lastHeader || retry > 500 ?
+      'Disconnected; trying again. A server that was started anew has printed a new address.' : 'Connecting');
+    setTimeout(connect, retry);
+    retry = Math.min(retry * 1.6, 5000);
+  };
+};
+)js";
+
+}  // namespace delray::apps::view::internal

@@ -1,0 +1,92 @@
+// Facts of a primitive, from the scene as it is in memory.
+#include "apps/view/picked.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "image/srgb.h"
+#include "scenes/pick.h"
+
+namespace delray::apps::view {
+namespace {
+
+std::string text_of(const glm::dvec3& v) {
+  return fmt::format("{:.9g}, {:.9g}, {:.9g}", v.x, v.y, v.z);
+}
+
+// As people write it: "#rrggbb", with the alpha where there is one.
+std::string colour_text(const glm::vec4& c) {
+  const image::Rgba8 code = image::to_8bit(image::RgbaF{c.x, c.y, c.z, 1.0F});
+  const std::string text = fmt::format("#{:02x}{:02x}{:02x}", code.r, code.g, code.b);
+  return c.w < 1.0F ? fmt::format("{}, alpha {:.3g}", text, c.w) : text;
+}
+
+template <class T>
+T at_corners(const std::vector<T>& values, const glm::uvec3& corners, const glm::vec3& weights) {
+  return values[corners.x] * weights.x + values[corners.y] * weights.y +
+         values[corners.z] * weights.z;
+}
+
+const char* kind_of(const scenes::Mesh& mesh) {
+  if (mesh.has_triangles()) return "triangle";
+  return mesh.shape.kind == scenes::Shape::Kind::line ? "segment" : "point";
+}
+
+void add_attributes(const scenes::Mesh& mesh, const glm::uvec3& corners, const glm::vec3& weights,
+                    Json& facts) {
+  if (!mesh.normals.empty()) {
+    const glm::vec3 normal = at_corners(mesh.normals, corners, weights);
+    const float length = glm::length(normal);
+    if (length > 0) {
+      const glm::vec3 n = normal / length;
+      facts.push_back({"normal", fmt::format("{:.4f}, {:.4f}, {:.4f}", n.x, n.y, n.z)});
+    }
+  }
+  if (!mesh.colours.empty())
+    facts.push_back({"colour", colour_text(at_corners(mesh.colours, corners, weights))});
+  if (!mesh.uvs.empty()) {
+    const glm::vec2 uv = at_corners(mesh.uvs, corners, weights);
+    facts.push_back({"texture", fmt::format("{:.5g}, {:.5g}", uv.x, uv.y)});
+  }
+}
+
+}  // namespace
+
+Json picked(const Task& task, const Prepared& prepared) {
+  Json answer = {{"type", "pick"}, {"hit", false}, {"x", task.pick.x}, {"y", task.pick.y}};
+  const scenes::Scene& scene = prepared.scene;
+  const scenes::View view =
+      scenes::make_view(task.order.camera, task.order.width, task.order.height);
+  const auto pick = scenes::pick(scene, view, task.pick.x * static_cast<float>(task.order.width),
+                                 task.pick.y * static_cast<float>(task.order.height));
+  if (!pick) return answer;
+  const std::uint32_t mesh_number = scene.instances[pick->instance].mesh;
+  const scenes::Mesh& mesh = scene.meshes[mesh_number];
+  const glm::uvec3& corners = mesh.triangles[pick->triangle];
+  Json facts = Json::array();
+  facts.push_back({"coordinates", text_of(pick->position + scene.origin)});
+  facts.push_back({kind_of(mesh), std::to_string(pick->triangle)});
+  facts.push_back({"instance", std::to_string(pick->instance)});
+  facts.push_back({"mesh", mesh.name.empty() ? std::to_string(mesh_number)
+                                             : fmt::format("{} ({})", mesh_number, mesh.name)});
+  if (mesh.has_triangles()) {
+    facts.push_back({"vertices", fmt::format("{}, {}, {}", corners.x, corners.y, corners.z)});
+  } else {
+    facts.push_back({"vertex", std::to_string(corners.y)});
+  }
+  if (mesh.material < scene.materials.size()) {
+    const std::string& name = scene.materials[mesh.material].name;
+    facts.push_back({"material", name.empty() ? std::to_string(mesh.material)
+                                              : fmt::format("{} ({})", mesh.material, name)});
+  }
+  add_attributes(mesh, corners, pick->weights, facts);
+  answer["hit"] = true;
+  answer["position"] = {pick->position.x, pick->position.y, pick->position.z};
+  answer["origin"] = {scene.origin.x, scene.origin.y, scene.origin.z};
+  answer["depth"] = pick->depth;
+  answer["facts"] = facts;
+  return answer;
+}
+
+}  // namespace delray::apps::view

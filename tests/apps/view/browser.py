@@ -1,0 +1,355 @@
+#!/usr/bin/env python3
+"""Uses `delray view` in headless Chromium as people do: browser.py DELRAY [FOLDER FOR SCREENSHOTS].
+
+Ends with 77, skipped, where Chromium, its driver or Selenium are missing.
+"""
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+SKIPPED = 77
+
+
+def skip(why):
+    print("skipped:", why)
+    sys.exit(SKIPPED)
+
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.actions.action_builder import ActionBuilder
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import Select
+except ImportError:
+    skip("python3-selenium is not installed")
+for program in ("chromium", "chromedriver"):
+    if not shutil.which(program):
+        skip(program + " is not installed")
+
+PATIENCE = 90
+
+
+def open_browser(folder):
+    options = webdriver.ChromeOptions()
+    options.add_argument(f"--user-data-dir={folder / 'browser'}")
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic",
+                     "--no-first-run", "--disable-background-networking",
+                     "--disable-component-update", "--disable-sync",
+                     "--window-size=1280,800"):
+        options.add_argument(argument)
+    options.add_experimental_option("prefs", {"download.default_directory": str(folder)})
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+class Server:
+    def __init__(self, *arguments, token="0123456789abcdefBrowser"):
+        self.process = subprocess.Popen([sys.argv[1], "view", *arguments, "-q"], stdout=subprocess.PIPE, text=True,
+                                        env={**os.environ, "DELRAY_VIEW_TOKEN": token})
+        self.url = self.process.stdout.readline().strip()
+        assert self.url.startswith("http://127.0.0.1:"), self.url
+        self.port = self.url.split(":")[2].split("/")[0]
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        assert self.process.wait(PATIENCE) == 130, self.process.returncode
+
+
+def until(what, condition):
+    deadline = time.time() + PATIENCE
+    while not (result := condition()):
+        assert time.time() < deadline, "waited in vain: " + what
+        time.sleep(0.02)
+    return result
+
+
+class Page:
+    """What a user sees, and does."""
+
+    def __init__(self, browser, screenshots):
+        self.browser, self.screenshots = browser, screenshots
+
+    def find(self, selector):
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def state(self):
+        return self.browser.execute_script("return window.delray()")
+
+    def rested(self, after=0):
+        """Waits for a picture that will not get better."""
+        return until("a picture at rest", lambda: self.browser.execute_script(
+            "const d = document.body.dataset; return d.complete === 'true' && +d.frame > arguments[0] && +d.frame", after))
+
+    def frame(self):
+        return int(self.browser.execute_script("return document.body.dataset.frame || 0"))
+
+    def pixels(self):
+        """A number for the picture on the screen."""
+        return self.browser.execute_script("""
+          const c = document.getElementById('picture'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+          let sum = 0;
+          for (let i = 0; i < d.length; i += 4) sum = (sum * 31 + d[i] + 256 * d[i + 1] + 65536 * d[i + 2]) % 4294967291;
+          return sum""")
+
+    def colours(self):
+        return self.browser.execute_script("""
+          const c = document.getElementById('picture'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+          const seen = new Set();
+          for (let i = 0; i < d.length; i += 4) seen.add(d[i] + 256 * d[i + 1] + 65536 * d[i + 2]);
+          return seen.size""")
+
+    def drag(self, dx, dy, steps=12, button=None):
+        # Some drivers add a pause to every step.
+        actions = ActionBuilder(self.browser, duration=15)
+        canvas = self.find("#picture")
+        actions.pointer_action.move_to(canvas)
+        actions.pointer_action.pointer_down(**({"button": button} if button else {}))
+        for i in range(1, steps + 1):
+            actions.pointer_action.move_to(canvas, dx * i // steps, dy * i // steps)
+        actions.pointer_action.pointer_up(**({"button": button} if button else {}))
+        actions.perform()
+
+    def click(self, x=0, y=0):
+        ActionChains(self.browser).move_to_element_with_offset(self.find("#picture"), x, y).click().perform()
+
+    def shot(self, name):
+        if self.screenshots:
+            self.browser.save_screenshot(str(self.screenshots / (name + ".png")))
+
+
+def eye(page):
+    return page.state()["camera"]["eye"]
+
+
+def check_turning(page):
+    first = page.rested()
+    assert page.colours() > 50, "an empty picture"
+    before, place = page.pixels(), eye(page)
+    page.shot("first")
+    page.drag(200, 60)
+    page.rested(first)
+    assert page.pixels() != before and eye(page) != place, "a drag does not turn the picture"
+    # Distance and what is looked at stay while it turns.
+    camera = page.state()["camera"]
+    far = sum((a - b) ** 2 for a, b in zip(camera["eye"], camera["at"])) ** 0.5
+
+    frame = page.frame()
+    page.drag(80, 0, button=2)
+    page.rested(frame)
+    moved = page.state()["camera"]
+    assert moved["at"] != camera["at"], "the right button does not move the picture"
+    new = sum((a - b) ** 2 for a, b in zip(moved["eye"], moved["at"])) ** 0.5
+    assert abs(new - far) < 1e-6 * far, (new, far)
+
+    frame = page.frame()
+    ActionChains(page.browser).scroll_from_origin(
+        __import__("selenium").webdriver.common.actions.wheel_input.ScrollOrigin.from_element(page.find("#picture")), 0, -200).perform()
+    page.rested(frame)
+    zoomed = page.state()["camera"]
+    assert sum((a - b) ** 2 for a, b in zip(zoomed["eye"], zoomed["at"])) ** 0.5 < far, "the wheel does not zoom"
+
+    for key in (Keys.ARROW_LEFT, "+", "w"):
+        frame, place = page.frame(), eye(page)
+        ActionChains(page.browser).send_keys_to_element(page.find("#picture"), key).perform()
+        page.rested(frame)
+        assert eye(page) != place, key
+    frame = page.frame()
+    page.find("#fit").click()
+    page.rested(frame)
+
+
+def choose(page, option, value):
+    frame = page.frame()
+    Select(page.find(f"[id='option{option}']")).select_by_visible_text(value)
+    page.rested(frame)
+
+
+def check_panel(page):
+    before = page.pixels()
+    # The panel is built from the program's tables: the same picture by every strategy.
+    for strategy in ("sort-first", "sort-middle", "sort-last"):
+        choose(page, "--strategy", strategy)
+        assert page.pixels() == before, strategy
+    choose(page, "--shading", "gouraud")
+    assert page.pixels() != before, "another shading is the same picture"
+    choose(page, "--shading", "phong")
+    assert page.pixels() == before
+    field = page.find("[id='option--regions']")
+    assert not field.is_enabled(), "an option without effect can be set"
+
+
+def check_ranks(page):
+    choose(page, "--strategy", "sort-first")
+    page.find("#ranks").click()
+    until("regions", lambda: len(page.browser.find_elements(By.CSS_SELECTOR, "#overlay rect")) == 2)
+    text = page.find("#figures").text
+    assert "times the mean" in text and "messages" in text, text
+    page.shot("ranks")
+    before = [page.browser.execute_script("return JSON.stringify(window.delray().figures.regions)")]
+    choose(page, "--partition", "interlaced")
+    until("other regions", lambda: page.browser.execute_script(
+        "return JSON.stringify(window.delray().figures.regions)") not in before)
+    page.shot("interlaced")
+    page.find("#ranks").click()
+    assert not page.browser.find_elements(By.CSS_SELECTOR, "#overlay rect")
+
+
+def check_picks(page):
+    page.click()
+    until("a pick", lambda: page.find("#picked").is_displayed())
+    text = page.find("#picked").text
+    for word in ("coordinates", "triangle", "instance", "normal"):
+        assert word in text, text
+    page.shot("pick")
+    page.find("#measure").click()
+    page.click(-40, 30)
+    until("one place", lambda: page.browser.execute_script("return document.body.dataset.picks") == "1")
+    page.click(60, 40)
+    until("a distance", lambda: "Distance" in page.find("#picked").text)
+    picks = page.state()["picks"]
+    expected = sum((a - b) ** 2 for a, b in zip(picks[0]["position"], picks[1]["position"])) ** 0.5
+    told = float(page.find("#picked .distance").text.split()[1])
+    assert abs(told - expected) < 1e-3 * expected, (told, expected)
+    page.shot("measure")
+    page.find("#measure").click()
+
+
+def check_rays(page):
+    choose(page, "--engine", "raytrace")
+    assert page.state()["header"]["samples"] >= 1
+    assert page.find("[id='option--integrator']").is_displayed()
+    assert not page.browser.find_elements(By.CSS_SELECTOR, "[id='option--strategy']"), "an option of the other engine"
+    page.shot("rays")
+    choose(page, "--engine", "raster")
+
+
+def check_command_and_save(page, folder):
+    page.find("#copy").click()
+    command = until("a command", lambda: page.browser.execute_script("return document.body.dataset.command"))
+    assert command.startswith("delray render gen:city:3000 ") and "--camera=" in command, command
+    page.find("#save").click()
+    until("a file", lambda: [f for f in folder.glob("*.png") if f.stat().st_size > 0 and not list(folder.glob("*.crdownload"))])
+    saved = next(folder.glob("*.png"))
+    subprocess.run([sys.argv[1], *command.split()[1:], "-q"], cwd=folder / "made", check=True)
+    assert saved.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert len(saved.read_bytes()) > 1000
+
+
+def check_narrow(page):
+    page.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                 {"width": 420, "height": 800, "deviceScaleFactor": 2, "mobile": True})
+    frame = page.frame()
+    page.browser.refresh()
+    until("connected", lambda: page.browser.execute_script("return document.body.dataset.connected"))
+    page.rested()
+    assert int(page.find("html").get_property("scrollWidth")) <= 420
+    canvas = page.find("#picture").size
+    assert canvas["width"] == 420 and canvas["height"] > 700, canvas
+    assert page.state()["header"]["width"] == 840, page.state()["header"]
+    page.shot("narrow")
+    for button in page.browser.find_elements(By.CSS_SELECTOR, "#bar button"):
+        box = button.rect
+        assert box["x"] >= 0 and box["x"] + box["width"] <= 420, button.text
+    page.find("#options").click()
+    until("options", lambda: page.find("#panel").is_displayed())
+    page.rested(frame)
+    assert int(page.find("html").get_property("scrollWidth")) <= 420
+    page.shot("narrow_options")
+    # Two fingers, wider and wider.
+    camera, frame = page.state()["camera"], page.frame()
+    box = page.find("#picture").rect
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def touch(kind, spread):
+        points = [] if kind == "touchEnd" else [{"x": x - spread, "y": y, "id": 0}, {"x": x + spread, "y": y, "id": 1}]
+        page.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", 30)
+    for spread in (40, 50, 60):
+        touch("touchMove", spread)
+    touch("touchEnd", 0)
+    page.rested(frame)
+    def far(c):
+        return sum((a - b) ** 2 for a, b in zip(c["eye"], c["at"])) ** 0.5
+    assert far(page.state()["camera"]) < 0.8 * far(camera), "a pinch does not zoom"
+    page.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def check_two_windows(page, server):
+    first = page.browser.current_window_handle
+    page.browser.switch_to.new_window("window")
+    page.browser.get(server.url)
+    page.rested()
+    other = eye(page)
+    page.drag(150, 0)
+    until("another camera", lambda: eye(page) != other)
+    moved = eye(page)
+    page.browser.switch_to.window(first)
+    assert eye(page) != moved, "two windows have one camera"
+    for handle in page.browser.window_handles:
+        if handle != first:
+            page.browser.switch_to.window(handle)
+            page.browser.close()
+    page.browser.switch_to.window(first)
+
+
+def check_restart(page, server):
+    page.rested()
+    camera = eye(page)
+    server.end()
+    until("disconnected", lambda: not page.browser.execute_script("return document.body.dataset.connected"))
+    assert "Disconnected" in page.find("#waiting").text
+    page.shot("disconnected")
+    again = Server("gen:city:3000", "--ranks", "2", "--threads", "1", "--port", server.port)
+    until("connected again", lambda: page.browser.execute_script("return document.body.dataset.connected"))
+    until("a picture", lambda: not page.find("#waiting").is_displayed())
+    assert eye(page) == camera, "the camera is lost"
+    return again
+
+
+def check_once(browser):
+    server = Server("gen:spheres:200", "--once")
+    browser.get(server.url)
+    Page(browser, None).rested()
+    browser.get("about:blank")
+    assert server.process.wait(PATIENCE) == 0
+
+
+def main():
+    screenshots = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else None
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "made").mkdir()
+        server = Server("gen:city:3000", "--ranks", "2", "--threads", "1")
+        browser = open_browser(folder)
+        try:
+            page = Page(browser, screenshots)
+            browser.get(server.url)
+            for check, arguments in ((check_turning, ()), (check_panel, ()), (check_ranks, ()), (check_picks, ()),
+                                     (check_rays, ()), (check_command_and_save, (folder,)),
+                                     (check_two_windows, (server,)), (check_narrow, ())):
+                check(page, *arguments)
+                print("passed:", check.__name__, flush=True)
+            server = check_restart(page, server)
+            print("passed: check_restart", flush=True)
+            errors = [entry for entry in browser.get_log("browser")
+                      if entry["level"] == "SEVERE" and "WebSocket connection" not in entry["message"]]
+            assert not errors, errors
+            server.end()
+            check_once(browser)
+            print("passed: check_once", flush=True)
+        finally:
+            browser.quit()
+            if server.process.poll() is None:
+                server.process.kill()
+
+
+main()

@@ -1,0 +1,224 @@
+// The built program, and a page that is a test.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "image/hash.h"
+#include "image/io.h"
+#include "tests/apps/view/page_client.h"
+#include "tests/support/run_program.h"
+
+namespace delray::tests {
+namespace {
+
+using Json = nlohmann::json;
+
+// delray view with these arguments, until it is ended.
+class Running {
+ public:
+  explicit Running(std::vector<std::string> arguments, const std::string& before = "") {
+    std::array<int, 2> pipe{};
+    if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+    std::string line = "exec " + before + DELRAY_PROGRAM + " view";
+    for (const std::string& argument : arguments) line += " '" + argument + "'";
+    std::vector<std::string> words = {"sh", "-c", line};
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    ::setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
+    if (::posix_spawn(&process_, "/bin/sh", &actions, nullptr, pointers.data(), environ) != 0)
+      throw std::runtime_error("sh");
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(pipe[1]);
+    char c = 0;
+    while (::read(pipe[0], &c, 1) == 1 && c != '\n') url_ += c;
+    ::close(pipe[0]);
+  }
+  ~Running() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  const std::string& url() const { return url_; }
+  Address address() const { return parse_address(url_); }
+  pid_t process() const { return process_; }
+  // Waits for its end.
+  int exit_code() {
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    process_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+ private:
+  pid_t process_ = 0;
+  std::string url_;
+};
+
+Json hello(int width, int height, const Json& options = Json::object()) {
+  return {{"type", "hello"}, {"width", width}, {"height", height}, {"options", options}};
+}
+
+Json camera(const Json& placed, std::uint64_t number, bool moving, double dx) {
+  Json message = placed;
+  message["type"] = "camera";
+  message["number"] = number;
+  message["moving"] = moving;
+  message["eye"][0] = message["eye"][0].get<double>() + dx;
+  return message;
+}
+
+bool is_complete(const Json& header) { return header["complete"].get<bool>(); }
+
+std::string hash_of(const PageFrame& frame) {
+  const image::Texels texels = image::decode_image8(frame.file, "frame");
+  image::Image8 picture(texels.width, texels.height);
+  std::ranges::copy(texels.texels, picture.colour.data());
+  return image::hash(picture);
+}
+
+TEST(View, ADragTurnsThePictureAndRestsAsRenderMakesIt) {
+  Running view({"gen:spheres:500", "--ranks", "2", "--threads", "1"});
+  PageClient page(view.address());
+  page.say(hello(160, 90));
+  EXPECT_EQ(page.wait_for("scene")["name"], "gen:spheres:500");
+  const Json placed = page.wait_for("camera");
+  const PageFrame first = page.wait_for_frame(is_complete);
+  EXPECT_EQ(first.header["type"], "image/png");
+  EXPECT_EQ(first.header["width"], 160);
+  for (std::uint64_t i = 1; i <= 5; ++i) {
+    page.say(camera(placed, i, true, 0.1 * static_cast<double>(i)));
+    const PageFrame frame =
+        page.wait_for_frame([&](const Json& header) { return header["camera"] == i; });
+    EXPECT_EQ(frame.header["stage"], "moving");
+    EXPECT_EQ(frame.header["type"], "image/jpeg");
+  }
+  page.say(camera(placed, 6, false, 0.6));
+  const PageFrame last = page.wait_for_frame(
+      [](const Json& header) { return header["camera"] == 6 && is_complete(header); });
+  EXPECT_NE(hash_of(first), hash_of(last));
+
+  page.say({{"type", "command"}});
+  const std::string command = page.wait_for("command")["text"];
+  Folder folder;
+  const Ran rendered = run(command + " --stats -", folder.path());
+  ASSERT_EQ(rendered.exit_code, 0) << command << rendered.err;
+  EXPECT_EQ(Json::parse(rendered.out)["image"]["hash"], hash_of(last)) << command;
+}
+
+TEST(View, OptionsArePerPageButForTheScene) {
+  Running view({"gen:spheres:300", "--ranks", "2", "--threads", "1"});
+  PageClient a(view.address()), b(view.address());
+  for (PageClient* page : {&a, &b}) {
+    page->say(hello(96, 64));
+    page->wait_for("camera");
+  }
+  const std::string before = hash_of(a.wait_for_frame(is_complete));
+  a.say({{"type", "watch"}, {"visible", true}, {"figures", true}});
+  a.say({{"type", "option"}, {"name", "--strategy"}, {"value", "sort-first"}});
+  const Json figures = [&] {
+    for (;;) {
+      Json found = a.wait_for("figures");
+      if (!found["regions"].empty()) return found;
+    }
+  }();
+  EXPECT_EQ(figures["regions"].size(), 2U);
+  EXPECT_EQ(figures["loads"].size(), 2U);
+  EXPECT_GE(figures["imbalance"], 1.0);
+  EXPECT_NE(figures["html"].get<std::string>().find("<svg"), std::string::npos);
+  a.say({{"type", "option"}, {"name", "--strategy"}, {"value", "sort-frist"}});
+  EXPECT_NE(a.wait_for("error")["text"].get<std::string>().find("did you mean 'sort-first'"),
+            std::string::npos);
+  EXPECT_EQ(hash_of(b.wait_for_frame(is_complete)), before);
+
+  b.say({{"type", "option"}, {"name", "--ranks"}, {"value", "3"}});
+  b.wait_for("scene");
+  a.say({{"type", "watch"}, {"visible", true}, {"figures", false}});
+  a.say({{"type", "watch"}, {"visible", true}, {"figures", true}});
+  for (Json found = figures; found["loads"].size() != 3; found = a.wait_for("figures")) {
+  }
+}
+
+TEST(View, RaysGrowAndArePickedThrough) {
+  Running view({"gen:spheres:300", "--engine", "raytrace", "--integrator", "path", "--spp", "8",
+                "--threads", "1"});
+  PageClient page(view.address());
+  page.say(hello(64, 48));
+  const Json placed = page.wait_for("camera");
+  bool had_coarse = false;
+  const PageFrame still = page.wait_for_frame([&](const Json& header) {
+    had_coarse = had_coarse || header["stage"] == "coarse";
+    return is_complete(header);
+  });
+  EXPECT_TRUE(had_coarse);
+  EXPECT_EQ(still.header["samples"], 8.0);
+  page.say({{"type", "pick"}, {"x", 0.5}, {"y", 0.5}});
+  const Json pick = page.wait_for("pick");
+  ASSERT_TRUE(pick["hit"]);
+  EXPECT_EQ(pick["facts"][0][0], "coordinates");
+  page.say({{"type", "command"}});
+  Folder folder;
+  const std::string command = page.wait_for("command")["text"];
+  const Ran rendered = run(command + " --stats -", folder.path());
+  ASSERT_EQ(rendered.exit_code, 0) << command << rendered.err;
+  EXPECT_EQ(Json::parse(rendered.out)["image"]["hash"], hash_of(still)) << command;
+}
+
+TEST(View, EndsWithCtrlCAndWithTheLastPage) {
+  Running one({"gen:spheres:100", "--threads", "1"});
+  ::kill(one.process(), SIGINT);
+  EXPECT_EQ(one.exit_code(), 130);
+  Running other({"gen:spheres:100", "--threads", "1", "--once"});
+  { PageClient page(other.address()); }
+  EXPECT_EQ(other.exit_code(), 0);
+}
+
+TEST(View, WhatIsWrongEndsBeforeAnythingIsServed) {
+  Folder folder;
+  folder.write("bad.obj", "v 1 2\nf 1 2 3\n");
+  EXPECT_EQ(run("delray view", folder.path()).exit_code, 2);
+  const Ran missing = run("delray view missing.glb", folder.path());
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_EQ(missing.out, "");
+  EXPECT_NE(missing.err.find("missing.glb"), std::string::npos);
+  EXPECT_EQ(run("delray view bad.obj", folder.path()).exit_code, 3);
+  EXPECT_EQ(run("delray view gen:spheres:100 --bind nowhere", folder.path()).exit_code, 2);
+  EXPECT_EQ(run("DELRAY_VIEW_TOKEN=short delray view gen:spheres:100", folder.path()).exit_code, 2);
+  const Ran idle = run("delray view gen:spheres:100 --bind 192.0.2.1", folder.path());
+  EXPECT_EQ(idle.exit_code, 1) << "no address of this machine";
+}
+
+TEST(View, MpiRanksRenderAndRankZeroServes) {
+  Running view({"gen:spheres:300", "--threads", "1"}, "env " + mpirun(2));
+  PageClient page(view.address());
+  page.say(hello(96, 64));
+  const Json placed = page.wait_for("camera");
+  page.say({{"type", "watch"}, {"visible", true}, {"figures", true}});
+  EXPECT_EQ(page.wait_for("figures")["loads"].size(), 2U);
+  page.say(camera(placed, 1, true, 0.1));
+  page.wait_for_frame([](const Json& header) { return header["camera"] == 1; });
+  page.say({{"type", "option"}, {"name", "--ranks"}, {"value", "3"}});
+  EXPECT_NE(page.wait_for("error")["text"].get<std::string>().find("launcher"), std::string::npos);
+  ::kill(view.process(), SIGINT);
+  EXPECT_NE(view.exit_code(), 0);
+}
+
+}  // namespace
+}  // namespace delray::tests
