@@ -56,10 +56,10 @@ class OptionRow {
   OptionRow type_name(std::string name) && {
     return step([n = std::move(name)](CLI::App&, CLI::Option& option) { option.type_name(n); });
   }
-  // The other option is in a row above.
+  // The other option is in a row above, or the command does not have it.
   OptionRow excludes(std::string other) && {
     return step([o = std::move(other)](CLI::App& command, CLI::Option& option) {
-      option.excludes(command.get_option(o));
+      if (CLI::Option* const there = command.get_option_no_throw(o)) option.excludes(there);
     });
   }
   OptionRow one_of(std::vector<std::string> legal, OtherValues others = {}) && {

@@ -119,8 +119,9 @@ document.addEventListener('keydown', e => {
     zoom(key === '-' ? 1.15 : 1 / 1.15, canvas.clientWidth / 2, canvas.clientHeight / 2);
     movedOnce();
   } else if (kFly[key]) {
-    if (!flying.size) requestAnimationFrame(flyOn);
+    const flies = flying.size > 0;
     flying.add(key);
+    if (!flies) flyOn(performance.now());
   } else if (key === 'Home') fit('default');
   else if (key === 'f') toggle('fly');
   else if (key === 'm') setMeasure(!isPressed('measure'));

@@ -17,7 +17,7 @@ const html = (name, properties, ...children) => {
 };
 
 // Options, as the program's tables describe them.
-const closed = new Set(['Parallel run: which rank does what', 'Camera and animation']);
+const closed = new Set(['Input', 'Camera and animation']);
 const setOption = (option, value) => {
   if (option.scope === 'page') { if (value) own.set(option.name, value); else own.delete(option.name); }
   say({type: 'option', name: option.name, value});
@@ -70,8 +70,10 @@ const showPick = m => {
     if (m.hit && camera) { camera.at = m.position; movedOnce(); }
     return;
   }
-  if (!m.hit) picks = [];
-  else picks = isPressed('measure') ? [...picks.slice(-1), m] : [m];
+  if (!m.hit) {
+    if (isPressed('measure')) return note('Nothing is there.', true);
+    picks = [];
+  } else picks = isPressed('measure') ? [...picks.slice(-1), m] : [m];
   showFacts();
   drawOverlay();
 };
@@ -99,7 +101,7 @@ const drawOverlay = () => {
       const load = figures.loads[r.rank] || 1, x = r.x / figures.width * w, y = r.y / figures.height * h;
       const width = r.width / figures.width * w, height = r.height / figures.height * h;
       parts.push(svg('rect', {x, y, width, height, class: load > 1 ? 'above' : 'below',
-        'fill-opacity': 0.15 + 0.5 * Math.sqrt(Math.min(1, Math.abs(load - 1)))}));
+        'fill-opacity': 0.75 * Math.sqrt(Math.min(1, Math.abs(load - 1)))}));
       if (width > 60 && height > 36) {
         parts.push(svg('text', {x: x + width / 2, y: y + height / 2, 'text-anchor': 'middle'}, 'rank ' + r.rank));
         parts.push(svg('text', {x: x + width / 2, y: y + height / 2 + 17, 'text-anchor': 'middle'}, load.toFixed(2) + ' of mean'));

@@ -45,7 +45,7 @@ padding:.6rem .9rem;max-width:min(25rem,calc(100% - 1rem));max-height:calc(100% 
 #unpick{position:absolute;top:.3rem;right:.3rem;border:0;min-height:0;padding:.1rem .5rem;font-size:1.1rem}
 #keys[hidden],#picked[hidden],#panel[hidden],#figures[hidden]{display:none}
 #panel{flex:0 0 20rem;overflow-y:auto;border-left:1px solid var(--line);padding:.6rem .8rem 2rem;background:var(--paper)}
-#panel.wide{flex-basis:30rem}
+#panel.wide{flex-basis:34rem}
 #panel details{border-bottom:1px solid var(--line);padding:.3rem 0}
 #panel summary{font-weight:600;cursor:pointer;padding:.2rem 0}
 #panel label{display:grid;grid-template-columns:7.5rem 1fr;align-items:center;gap:.5rem;margin:.25rem 0}
@@ -57,7 +57,7 @@ padding:.6rem .9rem;max-width:min(25rem,calc(100% - 1rem));max-height:calc(100% 
 #figures h2{font-size:1rem;margin:.2rem 0}
 #figures p{margin:.2rem 0}
 #figures figure{margin:.6rem 0}
-#figures th,#figures td{padding:.15rem .35rem;font-size:.8rem;white-space:normal}
+#figures th,#figures td{padding:.15rem .3rem;font-size:.78rem;white-space:normal}
 .marker{fill:none;stroke:#fff;stroke-width:2;paint-order:stroke}
 .marker.dark{stroke:#000;stroke-width:4}
 .ruler{stroke:#000;stroke-width:4}.ruler.light{stroke:#fff;stroke-width:2}

@@ -99,7 +99,7 @@ class Root {
   }
 
   void render(const Task& task) {
-    Stopwatch watch, all;
+    Stopwatch watch;
     Job job;
     job.kind = Job::Kind::picture;
     job.options = task.order.options();
@@ -116,7 +116,7 @@ class Root {
     FrameFacts facts{task.order.stage, task.order.camera_number};
     if (growing != nullptr) watch_growth(task, job, facts, growing->growth);
     Frame frame = frames_.render(communicator_, job, growing ? &growing->growth : nullptr);
-    facts.render_seconds = all.lap();
+    facts.render_seconds = watch.lap();
     const bool is_left = growing != nullptr && !growing->growth.is_done;
     if (!is_left) {
       facts.is_complete = task.order.stage == Stage::still;
@@ -130,6 +130,8 @@ class Root {
   }
 
   Growing& growing_of(const Task& task) {
+    std::erase_if(growing_,
+                  [&](const auto& one) { return !serving_.viewers->is_there(one.first); });
     Growing& growing = growing_[task.page];
     if (growing.version != task.order.version) growing = {task.order.version, {}};
     return growing;

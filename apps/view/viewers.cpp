@@ -17,7 +17,7 @@ namespace {
 constexpr double kLookAgain = 0.1;  // seconds: how often to look whether to stop
 constexpr double kGrace = 1.5;  // seconds after which a page that was closed is not just reloading
 constexpr std::size_t kMostPicks = 8;
-constexpr int kMostRanks = 64;  // that a page may start, and threads of each
+constexpr int kMostThreads = 256;  // that a page may start, of all ranks
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -78,6 +78,11 @@ void Viewers::closed(PageId page) {
   pages_.erase(page);
   last_closed_ = seconds_now();
   changed_.notify_all();
+}
+
+bool Viewers::is_there(PageId page) const {
+  const std::scoped_lock lock(mutex_);
+  return pages_.contains(page);
 }
 
 void Viewers::received(PageId id, const std::string& text) {
@@ -154,8 +159,9 @@ void Viewers::share(const std::string& name, const std::string& value, const Vie
   std::swap(shared, shared_);
   try {
     const Look look = make_look(input_, with_shared(viewer.options()));
-    if (std::max(look.still.launch.ranks, look.still.launch.threads) > kMostRanks)
-      throw UsageError(fmt::format("{}: at most {} here", name, kMostRanks));
+    const Launch& launch = look.still.launch;
+    if (std::max(1, launch.ranks) * std::max(1, launch.threads) > kMostThreads)
+      throw UsageError(fmt::format("{}: at most {} threads in all here", name, kMostThreads));
   } catch (...) {
     std::swap(shared, shared_);
     throw;

@@ -49,6 +49,7 @@ class Viewers {
   void opened(PageId page);
   void received(PageId page, const std::string& text);
   void closed(PageId page);
+  bool is_there(PageId page) const;
 
   // The options of the scene and of ranks that are asked for now.
   Options shared_options() const;

@@ -15,7 +15,8 @@ const Input kScene = {"gen:spheres:100"};
 
 TEST(ViewLook, MovesByTheRasterizerAndRestsAsWanted) {
   const Look look = make_look(
-      kScene, {{"--engine", "raytrace"}, {"--integrator", "path"}, {"--spp", "64"}, {"--samples", "4"}});
+      kScene,
+      {{"--engine", "raytrace"}, {"--integrator", "path"}, {"--spp", "64"}, {"--samples", "4"}});
   EXPECT_EQ(look.still.engine, Engine::raytrace);
   EXPECT_EQ(look.still.raytrace.samples, 64);
   EXPECT_EQ(look.moving.engine, Engine::raster);
@@ -40,8 +41,9 @@ TEST(ViewLook, SaysWhatIsWrong) {
 }
 
 TEST(ViewLook, ValuesAreNeverOptions) {
-  EXPECT_THROW(make_look(kScene, {{"--partition", "--output=/tmp/x"}, {"--strategy", "sort-first"}}),
-               UsageError);
+  EXPECT_THROW(
+      make_look(kScene, {{"--partition", "--output=/tmp/x"}, {"--strategy", "sort-first"}}),
+      UsageError);
   EXPECT_THROW(make_look(kScene, {{"--spp", "4 --checkpoint x"}, {"--engine", "raytrace"}}),
                UsageError);
 }
@@ -66,7 +68,8 @@ TEST(ViewLook, PanelHasWhatTheTablesHave) {
       }
     }
   }
-  for (const PanelOption& option : panel_options()) EXPECT_TRUE(names.contains(option.name)) << option.name;
+  for (const PanelOption& option : panel_options())
+    EXPECT_TRUE(names.contains(option.name)) << option.name;
 }
 
 TEST(ViewLook, NothingThatReadsOrWritesFilesIsOnThePanel) {

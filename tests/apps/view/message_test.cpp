@@ -23,18 +23,19 @@ TEST(ViewMessage, ReadsEveryType) {
   EXPECT_EQ(hello.size.width, 640);
   ASSERT_EQ(hello.options.size(), 1U);
   EXPECT_EQ(hello.options[0].second, "16");
-  EXPECT_EQ(std::get<SizeMessage>(parse_message(R"({"type":"size","width":1,"height":8192})")).height,
-            8192);
-  EXPECT_EQ(std::get<OptionMessage>(
-                parse_message(R"({"type":"option","name":"--engine","value":""})"))
-                .name,
-            "--engine");
+  EXPECT_EQ(
+      std::get<SizeMessage>(parse_message(R"({"type":"size","width":1,"height":8192})")).height,
+      8192);
+  EXPECT_EQ(
+      std::get<OptionMessage>(parse_message(R"({"type":"option","name":"--engine","value":""})"))
+          .name,
+      "--engine");
   EXPECT_EQ(std::get<ViewMessage>(parse_message(R"({"type":"view","name":"top"})")).name, "top");
   EXPECT_EQ(std::get<PickMessage>(parse_message(R"({"type":"pick","x":0.25,"y":1})")).x, 0.25F);
   EXPECT_EQ(std::get<SeenMessage>(parse_message(R"({"type":"seen","frame":3})")).frame, 3U);
-  EXPECT_FALSE(std::get<WatchMessage>(
-                   parse_message(R"({"type":"watch","visible":false,"figures":true})"))
-                   .visible);
+  EXPECT_FALSE(
+      std::get<WatchMessage>(parse_message(R"({"type":"watch","visible":false,"figures":true})"))
+          .visible);
   EXPECT_TRUE(std::holds_alternative<CommandMessage>(parse_message(R"({"type":"command"})")));
 }
 
@@ -82,9 +83,11 @@ TEST(ViewMessage, RefusesMessagesThatAreTooLong) {
   text.insert(text.size() - 1, kLongestMessage, ' ');
   EXPECT_THROW(parse_message(text), BadMessage);
   std::string options = "\"--a\":\"\"";
-  for (std::size_t i = 0; i <= kMostOptions; ++i) options += ",\"--" + std::to_string(i) + "\":\"\"";
-  EXPECT_THROW(parse_message(R"({"type":"hello","width":1,"height":1,"options":{)" + options + "}}"),
-               BadMessage);
+  for (std::size_t i = 0; i <= kMostOptions; ++i)
+    options += ",\"--" + std::to_string(i) + "\":\"\"";
+  EXPECT_THROW(
+      parse_message(R"({"type":"hello","width":1,"height":1,"options":{)" + options + "}}"),
+      BadMessage);
 }
 
 }  // namespace

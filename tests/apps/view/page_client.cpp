@@ -69,9 +69,10 @@ struct PageClient::Socket {
 PageClient::PageClient(const Address& address, const std::string& origin, const std::string& target)
     : socket_(std::make_unique<Socket>()) {
   beast::get_lowest_layer(socket_->stream).connect(endpoint_of(address));
-  socket_->stream.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
-    request.set(http::field::origin, origin.empty() ? "http://" + host_of(address) : origin);
-  }));
+  socket_->stream.set_option(
+      websocket::stream_base::decorator([&](websocket::request_type& request) {
+        request.set(http::field::origin, origin.empty() ? "http://" + host_of(address) : origin);
+      }));
   boost::system::error_code error;
   socket_->stream.handshake(host_of(address),
                             target.empty() ? "/socket?token=" + address.token : target, error);
@@ -93,9 +94,8 @@ PageClient::Message PageClient::read() {
   beast::flat_buffer buffer;
   boost::system::error_code result = asio::error::timed_out;
   beast::get_lowest_layer(socket_->stream).expires_after(kPatience);
-  socket_->stream.async_read(buffer, [&](const boost::system::error_code& error, std::size_t) {
-    result = error;
-  });
+  socket_->stream.async_read(
+      buffer, [&](const boost::system::error_code& error, std::size_t) { result = error; });
   socket_->finish();
   beast::get_lowest_layer(socket_->stream).expires_never();
   if (result) throw std::runtime_error("no message: " + result.message());

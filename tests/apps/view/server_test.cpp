@@ -82,8 +82,8 @@ TEST(ViewServer, AnswersUnderItsOwnNameOnly) {
   const Address address = noted.address();
   const std::string target = "/?token=" + address.token, port = ":" + std::to_string(address.port);
   EXPECT_EQ(tests::get(address, target, "localhost" + port).status, 200);
-  for (const std::string host : {"evil.example" + port, std::string("127.0.0.1"),
-                                 std::string("127.0.0.1:1"), "192.0.2.1" + port, port}) {
+  for (const std::string& host : {"evil.example" + port, std::string("127.0.0.1"),
+                                  std::string("127.0.0.1:1"), "192.0.2.1" + port, port}) {
     EXPECT_EQ(tests::get(address, target, host).status, 403) << host;
   }
   EXPECT_TRUE(is_own_host("[::1]:80", 80, true));

@@ -71,7 +71,7 @@ TEST(Viewer, MovesWithTheNewestCameraOnly) {
   EXPECT_FALSE(one.next(10.03)) << "the same picture twice";
   ASSERT_GT(one.wait(10.03), 0);
   ASSERT_LT(one.wait(10.03), 1);
-  ASSERT_TRUE(one.next(10.03 + one.wait(10.03))) << "held still, it gets sharp";
+  ASSERT_TRUE(one.next(10.031 + one.wait(10.03))) << "held still, it gets sharp";
   EXPECT_EQ(one.next(11)->stage, Stage::sharp);
 }
 
