@@ -63,7 +63,7 @@ const tellNumbers = () => {
   while (recent.length && now - recent[0] > 1000) recent.shift();
   const parts = [h.width + ' \u00d7 ' + h.height];
   if (h.stage === 'moving') parts.push(recent.length + ' frames/s');
-  else if (h.samples) parts.push(Math.round(h.samples) + ' samples' + (h.complete ? '' : ', growing'));
+  else if (h.samples) parts.push(Math.round(h.samples) + (h.samples === 1 ? ' sample' : ' samples') + (h.complete ? '' : ', growing'));
   parts.push((1000 * h.render_seconds).toFixed(h.render_seconds < 0.1 ? 1 : 0) + ' ms');
   element('numbers').textContent = parts.join(' \u00b7 ');
 };

@@ -84,7 +84,7 @@ const showFacts = () => {
   const parts = [];
   picks.forEach((pick, i) => {
     if (picks.length > 1) parts.push(html('h3', {}, 'Place ' + 'AB'[i]));
-    parts.push(html('dl', {}, ...pick.facts.flatMap(([name, value]) => [html('dt', {}, name), html('dd', {}, value)])));
+    parts.push(html('dl', {}, ...pick.facts.slice(0, picks.length > 1 ? 3 : 99).flatMap(([name, value]) => [html('dt', {}, name), html('dd', {}, value)])));
   });
   if (picks.length === 2) {
     parts.push(html('p', {className: 'distance'}, 'Distance ' + between().toPrecision(7) + ' units'));
