@@ -104,7 +104,7 @@ const drawOverlay = () => {
         'fill-opacity': 0.75 * Math.sqrt(Math.min(1, Math.abs(load - 1)))}));
       if (width > 60 && height > 36) {
         parts.push(svg('text', {x: x + width / 2, y: y + height / 2, 'text-anchor': 'middle'}, 'rank ' + r.rank));
-        parts.push(svg('text', {x: x + width / 2, y: y + height / 2 + 17, 'text-anchor': 'middle'}, load.toFixed(2) + ' of mean'));
+        if (width > 140) parts.push(svg('text', {x: x + width / 2, y: y + height / 2 + 17, 'text-anchor': 'middle'}, load.toFixed(2) + ' of mean'));
       }
     }
   }

@@ -25,6 +25,31 @@ int scaled(int side, double scale) {
 
 }  // namespace
 
+void FrameCost::note(double area, double seconds) {
+  constexpr double kKept = 0.9;            // of what was known, after each picture
+  constexpr double kLeastVariance = 1e-3;  // of areas, for a slope that can be believed
+  for (double* const sum : {&weight_, &area_, &seconds_, &area2_, &product_}) *sum *= kKept;
+  weight_ += 1;
+  area_ += area;
+  seconds_ += seconds;
+  area2_ += area * area;
+  product_ += area * seconds;
+  const double variance = area2_ / weight_ - area_ * area_ / (weight_ * weight_);
+  if (variance > kLeastVariance) {
+    const double covariance = product_ / weight_ - area_ * seconds_ / (weight_ * weight_);
+    fixed_ = (seconds_ - covariance / variance * area_) / weight_;
+  }
+  fixed_ = std::clamp(fixed_, 0.0, seconds_ / weight_);
+}
+
+double FrameCost::area_in(double seconds) const {
+  constexpr double kMost = 16;
+  if (weight_ == 0) return kMost;
+  const double by_area = (seconds_ / weight_ - fixed_) * weight_ / area_;
+  const double left = std::max(seconds - fixed_, fixed_ / 2);
+  return by_area * kMost <= left ? kMost : left / by_area;
+}
+
 const char* name_of(Stage stage) {
   constexpr const char* kNames[] = {"moving", "sharp", "coarse", "still"};
   return kNames[static_cast<std::size_t>(stage)];
@@ -123,8 +148,11 @@ double Viewer::wait(double now) const {
 void Viewer::done(const Order& order, double seconds, bool is_complete) {
   if (order.stage == Stage::moving) {
     rendered_number_ = order.camera_number;
+    cost_.note(
+        static_cast<double>(order.width) * order.height / (static_cast<double>(width_) * height_),
+        std::max(seconds, 1e-4));
     // Half of the way at once: a frame may have been slow for reasons of its own.
-    const double ideal = scale_ * std::sqrt(kFrame / std::max(seconds, 1e-4));
+    const double ideal = std::sqrt(cost_.area_in(kFrame)) * 1.01;
     const double wanted = std::clamp((scale_ + ideal) / 2, kLeastScale, 1.0);
     if (wanted < scale_ - kScaleStep / 2 || wanted >= scale_ + kScaleStep)
       scale_ = std::round(wanted / kScaleStep) * kScaleStep;

@@ -41,6 +41,22 @@ struct Order {
   }
 };
 
+// What pictures cost: a part that every one takes, for its triangles, and one that grows with its
+// area, by least squares over the last ones.
+class FrameCost {
+ public:
+  // A picture of this area, as a part of the whole one's, took so many seconds.
+  void note(double area, double seconds);
+  // The area that takes so many seconds, 16 where it would be more; where most of a picture's time
+  // is not for its area, one that adds no more than half to that: a smaller one would hardly be
+  // quicker.
+  double area_in(double seconds) const;
+
+ private:
+  double weight_ = 0, area_ = 0, seconds_ = 0, area2_ = 0, product_ = 0;  // sums
+  double fixed_ = 0;                                                      // seconds
+};
+
 // The camera of a page and what pictures of it are due.
 class Viewer {
  public:
@@ -96,6 +112,7 @@ class Viewer {
   std::uint64_t sent_ = 0, seen_ = 0;
   double moved_at_ = 0, sent_at_ = 0;
   double scale_ = 1;  // of pictures that move, in either direction
+  FrameCost cost_;    // of those
   Stage stage_ = Stage::sharp;
 };
 

@@ -246,7 +246,6 @@ def check_command_and_save(page, folder):
 def check_narrow(page):
     page.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                  {"width": 420, "height": 800, "deviceScaleFactor": 2, "mobile": True})
-    frame = page.frame()
     page.browser.refresh()
     until("connected", lambda: page.browser.execute_script("return document.body.dataset.connected"))
     page.rested()
@@ -258,6 +257,7 @@ def check_narrow(page):
     for button in page.browser.find_elements(By.CSS_SELECTOR, "#bar button"):
         box = button.rect
         assert box["x"] >= 0 and box["x"] + box["width"] <= 420, button.text
+    frame = page.frame()
     page.find("#options").click()
     until("options", lambda: page.find("#panel").is_displayed())
     page.rested(frame)

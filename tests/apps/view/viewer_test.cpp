@@ -104,6 +104,22 @@ TEST(Viewer, MovingPicturesGetSmallUntilTheyAreQuick) {
   EXPECT_EQ(one.next(now)->width, 1280);
 }
 
+TEST(Viewer, MovingPicturesStayLargeWhereTheirSizeIsNotWhatTakesTime) {
+  Viewer one = viewer();
+  double now = 0;
+  int width = 0;
+  for (std::uint64_t i = 1; i < 200; ++i, now += 0.1) {
+    one.move(camera(i, true), now);
+    const auto order = one.next(now);
+    ASSERT_TRUE(order);
+    width = order->width;
+    one.done(*order, 0.08 + 0.02 * order->width * order->height / (1280.0 * 720.0), true);
+    if (i > 20) {
+      ASSERT_EQ(width, 1280) << "picture " << i;
+    }
+  }
+}
+
 TEST(Viewer, WaitsForAPageThatIsBehind) {
   Viewer one = viewer();
   for (std::uint64_t i = 1; i <= 2; ++i) {
