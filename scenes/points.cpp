@@ -1,4 +1,5 @@
-// Numbers points as they lie in space, and measures how densely, in runs of neighbours.
+// Numbers points as they lie along a curve, and measures how densely they lie, in runs of
+// neighbours.
 #include "scenes/points.h"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "parallel/parallel_for.h"
 #include "scenes/geometry/order.h"
+#include "scenes/point_order.h"
 
 namespace delray::scenes {
 namespace {
@@ -35,33 +37,55 @@ float squared_distance(std::span<const glm::vec3> run, std::size_t i) {
 
 void make_points(Mesh& mesh, const Shape& shape) {
   mesh.shape = shape;
-  mesh.triangles.resize(mesh.positions.size());
-  parallel::parallel_for(0, mesh.triangles.size(), kGrain, [&](std::size_t i) {
+  geometry::Box3 box;
+  for (const glm::vec3& p : mesh.positions) box.include(p);
+  const std::vector<PointPlace> order = order_points(mesh.positions, PointOrder(box));
+  std::vector<std::uint32_t> old_number(order.size());
+  mesh.triangles.resize(order.size());
+  parallel::parallel_for(0, order.size(), kGrain, [&](std::size_t i) {
+    old_number[i] = order[i].point;
     mesh.triangles[i] = glm::uvec3(static_cast<std::uint32_t>(i));
   });
-  internal::order_for_locality(mesh);
+  internal::renumber_vertices(old_number, mesh);
+}
+
+std::size_t PointSpacing::step() const {
+  const std::size_t runs = (n_ + kRun - 1) / kRun;
+  return std::max<std::size_t>(1, (runs + kMostRuns - 1) / kMostRuns) * kRun;
+}
+
+void PointSpacing::add(std::span<const glm::vec3> points) {
+  for (const glm::vec3& p : points) {
+    if (next_++ % step() >= kRun) continue;
+    run_.push_back(p);
+    if (run_.size() == kRun) end_run();
+  }
+}
+
+void PointSpacing::end_run() {
+  if (run_.size() > 1) {
+    std::vector<float> own(run_.size());
+    for (std::size_t i = 0; i < run_.size(); ++i) own[i] = squared_distance(run_, i);
+    const auto middle = own.begin() + static_cast<std::ptrdiff_t>(own.size() / 2);
+    std::nth_element(own.begin(), middle, own.end());
+    distances_.push_back(*middle);
+  }
+  run_.clear();
+}
+
+float PointSpacing::spacing() {
+  end_run();
+  if (distances_.empty()) return 0;
+  const auto middle = distances_.begin() + static_cast<std::ptrdiff_t>(distances_.size() / 2);
+  std::nth_element(distances_.begin(), middle, distances_.end());
+  const auto neighbours = static_cast<float>(std::min(kNeighbour, n_ - 1));
+  return std::sqrt(*middle * std::numbers::pi_v<float> / neighbours);
 }
 
 float point_spacing(const Mesh& mesh) {
-  const std::size_t n = mesh.positions.size();
-  if (n < 2) return 0;
-  const std::size_t runs = (n + kRun - 1) / kRun, step = (runs + kMostRuns - 1) / kMostRuns;
-  std::vector<float> distances(runs / step + 1, -1.0F);
-  parallel::parallel_for(0, distances.size(), 1, [&](std::size_t k) {
-    const std::size_t first = k * step * kRun;
-    if (first + 2 > n) return;
-    const auto run = std::span(mesh.positions).subspan(first, std::min(kRun, n - first));
-    std::vector<float> own(run.size());
-    for (std::size_t i = 0; i < run.size(); ++i) own[i] = squared_distance(run, i);
-    const auto middle = own.begin() + static_cast<std::ptrdiff_t>(own.size() / 2);
-    std::nth_element(own.begin(), middle, own.end());
-    distances[k] = *middle;
-  });
-  std::erase_if(distances, [](float d) { return d < 0; });
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  const auto neighbours = static_cast<float>(std::min(kNeighbour, n - 1));
-  return std::sqrt(*middle * std::numbers::pi_v<float> / neighbours);
+  PointSpacing spacing(mesh.positions.size());
+  spacing.add(mesh.positions);
+  return spacing.spacing();
 }
 
 void set_radii_in_units(Scene& scene, const Camera& camera, int height) {

@@ -23,8 +23,8 @@
 #include "delaunay/mesh/array.h"
 #include "delaunay/mesh/blocks.h"
 #include "delaunay/order/cells.h"
-#include "delaunay/order/hilbert_3d.h"
 #include "delaunay/order/radix_sort.h"
+#include "geometry/hilbert_curve.h"
 #include "parallel/team.h"
 
 namespace delray::delaunay {
@@ -106,7 +106,7 @@ class SpaceCurve {
       cell[static_cast<std::size_t>(k)] =
           static_cast<std::uint32_t>(std::clamp(place[k], 0.0, kCellsAcross - 1));
     }
-    return internal::place_on_curve(cell, kBits);
+    return geometry::place_on_curve(cell, kBits);
   }
 
  private:

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "delaunay/mesh/blocks.h"
-#include "delaunay/order/hilbert_3d.h"
+#include "geometry/hilbert_curve.h"
 
 namespace delray::delaunay::internal {
 namespace {
@@ -162,7 +162,7 @@ CurveOrder3d curve_order_3d(const PointView<double>& points, const PointRange& r
       --round;
       random /= kGrowth;
     }
-    const std::uint64_t place = place_on_curve(cell, bits);
+    const std::uint64_t place = geometry::place_on_curve(cell, bits);
     keys[row] = (static_cast<std::uint64_t>(round) << (3 * bits) | place) << row_bits | row;
   };
   blocks.for_each([&](std::size_t, std::size_t first, std::size_t last) {

@@ -153,6 +153,12 @@ void number_vertices_as_used(Mesh& mesh) {
   }
   for (std::uint32_t i = 0; i < number.size(); ++i)
     if (number[i] == kNone) old_number.push_back(i);
+  renumber_vertices(old_number, mesh);
+}
+
+}  // namespace
+
+void renumber_vertices(const std::vector<std::uint32_t>& old_number, Mesh& mesh) {
   reorder(old_number, mesh.positions);
   reorder(old_number, mesh.normals);
   reorder(old_number, mesh.uvs);
@@ -160,8 +166,6 @@ void number_vertices_as_used(Mesh& mesh) {
   reorder(old_number, mesh.tangents);
   reorder(old_number, mesh.colours);
 }
-
-}  // namespace
 
 RunSizes sizes_of_runs(const Mesh& mesh) {
   return sizes_of_runs(mesh, [&](std::size_t t) -> const glm::uvec3& { return mesh.triangles[t]; });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "scenes/scene.h"
 
@@ -30,5 +31,8 @@ bool are_compact(const RunSizes& sizes);
 //
 // REQUIRES: indices are in range.
 void order_for_locality(Mesh& mesh);
+
+// Vertex i becomes what vertex old_number[i] was, with all attributes; triangles stay. Parallel.
+void renumber_vertices(const std::vector<std::uint32_t>& old_number, Mesh& mesh);
 
 }  // namespace delray::scenes::internal

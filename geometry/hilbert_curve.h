@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace delray::delaunay::internal {
+namespace delray::geometry {
 
 // One level of the Hilbert curve in a cube that is passed from corner `entry` along axis
 // `direction` (C. Hamilton, Compact Hilbert Indices, 2006).
@@ -58,4 +58,4 @@ inline std::uint64_t place_on_curve(const std::array<std::uint32_t, 3>& cell, in
   return place;
 }
 
-}  // namespace delray::delaunay::internal
+}  // namespace delray::geometry
