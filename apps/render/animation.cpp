@@ -48,6 +48,14 @@ raytrace::RayCounts rays_of(const EngineStatistics& statistics) {
   return traced == nullptr ? raytrace::RayCounts{} : traced->rays;
 }
 
+// Of the pages that a frame drew.
+std::uint64_t triangles_of_pages(const raster::Statistics* statistics) {
+  std::uint64_t sum = 0;
+  if (statistics == nullptr || !statistics->pack) return sum;
+  for (const std::uint64_t triangles : statistics->pack->levels) sum += triangles;
+  return sum;
+}
+
 void add_traffic(const EngineStatistics& statistics, FrameMotion& motion) {
   std::visit(
       [&](const auto& s) {
@@ -144,8 +152,8 @@ Animation render_animation(comm::Communicator& communicator, const Prepared& pre
       Stopwatch watch;
       Frame frame = renderer.render(communicator, posed.camera);
       posed.motion.frame_seconds = watch.lap();
-      if (budget) budget->took(posed.motion.frame_seconds);
       const auto* const drawn = std::get_if<raster::Statistics>(&frame.statistics);
+      if (budget) budget->took(posed.motion.frame_seconds, triangles_of_pages(drawn));
       if (prepared.pack && drawn != nullptr && first_rank) {
         animation.errors.push_back(error);
         animation.triangles.push_back(drawn->triangles_rasterized);
