@@ -26,7 +26,7 @@
 namespace delray::packs {
 namespace {
 
-constexpr std::uint32_t kBlockTriangles = 1U << 14;  // cut by one thread: some 32 pages
+constexpr std::uint32_t kBlockTriangles = PackWriter::kBlockTriangles;  // cut by one thread
 constexpr std::size_t kBlocksPerThread = 4;
 
 using internal::EncodedPage;
@@ -47,9 +47,11 @@ std::vector<EncodedPage> encode_block(const scenes::Mesh& mesh, std::uint32_t fi
 }  // namespace
 
 struct PackWriter::State {
-  State(const std::filesystem::path& path, const WriteOptions& how) : options(how), file(path) {}
+  State(const std::filesystem::path& path, const WriteOptions& how)
+      : options(how), scratch(std::filesystem::absolute(path).parent_path()), file(path) {}
 
   const WriteOptions options;
+  const std::filesystem::path scratch;  // the folder of the file
   files::AtomicFile file;
   std::uint64_t written = 0;
   internal::Table table;
@@ -126,20 +128,22 @@ void PackWriter::append_part(const scenes::Mesh& part) {
 }
 
 std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t material,
-                                   std::uint64_t vertices) {
+                                   std::uint64_t vertices, const scenes::Shape& shape) {
   State& state = *state_;
   if (state.mesh.triangles == 0) throw std::invalid_argument("a mesh of a pack has triangles");
   const auto pages = static_cast<std::uint32_t>(state.table.pages.size());
   state.mesh.name = name;
   state.mesh.material = material;
   state.mesh.vertices = vertices;
+  state.mesh.shape = shape;
   state.mesh.levels.push_back({state.first, pages - state.first});
   if (state.options.levels && state.mesh.shape.kind != scenes::Shape::Kind::line) {
     internal::build_levels({[&](std::uint32_t page) { return state.read(page); },
                             [&](std::vector<EncodedPage>&& made) {
                               state.append(made);
                               state.flush();
-                            }},
+                            },
+                            state.scratch},
                            state.table.pages, state.table.groups, state.mesh);
   }
   state.first = static_cast<std::uint32_t>(state.table.pages.size());
@@ -150,7 +154,7 @@ std::uint32_t PackWriter::end_mesh(const std::string& name, std::uint32_t materi
 
 std::uint32_t PackWriter::add_mesh(const scenes::Mesh& mesh) {
   append_part(mesh);
-  return end_mesh(mesh.name, mesh.material, mesh.positions.size());
+  return end_mesh(mesh.name, mesh.material, mesh.positions.size(), mesh.shape);
 }
 
 void PackWriter::commit(const scenes::Scene& rest, bool lit_by_emission) {

@@ -13,7 +13,7 @@ namespace delray::packs {
 
 // The bytes that a file of packs begins with, and the version of the format.
 inline constexpr char kMagic[8] = {'D', 'E', 'L', 'R', 'A', 'Y', 'P', 'K'};
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 
 // What is written besides what was given.
 struct WriteOptions {
@@ -39,9 +39,12 @@ class PackWriter {
 
   // The same in parts, which follow each other: a mesh has the triangles of all parts that were
   // appended since the last one was ended. Parts have the same attributes; vertices that are alike
-  // to the last bit are one to levels.
+  // to the last bit are one to levels. Wherever parts of multiples of kBlockTriangles are cut, the
+  // file is the same. `shape` is that of all parts, of the kind that each has.
+  static constexpr std::uint32_t kBlockTriangles = 1U << 14;
   void append_part(const scenes::Mesh& part);
-  std::uint32_t end_mesh(const std::string& name, std::uint32_t material, std::uint64_t vertices);
+  std::uint32_t end_mesh(const std::string& name, std::uint32_t material, std::uint64_t vertices,
+                         const scenes::Shape& shape = {});
 
   // Appends what the scene has besides its meshes, which are those that were added, and gives the
   // file its name. `lit_by_emission` as scenes::is_lit_by_emission says of the whole.

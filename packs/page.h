@@ -60,8 +60,7 @@ inline constexpr std::uint32_t kNoGroup = 0xFFFFFFFFU;
 // Neighbouring pages that were simplified together: their outer border stayed as it was, so that
 // either they or what was made of them can be drawn beside any choice for their neighbours.
 struct Group {
-  glm::vec3 centre{0};  // a sphere around all that was simplified, down to the finest level
-  float radius = 0;
+  geometry::Box3 bounds;  // of all that was simplified, down to the finest level
   // How far the simplified surface and the finest one are apart at most, in either direction; no
   // less than that of any group which its pages come from.
   float error = 0;

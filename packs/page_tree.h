@@ -21,9 +21,10 @@ class PageTree {
   struct Node {
     geometry::Box3 box;
     // The largest error of the groups that the pages were simplified in, infinity where one was in
-    // none, and a box around the spheres of those.
+    // none, and a box around the bounds of those.
     float error = 0;
-    geometry::Box3 spheres;
+    geometry::Box3 bounds;
+    float made_error = 0;  // the largest error of the groups that the pages were made of
   };
 
   // O(pages). Refers to the rows.

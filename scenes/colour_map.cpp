@@ -85,6 +85,8 @@ const ColourMap& colour_map(std::string_view name) {
   throw std::invalid_argument("no colour map is called '" + std::string(name) + "'; maps:" + names);
 }
 
+glm::vec3 brightness(float x) { return glm::vec3(x); }
+
 glm::vec3 classification_colour(unsigned code) {
   if (code < kClasses.size()) return linear(kClasses[code]);
   // Steps of the golden ratio round the rainbow never come close to the last few.

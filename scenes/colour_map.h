@@ -21,6 +21,9 @@ std::span<const ColourMap> colour_maps();
 // Throws std::invalid_argument that lists the names for any other.
 const ColourMap& colour_map(std::string_view name);
 
+// Grey of that linear brightness.
+glm::vec3 brightness(float x);
+
 // The colour of a class of LAS points (ASPRS codes: 2 ground, 3 to 5 vegetation, 6 building, 9
 // water ...), linear; classes without a meaning get colours that differ from their neighbours'.
 glm::vec3 classification_colour(unsigned code);

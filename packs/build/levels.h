@@ -1,6 +1,7 @@
 // Coarser levels of a mesh.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct LevelBuilder {
   std::function<Page(std::uint32_t page)> read;
   // Appends pages to the file and to the table.
   std::function<void(std::vector<EncodedPage>&& pages)> append;
+  // Of a file without a name: two to four bytes for each triangle of the finest level.
+  std::filesystem::path scratch;
 };
 
 // Simplifies the finest level of the mesh, and what becomes of it, level by level, as long as that

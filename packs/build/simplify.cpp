@@ -1,6 +1,6 @@
 // Quadric edge collapses by meshoptimizer (after Garland and Heckbert 1997), with the border
-// locked; the error is measured afterwards, since theirs is no bound. Triangles are then ordered
-// along a Morton curve, so that pages of consecutive ones are compact.
+// locked; the error is measured afterwards (surface_error.h), since theirs is no bound. Triangles
+// are then ordered along a Morton curve, so that pages of consecutive ones are compact.
 #include "packs/build/simplify.h"
 
 #include <meshoptimizer.h>
@@ -68,7 +68,7 @@ scenes::Mesh merge(std::span<const Page> pages) {
   return mesh;
 }
 
-Simplified simplify(const scenes::Mesh& mesh, std::span<const float> before) {
+scenes::Mesh simplify(const scenes::Mesh& mesh) {
   const std::size_t corners = 3 * mesh.triangles.size();
   std::vector<std::uint32_t> kept(corners);
   const auto target =
@@ -77,26 +77,27 @@ Simplified simplify(const scenes::Mesh& mesh, std::span<const float> before) {
   kept.resize(meshopt_simplify(kept.data(), &mesh.triangles[0].x, corners, &mesh.positions[0].x,
                                mesh.positions.size(), sizeof(glm::vec3), target, kAnyError,
                                meshopt_SimplifyLockBorder, nullptr));
-  Simplified result;
-  result.mesh.material = mesh.material;
+  scenes::Mesh result;
+  result.material = mesh.material;
   std::vector<std::uint32_t> number(mesh.positions.size(), scenes::kNone);
   for (std::uint32_t& vertex : kept) {
     if (number[vertex] == scenes::kNone) {
-      number[vertex] = static_cast<std::uint32_t>(result.mesh.positions.size());
-      copy_vertex(mesh, vertex, result.mesh);
+      number[vertex] = static_cast<std::uint32_t>(result.positions.size());
+      copy_vertex(mesh, vertex, result);
     }
     vertex = number[vertex];
   }
   std::vector<glm::vec3> middles;
   for (std::size_t i = 0; i + 2 < kept.size(); i += 3) {
-    middles.push_back((result.mesh.positions[kept[i]] + result.mesh.positions[kept[i + 1]] +
-                       result.mesh.positions[kept[i + 2]]) *
+    middles.push_back((result.positions[kept[i]] + result.positions[kept[i + 1]] +
+                       result.positions[kept[i + 2]]) *
                       (1.0F / 3.0F));
   }
   for (const std::uint32_t t : order_along_curve(middles))
-    result.mesh.triangles.emplace_back(kept[3 * t], kept[3 * t + 1], kept[3 * t + 2]);
-  result.errors = surface_errors(mesh, before, result.mesh, kAttributeEdges * mean_edge(mesh));
+    result.triangles.emplace_back(kept[3 * t], kept[3 * t + 1], kept[3 * t + 2]);
   return result;
 }
+
+float attribute_scale(const scenes::Mesh& before) { return kAttributeEdges * mean_edge(before); }
 
 }  // namespace delray::packs::internal

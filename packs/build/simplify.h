@@ -2,8 +2,8 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
-#include "packs/build/surface_error.h"
 #include "packs/page.h"
 
 namespace delray::packs::internal {
@@ -11,15 +11,21 @@ namespace delray::packs::internal {
 // The pages as one mesh, in which vertices that are alike to the last bit are one.
 scenes::Mesh merge(std::span<const Page> pages);
 
+// A finer surface that is drawn from some distance on, or points.
 struct Simplified {
-  scenes::Mesh mesh;     // its vertices are some of the original; triangles ordered for locality
-  SurfaceErrors errors;  // of its triangles; see surface_errors
+  scenes::Mesh mesh;  // its vertices are some of the original
+  float largest_error = 0;
+  std::vector<float> errors;  // of its triangles
 };
 
-// About kKept of the triangles, of which each was so far from the surface `before`, as
-// surface_errors has it. Vertices on the border, edges with a single triangle, stay. The result has
-// as many triangles as before where nothing could be left out. Deterministic.
+// About kKept of the triangles, ordered for locality. Vertices on the border, edges with a single
+// triangle, stay, and others are some of those before. The result has as many triangles as before
+// where nothing could be left out. Deterministic.
 inline constexpr double kKept = 0.5;
-Simplified simplify(const scenes::Mesh& mesh, std::span<const float> before = {});
+scenes::Mesh simplify(const scenes::Mesh& mesh);
+
+// What a difference of 1 between normals, colours or texture coordinates counts as: see
+// surface_errors.
+float attribute_scale(const scenes::Mesh& before);
 
 }  // namespace delray::packs::internal

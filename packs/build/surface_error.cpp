@@ -1,10 +1,11 @@
 // Nearest points by a tree of boxes over triangles (Ericson 2005, 5.1.5 for one triangle), the
 // place at hand first where the last one was found. Two-sided, as Cignoni, Rocchini and Scopigno
-// (1998) measure it, but not from random samples: from vertices and the middles of edges and
-// triangles of both, each once.
+// (1998) measure it, but not from random samples: from vertices, and from the middles of edges and
+// triangles, each once.
 //
 // Errors of what lies beneath are added where they are, by the triangle inequality, and not the
-// largest to the largest: those are rarely at one place.
+// largest to the largest: those are rarely at one place. An edge of several triangles is measured
+// in the first of them.
 //
 // Degenerate: triangles without area count as their edges; without triangles the error is 0.
 #include "packs/build/surface_error.h"
@@ -14,6 +15,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "geometry/box.h"
 
@@ -180,108 +183,130 @@ float difference(const scenes::Mesh& a, const glm::uvec3& of_a, const Weights& i
   return sum;
 }
 
-// A place of a mesh, and the triangles that have it.
+// A place of a mesh, in one of the triangles that have it.
 struct Sample {
-  std::uint32_t triangle = 0;  // one of them
+  std::uint32_t triangle = 0;
   Weights weights;
-  std::uint32_t first = 0, count = 0;  // of them all, in Samples::triangles
-};
-struct Samples {
-  std::vector<Sample> places;
-  std::vector<std::uint32_t> triangles;
 };
 
-// Corners, middles of edges and of triangles, each once.
-Samples samples_of(const scenes::Mesh& mesh) {
+// Middles of edges and of triangles, each once, in the order of triangles.
+std::vector<Sample> middles_of(const scenes::Mesh& mesh) {
   constexpr float kHalf = 0.5F, kThird = 1.0F / 3.0F;
-  constexpr std::array<Weights, 3> kCorners = {Weights{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   constexpr std::array<Weights, 3> kEdges = {
       Weights{kHalf, kHalf, 0}, {0, kHalf, kHalf}, {kHalf, 0, kHalf}};
-  struct Key {
-    std::uint64_t what;  // a vertex, or both ends of an edge
-    std::uint32_t triangle, corner;
+  struct Edge {
+    std::uint64_t ends;
+    std::uint32_t triangle, side;
   };
   const auto triangles = static_cast<std::uint32_t>(mesh.triangles.size());
-  std::vector<Key> keys;
-  keys.reserve(std::size_t{6} * triangles);
+  std::vector<Edge> edges;
+  edges.reserve(std::size_t{3} * triangles);
   for (std::uint32_t t = 0; t < triangles; ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint64_t a = mesh.triangles[t][static_cast<int>(k)];
       const std::uint64_t b = mesh.triangles[t][static_cast<int>((k + 1) % 3)];
-      keys.push_back({a << 32 | a, t, k});
-      if (a != b) keys.push_back({std::min(a, b) << 32 | std::max(a, b), t, k + 3});
+      edges.push_back({std::min(a, b) << 32 | std::max(a, b), t, k});
     }
   }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-    return a.what != b.what ? a.what < b.what : a.triangle < b.triangle;
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return a.ends != b.ends ? a.ends < b.ends : a.triangle < b.triangle;
   });
-  Samples samples;
-  samples.triangles.reserve(keys.size() + triangles);
-  for (std::size_t i = 0; i < keys.size();) {
-    const Key& key = keys[i];
-    Sample sample{key.triangle, key.corner < 3 ? kCorners[key.corner] : kEdges[key.corner - 3],
-                  static_cast<std::uint32_t>(samples.triangles.size()), 0};
-    for (; i < keys.size() && keys[i].what == key.what; ++i, ++sample.count)
-      samples.triangles.push_back(keys[i].triangle);
-    samples.places.push_back(sample);
+  std::vector<Sample> samples;
+  samples.reserve(edges.size() / 2 + triangles);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (i > 0 && edges[i - 1].ends == edges[i].ends) continue;
+    samples.push_back({edges[i].triangle, kEdges[edges[i].side]});
   }
-  for (std::uint32_t t = 0; t < triangles; ++t) {
-    samples.places.push_back(
-        {t, {kThird, kThird, kThird}, static_cast<std::uint32_t>(samples.triangles.size()), 1});
-    samples.triangles.push_back(t);
-  }
+  for (std::uint32_t t = 0; t < triangles; ++t) samples.push_back({t, {kThird, kThird, kThird}});
   // Neighbours follow each other, as triangles do.
-  std::stable_sort(samples.places.begin(), samples.places.end(),
+  std::stable_sort(samples.begin(), samples.end(),
                    [](const Sample& a, const Sample& b) { return a.triangle < b.triangle; });
   return samples;
 }
 
-// Calls f(triangles of `from` that have the place, nearest triangle of `to`, error) for each place.
-template <class F>
-void for_each_error(const scenes::Mesh& from, const Samples& samples, const scenes::Mesh& to,
-                    float attribute_scale, F&& f) {
-  const TriangleTree tree(to);
-  std::uint32_t hint = 0;
-  for (const Sample& sample : samples.places) {
-    const glm::uvec3& corners = from.triangles[sample.triangle];
-    const Place place = tree.nearest(at(from.positions, corners, sample.weights), hint);
-    hint = place.triangle;
-    const float attributes =
-        difference(from, corners, sample.weights, to, to.triangles[place.triangle], place.weights);
-    f(std::span(samples.triangles).subspan(sample.first, sample.count), place.triangle,
-      std::sqrt(place.squared + attribute_scale * attribute_scale * attributes));
+// For each vertex a triangle that has it, and which corner of that it is.
+std::vector<Sample> vertices_of(const scenes::Mesh& mesh) {
+  constexpr std::array<Weights, 3> kCorners = {Weights{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<Sample> samples(mesh.positions.size(), {scenes::kNone, {}});
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      Sample& sample = samples[mesh.triangles[t][k]];
+      if (sample.triangle == scenes::kNone) sample = {t, kCorners[static_cast<std::size_t>(k)]};
+    }
   }
+  return samples;
 }
+
+// Distances of places of one mesh from another.
+class Distances {
+ public:
+  Distances(const scenes::Mesh& from, const scenes::Mesh& to, float attribute_scale)
+      : from_(from), to_(to), tree_(to), squared_scale_(attribute_scale * attribute_scale) {}
+
+  // The nearest triangle, and how far it is. Fast where it is near that of the call before.
+  std::pair<std::uint32_t, float> operator()(const Sample& sample) {
+    const glm::uvec3& corners = from_.triangles[sample.triangle];
+    const Place place = tree_.nearest(at(from_.positions, corners, sample.weights), hint_);
+    hint_ = place.triangle;
+    const float attributes = difference(from_, corners, sample.weights, to_,
+                                        to_.triangles[place.triangle], place.weights);
+    return {place.triangle, std::sqrt(place.squared + squared_scale_ * attributes)};
+  }
+
+ private:
+  const scenes::Mesh &from_, &to_;
+  TriangleTree tree_;
+  float squared_scale_;
+  std::uint32_t hint_ = 0;
+};
 
 }  // namespace
 
-SurfaceErrors surface_errors(const scenes::Mesh& fine, std::span<const float> before,
-                             const scenes::Mesh& simplified, float attribute_scale) {
+SurfaceErrors surface_errors(const FineSurface& fine, const scenes::Mesh& simplified,
+                             float attribute_scale) {
   SurfaceErrors errors;
   errors.triangles.assign(simplified.triangles.size(), 0);
-  if (fine.triangles.empty() || simplified.triangles.empty()) return errors;
-  const auto of_fine = [&](std::uint32_t t) { return before.empty() ? 0.0F : before[t]; };
+  errors.nearest.assign(fine.mesh.positions.size(), scenes::kNone);
+  if (fine.mesh.triangles.empty() || simplified.triangles.empty()) return errors;
+  const auto before = [&](std::uint32_t t) { return fine.before.empty() ? 0.0F : fine.before[t]; };
   const auto add = [&](std::uint32_t t, float error) {
     errors.triangles[t] = std::max(errors.triangles[t], error);
     errors.largest = std::max(errors.largest, error);
   };
-  using Triangles = std::span<const std::uint32_t>;
-  for_each_error(fine, samples_of(fine), simplified, attribute_scale,
-                 [&](Triangles from, std::uint32_t nearest, float error) {
-                   float most = 0;
-                   for (const std::uint32_t t : from) most = std::max(most, of_fine(t));
-                   add(nearest, most + error);
-                 });
-  for_each_error(simplified, samples_of(simplified), fine, attribute_scale,
-                 [&](Triangles from, std::uint32_t nearest, float error) {
-                   for (const std::uint32_t t : from) add(t, of_fine(nearest) + error);
-                 });
+  Distances to_simplified(fine.mesh, simplified, attribute_scale);
+  const std::vector<Sample> vertices = vertices_of(fine.mesh);
+  std::vector<float> distance(vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    if (vertices[v].triangle == scenes::kNone) continue;
+    if (!fine.measured.empty() && fine.measured[v] == 0) continue;
+    std::tie(errors.nearest[v], distance[v]) = to_simplified(vertices[v]);
+  }
+  for (std::uint32_t t = 0; t < fine.mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = fine.mesh.triangles[t][k];
+      if (errors.nearest[v] != scenes::kNone) add(errors.nearest[v], before(t) + distance[v]);
+    }
+  }
+  Distances to_fine(simplified, fine.mesh, attribute_scale);
+  for (const Sample& sample : middles_of(simplified)) {
+    const auto [nearest, far] = to_fine(sample);
+    add(sample.triangle, before(nearest) + far);
+    errors.beneath.emplace_back(sample.triangle, nearest);
+  }
   return errors;
 }
 
 float surface_error(const scenes::Mesh& a, const scenes::Mesh& b, float attribute_scale) {
-  return std::max(surface_errors(a, {}, b, attribute_scale).largest,
-                  surface_errors(b, {}, a, attribute_scale).largest);
+  float largest = 0;
+  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    if (from->triangles.empty() || to->triangles.empty()) return 0;
+    Distances distances(*from, *to, attribute_scale);
+    for (const Sample& sample : vertices_of(*from))
+      if (sample.triangle != scenes::kNone) largest = std::max(largest, distances(sample).second);
+    for (const Sample& sample : middles_of(*from))
+      largest = std::max(largest, distances(sample).second);
+  }
+  return largest;
 }
 
 float mean_edge(const scenes::Mesh& mesh) {

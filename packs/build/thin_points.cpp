@@ -161,12 +161,12 @@ Simplified thin_points(const scenes::Mesh& mesh, std::span<const float> before) 
   Simplified result;
   result.mesh.shape = mesh.shape;
   result.mesh.material = mesh.material;
-  result.errors.largest = chosen.largest;
+  result.largest_error = chosen.largest;
   for (const std::uint32_t i : order_along_curve(places)) {
     const std::uint32_t point = chosen.points[i];
     result.mesh.triangles.emplace_back(static_cast<std::uint32_t>(result.mesh.positions.size()));
     copy_vertex(mesh, mesh.triangles[point].x, result.mesh);
-    result.errors.triangles.push_back(chosen.errors[point]);
+    result.errors.push_back(chosen.errors[point]);
   }
   return result;
 }

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "packs/format/word_planes.h"
+#include "scenes/colour_map.h"
 
 namespace delray::packs::internal {
 namespace {
@@ -83,6 +86,52 @@ void plain_fields(Bytes& b, Scene& scene) {
   b.value(scene.origin);
   b.flag(scene.z_up);
   b.value(scene.framed);
+}
+
+// What colours tell: whether they do, then 0 for classes, 1 for grey, else 2 and the number of the
+// map.
+constexpr std::uint8_t kClasses = 0, kGrey = 1, kFirstMap = 2;
+
+std::uint8_t number_of(glm::vec3 (*colour)(float)) {
+  if (colour == nullptr) return kClasses;
+  const std::span<const scenes::ColourMap> maps = scenes::colour_maps();
+  const auto found = std::ranges::find(maps, colour, &scenes::ColourMap::colour);
+  if (found == maps.end()) return kGrey;
+  return static_cast<std::uint8_t>(kFirstMap + (found - maps.begin()));
+}
+
+void write_scale(const std::optional<scenes::ColourScale>& scale, ByteWriter& to) {
+  to.flag(scale.has_value());
+  if (!scale) return;
+  to.text(scale->title);
+  const std::uint8_t number = number_of(scale->colour);
+  values(to, scale->low, scale->high, number);
+  to.value(static_cast<std::uint64_t>(scale->classes.size()));
+  for (const auto& one : scale->classes) {
+    to.text(one.name);
+    to.value(one.colour);
+  }
+}
+
+void read_scale(ByteReader& from, std::optional<scenes::ColourScale>& scale) {
+  bool exists = false;
+  from.flag(exists);
+  if (!exists) return;
+  scale.emplace();
+  std::uint8_t number = 0;
+  from.text(scale->title);
+  values(from, scale->low, scale->high, number);
+  if (!std::isfinite(scale->low) || !std::isfinite(scale->high))
+    from.fail("the ends of a colour scale are not finite");
+  const std::span<const scenes::ColourMap> maps = scenes::colour_maps();
+  if (number >= kFirstMap + maps.size()) from.fail("a colour map does not exist");
+  if (number == kGrey) scale->colour = scenes::brightness;
+  if (number >= kFirstMap) scale->colour = maps[number - kFirstMap].colour;
+  for (std::size_t n = from.count(8 + sizeof(glm::vec3)); n > 0; --n) {
+    scale->classes.emplace_back();
+    from.text(scale->classes.back().name);
+    from.value(scale->classes.back().colour);
+  }
 }
 
 void write_blocks(std::span<const char> bytes, ByteWriter& to) {
@@ -255,6 +304,7 @@ void write_scene(const scenes::Scene& scene, ByteWriter& to) {
     for (const auto& value : values) fields(value);
   };
   plain_fields(to, scene);
+  write_scale(scene.colour_scale, to);
   list(scene.materials, [&](const auto& m) { material_fields(to, m); });
   list(scene.lights, [&](const auto& l) { light_fields(to, l); });
   list(scene.cameras, [&](const auto& c) { camera_fields(to, c); });
@@ -273,6 +323,7 @@ void read_scene(ByteReader& from, std::size_t meshes, const files::MemoryBudget&
     }
   };
   plain_fields(from, scene);
+  read_scale(from, scene.colour_scale);
   list(scene.materials, [&](auto& m) { material_fields(from, m); });
   list(scene.lights, [&](auto& l) { light_fields(from, l); });
   list(scene.cameras, [&](auto& c) { camera_fields(from, c); });
@@ -304,9 +355,8 @@ void read_table(ByteReader& from, std::uint64_t data_end, Table& table) {
   if (!from.at_end()) from.fail("bytes are left over");
   for (const PageRow& page : table.pages) check_page(from, data_end, table.groups.size(), page);
   for (const Group& group : table.groups) {
-    if (!(group.error >= 0 && group.radius >= 0) || !std::isfinite(group.radius + group.error) ||
-        !std::isfinite(group.centre.x + group.centre.y + group.centre.z))
-      from.fail("a group has no sphere or error");
+    if (!is_finite(group.bounds) || !(group.error >= 0) || !std::isfinite(group.error))
+      from.fail("a group has no bounds or error");
   }
   std::uint32_t next = 0;
   for (const MeshRow& mesh : table.meshes) next = check_mesh(from, table, next, mesh);

@@ -12,30 +12,18 @@ class ErrorOnScreen {
   // `most` is in samples. Refers to the draw.
   ErrorOnScreen(const Screen& screen, const PreparedDraw& draw, double most);
 
-  // Whether what was made of a group may be drawn instead of it, wherever it is seen. Whatever may
-  // be drawn for a group may be for those that it was made of, since its error is larger and its
-  // sphere around theirs.
-  bool allows(const packs::Group& group) const {
-    return group.error * factor_ <= distance(group.centre, group.radius * length_);
-  }
-  // Whether that holds for all groups of such errors whose spheres are in the box.
-  bool allows_all(float error, const geometry::Box3& spheres) const {
-    constexpr float kRounding = 1e-3F;  // that no rounding makes a group of them one that is not
-    return error * factor_ * (1 + kRounding) <=
-           distance(spheres.centre(), glm::dot(along_, spheres.size() * 0.5F));
-  }
+  // Whether an error is no more than that, wherever in the box it is seen. What holds for an error
+  // in a box holds for smaller ones in smaller boxes, to the last bit.
+  bool allows(float error, const geometry::Box3& bounds) const;
+  // Whether what was made of a group may be drawn instead of it. Whatever may be drawn for a group
+  // may be for those that it was made of, since its error is larger and its bounds around theirs.
+  bool allows(const packs::Group& group) const { return allows(group.error, group.bounds); }
 
  private:
-  // Along the view axis, of what reaches so far along it around a place of the mesh; 1 without
-  // perspective.
-  float distance(const glm::vec3& centre, float reach) const;
-
   const Screen& screen_;
   const PreparedDraw& draw_;
-  // How far along the view axis a unit of the mesh goes at most, and one along each of its axes.
-  float length_ = 1;
-  glm::vec3 along_{1};
-  float factor_ = 0;  // a group is allowed whose error times this is no more than its distance
+  glm::vec2 frame_{0};  // what is seen, at most: sideways for each unit along the view axis
+  float factor_ = 0;    // a unit of the mesh at distance 1, along the axis, in bounds of error
 };
 
 }  // namespace delray::raster

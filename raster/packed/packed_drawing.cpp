@@ -35,7 +35,9 @@ PackedDrawing::PackedDrawing(RankContext& rank, PackedScene& packed,
   list_.draws.reserve(pages_.size());
   for (const PlacedPage& page : pages_) {
     const scenes::Instance& instance = scene.instances[page.instance];
-    list_.draws.push_back({&scene.meshes[instance.mesh], &instance.transform, nullptr, nullptr});
+    const scenes::Mesh& mesh = scene.meshes[instance.mesh];
+    list_.draws.push_back(
+        {&mesh, &instance.transform, nullptr, nullptr, widening_of(rank, packed, mesh, page.page)});
     list_.triangles += packed.pack.pages()[page.page].triangles;
   }
 }

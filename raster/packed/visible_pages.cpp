@@ -13,6 +13,20 @@
 
 namespace delray::raster {
 
+namespace {
+
+geometry::Box3 grown(const geometry::Box3& box, float by) { return {box.low - by, box.high + by}; }
+
+}  // namespace
+
+float widening_of(const RankContext& rank, const PackedScene& packed, const scenes::Mesh& mesh,
+                  std::uint32_t page) {
+  const std::uint32_t group = packed.pack.pages()[page].made_of;
+  if (mesh.has_triangles() || group == packs::kNoGroup || !(rank.options.error > 0)) return 0;
+  return mesh.shape.in_pixels ? static_cast<float>(rank.options.error)
+                              : packed.pack.groups()[group].error;
+}
+
 std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene& packed) {
   std::vector<PlacedPage> pages;
   const scenes::Scene& scene = rank.prepared.scene;
@@ -20,14 +34,18 @@ std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene
   const std::span<const packs::Group> groups = packed.pack.groups();
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scenes::Instance& instance = scene.instances[i];
-    const Draw draw{&scene.meshes[instance.mesh], &instance.transform, nullptr, nullptr};
+    const scenes::Mesh& mesh = scene.meshes[instance.mesh];
+    const bool in_pixels = !mesh.has_triangles() && mesh.shape.in_pixels;
+    const bool grows = most > 0 && !mesh.has_triangles() && !mesh.shape.in_pixels;
+    const Draw draw{&mesh, &instance.transform, nullptr, nullptr,
+                    in_pixels ? static_cast<float>(rank.options.error) : 0};
     const PreparedDraw prepared =
         prepare_draw(rank.screen, draw, rank.prepared.shader(), rank.options.cull_single_sided);
     const ErrorOnScreen error(rank.screen, prepared, most > 0 ? most : 1);
     const auto visit = [&](const packs::PageTree::Node& node) {
-      if (most > 0 && error.allows_all(node.error, node.spheres))
-        return false;  // coarser ones will do
-      return !bound(rank.screen, prepared, node.box).outside;
+      if (most > 0 && error.allows(node.error, node.bounds)) return false;  // coarser ones will do
+      return !bound(rank.screen, prepared, grows ? grown(node.box, node.made_error) : node.box)
+                  .outside;
     };
     const auto look_at = [&](std::uint32_t number) {
       const packs::PageRow& row = packed.pack.pages()[number];
@@ -35,7 +53,9 @@ std::vector<PlacedPage> visible_pages(const RankContext& rank, const PackedScene
         if (row.simplified_in != packs::kNoGroup && error.allows(groups[row.simplified_in])) return;
         if (row.made_of != packs::kNoGroup && !error.allows(groups[row.made_of])) return;
       }
-      const ClusterBounds bounds = bound(rank.screen, prepared, row.box);
+      const float widening = grows ? widening_of(rank, packed, mesh, number) : 0;
+      const ClusterBounds bounds =
+          bound(rank.screen, prepared, widening > 0 ? grown(row.box, widening) : row.box);
       if (bounds.outside) return;
       MeshCluster all;
       all.box = row.box;

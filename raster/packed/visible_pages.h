@@ -16,6 +16,11 @@ struct PlacedPage {
   float nearest = -1;     // depth at least
 };
 
+// What is added to the radius of the points of a page, in its units (Draw::widening): they stand
+// for others, which are so far from them at most. 0 for triangles and where errors are not allowed.
+float widening_of(const RankContext& rank, const PackedScene& packed, const scenes::Mesh& mesh,
+                  std::uint32_t page);
+
 // Those that are not outside of the view, nor show hidden sides only, as far as boxes and cones
 // tell; ascending by instance and page, that is by primitives. The same on all ranks. O(pages that
 // are not left out by boxes of many).

@@ -36,6 +36,8 @@ struct Draw {
   MeshClusters* clusters = nullptr;
   // Of the mesh's vertices, where another rank has lit them for gouraud.
   const std::vector<glm::vec3>* radiances = nullptr;
+  // What is added to the radius of points that stand for others, in its units.
+  float widening = 0;
 };
 
 // Places [begin, end) of a cluster of a draw's mesh.

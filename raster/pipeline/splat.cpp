@@ -238,7 +238,8 @@ std::uint32_t blocks_of(int i0, int j0, int i1, int j1) {
 }  // namespace
 
 SplatDraw make_splat_draw(const Screen& screen, const Draw& draw) {
-  const scenes::Shape& shape = draw.mesh->shape;
+  scenes::Shape shape = draw.mesh->shape;
+  shape.radius += draw.widening;
   SplatDraw result;
   result.kind = shape.kind;
   if (!result.any()) return result;

@@ -41,16 +41,16 @@ TEST(ThinPoints, LeavesOutWhatIsNearToOthers) {
     const Simplified half = thin_points(mesh);
     EXPECT_LE(half.mesh.positions.size(), 751U);
     EXPECT_GE(half.mesh.positions.size(), 500U);
-    EXPECT_LE(largest_distance(mesh, {}, half.mesh), half.errors.largest);
-    EXPECT_LE(half.errors.largest, 0.08F);  // spacing of a lattice: 0.05
-    ASSERT_EQ(half.errors.triangles.size(), half.mesh.triangles.size());
+    EXPECT_LE(largest_distance(mesh, {}, half.mesh), half.largest_error);
+    EXPECT_LE(half.largest_error, 0.08F);  // spacing of a lattice: 0.05
+    ASSERT_EQ(half.errors.size(), half.mesh.triangles.size());
     for (std::size_t i = 0; i < half.mesh.positions.size(); ++i) {  // they keep their colours
       const auto number = static_cast<std::size_t>(half.mesh.colours[i].z);
       EXPECT_EQ(half.mesh.positions[i], mesh.positions[number]);
     }
-    const Simplified quarter = thin_points(half.mesh, half.errors.triangles);
-    EXPECT_LE(largest_distance(mesh, {}, quarter.mesh), quarter.errors.largest);
-    EXPECT_GE(quarter.errors.largest, half.errors.largest);
+    const Simplified quarter = thin_points(half.mesh, half.errors);
+    EXPECT_LE(largest_distance(mesh, {}, quarter.mesh), quarter.largest_error);
+    EXPECT_GE(quarter.largest_error, half.largest_error);
   }
 }
 
@@ -59,7 +59,7 @@ TEST(ThinPoints, OfOnePlaceLeavesOne) {
   for (glm::vec3& p : mesh.positions) p = {1, 2, 3};
   const Simplified one = thin_points(mesh);
   EXPECT_EQ(one.mesh.positions.size(), 1U);
-  EXPECT_EQ(one.errors.largest, 0);
+  EXPECT_EQ(one.largest_error, 0);
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "comm/threads.h"
 #include "packs/pack_writer.h"
 #include "raster/render.h"
 #include "scenes/generate.h"
+#include "scenes/points.h"
 #include "tests/raster/allow_threads.h"
 #include "tests/raster/kinds_of_picture.h"
 #include "tests/support/temporary_folder.h"
@@ -74,8 +76,9 @@ TEST(PackedError, MovesNothingByMoreThanAPixel) {
     EXPECT_GT(coarse.statistics.pack->levels[1] + coarse.statistics.pack->levels[2], 0U);
     const auto& a = std::get<image::Image8>(exact.picture);
     const auto& b = std::get<image::Image8>(coarse.picture);
-    EXPECT_EQ(displaced(a, b, view, 1), 0U) << turn;
-    EXPECT_EQ(displaced(b, a, view, 1), 0U) << turn;
+    // Where two surfaces end in a pixel its centre may be on either.
+    EXPECT_LE(displaced(a, b, view, 1), 1U) << turn;
+    EXPECT_LE(displaced(b, a, view, 1), 1U) << turn;
   }
 }
 
@@ -126,6 +129,44 @@ TEST(PackedError, IsTheSameInAWindow) {
         ASSERT_EQ(found.colour.span()[in], all.colour.span()[at]) << x << " " << y;
       }
     }
+  }
+}
+
+TEST(PackedError, OfPointsLeavesNoGaps) {
+  const tests::TemporaryFolder folder;
+  std::mt19937 random(20261129);
+  std::uniform_real_distribution<float> both(-1, 1);
+  scenes::Mesh mesh;
+  for (int i = 0; i < 20000; ++i) mesh.positions.emplace_back(both(random), 0, both(random));
+  for (const bool in_pixels : {false, true}) {
+    scenes::Scene scene;
+    scene.meshes.push_back(mesh);
+    scene.instances.push_back({});
+    scene.materials.emplace_back();
+    scenes::make_points(scene.meshes[0],
+                        {in_pixels ? scenes::Shape::Kind::point : scenes::Shape::Kind::sphere,
+                         in_pixels, in_pixels ? 1.0F : 0.01F});
+    packs::write_pack(folder / "a.pack", scene);
+    const packs::PackReader pack(folder / "a.pack");
+    RenderOptions options;
+    options.width = 100;
+    options.height = 75;
+    scenes::Camera camera;
+    camera.eye = {0.2F, 1.5F, 1.7F};
+    const Result exact = of_pack(pack, camera, options);
+    options.error = 2;
+    const Result coarse = of_pack(pack, camera, options, 2);
+    EXPECT_GT(coarse.statistics.pack->levels[1] + coarse.statistics.pack->levels[2], 0U);
+    const auto& a = std::get<image::Image8>(exact.picture);
+    const auto& b = std::get<image::Image8>(coarse.picture);
+    std::size_t covered = 0, gaps = 0;
+    for (std::size_t i = 0; i < a.depth.size(); ++i) {
+      if (a.depth[i] == image::kEmptyDepth) continue;
+      ++covered;
+      gaps += b.depth[i] == image::kEmptyDepth ? 1 : 0;
+    }
+    EXPECT_GT(covered, 1000U);
+    EXPECT_EQ(gaps, 0U) << in_pixels;
   }
 }
 
