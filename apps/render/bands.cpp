@@ -12,6 +12,7 @@
 #include "comm/agree_on_failure.h"
 #include "comm/collectives.h"
 #include "image/hash.h"
+#include "image/io.h"
 #include "image/picture_rows.h"
 #include "image/srgb.h"
 
@@ -32,9 +33,8 @@ std::vector<Rect> columns_of(const RenderRequest& request, const Rect& band) {
   return columns;
 }
 
-// The libraries that write the file, once they are loaded; what is seen at a sample of the band;
-// and a copy of a pixel.
-constexpr std::uint64_t kCodecBytes = 128 << 20, kSampleBytes = 8, kCopyBytes = 4;
+// What is seen at a sample of the band, and a copy of a pixel.
+constexpr std::uint64_t kSampleBytes = 8, kCopyBytes = 4;
 
 std::uint64_t bytes_in_the_making(const RenderRequest& request, int ranks) {
   const auto n = static_cast<std::uint64_t>(request.raster.supersampling);
@@ -104,6 +104,12 @@ void add(EngineStatistics&& more, EngineStatistics& all) {
 
 }  // namespace
 
+std::uint64_t writer_bytes(const std::string& output) {
+  constexpr std::uint64_t kOpenImageIO = 128 << 20;  // measured of TIFF and EXR
+  return image::is_picture_suffix(output) && image::picture_suffix(output) != ".png" ? kOpenImageIO
+                                                                                     : 0;
+}
+
 bool comes_in_bands(const RenderRequest& request) {
   if (request.legend || request.shading == SurfaceLighting::eye_dome) return false;
   const SamplingOptions& sampling = request.sampling;
@@ -122,7 +128,7 @@ std::vector<Rect> choose_bands(comm::Communicator& communicator, const RenderReq
         (picture_bytes_per_pixel(request, ranks) + bytes_in_the_making(request, ranks));
     const std::uint64_t left = request.scene.file.limits.budget().left();
     // Half of it: what was freed is not all given back at once.
-    const std::uint64_t fit = (left - std::min(left, kCodecBytes)) / 2 / row;
+    const std::uint64_t fit = (left - std::min(left, writer_bytes(request.output))) / 2 / row;
     const auto rows = static_cast<int>(
         std::clamp<std::uint64_t>(fit / kLeastBand * kLeastBand, kLeastBand, 1 << 30));
     const bool in_bands = comes_in_bands(request);

@@ -1,6 +1,7 @@
 // Pictures too large for the memory, rendered and written band by band.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@ namespace delray::apps {
 
 // Rows of the lowest band, but for the last: those of a row of tiles in the file.
 inline constexpr int kLeastBand = 128;
+
+// Bytes that the libraries take that write a picture of that suffix, once they are loaded; a PNG is
+// written without them.
+std::uint64_t writer_bytes(const std::string& output);
 
 // Whether the picture may be made in bands: a single one, of a format that is written so, of which
 // pixels do not depend on those of other bands.

@@ -110,8 +110,10 @@ void require_memory_for_pictures(const RenderRequest& request) {
   as_tiff.output = "a.tif";
   const bool has_bands = !comes_in_bands(request) && comes_in_bands(as_tiff);
   request.scene.file.limits.budget().require(
-      pixels * picture_bytes_per_pixel(request, ranks), request.output,
-      fmt::format("{} x {} pixels{}", request.picture_width(), request.picture_height(),
+      pixels * picture_bytes_per_pixel(request, ranks) + writer_bytes(request.output),
+      request.output,
+      fmt::format("{} x {} pixels{}{}", request.picture_width(), request.picture_height(),
+                  writer_bytes(request.output) > 0 ? " and the libraries that write them" : "",
                   has_bands ? " (as .tif or .exr they would be written in bands)" : ""));
 }
 

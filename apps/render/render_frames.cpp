@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "apps/render/bands.h"
 #include "apps/render/ray_frame.h"
 #include "apps/statistics.h"
 #include "comm/collectives.h"
@@ -81,8 +82,8 @@ raster::PackMemory pack_memory(const RenderRequest& request, const Prepared& pre
       static_cast<std::uint64_t>(request.width) * static_cast<std::uint64_t>(request.height) *
       static_cast<std::uint64_t>(request.raster.supersampling * request.raster.supersampling);
   const auto ranks = static_cast<std::uint64_t>(std::max(1, request.launch.ranks));
-  const std::uint64_t other =
-      kBase + prepared.pack->pages().size() * kBytesPerPage + pixels * kBytesPerPixel * ranks;
+  const std::uint64_t other = kBase + prepared.pack->pages().size() * kBytesPerPage +
+                              pixels * kBytesPerPixel * ranks + writer_bytes(request.output);
   const std::uint64_t left = budget.left();
   raster::PackMemory memory;
   // Blocks of the heap are never as full as they could be.
