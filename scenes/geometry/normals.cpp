@@ -81,8 +81,8 @@ struct Fan {
   };
   std::vector<Spoke> spokes;
   std::vector<std::uint32_t> parent;
-  // Of area vectors in single precision, exact unless they differ by a factor of 2^26: what the
-  // order of the triangles is does not matter.
+  std::vector<std::uint32_t>
+      order;  // corners by area vectors, so that that of triangles is no matter
   std::vector<glm::dvec3> sum;
 
   std::uint32_t root(std::uint32_t i) {
@@ -132,9 +132,14 @@ void connect(const Surface& surface, std::span<const std::uint32_t> corners, Fan
       fan.join(a.corner, b.corner);
     }
   }
-  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+  fan.order.resize(corners.size());
+  std::iota(fan.order.begin(), fan.order.end(), 0U);
+  std::sort(fan.order.begin(), fan.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const glm::vec3 &p = surface.area[corners[a] / 3], &q = surface.area[corners[b] / 3];
+    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+  });
+  for (const std::uint32_t i : fan.order)
     fan.sum[fan.root(i)] += glm::dvec3(surface.area[corners[i] / 3]);
-  }
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     const std::uint32_t part = fan.root(i);
     const double length = glm::length(fan.sum[part]);

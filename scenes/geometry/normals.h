@@ -11,9 +11,8 @@ namespace delray::scenes::internal {
 // coordinates and unindexed triangles come out smooth; a vertex on a crease is split, its copies
 // are appended. Triangles without area take part in no sum; a vertex with no other triangle gets
 // (0, 0, 1). O(vertices + triangles) but for vertices of very many triangles, which cost n log n;
-// parallel. Sums are in double precision, in which they are exact unless areas differ by a factor
-// of 2^26: the same on every machine, for every thread count and, so, for every order of the
-// triangles.
+// parallel. Sums are in double precision and in an order of their own: the same on every machine,
+// for every thread count and for every order of the triangles.
 void compute_normals(Mesh& mesh, float crease_cosine);
 
 // Gives `mesh` tangents along growing u of its uvs_of(set), orthogonal to the normals; a vertex
