@@ -6,12 +6,14 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.h"
+#include "apps/input/point_parts_input.h"
 #include "apps/input/scene_input.h"
 #include "apps/launch.h"
 #include "apps/options/help.h"
 #include "apps/options/numbers.h"
 #include "apps/options/outputs.h"
 #include "apps/pack/pack_folder.h"
+#include "apps/pack/pack_points.h"
 #include "apps/statistics.h"
 #include "apps/terminal/progress_bar.h"
 #include "files/memory_budget.h"
@@ -32,6 +34,14 @@ struct PackOptions {
 void pack_scene(const PackOptions& options, parallel::Progress* progress) {
   if (is_surface_in_pieces(options.scene)) {
     pack_folder(options.scene, options.output, {.levels = !options.exact_only}, progress);
+    return;
+  }
+  if (is_cloud(options.scene)) {
+    std::vector<std::string> files;
+    for (const std::filesystem::path& path : find_input_files(options.scene.file).paths)
+      files.push_back(path.string());
+    refuse_overwriting({{"-o", options.output}, {"--stats", options.statistics}}, files);
+    pack_points(options.scene, options.output, {.levels = !options.exact_only}, progress);
     return;
   }
   scenes::Scene scene = load_scene(options.scene, progress);

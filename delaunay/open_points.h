@@ -33,7 +33,8 @@ std::vector<std::filesystem::path> left_out_of_folders(
 // here and held in memory as long as the result lives. read() takes, besides the points, as much
 // memory as the part has in the file. most_rows() of text counts its lines, by reading the part;
 // elsewhere it costs nothing. Ranges of attributes that only all of a file tells (whether colours
-// have 16 bits, the greatest intensity) are those of its first part.
+// have 16 bits, the greatest intensity) are those of its first part, unless the options ask for
+// those of all.
 //
 // A file's warnings come with the points of its first part. Throws FileError (input, memory), and
 // std::invalid_argument where the filter asks for what a file does not have.

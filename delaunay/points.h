@@ -18,6 +18,7 @@ struct PointCloud {
   std::vector<glm::dvec3> positions;         // exactly as written in the file
   std::vector<glm::u8vec4> colours;          // sRGB
   std::vector<float> intensity;              // 0 .. 1
+  float intensity_unit = 1;                  // that 1 stands for in the file; 1: files differ
   std::vector<std::uint8_t> classification;  // LAS classes
   std::vector<std::uint8_t> returns;         // of LAS: the return's number | how many << 4
   bool geographic = false;                   // x and y are longitude and latitude in degrees

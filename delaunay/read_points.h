@@ -30,6 +30,9 @@ struct ReadOptions {
   // Overrules content and suffix; `unknown` goes by them.
   files::Format format = files::Format::unknown;
   files::MemoryBudget memory{};  // for the file and its points
+  // Of points in parts: attributes have the ranges of all points of a file, as read_points() below
+  // has them, for which files may be read once more; else of those in its first part.
+  bool whole_ranges = false;
 };
 
 // Reads the points of a file or stream, row by row as they stand there; of a mesh its vertices. "-"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/input/inliers.h"
+#include "apps/input/point_colours.h"
 #include "apps/options/list.h"
-#include "image/srgb.h"
 #include "parallel/parallel_for.h"
 #include "scenes/colour_map.h"
 
@@ -52,12 +52,7 @@ void by_height(scenes::Scene& scene, const delaunay::PointCloud*) {
     all.insert(all.end(), own.begin(), own.end());
   }
   const std::pair<float, float> range = range_of(all);
-  const auto bottom = static_cast<float>(scene.origin[scene.z_up ? 2 : 1]);
-  scene.colour_scale = {"height",
-                        bottom + range.first,
-                        bottom + range.second,
-                        scenes::colour_maps().front().colour,
-                        {}};
+  scene.colour_scale = height_scale(range, scene.origin[scene.z_up ? 2 : 1]);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (!heights[m].empty()) scene.meshes[m].colours = height_colours(heights[m], range);
   }
@@ -72,96 +67,32 @@ void by_simplex(scenes::Scene& scene, const delaunay::PointCloud*) {
   }
 }
 
-// The colours of the points that meshes[0] has as vertices: colour(values[i]) for vertex i.
-template <class Attribute, class F>
-void by_attribute(scenes::Scene& scene, const std::vector<Attribute>& values, const char* name,
-                  F&& colour) {
-  if (values.empty())
-    throw UsageError(fmt::format("--color-by: there are no points with {}", name));
+// The colours of the points that meshes[0] has as vertices.
+void by_attribute(std::string_view name, scenes::Scene& scene, const delaunay::PointCloud* points) {
+  const PointAttribute& attribute = *find_point_attribute(name);
+  if (points == nullptr || !attribute.exists(*points)) {
+    throw UsageError(fmt::format("--color-by: there are no points with {}", attribute.what));
+  }
   whiten(scene);
+  const AttributeValues all = attribute_values(attribute, *points);
   std::vector<glm::vec4>& colours = scene.meshes[0].colours;
-  colours.resize(values.size());
-  parallel::parallel_for(0, values.size(), kGrain,
-                         [&](std::size_t i) { colours[i] = colour(values[i]); });
-}
-
-const delaunay::PointCloud& attributes(const delaunay::PointCloud* points) {
-  static const delaunay::PointCloud none;
-  return points ? *points : none;
+  colours.resize(points->size());
+  parallel::parallel_for(0, colours.size(), kGrain,
+                         [&](std::size_t i) { colours[i] = attribute.colour(*points, i, all); });
+  scene.colour_scale = attribute.scale(all);
 }
 
 void by_rgb(scenes::Scene& scene, const delaunay::PointCloud* points) {
-  by_attribute(scene, attributes(points).colours, "colours", [](const glm::u8vec4& c) {
-    return glm::vec4(image::decode_srgb(c.r), image::decode_srgb(c.g), image::decode_srgb(c.b),
-                     1.0F);
-  });
+  by_attribute("rgb", scene, points);
 }
-
-glm::vec3 grey(float t) { return glm::vec3(t); }
-
 void by_intensity(scenes::Scene& scene, const delaunay::PointCloud* points) {
-  const std::vector<float>& values = attributes(points).intensity;
-  const auto [low, high] = range_of(values);
-  by_attribute(scene, values, "intensity", [low = low, high = high](float value) {
-    const float t = std::clamp((value - low) / std::max(high - low, 1e-30F), 0.0F, 1.0F);
-    return glm::vec4(grey(t), 1.0F);
-  });
-  scene.colour_scale = {"intensity", low, high, grey, {}};
+  by_attribute("intensity", scene, points);
 }
-
-// The values that occur, ascending, with their names and colours.
-template <class Name, class Colour>
-scenes::ColourScale classes_of(const std::vector<std::uint8_t>& values, const char* title,
-                               Name&& name, Colour&& colour) {
-  std::array<bool, 256> occurs{};
-  for (const std::uint8_t value : values) occurs[value] = true;
-  scenes::ColourScale scale;
-  scale.title = title;
-  for (std::size_t i = 0; i < occurs.size(); ++i) {
-    if (occurs[i])
-      scale.classes.push_back({name(static_cast<unsigned>(i)), colour(static_cast<unsigned>(i))});
-  }
-  return scale;
-}
-
-// After ASPRS, LAS Specification 1.4 R15, table 17.
-std::string class_name(unsigned code) {
-  constexpr std::array kNames = {
-      "never classified",  "unclassified",    "ground",         "low vegetation",
-      "medium vegetation", "high vegetation", "building",       "low noise",
-      "key point",         "water",           "rail",           "road",
-      "overlap",           "wire guard",      "wire conductor", "tower",
-      "connector",         "bridge deck",     "high noise"};
-  return fmt::format("{}{}{}", code, code < kNames.size() ? " " : "",
-                     code < kNames.size() ? kNames[code] : "");
-}
-
 void by_classification(scenes::Scene& scene, const delaunay::PointCloud* points) {
-  const std::vector<std::uint8_t>& values = attributes(points).classification;
-  by_attribute(scene, values, "classification", [](std::uint8_t number) {
-    return glm::vec4(scenes::classification_colour(number), 1.0F);
-  });
-  scene.colour_scale = classes_of(values, "class", class_name, scenes::classification_colour);
+  by_attribute("classification", scene, points);
 }
-
-// Blue the only one, from green to red the first to the last of several.
-glm::vec3 return_colour(unsigned returns) {
-  const unsigned number = returns & 15U, count = returns >> 4;
-  const scenes::ColourMap& map = scenes::colour_map("turbo");
-  if (count <= 1) return map.colour(0.15F);
-  const float share =
-      number <= 1 ? 0.0F : static_cast<float>(number - 1) / static_cast<float>(count - 1);
-  return map.colour(0.4F + 0.5F * std::min(share, 1.0F));
-}
-
 void by_returns(scenes::Scene& scene, const delaunay::PointCloud* points) {
-  const std::vector<std::uint8_t>& values = attributes(points).returns;
-  by_attribute(scene, values, "return numbers",
-               [](std::uint8_t returns) { return glm::vec4(return_colour(returns), 1.0F); });
-  scene.colour_scale = classes_of(
-      values, "return",
-      [](unsigned returns) { return fmt::format("{} of {}", returns & 15U, returns >> 4); },
-      return_colour);
+  by_attribute("returns", scene, points);
 }
 
 constexpr std::array kTable = {
@@ -188,6 +119,17 @@ std::vector<glm::vec4> height_colours(std::span<const float> heights,
     colours[i] = glm::vec4(map.colour(t), 1.0F);
   });
   return colours;
+}
+
+scenes::ColourScale height_scale(std::pair<float, float> range, double origin,
+                                 double exaggeration) {
+  const auto bottom = static_cast<float>(origin);
+  const auto stretched = static_cast<float>(exaggeration);
+  return {"height",
+          bottom + range.first / stretched,
+          bottom + range.second / stretched,
+          scenes::colour_maps().front().colour,
+          {}};
 }
 
 void colour_simplices(std::uint64_t first, scenes::Mesh& mesh) {

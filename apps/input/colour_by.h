@@ -35,6 +35,10 @@ void colour_by(scenes::Scene& scene, std::string_view name, const delaunay::Poin
 // own, and materials that do not tint them.
 std::vector<glm::vec4> height_colours(std::span<const float> heights,
                                       std::pair<float, float> range);
+// The legend of them, in heights of the file: those of the scene are relative to `origin`, and
+// stretched.
+scenes::ColourScale height_scale(std::pair<float, float> range, double origin,
+                                 double exaggeration = 1);
 void colour_simplices(std::uint64_t first, scenes::Mesh& mesh);
 void whiten(scenes::Scene& scene);
 

@@ -67,19 +67,19 @@ InputFiles find_input_files(const PointInput& input) {
   return files;
 }
 
-std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input) {
+std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input, bool whole_ranges) {
   const InputFiles files = find_input_files(input);
   const delaunay::PointFilter filter = filter_of(input.choice);
   const files::MemoryBudget memory = input.limits.budget();
-  if (!files.any_picture) return delaunay::open_points(files.paths, filter, {.memory = memory});
+  const delaunay::ReadOptions options = {.memory = memory, .whole_ranges = whole_ranges};
+  if (!files.any_picture) return delaunay::open_points(files.paths, filter, options);
   std::vector<std::unique_ptr<delaunay::PointParts>> parts;
   for (std::size_t i = 0; i < files.paths.size(); ++i) {
     if (files.pictures[i]) {
       parts.push_back(std::make_unique<ElevationParts>(
           files.paths[i], ElevationOptions{input.terrain_rgb, input.cell_size}, filter, memory));
     } else {
-      parts.push_back(
-          delaunay::open_points(std::span(&files.paths[i], 1), filter, {.memory = memory}));
+      parts.push_back(delaunay::open_points(std::span(&files.paths[i], 1), filter, options));
     }
   }
   return delaunay::join_parts(std::move(parts));

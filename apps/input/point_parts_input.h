@@ -22,6 +22,8 @@ InputFiles find_input_files(const PointInput& input);
 
 // Parts of files as the readers cut them; a picture is one part, whose read() takes the memory of
 // all of it. Throws FileError and UsageError, also for options that have no effect on the input.
-std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input);
+// `whole_ranges` as of delaunay::ReadOptions.
+std::unique_ptr<delaunay::PointParts> open_parts(const PointInput& input,
+                                                 bool whole_ranges = false);
 
 }  // namespace delray::apps

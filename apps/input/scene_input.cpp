@@ -53,13 +53,6 @@ void set_up(const SceneInput& input, scenes::Scene& scene) {
   if (!input.up.empty()) scene.z_up = input.up == "z";
 }
 
-// Dots have no triangles that could be told apart.
-std::string colouring(const SceneInput& input, const delaunay::PointCloud& points, bool dots) {
-  if (!input.colour_by.empty()) return input.colour_by;
-  const std::string_view suits = default_colour_by(points);
-  return std::string(dots && suits == "simplex" ? "z" : suits);
-}
-
 // The points as vertices of the triangulation's triangles, coloured.
 scenes::Scene coloured(const SceneInput& input, const delaunay::PointCloud& points,
                        const delaunay::Triangulation& triangulation) {
@@ -90,10 +83,6 @@ std::string no_surface(const delaunay::PointCloud& points) {
 
 bool has_size(const SceneInput& input) { return input.point_size > 0 || input.radius >= 0; }
 
-PointSize size_of(const SceneInput& input) {
-  return {static_cast<float>(input.point_size), static_cast<float>(input.radius)};
-}
-
 [[noreturn]] void fail(const SceneInput& input, const std::string& what) {
   throw files::FileError(files::Cause::input, input.file.path, "", what);
 }
@@ -106,19 +95,14 @@ scenes::Scene as_points(const SceneInput& input, const delaunay::PointCloud& poi
   return scene;
 }
 
+bool is_for_surfaces(const SceneInput& input) {
+  return !input.file.duplicates.empty() || input.colour_by == "simplex";
+}
+
 // The row that --show-as names, or the one that suits the points.
 const ShowAs& shown_as(const SceneInput& input, const delaunay::PointCloud& points, bool picture) {
-  const bool for_surfaces = !input.file.duplicates.empty() || input.colour_by == "simplex";
-  if (!input.show_as.empty()) {
-    const ShowAs& how = find_entry(show_as(), input.show_as, "--show-as");
-    if (how.is_points() && for_surfaces) {
-      throw UsageError(fmt::format(
-          "--duplicates and --color-by simplex are for surfaces, not --show-as {}", how.name));
-    }
-    return how;
-  }
-  if (has_size(input)) return find_entry(show_as(), "points", "--show-as");
-  if (for_surfaces || picture || !are_in_space(points)) return show_as().front();
+  if (const ShowAs* const asked = asked_to_show(input)) return *asked;
+  if (is_for_surfaces(input) || picture || !are_in_space(points)) return show_as().front();
   spdlog::info(
       "{}: the points lie in space, not over a plane: shown as spheres (--show-as relief makes a "
       "surface of them)",
@@ -138,9 +122,10 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   how.threads = parallel::arena_threads();
   how.progress = progress;
   require_memory_to_triangulate(input.file, points.size(), how.dim);
-  const delaunay::Triangulation triangulation =
+  delaunay::Triangulation triangulation =
       triangulate(delaunay::view(points.positions), how).triangulation;
   if (triangulation.size() == 0) fail(input, no_surface(points));
+  keep_corners(points, triangulation);
   return coloured(input, points, triangulation);
 }
 
@@ -174,10 +159,11 @@ scenes::Scene from_mesh(const SceneInput& input) {
   for (const std::string& warning : mesh.points.warnings) {
     spdlog::warn("{}: {}", input.file.path, warning);
   }
-  to_metres(mesh.points, input.file.path);
   if (mesh.triangulation.size() == 0) {
     fail(input, "the mesh has points, but no triangles or tetrahedra to show");
   }
+  keep_corners(mesh.points, mesh.triangulation);
+  to_metres(mesh.points, input.file.path);
   return coloured(input, mesh.points, mesh.triangulation);
 }
 
@@ -324,6 +310,38 @@ InputKind input_kind_of(const PointInput& input) {
   return InputKind::points;
 }
 
+InputKind input_kind_of(const SceneInput& input) {
+  // Options of points ask for those of a .node, without the .ele beside it.
+  const bool is_node = files::format_of_suffix(input.file.path) == Format::node &&
+                       !input.file.path.ends_with(".ele");
+  const InputKind kind = input_kind_of(input.file);
+  return is_node && (input.file.given() || !input.show_as.empty() || has_size(input))
+             ? InputKind::points
+             : kind;
+}
+
+const ShowAs* asked_to_show(const SceneInput& input) {
+  if (input.show_as.empty())
+    return has_size(input) ? &find_entry(show_as(), "points", "--show-as") : nullptr;
+  const ShowAs& how = find_entry(show_as(), input.show_as, "--show-as");
+  if (how.is_points() && is_for_surfaces(input)) {
+    throw UsageError(fmt::format(
+        "--duplicates and --color-by simplex are for surfaces, not --show-as {}", how.name));
+  }
+  return &how;
+}
+
+// Dots have no triangles that could be told apart.
+std::string colouring(const SceneInput& input, const delaunay::PointCloud& points, bool dots) {
+  if (!input.colour_by.empty()) return input.colour_by;
+  const std::string_view suits = default_colour_by(points);
+  return std::string(dots && suits == "simplex" ? "z" : suits);
+}
+
+PointSize size_of(const SceneInput& input) {
+  return {static_cast<float>(input.point_size), static_cast<float>(input.radius)};
+}
+
 void check_reach(const SceneInput& input, std::span<const glm::dvec3> points,
                  const glm::dvec3& middle) {
   constexpr double kFarthest = 1e18;  // as of scenes
@@ -372,12 +390,7 @@ void refuse_for_packs(const SceneInput& input) {
 }
 
 scenes::Scene load_scene(const SceneInput& input, parallel::Progress* progress) {
-  InputKind kind = input_kind_of(input.file);
-  // Options of points ask for those of a .node, without the .ele beside it.
-  const bool is_node = files::format_of_suffix(input.file.path) == Format::node &&
-                       !input.file.path.ends_with(".ele");
-  if (is_node && (input.file.given() || !input.show_as.empty() || has_size(input)))
-    kind = InputKind::points;
+  const InputKind kind = input_kind_of(input);
   if (kind != InputKind::scene || scenes::is_generated(input.file.path)) {
     refuse_outside(input.file.path, input.file.limits);
   }

@@ -7,6 +7,7 @@
 
 #include "apps/input/inliers.h"
 #include "apps/input/point_input.h"
+#include "apps/input/show_as.h"
 #include "apps/session.h"
 #include "scenes/scene.h"
 
@@ -36,6 +37,12 @@ InputKind input_kind(const std::string& path, const files::MemoryBudget& memory 
 // The same of an input that may be several files, which are points then. Throws UsageError for a
 // scene or mesh among several.
 InputKind input_kind_of(const PointInput& input);
+// The kind with its options: those of points make points of a .node that has an .ele beside it.
+InputKind input_kind_of(const SceneInput& input);
+
+// What points are to be shown as, where options say so; null where the points themselves decide.
+// Throws UsageError for options of surfaces beside.
+const ShowAs* asked_to_show(const SceneInput& input);
 
 // Adds SCENE, --color-by, --exaggeration, --show-as, --point-size, --radius, --up, --allow-outside
 // and the options of points.
@@ -43,6 +50,11 @@ void add_scene_options(CLI::App& command, SceneInput& input);
 
 // Throws UsageError for options of points, given with a scene or mesh.
 void refuse_options_of_points(const SceneInput& input, InputKind kind);
+
+// What colours of points show, by what the option or the points say; `dots`: points without
+// triangles.
+std::string colouring(const SceneInput& input, const delaunay::PointCloud& points, bool dots);
+PointSize size_of(const SceneInput& input);
 
 // Throws FileError for points that 32-bit floats cannot hold around their middle.
 void check_reach(const SceneInput& input, std::span<const glm::dvec3> points,

@@ -28,17 +28,20 @@ constexpr std::array kWaysToShow = {
 
 std::span<const ShowAs> show_as() { return kWaysToShow; }
 
+scenes::Shape shape_of(const ShowAs& how, const PointSize& size,
+                       const std::function<float()>& spacing) {
+  if (size.radius >= 0) return {how.kind, false, size.radius};
+  if (size.pixels > 0) return {how.kind, true, size.pixels * 0.5F};
+  // Points that are all in one place have no spacing.
+  const float apart = spacing();
+  return apart > 0 ? scenes::Shape{how.kind, false, kCovering * apart}
+                   : scenes::Shape{how.kind, true, kAlonePixels};
+}
+
 void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene) {
   scenes::Mesh& mesh = scene.meshes[0];
   scenes::make_points(mesh, {how.kind, true, size.pixels * 0.5F});
-  if (size.radius >= 0)
-    mesh.shape = {how.kind, false, size.radius};
-  else if (!(size.pixels > 0)) {
-    // Points that are all in one place have no spacing.
-    const float spacing = scenes::point_spacing(mesh);
-    mesh.shape = spacing > 0 ? scenes::Shape{how.kind, false, kCovering * spacing}
-                             : scenes::Shape{how.kind, true, kAlonePixels};
-  }
+  mesh.shape = shape_of(how, size, [&] { return scenes::point_spacing(mesh); });
   scene.materials[mesh.material].unlit = !how.lit;
 }
 

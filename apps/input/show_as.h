@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 
 #include "scenes/scene.h"
@@ -28,8 +29,12 @@ struct PointSize {
 // Makes points of the vertices of the scene's first mesh, which has no triangles. Without a size,
 // discs of it would cover all but 4 % of a surface that the points are scattered over. REQUIRES:
 // is_points.
-inline constexpr std::size_t kBytesPerShownPoint = 80;
+inline constexpr std::size_t kBytesPerShownPoint = 110;
 void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene);
+
+// The shape that gives: `spacing` says how far points are apart, where that decides.
+scenes::Shape shape_of(const ShowAs& how, const PointSize& size,
+                       const std::function<float()>& spacing);
 
 // Sets the size of all points and lines of a scene. Returns whether there are any.
 bool set_point_size(const PointSize& size, scenes::Scene& scene);

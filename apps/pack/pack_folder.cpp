@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "apps/input/colour_by.h"
-#include "apps/input/geographic.h"
 #include "apps/input/relief.h"
 #include "apps/pack/piece_borders.h"
+#include "apps/pack/placement.h"
 #include "apps/pack/row_bits.h"
 #include "delaunay/mesh_folder.h"
 #include "files/error.h"
@@ -48,8 +48,7 @@ class FolderPacker {
 
   void pack(packs::PackWriter& writer) {
     find_rows();
-    find_scale();
-    find_middle();
+    place();
     find_borders();
     write(writer);
   }
@@ -111,40 +110,31 @@ class FolderPacker {
     });
   }
 
-  void find_scale() {
-    if (const std::optional<glm::dvec2> metres = metres_of_degrees(sample_, input_.file.path))
-      scale_ = {metres->x, metres->y, 1};
-    for (glm::dvec3& p : sample_.positions) p *= scale_;
-    box_.low *= scale_;
-    box_.high *= scale_;
-  }
-
-  void find_middle() {
-    const geometry::Box3d limits = limits_of_inliers(sample_);
-    Inliers inliers{box_, 0};
-    if (!is_within(box_.low, limits) || !is_within(box_.high, limits))
-      inliers = look_for_inliers(limits);
-    check_reach(input_, std::array{box_.low, box_.high}, inliers.box.centre());
-    warn_of_outliers(input_, inliers, vertices_);
-    scene_ = around_relief(inliers, input_.exaggeration);
-    if (!input_.up.empty()) scene_.z_up = input_.up == "z";
-    colouring_ = !input_.colour_by.empty()   ? input_.colour_by
-                 : box_.low.z == box_.high.z ? "simplex"
-                                             : "z";
+  void place() {
+    placement_ = place_points(input_, sample_, box_, vertices_,
+                              [&](const glm::dvec3& scale, const geometry::Box3d& limits) {
+                                return look_for_inliers(scale, limits);
+                              });
+    const geometry::Box3d& box = placement_.box;
+    scenes::Scene& scene = placement_.scene;
+    colouring_ = !input_.colour_by.empty() ? input_.colour_by
+                 : box.low.z == box.high.z ? "simplex"
+                                           : "z";
     if (colouring_ == "material") return;
-    whiten(scene_);
+    whiten(scene);
     if (colouring_ == "simplex") return;
     if (colouring_ != "z") {
       throw UsageError(
           fmt::format("--color-by {}: the points of a mesh in pieces have no such", colouring_));
     }
-    const int up = scene_.z_up ? 2 : 1;
+    const int up = placement_.up();
     heights_ = usual_range(sample_.size(), [&](std::size_t i) {
-      return in_relief(sample_.positions[i], scene_.origin, input_.exaggeration)[up];
+      return in_relief(sample_.positions[i], scene.origin, input_.exaggeration)[up];
     });
+    scene.colour_scale = height_scale(heights_, scene.origin[up], input_.exaggeration);
   }
 
-  Inliers look_for_inliers(const geometry::Box3d& limits) const {
+  Inliers look_for_inliers(const glm::dvec3& scale, const geometry::Box3d& limits) const {
     Inliers inliers;
     std::vector<std::uint64_t> outside;
     std::mutex mutex;
@@ -152,7 +142,7 @@ class FolderPacker {
       geometry::Box3d box;
       std::vector<std::uint64_t> rows;
       for (const delaunay::RowPoint& point : piece.points) {
-        const glm::dvec3 p = point.position * scale_;
+        const glm::dvec3 p = point.position * scale;
         if (is_within(p, limits))
           box.include(p);
         else
@@ -171,14 +161,13 @@ class FolderPacker {
   scenes::Mesh mesh_of(const delaunay::PieceMesh& piece) const {
     scenes::Mesh mesh;
     mesh.positions.reserve(piece.points.size());
-    for (const delaunay::RowPoint& point : piece.points) {
-      mesh.positions.push_back(
-          in_relief(point.position * scale_, scene_.origin, input_.exaggeration));
-    }
+    for (const delaunay::RowPoint& point : piece.points)
+      mesh.positions.push_back(placement_(point.position));
     mesh.triangles.resize(piece.simplices.size() / 3);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      mesh.triangles[i] = {piece.simplices[3 * i], piece.simplices[3 * i + 1],
-                           piece.simplices[3 * i + 2]};
+      mesh.triangles[i] = from_lowest_row(
+          {piece.simplices[3 * i], piece.simplices[3 * i + 1], piece.simplices[3 * i + 2]},
+          [&](std::uint32_t point) { return piece.points[point].row; });
     }
     return mesh;
   }
@@ -200,7 +189,7 @@ class FolderPacker {
 
   void colour(std::uint64_t first, scenes::Mesh& mesh) const {
     if (colouring_ == "z") {
-      const int up = scene_.z_up ? 2 : 1;
+      const int up = placement_.up();
       std::vector<float> heights;
       heights.reserve(mesh.positions.size());
       for (const glm::vec3& p : mesh.positions) heights.push_back(p[up]);
@@ -228,7 +217,7 @@ class FolderPacker {
     }
     borders_ = {};
     writer.end_mesh(kReliefName, 0, vertices_);
-    writer.commit(scene_, false);
+    writer.commit(placement_.scene, false);
   }
 
   const SceneInput& input_;
@@ -240,11 +229,10 @@ class FolderPacker {
 
   std::optional<RowBits> shared_;  // rows that several pieces have
   std::uint64_t vertices_ = 0;     // rows that any has
-  geometry::Box3d box_;            // of all points; in metres
-  delaunay::PointCloud sample_;    // likewise
+  geometry::Box3d box_;            // of all points
+  delaunay::PointCloud sample_;    // scaled by place()
   std::mutex sample_mutex_;
-  glm::dvec3 scale_{1};  // to metres
-  scenes::Scene scene_;  // without its mesh
+  Placement placement_;
   std::string colouring_;
   std::pair<float, float> heights_;  // that colours run between
   std::vector<PieceBorder> borders_;

@@ -10,9 +10,10 @@ namespace delray::apps {
 bool is_surface_in_pieces(const SceneInput& input);
 
 // Writes the pack that load_scene() and write_pack() would make of the folder: the same triangles
-// in the same order, with the same normals on the borders of pieces. Memory: a piece at a time, two
-// bits for each row of the input, and the triangles on borders of pieces. The folder is read four
-// times, five where there are outliers or rows that no triangle has.
+// in the same order, with the same normals on the borders of pieces. Its picture is also that of
+// the mesh in one file, which has the triangles in another order, but for ties of depth. Memory: a
+// piece at a time, two bits for each row of the input, and the triangles on borders of pieces. The
+// folder is read four times, five where there are outliers or rows that no triangle has.
 //
 // Degenerate: points of two pieces that are one as 32-bit floats without either being on the border
 // are not seen to be one, so that each keeps the normal of its own piece.

@@ -87,6 +87,7 @@ PlyVertices::PlyVertices(const PlyElement& element, const PlyColumns& columns, s
   for (int q = 0; q < kQuantities; ++q) {
     if (columns[q] >= 0) range_[q] = full_range(element.properties[columns[q]].type);
   }
+  if (columns[kIntensity] >= 0) cloud.intensity_unit = static_cast<float>(range_[kIntensity]);
 }
 
 bool PlyVertices::set(std::size_t i, const std::array<double, kQuantities>& values) {

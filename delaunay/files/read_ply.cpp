@@ -59,10 +59,11 @@ void read_binary(const Input& input, const PlyHeader& header, const PlyElement& 
   if (bad != element.count) fail(input, at_vertex(bad), "not a finite number");
 }
 
-void normalise(std::vector<float>& intensity) {
+void normalise(PointCloud& cloud) {
   float top = 1;
-  for (const float value : intensity) top = std::max(top, value);
-  for (float& value : intensity) value /= top;
+  for (const float value : cloud.intensity) top = std::max(top, value);
+  for (float& value : cloud.intensity) value /= top;
+  cloud.intensity_unit *= top;
 }
 
 std::size_t find_element(const Input& input, const PlyHeader& header, std::string_view name) {
@@ -88,7 +89,7 @@ PointCloud read_vertices(const Input& input, const PlyHeader& header) {
   } else {
     read_binary(input, header, element, columns, begin.byte, vertices);
   }
-  normalise(vertices.cloud.intensity);
+  normalise(vertices.cloud);
   const auto edges = std::ranges::find(header.elements, "edge", &PlyElement::name);
   if (edges != header.elements.end() && edges->count > 0) {
     vertices.cloud.warnings.push_back(edges_left_out(edges->count));

@@ -70,6 +70,24 @@ std::string points_with_heights(int n, double far_off) {
   return text;
 }
 
+TEST(Pack, OfAFolderHasThePictureOfTheMeshInOneFile) {
+  const Folder folder;
+  std::string points = points_with_heights(3000, 0);
+  points += points.substr(0, points.find('\n', points.size() / 5) + 1);  // rows that are no corners
+  folder.write("p.xyz", points);
+  for (const std::string tiles : {"", " --tiles 3", " --threads 2 --method optimistic"}) {
+    ASSERT_EQ(run("delray triangulate p.xyz -o m.ply -q" + tiles, folder.path()).exit_code, 0);
+    ASSERT_EQ(run("delray triangulate p.xyz -o m/ -q --tiles 5", folder.path()).exit_code, 0);
+    ASSERT_EQ(run("delray pack m/ -o m.pack -q", folder.path()).exit_code, 0);
+    const Json expected = rendered(folder, "m.ply", "--view iso");
+    EXPECT_EQ(rendered(folder, "m.pack", "--view iso")["image"]["hash"], expected["image"]["hash"]);
+    EXPECT_EQ(rendered(folder, "m/", "--view iso")["image"]["hash"], expected["image"]["hash"]);
+    EXPECT_EQ(rendered(folder, "p.xyz", "--view iso --show-as relief")["image"]["hash"],
+              expected["image"]["hash"]);
+    std::filesystem::remove_all(folder / "m");
+  }
+}
+
 TEST(Pack, OfAFolderHasThePictureOfItsMesh) {
   const Folder folder;
   folder.write("p.xyz", points_with_heights(3000, 1e5));
@@ -111,6 +129,64 @@ TEST(Pack, OfPointsHasTheirPicture) {
     const Json coarse = rendered(folder, "p.pack", "--error 20");
     EXPECT_GT(coarse["pack"]["levels"].size(), 1U) << how;
   }
+}
+
+// A LAS-like cloud as PLY, with colours, in which some places are there several times.
+std::string cloud_with_colours(int n) {
+  std::mt19937 random(20261127);
+  std::string header =
+      "ply\nformat ascii 1.0\nelement vertex " + std::to_string(n) +
+      "\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
+      "property uchar green\nproperty uchar blue\nend_header\n";
+  std::string rows;
+  for (int i = 0; i < n; ++i) {
+    const bool shared = i % 10 == 3;
+    const double x = shared ? 50 : random() % 100000 * 1e-3,
+                 y = shared ? 50 : random() % 100000 * 1e-3;
+    const double z = shared ? 8 : random() % 1000 * 1e-2;
+    for (const double c : {x + 5e5, y + 4e6, z}) rows += std::to_string(c) + " ";
+    rows += std::to_string(random() % 256) + " " + std::to_string(random() % 256) + " 90\n";
+  }
+  return header + rows;
+}
+
+TEST(Pack, OfPointsIsTheSameForEveryMemory) {
+  const Folder folder;
+  folder.write("p.ply", cloud_with_colours(70000));
+  std::string expected;
+  for (const std::string how : {"", " --memory 64MiB --threads 1", " --memory 80MiB --threads 2"}) {
+    const Ran ran =
+        run("delray pack p.ply -o p.pack -q --show-as spheres --stats -" + how, folder.path());
+    ASSERT_EQ(ran.exit_code, 0) << how << ran.err;
+    if (expected.empty()) {
+      expected = folder.read("p.pack");
+      EXPECT_EQ(rendered(folder, "p.pack", "")["image"]["hash"],
+                rendered(folder, "p.ply", "--show-as spheres")["image"]["hash"]);
+      continue;
+    }
+    EXPECT_TRUE(folder.read("p.pack") == expected) << how;
+    EXPECT_LE(Json::parse(ran.out)["memory"]["peak_rss"], std::uint64_t{80} << 20);
+  }
+}
+
+TEST(Pack, KeepsTheLegend) {
+  const Folder folder;
+  folder.write("p.xyz", points_with_heights(500, 0));
+  for (const std::string how : {"", " --show-as discs"}) {
+    ASSERT_EQ(run("delray pack p.xyz -o p.pack -q --exaggeration 2" + how, folder.path()).exit_code,
+              0);
+    const auto picture = [&](const std::string& scene) {
+      EXPECT_EQ(
+          run("delray render " + scene + " -o p.png -q --size 480x300", folder.path()).exit_code,
+          0);
+      return folder.read("p.png");
+    };
+    const std::string expected = picture("p.xyz --legend --exaggeration 2" + how);
+    EXPECT_TRUE(picture("p.pack --legend") == expected) << how;
+    EXPECT_FALSE(picture("p.pack") == expected) << how;
+  }
+  ASSERT_EQ(run("delray pack gen:cornell -o c.pack -q", folder.path()).exit_code, 0);
+  EXPECT_EQ(run("delray render c.pack -o a.png --legend", folder.path()).exit_code, 2);
 }
 
 TEST(Pack, IsVerifiedAsAWhole) {

@@ -94,6 +94,7 @@ class Assembler {
       begin.push_back(begin.back() + part.size());
     }
     all.cloud.has_z = parts[0].cloud.has_z;
+    all.cloud.intensity_unit = parts[0].cloud.intensity_unit;
     for (const PartPoints& part : parts) {
       if (part.size() == 0) continue;
       all.cloud.positions.resize(begin.back());
@@ -176,6 +177,7 @@ void finish_points(const FileFacts& facts, const AttributeRanges& ranges, PartPo
   if (!ranges.whole_colours) cloud.colours.clear();  // normals, or something else
   if (ranges.intensity > 1) {
     for (float& value : cloud.intensity) value = std::clamp(value / ranges.intensity, 0.0F, 1.0F);
+    cloud.intensity_unit *= ranges.intensity;
   }
   cloud.geographic = facts.geographic || (facts.degrees_if_within && ranges.within_degrees);
 }

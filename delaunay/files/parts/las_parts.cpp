@@ -93,6 +93,8 @@ void LasParts::append(std::string_view records, std::size_t first, std::size_t c
   points.cloud.intensity.resize(end);
   points.cloud.classification.resize(end);
   points.cloud.returns.resize(end);
+  constexpr float kFullIntensity = 65535;
+  points.cloud.intensity_unit = kFullIntensity;
   if (coloured) points.colours.resize(end);
   std::size_t bad = count;
   for (std::size_t i = count; i-- > 0;) {
@@ -107,7 +109,7 @@ void LasParts::append(std::string_view records, std::size_t first, std::size_t c
       bad = i;
     }
     points.cloud.intensity[begin + i] =
-        static_cast<float>(laz::load<std::uint16_t>(record + kLasIntensity)) / 65535.0F;
+        static_cast<float>(laz::load<std::uint16_t>(record + kLasIntensity)) / kFullIntensity;
     points.cloud.classification[begin + i] =
         laz::load<std::uint8_t>(record + header_.format.classification) & header_.format.class_mask;
     const auto returns = laz::load<std::uint8_t>(record + kLasReturns);

@@ -75,6 +75,27 @@ class FilesInParts : public PointParts {
   FilesInParts(std::vector<std::unique_ptr<FileParts>> files, const PointFilter& filter)
       : files_(std::move(files)), begins_(files_), ranges_(files_.size()), filter_(filter) {}
 
+  // Reads all parts of files whose ranges they tell.
+  void find_ranges() {
+    const auto at_a_time = static_cast<std::size_t>(parallel::arena_threads());
+    for (std::size_t number = 0; number < files_.size(); ++number) {
+      const FileParts& file = *files_[number];
+      if (!file.facts().has_ranges) continue;
+      AttributeRanges whole;
+      for (std::size_t first = 0; first < file.parts(); first += at_a_time) {
+        std::vector<AttributeRanges> ranges(std::min(at_a_time, file.parts() - first));
+        parallel::parallel_for(0, ranges.size(), 1, [&](std::size_t i) {
+          PartPoints read;
+          file.read(first + i, read);
+          apply_filter(filter_, read);
+          ranges[i].include(read);
+        });
+        for (const AttributeRanges& range : ranges) whole.include(range);
+      }
+      std::call_once(ranges_[number].once, [&] { ranges_[number].value = whole; });
+    }
+  }
+
   std::size_t parts() const override { return begins_.parts(); }
   std::optional<bool> has_z() const override {
     return std::ranges::any_of(files_, [](const auto& file) { return file->facts().has_z; });
@@ -152,6 +173,7 @@ void join_clouds(PointCloud& all, PointCloud&& file) {
   join_values(all.returns, file.returns, rows);
   join_values(all.positions, file.positions, 0);
   all.has_z = all.has_z || file.has_z;
+  if (all.intensity_unit != file.intensity_unit) all.intensity_unit = 1;
   if (all.geographic != file.geographic) {
     const std::string mixed = "some files are in degrees and others are not";
     if (std::ranges::find(all.warnings, mixed) == all.warnings.end()) {
@@ -169,7 +191,9 @@ std::unique_ptr<PointParts> join_parts(std::vector<std::unique_ptr<PointParts>> 
 
 std::unique_ptr<PointParts> open_points(std::span<const std::filesystem::path> inputs,
                                         const PointFilter& filter, const ReadOptions& options) {
-  return std::make_unique<FilesInParts>(open_files(inputs, filter, options), filter);
+  auto parts = std::make_unique<FilesInParts>(open_files(inputs, filter, options), filter);
+  if (options.whole_ranges) parts->find_ranges();
+  return parts;
 }
 
 PointCloud read_points(const PointParts& parts, const ReadOptions& options) {
