@@ -35,10 +35,11 @@ float squared_distance(std::span<const glm::vec3> run, std::size_t i) {
 
 }  // namespace
 
-void make_points(Mesh& mesh, const Shape& shape) {
+void make_points(Mesh& mesh, const Shape& shape, const geometry::Box3& most) {
   mesh.shape = shape;
-  geometry::Box3 box;
-  for (const glm::vec3& p : mesh.positions) box.include(p);
+  geometry::Box3 box = most;
+  if (most.empty())
+    for (const glm::vec3& p : mesh.positions) box.include(p);
   const std::vector<PointPlace> order = order_points(mesh.positions, PointOrder(box));
   std::vector<std::uint32_t> old_number(order.size());
   mesh.triangles.resize(order.size());

@@ -11,8 +11,9 @@
 namespace delray::scenes {
 
 // Makes points of all vertices: neighbours follow each other (point_order.h), vertices and
-// attributes with them. O(n log n), parallel.
-void make_points(Mesh& mesh, const Shape& shape);
+// attributes with them. O(n log n), parallel. `most` is a box around nearly all of them, where some
+// are far off: otherwise the curve would not tell the others apart.
+void make_points(Mesh& mesh, const Shape& shape, const geometry::Box3& most = {});
 
 // How far neighbours of a cloud are from each other, were they a square lattice on a surface: the
 // root of the area that each has, as the distances to eighth neighbours tell (of n in a disc of

@@ -40,7 +40,7 @@ scenes::Shape shape_of(const ShowAs& how, const PointSize& size,
 
 void show_points(const ShowAs& how, const PointSize& size, scenes::Scene& scene) {
   scenes::Mesh& mesh = scene.meshes[0];
-  scenes::make_points(mesh, {how.kind, true, size.pixels * 0.5F});
+  scenes::make_points(mesh, {how.kind, true, size.pixels * 0.5F}, scene.framed);
   mesh.shape = shape_of(how, size, [&] { return scenes::point_spacing(mesh); });
   scene.materials[mesh.material].unlit = !how.lit;
 }

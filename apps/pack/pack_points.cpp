@@ -233,6 +233,7 @@ class PointsPacker {
   }
 
   scenes::PointOrder order() const {
+    if (!placement_.scene.framed.empty()) return scenes::PointOrder(placement_.scene.framed);
     geometry::Box3 box;  // as rounded as points are
     box.include(in_relief(placement_.box.low, placement_.scene.origin, input_.exaggeration));
     box.include(in_relief(placement_.box.high, placement_.scene.origin, input_.exaggeration));

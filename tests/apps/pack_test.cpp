@@ -143,7 +143,7 @@ std::string cloud_with_colours(int n) {
     const bool shared = i % 10 == 3;
     const double x = shared ? 50 : random() % 100000 * 1e-3,
                  y = shared ? 50 : random() % 100000 * 1e-3;
-    const double z = shared ? 8 : random() % 1000 * 1e-2;
+    const double z = i == 7 ? 1e6 : shared ? 8 : random() % 1000 * 1e-2;  // one far off the others
     for (const double c : {x + 5e5, y + 4e6, z}) rows += std::to_string(c) + " ";
     rows += std::to_string(random() % 256) + " " + std::to_string(random() % 256) + " 90\n";
   }
