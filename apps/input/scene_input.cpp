@@ -122,10 +122,9 @@ scenes::Scene from_points(const SceneInput& input, parallel::Progress* progress)
   how.threads = parallel::arena_threads();
   how.progress = progress;
   require_memory_to_triangulate(input.file, points.size(), how.dim);
-  delaunay::Triangulation triangulation =
+  const delaunay::Triangulation triangulation =
       triangulate(delaunay::view(points.positions), how).triangulation;
   if (triangulation.size() == 0) fail(input, no_surface(points));
-  keep_corners(points, triangulation);
   return coloured(input, points, triangulation);
 }
 

@@ -82,8 +82,6 @@ TEST(Pack, OfAFolderHasThePictureOfTheMeshInOneFile) {
     const Json expected = rendered(folder, "m.ply", "--view iso");
     EXPECT_EQ(rendered(folder, "m.pack", "--view iso")["image"]["hash"], expected["image"]["hash"]);
     EXPECT_EQ(rendered(folder, "m/", "--view iso")["image"]["hash"], expected["image"]["hash"]);
-    EXPECT_EQ(rendered(folder, "p.xyz", "--view iso --show-as relief")["image"]["hash"],
-              expected["image"]["hash"]);
     std::filesystem::remove_all(folder / "m");
   }
 }
