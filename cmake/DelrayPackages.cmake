@@ -24,7 +24,7 @@ set(about_python3
 set(depends_program "libdelray1 (= ${PROJECT_VERSION})")
 set(depends_library "")
 string(CONCAT depends_development "libdelray1 (= ${PROJECT_VERSION}), libboost-context-dev, libdraco-dev, "
-  "libembree-dev, libfmt-dev, libglm-dev, libhwy-dev, liblz4-dev, libmeshoptimizer-dev, libopenmpi-dev, "
+  "libembree-dev, libfmt-dev, libglm-dev, libhwy-dev, liblz4-dev, libjpeg-dev, libmeshoptimizer-dev, libopenmpi-dev, "
   "libpng-dev, libtbb-dev, libxxhash-dev, nlohmann-json3-dev")
 
 if(DELRAY_PYTHON AND Python_VERSION_MAJOR)
