@@ -88,5 +88,11 @@ endwhile()
 file(WRITE ${texts}/shlibs "libdelray 1 libdelray1 (>= ${PROJECT_VERSION})\n")
 file(WRITE ${texts}/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${texts}/shlibs ${texts}/triggers)
+# Python's compiled halves come and go with the package.
+file(CONFIGURE OUTPUT ${texts}/postinst CONTENT "#!/bin/sh\nset -e\npy3compile -p python3-delray\n")
+file(CONFIGURE OUTPUT ${texts}/prerm CONTENT "#!/bin/sh\nset -e\npy3clean -p python3-delray\n")
+file(CHMOD ${texts}/postinst ${texts}/prerm PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+     WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_PYTHON3_PACKAGE_CONTROL_EXTRA ${texts}/postinst ${texts}/prerm)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/compress_manual.cmake)
 include(CPack)

@@ -16,7 +16,7 @@ namespace delray::scenes {
 namespace {
 
 // Primitives that a task looks at: some 50 us.
-constexpr std::size_t kBlock = 8192;
+constexpr std::size_t kTrianglesOfTask = 8192;
 
 struct Ray {
   glm::dvec3 origin, direction;  // its part along the view is 1
@@ -100,8 +100,8 @@ class Picker {
           !meets(in_mesh(ray_, instance.transform), around)) {
         continue;
       }
-      for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += kBlock)
-        blocks.push_back({i, begin, std::min(begin + kBlock, mesh.triangles.size())});
+      for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += kTrianglesOfTask)
+        blocks.push_back({i, begin, std::min(begin + kTrianglesOfTask, mesh.triangles.size())});
     }
     return blocks;
   }
