@@ -25,8 +25,20 @@ std::int64_t clock_nanoseconds() {
 void Charged::Clock::go_on() {
   resumed = processor_nanoseconds();
   if (!is_real) return;
+  if (time == ChargedTime::processor) core_wait = parallel::core_wait_nanoseconds();
   resumed_at = clock_nanoseconds();
   thread = std::this_thread::get_id();
+}
+
+std::int64_t Charged::Clock::blocked() const {
+  constexpr std::int64_t kLeast = 20'000;  // less is what asking for the times takes
+  if (!is_real || time != ChargedTime::processor || thread != std::this_thread::get_id()) return 0;
+  const std::int64_t off_core =
+      clock_nanoseconds() - resumed_at - (processor_nanoseconds() - resumed);
+  if (!core_wait || off_core < kLeast) return 0;
+  const std::optional<std::int64_t> wait = parallel::core_wait_nanoseconds();
+  const std::int64_t blocked = wait ? off_core - (*wait - *core_wait) : 0;
+  return blocked < kLeast ? 0 : blocked;
 }
 
 std::int64_t Charged::Clock::passed() const {
@@ -39,9 +51,10 @@ std::int64_t Charged::Clock::passed() const {
 class Charged::Call {
  public:
   explicit Call(const Charged& charged) : clock_(*charged.clock_) {
-    const std::int64_t passed = clock_.passed();
+    const std::int64_t passed = clock_.passed(), blocked = clock_.blocked();
     if (passed > 0 && !clock_.is_told())
       charged.inner().work(Work::seconds_e9, static_cast<std::uint64_t>(passed));
+    if (blocked > 0) charged.inner().work(Work::blocked_e9, static_cast<std::uint64_t>(blocked));
   }
   ~Call() { clock_.go_on(); }
   Call(const Call&) = delete;
@@ -89,7 +102,13 @@ Buffer Charged::receive(int from_or_any, Tag tag_or_any) {
 
 std::optional<Envelope> Charged::probe(int from_or_any, Tag tag_or_any, Deadline deadline) {
   const Call call(*this);
-  return inner().probe(from_or_any, tag_or_any, deadline);
+  const bool is_work = clock_->is_real && clock_->time == ChargedTime::processor;
+  const std::int64_t begin = is_work ? processor_nanoseconds() : 0;
+  auto envelope = inner().probe(from_or_any, tag_or_any, deadline);
+  // No event stands for looking for a message, but it takes a core that others want.
+  if (is_work)
+    inner().work(Work::seconds_e9, static_cast<std::uint64_t>(processor_nanoseconds() - begin));
+  return envelope;
 }
 
 std::unique_ptr<Communicator> Charged::split(int color, int key) {

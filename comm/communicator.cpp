@@ -54,6 +54,8 @@ const char* name(Work kind) {
       return "rays";
     case Work::points:
       return "points";
+    case Work::blocked_e9:
+      return "nanoseconds blocked";
   }
   return "unknown";
 }

@@ -68,8 +68,9 @@ enum class Work : std::uint8_t {
   fragments,
   rays,
   points,
+  blocked_e9,  // nanoseconds that the caller waited for a device, its core being free for others
 };
-inline constexpr int kWorkKinds = 6;
+inline constexpr int kWorkKinds = 7;
 const char* name(Work kind);
 
 // REQUIRES for every rank: 0 <= rank < size().

@@ -24,6 +24,9 @@ struct Event {
   Tag tag = -1;               // of a message; collectives' are >= kReservedTags
   std::uint64_t amount = 0;   // bytes of a message, amount of work
   double begin = 0, end = 0;  // Communicator::seconds; equal where the call took no time
+  // Seconds of the processor that a message took the calling thread, where the recording was told
+  // to ask (comm/recording.h). Not in files.
+  double processor = 0;
 };
 
 // Indexed by world rank.

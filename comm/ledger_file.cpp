@@ -59,6 +59,8 @@ class LedgerReader {
     if (const auto program = json.find("program"); program != json.end() && program->is_string())
       run.program = program->get<std::string>();
     run.seconds = number(json, "seconds", "\"seconds\"", kMostNanoseconds * 1e-9);
+    if (json.contains("other_programs"))
+      run.other_programs = number(json, "other_programs", "\"other_programs\"", 1 << 20);
     const auto machine = json.find("machine");
     if (machine == json.end()) fail("\"machine\"", "is missing");
     run.machine = parse_network(machine->dump(), file_ + ": \"machine\"");
@@ -201,6 +203,32 @@ class LedgerReader {
   int count_ = 0;
 };
 
+constexpr std::uint64_t kLarge = 65536;  // bytes of messages that tell what a byte takes
+
+// Lets all messages together take the processor's time that they took, where that was recorded.
+void fit_processor_time(const Ledger& ledger, Network& network) {
+  struct Sum {
+    double seconds = 0, bytes = 0, messages = 0;
+    void add(const Event& event) {
+      seconds += event.processor;
+      bytes += static_cast<double>(event.amount);
+      messages += 1;
+    }
+  } all, large;
+  for (std::size_t rank = 0; rank < ledger.ranks.size(); ++rank) {
+    for (const Event& event : ledger.ranks[rank]) {
+      const bool is_message = event.kind == Event::Kind::send || event.kind == Event::Kind::receive;
+      if (!is_message || event.peer == static_cast<int>(rank)) continue;
+      all.add(event);
+      if (event.amount >= kLarge) large.add(event);
+    }
+  }
+  if (!(all.seconds > 0)) return;
+  const double for_byte = large.bytes > 0 ? large.seconds / large.bytes : 0;
+  network.overhead = std::max(0.0, all.seconds - for_byte * all.bytes) / all.messages;
+  network.copy_seconds_per_byte = for_byte;
+}
+
 double quartile_of(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
@@ -216,6 +244,8 @@ std::string ledger_text(const RecordedRun& run) {
   std::string text =
       "{\"schema\": \"" + std::string(kLedgerSchema) + "\",\n\"program\": " + program +
       ",\n\"seconds\": " + LedgerJson(run.seconds).dump() +
+      (run.other_programs < 0 ? std::string()
+                              : ",\n\"other_programs\": " + LedgerJson(run.other_programs).dump()) +
       ",\n\"machine\": " + network_text(run.machine) +
       ",\n\"event\": [\"kind\", \"phase\", \"round\", \"peer\", \"tag\", \"amount\", "
       "\"begin\", \"end\"],\n\"ranks\": [";
@@ -250,7 +280,7 @@ RecordedRun read_ledger(const std::string& file) {
 }
 
 NamedNetwork machine_of(const Ledger& ledger, int cores) {
-  constexpr std::uint64_t kSmall = 4096, kLarge = 65536;
+  constexpr std::uint64_t kSmall = 4096;
   std::vector<double> small, large;
   for (std::size_t rank = 0; rank < ledger.ranks.size(); ++rank) {
     for (const Event& event : ledger.ranks[rank]) {
@@ -266,6 +296,7 @@ NamedNetwork machine_of(const Ledger& ledger, int cores) {
   machine.network.overhead = quartile_of(small);
   machine.network.seconds_per_byte = 1e-15;
   machine.network.copy_seconds_per_byte = quartile_of(large);
+  fit_processor_time(ledger, machine.network);
   if (cores < static_cast<int>(ledger.ranks.size())) machine.network.shared_cores = cores;
   return machine;
 }

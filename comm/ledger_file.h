@@ -13,6 +13,9 @@ struct RecordedRun {
   std::string program;   // its command line
   double seconds = 0;    // from when all ranks had begun until the last was done
   NamedNetwork machine;  // that it ran on, as its messages tell: machine_of()
+  // Cores of rank 0's machine that other programs took meanwhile, on the average; negative where
+  // that is not known. They make the run longer, and a replay does not know of them.
+  double other_programs = -1;
   Ledger ledger;
 };
 
@@ -26,12 +29,14 @@ std::string ledger_text(const RecordedRun& run);
 RecordedRun parse_ledger(std::string_view text, const std::string& file);
 RecordedRun read_ledger(const std::string& file);
 
-// The machine on which the ledger was recorded, by how long its own calls took: the processor's
-// share of a message is the lower quartile of all sends of at most 4 KiB, its time for a byte that
-// of sends of 64 KiB and more; both are 0 where there was none. Most sends wait for nobody, so that
-// how long the run took does not go into it; those that lost their core or waited lie above the
-// quartile. Messages do not compete for links, and ranks take turns on `cores` cores if they are
-// fewer. O(events).
+// The machine on which the ledger was recorded, by what its own messages took. Where the recording
+// asked for the time of the processor (Event::processor), a byte takes the mean of messages of 64
+// KiB and more, and what is left of all of them is shared out evenly: together messages take the
+// processor as long as they did, what a rank does while it waits for one included, which cores that
+// ranks share do not do for others meanwhile. Else it is the clock's time of sends, of which most
+// wait for nobody: the lower quartile of those of at most 4 KiB, and of those of 64 KiB and more
+// for a byte. Both are 0 where there was none. Messages do not compete for links, and ranks take
+// turns on `cores` cores if they are fewer. O(events).
 NamedNetwork machine_of(const Ledger& ledger, int cores);
 
 }  // namespace delray::comm

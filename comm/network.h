@@ -24,10 +24,11 @@ struct Network {
   double copy_seconds_per_byte = 0;
   double hop_seconds = 0;  // for each link of a route after the first
   Topology topology;
-  // Ranks take turns on so many cores, first come, first served; 0: each has a core of its own.
+  // Ranks take turns on so many cores, a few milliseconds at a time, first come, first served; 0:
+  // each has a core of its own.
   int shared_cores = 0;
   // Indexed by Work. The caller calibrates all but the first, which is the unit itself.
-  std::array<double, kWorkKinds> seconds_per_work = {1e-9, 1e-9, 50e-9, 2e-9, 200e-9, 1e-6};
+  std::array<double, kWorkKinds> seconds_per_work = {1e-9, 1e-9, 50e-9, 2e-9, 200e-9, 1e-6, 1e-9};
   // Each message is late by a random time of up to this, of any order of magnitude.
   double jitter = 0;
 

@@ -16,6 +16,9 @@ namespace delray::comm {
 class Recording final : public ForwardingCommunicator {
  public:
   Recording(Communicator& inner, std::vector<Event>& events);
+  // The same with Event::processor, of ranks that are threads or processes: some 0.5 us for each
+  // message.
+  static Recording with_processor_time(Communicator& inner, std::vector<Event>& events);
   // Only adds up.
   Recording(Communicator& inner, Tally& tally);
 
@@ -31,11 +34,18 @@ class Recording final : public ForwardingCommunicator {
   struct Journal {
     std::vector<Event>* events;
     Tally* tally;
+    bool asks_processor = false;
     Phase phase = Phase::other;
     int round = 0;
   };
+  struct Begun {
+    double seconds;
+    std::int64_t processor;  // nanoseconds
+  };
+  Recording(Communicator& inner, std::shared_ptr<Journal> journal);
   Recording(std::unique_ptr<Communicator> inner, std::shared_ptr<Journal> journal);
-  Event event(Event::Kind kind, double begin) const;
+  Begun begin() const;
+  Event event(Event::Kind kind, const Begun& begun) const;
   void write(const Event& event);
 
   std::shared_ptr<Journal> journal_;

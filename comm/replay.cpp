@@ -36,6 +36,7 @@ double repeat(Communicator& communicator, const Network& network, const Event& e
       return is_own ? 0 : handling(event.amount);
     case Event::Kind::work:
       communicator.work(event.work, event.amount);
+      if (event.work == Work::blocked_e9) return 0;
       return network.seconds_per_work[static_cast<std::size_t>(event.work)] *
              static_cast<double>(event.amount);
     case Event::Kind::mark:

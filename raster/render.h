@@ -68,7 +68,9 @@ enum class CostSource : std::uint8_t { model, measured };
 enum class Groups : std::uint8_t { one, two };
 // Sort-middle: triangles are sent once a rank's geometry is all done, or in batches meanwhile,
 // which are drawn as they come.
-enum class Redistribution : std::uint8_t { at_end, immediate };
+// broadcast: at the end, too, but what others need goes to all of them in one message, which a bus
+// carries once (InfiniteReality: Montrym et al. 1997).
+enum class Redistribution : std::uint8_t { at_end, immediate, broadcast };
 
 // The size and quality of a frame, and how it is shared out.
 struct RenderOptions {

@@ -26,8 +26,32 @@ constexpr Distribution kDistributions[] = {
      .description =
          "rays go around all ranks; parts of the scene move to less loaded neighbours (Kim)",
      .decide = nullptr},
+    {.name = "voxels",
+     .description = "space in equal voxels, dealt to ranks at random; triangles are clipped to "
+                    "them, and rays travel (Jevans)",
+     .decide = distribute_ray,
+     .division = ShareOptions::Division::voxels},
+    {.name = "packed-voxels",
+     .description = "the same voxels, which ranks fetch whole and compressed, and cache (Wald)",
+     .decide = distribute_object,
+     .fetches = true,
+     .plans_tiles = true,
+     .division = ShareOptions::Division::voxels,
+     .compresses = true},
+    {.name = "shared-pool",
+     .description = "every rank has the whole scene; idle ranks take rays that wait at others "
+                    "(Badouel, Heirich)",
+     .decide = nullptr,
+     .division = ShareOptions::Division::whole,
+     .pools = true},
+    {.name = "hybrid-by-load",
+     .description = "rays go to ranks that have fewer, else parts of the scene are fetched; every "
+                    "message tells its sender's load (Nebel)",
+     .decide = distribute_by_load,
+     .fetches = true,
+     .tells_loads = true},
     {.name = "hybrid",
-     .description = "rays or parts of the scene are sent, whichever the queues favour (Nebel)",
+     .description = "rays or parts of the scene are sent, whichever took less time lately",
      .decide = distribute_hybrid,
      .fetches = true,
      .chooses = true},
@@ -36,6 +60,12 @@ constexpr Distribution kDistributions[] = {
 }  // namespace
 
 std::span<const Distribution> distributions() { return kDistributions; }
+
+ShareOptions share_options(const Distribution& distribution, ShareOptions options) {
+  options.division = distribution.division;
+  options.compresses = distribution.compresses;
+  return options;
+}
 
 const Distribution* find_distribution(std::string_view name) {
   return files::find_named(distributions(), name);

@@ -22,14 +22,18 @@ struct WaitingList {
   // cluster and build its acceleration structure.
   double wanted = 0.0, ray_seconds = 0.0, cluster_seconds = 0.0;
   bool has_room = false;  // in the cache, without a cluster having to go
-  bool idle = false;      // the rank has nothing else to do
+  // Rays that have not been intersected: on this rank, on the cluster's owner, and on the rank that
+  // has fewest, as they said with their last messages.
+  std::uint64_t own_load = 0, owner_load = 0, least_load = 0;
+  bool idle = false;  // the rank has nothing else to do
 };
 
 // An entry of the table of distributions of a scene.
 struct Distribution {
   const char* name;
   const char* description;
-  // Null: rays go round all ranks instead, each of which tests them against what it has.
+  // Null: rays go round all ranks instead, each of which tests them against what it has, or with
+  // `pools` to who asks for some.
   RoutingDecision (*decide)(const WaitingList& waiting);
   // Whether every rank has the whole scene, and nothing of this takes place.
   bool replicated = false;
@@ -40,7 +44,22 @@ struct Distribution {
   // Whether ranks that have less than an equal share trace tiles of the others: what rays need
   // comes to them anyway.
   bool plans_tiles = false;
+  // Whether every message says how many rays its sender has to intersect.
+  bool tells_loads = false;
+  // How the scene is divided, for share_options().
+  ShareOptions::Division division = ShareOptions::Division::clusters;
+  bool compresses = false;  // clusters that are fetched
+  // Whether idle ranks get rays of others that wait to be intersected.
+  bool pools = false;
+
+  // Whether clusters may be pages of a pack (SharedScene::of_pack).
+  bool reads_packs() const {
+    return fetches && !chooses && !tells_loads && division == ShareOptions::Division::clusters;
+  }
 };
+
+// The options with what the distribution says of them.
+ShareOptions share_options(const Distribution& distribution, ShareOptions options = {});
 
 // The table: command line, tests and benchmarks iterate over it.
 std::span<const Distribution> distributions();

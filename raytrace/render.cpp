@@ -34,10 +34,7 @@ void check(const RenderOptions& options) {
     throw std::invalid_argument("there is no schedule '" + options.schedule + "'");
   if (!options.partition.empty() && loadbalance::find_partitioner(options.partition) == nullptr)
     throw std::invalid_argument("there is no partition '" + options.partition + "'");
-  if (options.tile < 0 || options.tile % kTaskSide != 0) {
-    throw std::invalid_argument("the side of a tile is a multiple of " + std::to_string(kTaskSide) +
-                                " pixels");
-  }
+  if (options.tile < 0) throw std::invalid_argument("the side of a tile is not negative");
   if (options.width < 0 || options.height < 0 || options.samples < 1 || options.trace.depth < 0 ||
       options.regions_per_rank < 1 || !(options.keep_factor >= 1) || options.part.samples < 0 ||
       options.part.first_sample < 0) {
@@ -182,6 +179,8 @@ void add_scene(const SharedScene& scene, std::uint64_t dropped, RankStatistics& 
   statistics.embree_version = scene.embree_version();
   statistics.embree_isa = scene.embree_isa();
   mine.clusters_dropped = scene.evicted() - dropped;
+  mine.clusters = scene.owned().size();
+  mine.tree_bytes = scene.tree_bytes();
   mine.geometry_bytes = scene.most_bytes();
 }
 
@@ -215,6 +214,8 @@ void RankStatistics::operator+=(RankStatistics&& more) {
   clusters_fetched_bytes += more.clusters_fetched_bytes;
   clusters_moved += more.clusters_moved;
   clusters_dropped += more.clusters_dropped;
+  clusters = more.clusters;
+  tree_bytes = more.tree_bytes;
   geometry_bytes = more.geometry_bytes;  // the most since the scene was shared out
   timeline.insert(timeline.end(), more.timeline.begin(), more.timeline.end());
 }
@@ -275,7 +276,10 @@ struct Renderer::Memory {
 
 Renderer::Renderer(const Tracer& tracer) : memory_(new Memory{&tracer, nullptr, nullptr}) {}
 Renderer::Renderer(SharedScene& scene, const Distribution& distribution)
-    : memory_(new Memory{nullptr, &scene, &distribution}) {}
+    : memory_(new Memory{nullptr, &scene, &distribution}) {
+  if (distribution.pools && !scene.is_whole())
+    throw std::invalid_argument("a pool of rays needs the whole scene on every rank");
+}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

@@ -55,9 +55,10 @@ struct RenderOptions {
   // displays that it owns, and rank 0 no picture. Disjoint, of frames without Part::squares. Empty:
   // all of it goes to rank 0.
   std::vector<loadbalance::Region> displays;
-  // Pixels, the side of a tile, a multiple of kTaskSide; 0: Integrator::side. The smaller the more
-  // evenly work is shared out; there is more to hand out and to collect then, and tasks are no
-  // larger than tiles.
+  // Pixels, the side of a tile; 0: Integrator::side. The smaller the more evenly work is shared
+  // out; there is more to hand out and to collect then, and tasks are no larger than tiles. Packets
+  // of 4 x 4 pixels are traced whole: of those that reach beyond a tile it keeps its own pixels
+  // (RayCounts::surplus), so that a side that is a multiple of 4 wastes nothing.
   int tile = 0;
   // Of loadbalance::partitioners(), over what the tiles cost in the last frame of a Renderer: with
   // the schedules that begin with shares (static and both kinds of stealing) a rank begins with the
@@ -87,6 +88,9 @@ struct RankCounts {
   std::uint64_t rays_sent = 0, answers_sent = 0, tests = 0, clusters_fetched = 0,
                 clusters_fetched_bytes = 0, clusters_dropped = 0, clusters_moved = 0,
                 geometry_bytes = 0;
+  // Of a scene that is shared out: clusters that the rank owns, and bytes of the upper part of the
+  // hierarchy, which every rank has.
+  std::uint64_t clusters = 0, tree_bytes = 0;
 };
 
 // One rank's work for a frame.
@@ -150,7 +154,8 @@ class Renderer {
   // Refers to the tracer, which several ranks may share.
   explicit Renderer(const Tracer& tracer);
   // Refers to this rank's part of a scene that is shared out. Once clusters have gone round by
-  // `ring` no other distribution finds them. REQUIRES: !distribution.replicated.
+  // `ring` no other distribution finds them. Throws std::invalid_argument where rays are pooled and
+  // no rank has all clusters (share_options). REQUIRES: !distribution.replicated.
   Renderer(SharedScene& scene, const Distribution& distribution);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -161,8 +166,8 @@ class Renderer {
   // threads (and the same Embree instruction set). Works in as many threads as the caller's arena
   // has; with no width or height the image is empty. Of several samples colours are averaged and
   // the least depth is kept. Throws std::invalid_argument for names that are in no table and for
-  // sizes of tiles that are no multiple of kTaskSide and for displays that nobody owns or that
-  // reach beyond the window; parallel::Interrupted when the progress is told to stop.
+  // displays that nobody owns or that reach beyond the window; parallel::Interrupted when the
+  // progress is told to stop.
   //
   // REQUIRES: samples >= 1, depth >= 0, regions_per_rank >= 1, keep_factor >= 1; the same scene,
   // camera and options on every rank.

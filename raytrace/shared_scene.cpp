@@ -12,6 +12,7 @@
 
 #include "comm/collectives.h"
 #include "parallel/parallel_for.h"
+#include "raytrace/clusters/voxels.h"
 
 namespace delray::raytrace {
 namespace {
@@ -27,6 +28,37 @@ constexpr std::uint64_t kBytesWithStructure = 4;
 std::uint32_t triangles_of_cluster(std::uint64_t all, int ranks) {
   const std::uint64_t share = all / (kClusters * static_cast<std::uint64_t>(ranks));
   return static_cast<std::uint32_t>(std::clamp(share, kFewestTriangles, kMostTriangles));
+}
+
+// At most, of a scene of so many.
+std::uint32_t most_triangles(const ShareOptions& options, std::uint64_t all, int ranks) {
+  if (options.most_triangles > 0) return options.most_triangles;
+  if (options.cut_level < 0) return triangles_of_cluster(all, ranks);
+  const std::uint64_t subtrees = std::uint64_t{1} << std::min(options.cut_level, 31);
+  return static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>((all + subtrees - 1) / subtrees, 1, ~std::uint32_t{0}));
+}
+
+// Of a scene of so many triangles within the box, this rank's clusters, from the triangles [begin,
+// end) of the instances: as they were cut, or, of voxels, those that were dealt to it. Collective.
+struct Triangles {
+  std::uint64_t all, begin, end;
+  std::uint32_t first;  // the first one's number in its mesh
+};
+std::vector<ClusterData> divide(comm::Communicator& communicator,
+                                std::span<const GeometryInstance> instances,
+                                const Triangles& triangles, const geometry::Box3& box,
+                                const ShareOptions& options) {
+  const std::uint32_t most = most_triangles(options, triangles.all, communicator.size());
+  if (options.division == ShareOptions::Division::whole)
+    return cut_clusters(instances, 0, triangles.all, most, triangles.first);
+  if (options.division == ShareOptions::Division::clusters)
+    return cut_clusters(instances, triangles.begin, triangles.end, most, triangles.first);
+  const VoxelGrid grid = voxel_grid(box, triangles.all, communicator.size());
+  return deal_voxels(
+      communicator,
+      cut_voxels(instances, triangles.begin, triangles.end, grid, most, triangles.first), grid,
+      options.seed);
 }
 
 // What every rank knows of a cluster.
@@ -108,10 +140,8 @@ SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Sc
     const std::uint64_t all = stored_triangles(instances);
     const auto ranks = static_cast<std::uint64_t>(communicator.size());
     const auto rank = static_cast<std::uint64_t>(communicator.rank());
-    const std::uint32_t most = options.most_triangles > 0
-                                   ? options.most_triangles
-                                   : triangles_of_cluster(all, communicator.size());
-    mine = cut_clusters(instances, all * rank / ranks, all * (rank + 1) / ranks, most);
+    mine = divide(communicator, instances, {all, all * rank / ranks, all * (rank + 1) / ranks, 0},
+                  scenes::bounds(scene), options);
   }
   LightTable lights(scene, shader);
   return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
@@ -120,20 +150,19 @@ SharedScene SharedScene::make(comm::Communicator& communicator, const scenes::Sc
 SharedScene SharedScene::make(comm::Communicator& communicator, scenes::ScenePart&& part,
                               const ShareOptions& options) {
   shading::Shader shader = shading::make_shader(part.scene);
-  geometry::Box3 box = scenes::bounds(part.scene);
+  const geometry::Box3 box = comm::all_reduce_value(communicator, scenes::bounds(part.scene),
+                                                    [](geometry::Box3 a, const geometry::Box3& b) {
+                                                      a.include(b);
+                                                      return a;
+                                                    });
   std::vector<ClusterData> mine;
   {
     const std::vector<GeometryInstance> instances =
         make_instances(part.scene, shader, options.build.share_meshes);
-    const std::uint32_t most = options.most_triangles > 0
-                                   ? options.most_triangles
-                                   : triangles_of_cluster(part.triangles, communicator.size());
-    mine = cut_clusters(instances, 0, stored_triangles(instances), most, part.first_triangle);
+    mine =
+        divide(communicator, instances,
+               {part.triangles, 0, stored_triangles(instances), part.first_triangle}, box, options);
   }
-  box = comm::all_reduce_value(communicator, box, [](geometry::Box3 a, const geometry::Box3& b) {
-    a.include(b);
-    return a;
-  });
   LightTable lights = lights_around(part.scene, box, shader);
   return SharedScene(communicator, std::move(shader), std::move(lights), std::move(mine), options);
 }
@@ -145,15 +174,18 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
       alphas_(least_alphas(shader_)),
       lights_(std::move(lights)),
       build_(options.build),
-      device_(build_) {
+      device_(build_),
+      compresses_(options.compresses) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<int> owners;
-  for (std::size_t i = 0; i < mine.size(); ++i) {
+  const bool is_whole = options.division == ShareOptions::Division::whole;
+  const bool is_dealt = options.division != ShareOptions::Division::clusters;
+  for (std::size_t i = 0; i < mine.size() && !is_dealt; ++i) {
     owners.push_back(options.assignment == ShareOptions::Assignment::random
                          ? random_owner(communicator, i, options.seed)
                          : neighbours_owner(communicator, i, mine.size()));
   }
-  mine = assigned(communicator, std::move(mine), owners);
+  if (!is_dealt) mine = assigned(communicator, std::move(mine), owners);
 
   // What there is to know of this rank's clusters, then their boxes.
   std::vector<Known> known;
@@ -181,6 +213,7 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   std::uint32_t first_mine = 0;
   const std::vector<comm::Buffer> messages = comm::all_gather(communicator, std::move(message));
   for (int rank = 0; rank < communicator.size(); ++rank) {
+    if (is_whole && rank != communicator.rank()) continue;
     const std::byte* at = messages[rank].data();
     std::uint64_t clusters = 0;
     std::memcpy(&clusters, at, sizeof(clusters));
@@ -220,7 +253,10 @@ SharedScene::SharedScene(comm::Communicator& communicator, shading::Shader shade
   gather(Joined::none);
   const std::uint64_t all_bytes = comm::all_reduce_value(communicator, bytes(), std::plus<>());
   cache_limit_ = options.cache_bytes > 0 ? options.cache_bytes : all_bytes / 10;
-  degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
+  if (is_whole)
+    nothing_ = std::make_unique<const ClusterScene>(std::vector<std::shared_ptr<const Cluster>>(),
+                                                    build_, device_);
+  if (!is_whole) degenerate_ = comm::all_reduce_value(communicator, degenerate_, std::plus<>());
   note_bytes();
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -23,9 +23,18 @@ namespace delray::raytrace {
 struct ShareOptions {
   // Which ranks clusters go to: neighbours to one, two runs of them from both ends of the scene, so
   // that a ray changes rank seldom, or random ones, so that every rank has some of what the picture
-  // shows (Jevans 1989).
+  // shows (Jevans 1989). Voxels are always dealt at random.
   enum class Assignment : std::uint8_t { neighbours, random } assignment = Assignment::neighbours;
   std::uint64_t seed = 1;  // of random
+  // What clusters are: parts of equally many triangles, of a hierarchy, whose upper part every rank
+  // has (Caspary and Scherson 1989), or equal voxels of space with what reaches into them (Jevans
+  // 1989). whole: every rank has all clusters.
+  enum class Division : std::uint8_t { clusters, voxels, whole } division = Division::clusters;
+  // Whether clusters that are fetched travel compressed (Wald et al. 2001).
+  bool compresses = false;
+  // The height at which Caspary's hierarchy is cut: about 2^level subtrees are left below;
+  // negative: by the number of triangles. Not with most_triangles.
+  int cut_level = -1;
   // Bytes that other ranks' clusters may take on this one, with their acceleration structures, but
   // for one cluster that is always kept; 0: a tenth of what all ranks have together.
   std::uint64_t cache_bytes = 0;
@@ -75,6 +84,7 @@ class SharedScene {
   // The pack that clusters are read from, where no rank owns any; otherwise null.
   const PackedClusters* file() const { return file_.get(); }
   std::uint64_t packed_bytes(std::uint32_t cluster) const { return packed_bytes_[cluster]; }
+  bool compresses() const { return compresses_; }
   // Whether any instance of the whole scene is an Embree instance, or can be seen through.
   bool has_instances() const { return has_instances_; }
 
@@ -88,6 +98,10 @@ class SharedScene {
   void begin_frame(bool chooses = false);
   // Most of what is at hand, as one scene.
   const ClusterScene& resident() const { return *resident_; }
+  // Whether every rank has all clusters.
+  bool is_whole() const { return nothing_ != nullptr; }
+  // Nothing at all. REQUIRES: is_whole().
+  const ClusterScene& nothing() const { return *nothing_; }
   bool is_resident(std::uint32_t cluster) const { return is_resident_[cluster] != 0; }
   // The boxes of all that is not resident.
   const ClusterTree& elsewhere() const { return elsewhere_; }
@@ -129,6 +143,10 @@ class SharedScene {
     return owned_;
   }
 
+  // Of the upper part of the hierarchy, which every rank has.
+  std::uint64_t tree_bytes() const {
+    return elsewhere_.bytes() + everywhere_.bytes() + boxes_.capacity() * sizeof(ClusterBox);
+  }
   // Bytes of geometry, acceleration structures and the tree: now, and the most there ever were.
   std::uint64_t bytes() const;
   std::uint64_t most_bytes() const { return most_bytes_; }
@@ -183,7 +201,8 @@ class SharedScene {
   std::vector<ClusterBox> boxes_;  // of all clusters
   geometry::Box3 bounds_;
   std::unique_ptr<ClusterScene> resident_;
-  std::vector<std::uint8_t> is_resident_;  // by cluster
+  std::unique_ptr<const ClusterScene> nothing_;  // of Division::whole
+  std::vector<std::uint8_t> is_resident_;        // by cluster
   ClusterTree elsewhere_, everywhere_;
   std::vector<int> owners_;                  // by cluster
   std::vector<std::uint64_t> packed_bytes_;  // by cluster
@@ -205,7 +224,7 @@ class SharedScene {
   std::uint64_t expected_bytes_ = 0;
   double bytes_with_structure_ = 3.0;  // of clusters in the cache, for each byte of their geometry
   TravelCosts costs_;
-  bool has_instances_ = false;
+  bool has_instances_ = false, compresses_ = false;
   double build_seconds_ = 0.0;
   std::uint64_t degenerate_ = 0;
 };

@@ -22,6 +22,7 @@ struct RankTime {
   double begin = 0, gather = 0, end = 0;  // when the frame, its gather, and both end
   double work = 0, messages = 0;          // seconds before the gather
   std::uint64_t bytes_sent = 0, messages_sent = 0, rays_sent = 0;
+  std::uint64_t tests = 0, clusters = 0, tree_bytes = 0, geometry_bytes = 0;
 };
 
 void add(const comm::Event& event, int self, const comm::Network& network, RankTime& time) {
@@ -44,9 +45,18 @@ void add(const comm::Event& event, int self, const comm::Network& network, RankT
   }
 }
 
+void take_counts(const RankStatistics& from, RankTime& rank) {
+  rank.rays_sent = from.rays_sent;
+  rank.tests = from.tests;
+  rank.clusters = from.clusters;
+  rank.tree_bytes = from.tree_bytes;
+  rank.geometry_bytes = from.geometry_bytes;
+}
+
 SimulatedFrame summary_of(const std::vector<RankTime>& ranks) {
   SimulatedFrame frame;
   double begin = ranks[0].begin;
+  std::vector<double> tests;
   for (std::size_t k = 0; k < ranks.size(); ++k) {
     const RankTime& rank = ranks[k];
     const RankTime& busiest = ranks[static_cast<std::size_t>(frame.busiest)];
@@ -56,7 +66,12 @@ SimulatedFrame summary_of(const std::vector<RankTime>& ranks) {
     frame.bytes += rank.bytes_sent;
     frame.messages += rank.messages_sent;
     frame.rays_sent += rank.rays_sent;
+    frame.clusters += rank.clusters;
+    frame.tree_bytes = std::max(frame.tree_bytes, rank.tree_bytes);
+    frame.geometry_bytes = std::max(frame.geometry_bytes, rank.geometry_bytes);
+    tests.push_back(static_cast<double>(rank.tests));
   }
+  frame.test_imbalance = loadbalance::imbalance(tests);
   const RankTime& rank = ranks[static_cast<std::size_t>(frame.busiest)];
   frame.seconds = ranks[0].end - begin;
   frame.parts = {rank.work, rank.messages, rank.gather - begin - rank.work - rank.messages,
@@ -87,8 +102,8 @@ std::vector<SimulatedFrame> simulate_frames(const RepeatedFrame& repeated,
           const int self = communicator.rank();
           std::optional<SharedScene> shared;
           if (!distribution.replicated)
-            shared.emplace(
-                SharedScene::make(communicator, repeated.scene, repeated.tracer.shader, {}));
+            shared.emplace(SharedScene::make(communicator, repeated.scene, repeated.tracer.shader,
+                                             share_options(distribution, repeated.share)));
           Renderer renderer = shared ? Renderer(*shared, distribution) : Renderer(repeated.tracer);
           for (std::vector<RankTime>& frame : times) {
             RankTime& time = frame[static_cast<std::size_t>(self)];
@@ -106,7 +121,7 @@ std::vector<SimulatedFrame> simulate_frames(const RepeatedFrame& repeated,
             for (const comm::Event& event : events) add(event, self, network, time);
             if (self == 0) {
               for (std::size_t k = 0; k < result.statistics.ranks.size(); ++k)
-                frame[k].rays_sent = result.statistics.ranks[k].rays_sent;
+                take_counts(result.statistics.ranks[k], frame[k]);
               renderer.recycle(std::move(result.image));
             }
           }

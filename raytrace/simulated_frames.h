@@ -23,6 +23,9 @@ struct SimulatedFrame {
   int busiest = 0;                          // the rank that works longest before the gather
   std::array<double, kFrameParts> parts{};  // of its time, indexed by FramePart; their sum
   std::uint64_t bytes = 0, messages = 0, rays_sent = 0;  // of all ranks
+  std::uint64_t clusters = 0;                            // of all ranks
+  std::uint64_t tree_bytes = 0, geometry_bytes = 0;      // of the rank with most
+  double test_imbalance = 1;  // most over mean of the rays that ranks intersected
 };
 
 // One camera's frame, a few times by the same ranks.
@@ -32,6 +35,7 @@ struct RepeatedFrame {
   const scenes::Camera& camera;
   const RenderOptions& options;
   int frames = 1;
+  ShareOptions share = {};  // of distributions, but for what these say themselves
 };
 
 // Every rank's processor time is measured, and its messages take what the network says: what comes

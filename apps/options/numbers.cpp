@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "files/parse_count.h"
+#include "image/image.h"
+#include "loadbalance/cache_block.h"
 
 namespace delray::apps {
 namespace {
@@ -58,6 +60,18 @@ CLI::Validator count_between(std::uint64_t least, std::uint64_t most) {
     }
   };
   return CLI::Validator(check, fmt::format("{} to {}", least, most));
+}
+
+CLI::Validator block_side() {
+  constexpr int kMost = 4096;
+  const auto check = [](std::string& text) {
+    if (text != "cache") return count_between(1, kMost)(text);
+    const int side = loadbalance::cache_block_side(
+        loadbalance::first_level_cache(), sizeof(image::RgbaF) + sizeof(float), sizeof(float));
+    text = std::to_string(side < kMost ? side : kMost);
+    return std::string();
+  };
+  return CLI::Validator(check, "1 to 4096, or cache");
 }
 
 CLI::Validator any_count() {

@@ -16,5 +16,8 @@ CLI::Validator number_between(double least, double most);
 // digits: for Option::transform.
 CLI::Validator count_between(std::uint64_t least, std::uint64_t most);
 CLI::Validator any_count();
+// The side of a block of pixels, 1 to 4096, or `cache`, which it rewrites as the side of one whose
+// colours and depths fit this processor's first-level data cache (loadbalance/cache_block.h).
+CLI::Validator block_side();
 
 }  // namespace delray::apps

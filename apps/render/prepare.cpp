@@ -57,7 +57,10 @@ bool is_replicated(const RenderRequest& request) {
 
 // Whether no rank need ever have the whole scene.
 bool comes_in_parts(const RenderRequest& request) {
-  return request.engine == Engine::raytrace && !is_replicated(request) && has_parts(request);
+  const bool is_whole = raytrace::find_distribution(request.data)->division ==
+                        raytrace::ShareOptions::Division::whole;
+  return request.engine == Engine::raytrace && !is_replicated(request) && !is_whole &&
+         has_parts(request);
 }
 
 // Whether each of several ranks that share no memory may read a part of a scene's file: the engine
@@ -145,7 +148,7 @@ bool reads_pages(const RenderRequest& request) {
   if (request.layout.wall || input_kind_of(request.scene.file) != InputKind::pack) return false;
   if (request.engine == Engine::raytrace) {
     const raytrace::Distribution& data = *raytrace::find_distribution(request.data);
-    return data.fetches && !data.chooses && request.sampling.checkpoint.empty();
+    return data.reads_packs() && request.sampling.checkpoint.empty();
   }
   return raster::find_strategy(request.raster.strategy)->packs &&
          request.sharing.schedule.empty() && request.raster.blend == raster::Blend::by_owner;

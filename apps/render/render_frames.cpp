@@ -66,7 +66,8 @@ raytrace::RenderOptions raytrace_options(const RenderRequest& request, int ranks
 
 raytrace::ShareOptions share_options(const RenderRequest& request) {
   constexpr double kMebibyte = 1 << 20;
-  raytrace::ShareOptions options = request.share;
+  raytrace::ShareOptions options =
+      raytrace::share_options(*raytrace::find_distribution(request.data), request.share);
   options.build = request.raytrace.build;
   options.cache_bytes = static_cast<std::uint64_t>(request.cache_mebibytes * kMebibyte);
   return options;

@@ -103,7 +103,10 @@ Json raytrace_of(const raytrace::Statistics& s) {
 Json raytrace_of(const raster::Statistics&) { return nullptr; }
 
 Json of_rays(const raytrace::RayCounts& rays) {
-  return {{"primary", rays.primary}, {"shadow", rays.shadow}, {"secondary", rays.secondary}};
+  return {{"primary", rays.primary},
+          {"shadow", rays.shadow},
+          {"secondary", rays.secondary},
+          {"surplus", rays.surplus}};
 }
 
 // Adds the counts that ranks of only one engine have.
@@ -122,7 +125,9 @@ void add_own(const raytrace::RankStatistics& rank, Json& row) {
                  {"clusters_fetched_bytes", rank.clusters_fetched_bytes},
                  {"clusters_dropped", rank.clusters_dropped},
                  {"clusters_moved", rank.clusters_moved},
-                 {"geometry_bytes", rank.geometry_bytes}};
+                 {"geometry_bytes", rank.geometry_bytes},
+                 {"clusters", rank.clusters},
+                 {"tree_bytes", rank.tree_bytes}};
   Json& timeline = row["timeline"] = Json::array();
   for (const loadbalance::Interval& interval : rank.timeline) {
     timeline.push_back({{"thread", interval.thread},

@@ -3,6 +3,7 @@
 // Every rank of the ledger repeats its messages and its work on the simulated machine
 // (comm/replay.h), once for each network; the figures are those of the rank that is done last.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -75,6 +76,16 @@ TextTable replay_table(const comm::RecordedRun& run, const std::vector<Replayed>
   return table;
 }
 
+// Warns where the recorded time is not that of the run alone.
+void warn_of_others(const comm::RecordedRun& run) {
+  constexpr double kFew = 0.1;  // cores
+  if (run.other_programs <= kFew) return;
+  spdlog::warn(
+      "other programs took {:.2g} cores of the machine while this was recorded: it would have been "
+      "faster alone, as replays are",
+      run.other_programs);
+}
+
 Json replay_statistics(const ReplayRequest& request, const comm::RecordedRun& run,
                        const std::vector<comm::NamedNetwork>& networks,
                        const std::vector<Replayed>& replayed) {
@@ -97,7 +108,8 @@ Json replay_statistics(const ReplayRequest& request, const comm::RecordedRun& ru
             {"ranks", run.ledger.ranks.size()},
             {"messages", totals.messages_sent},
             {"bytes", totals.bytes_sent},
-            {"seconds", run.seconds}}},
+            {"seconds", run.seconds},
+            {"other_programs", run.other_programs < 0 ? Json() : Json(run.other_programs)}}},
           {"networks", std::move(described)},
           {"rows", std::move(rows)}};
 }
@@ -121,6 +133,7 @@ int run_replay(Session& session, const ReplayRequest& request) {
   std::vector<Replayed> rows;
   for (const comm::NamedNetwork& named : networks)
     rows.push_back(replay_over(run, named, request.ledger));
+  warn_of_others(run);
   write_statistics(request.statistics, replay_statistics(request, run, networks, rows));
   if (request.statistics != "-")
     fmt::print("{}", aligned(replay_table(run, rows), line_width(STDOUT_FILENO)));

@@ -1,11 +1,9 @@
-// Square blocks assigned to owners in turn, each row shifted by a number that is prime to the
-// number of owners and near its golden section, so that an owner's blocks lie apart in rows and in
-// columns. O(blocks). Degenerate: a frame with fewer pixels than blocks are wanted has blocks of
-// one pixel.
+// Square blocks of a size that gives every owner some, assigned in turn. O(blocks). Degenerate: a
+// frame with fewer pixels than blocks are wanted has blocks of one pixel.
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 
+#include "loadbalance/partitions/interlaced_blocks.h"
 #include "loadbalance/partitions/partitioners.h"
 
 namespace delray::loadbalance::internal {
@@ -26,36 +24,12 @@ int block_side(const Rect& frame, int parts) {
   return side;
 }
 
-// The shift of owners from one row of blocks to the next: prime to their number, so that columns
-// meet all of them, and near the golden section of it, so that those of an owner lie apart.
-int shift_of(int parts) {
-  const int wanted = static_cast<int>((std::int64_t{parts} * 382 + 500) / 1000);
-  for (int distance = 0; distance < parts; ++distance) {
-    for (const int shift : {wanted - distance, wanted + distance}) {
-      if (shift >= 1 && std::gcd(shift, parts) == 1) return shift;
-    }
-  }
-  return 1;
-}
-
 }  // namespace
 
 Partition interlaced(const Costs& costs, Rect frame, int parts) {
   check_costs(costs, frame, parts);
-  Partition partition{frame, {}};
-  if (frame.empty()) return partition;
-  const int side = block_side(frame, parts), shift = shift_of(parts);
-  std::int64_t row_owner = 0;
-  for (int y = frame.y0; y < frame.y1; y += side) {
-    std::int64_t owner = row_owner;
-    for (int x = frame.x0; x < frame.x1; x += side) {
-      const Rect block{x, y, x + side, y + side};
-      partition.regions.push_back({geometry::intersection(block, frame), static_cast<int>(owner)});
-      owner = (owner + 1) % parts;
-    }
-    row_owner = (row_owner + shift) % parts;
-  }
-  return partition;
+  if (frame.empty()) return {frame, {}};
+  return interlaced_blocks(frame, parts, block_side(frame, parts));
 }
 
 }  // namespace delray::loadbalance::internal

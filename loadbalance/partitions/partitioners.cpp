@@ -33,6 +33,10 @@ constexpr std::array kPartitioners = {
         "pixel-planes",
         "square blocks of 128 pixels, the costliest first to who has least (Pixel-Planes 5)",
         &internal::pixel_planes, "grid"},
+    Partitioner{"infinite-reality",
+                "fine square blocks of 16 pixels assigned in turn, whatever they cost "
+                "(InfiniteReality)",
+                &internal::infinite_reality, "fixed"},
     Partitioner{"interlaced", "many square blocks assigned in turn, whatever they cost",
                 &internal::interlaced, "fixed"},
 };

@@ -32,6 +32,11 @@ Partition interlaced(const Costs& costs, geometry::Rect frame, int parts);
 inline constexpr int kPixelPlanesSide = 128;
 Partition pixel_planes(const Costs& costs, geometry::Rect frame, int parts);
 
+// Square blocks of kInfiniteRealitySide pixels (InfiniteReality, Montrym et al. 1997), assigned as
+// interlaced does. Costs do not matter. O(blocks).
+inline constexpr int kInfiniteRealitySide = 16;
+Partition infinite_reality(const Costs& costs, geometry::Rect frame, int parts);
+
 // A standard decomposition into `parts` rectangles that is corrected again and again: the region
 // that most primitives overlap is split in half, and the two neighbours with the fewest that form a
 // rectangle become one (Roble 1988). Ends when they would have as many as the region that is split,

@@ -44,6 +44,11 @@ constexpr std::array kSchedules = {
              .run = &internal::stealing,
              .group = "stealing",
              .begins_with_shares = true},
+    Schedule{.name = "half-stealing",
+             .description = "idle ranks take half of what the rank with most has left (Ellsworth)",
+             .run = &internal::half_stealing,
+             .group = "stealing",
+             .begins_with_shares = true},
     Schedule{
         .name = "neighbour-stealing",
         .description =

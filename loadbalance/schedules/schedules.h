@@ -43,6 +43,12 @@ RankReport hierarchical(comm::Communicator& communicator, const TaskGrid& tasks,
 RankReport stealing(comm::Communicator& communicator, const TaskGrid& tasks,
                     const ScheduleOptions& options, TaskFunction work);
 
+// Half of the rest (Ellsworth 1994): the same, but a rank that has none left takes half of what
+// waits at the rank with most when that is asked, so that ranks that ask it at the same time do not
+// take everything together.
+RankReport half_stealing(comm::Communicator& communicator, const TaskGrid& tasks,
+                         const ScheduleOptions& options, TaskFunction work);
+
 // Stealing from neighbours in the hypercube (Heirich and Arvo 1997): a rank that has few tasks left
 // asks those whose numbers differ from its own in one bit, and again when it has none. They release
 // half of what they have more; those that have nothing to release remember it and share what they

@@ -109,11 +109,17 @@ std::vector<int> match_regions(RankContext& rank, const loadbalance::Partition& 
 // Triangles on their way between ranks.
 class Redistributor {
  public:
-  // Collective. `boxes` are around everything that this rank may send.
-  Redistributor(RankContext& rank, const loadbalance::Partition& partition,
+  // Collective. `boxes` are around everything that this rank may send; ranks from first_rasterizer
+  // on draw.
+  Redistributor(RankContext& rank, const loadbalance::Partition& partition, int first_rasterizer,
                 std::span<const loadbalance::WeightedBox> boxes, SortedMiddle& sorted,
                 RegionDrawing& drawing)
-      : rank_(rank), regions_(partition), sorted_(sorted), drawing_(drawing) {
+      : rank_(rank),
+        receivers_(receivers_of(rank, first_rasterizer)),
+        seen_(partition_of_receivers(partition, receivers_, rank)),
+        regions_(seen_),
+        sorted_(sorted),
+        drawing_(drawing) {
     // A message at least for each rank that may get something, so that it knows when all is there.
     std::vector<int> senders(static_cast<std::size_t>(rank.ranks())), owners;
     for (const loadbalance::WeightedBox& box : boxes) {
@@ -121,7 +127,11 @@ class Redistributor {
       for (const int owner : owners)
         if (owner != rank.number()) buckets_[owner];
     }
-    for (const auto& [to, bucket] : buckets_) senders[to] = 1;
+    for (const auto& [to, bucket] : buckets_) {
+      if (to < rank.ranks()) senders[to] = 1;
+      if (to == rank.ranks())
+        for (const int receiver : receivers_) senders[receiver] = 1;
+    }
     comm::all_reduce(rank.communicator, std::span(senders), std::plus<>());
     senders_left_ = senders[rank.number()];
   }
@@ -191,6 +201,25 @@ class Redistributor {
   }
 
  private:
+  // Of a broadcast: all ranks that draw, but this one. Otherwise none.
+  static std::vector<int> receivers_of(const RankContext& rank, int first_rasterizer) {
+    std::vector<int> receivers;
+    if (rank.options.redistribution != Redistribution::broadcast) return receivers;
+    for (int k = first_rasterizer; k < rank.ranks(); ++k)
+      if (k != rank.number()) receivers.push_back(k);
+    return receivers;
+  }
+  // Of a broadcast: others' regions are those of one more rank, which stands for all of them.
+  static loadbalance::Partition partition_of_receivers(const loadbalance::Partition& partition,
+                                                       const std::vector<int>& receivers,
+                                                       const RankContext& rank) {
+    loadbalance::Partition seen = partition;
+    if (receivers.empty()) return seen;
+    for (loadbalance::Region& region : seen.regions)
+      if (region.owner != rank.number()) region.owner = rank.ranks();
+    return seen;
+  }
+
   struct Bucket {
     std::size_t bytes = 0;
     std::vector<std::vector<std::byte>> parts;
@@ -205,14 +234,19 @@ class Redistributor {
     for (const std::vector<std::byte>& part : bucket.parts)
       end = std::copy(part.begin(), part.end(), end);
     bucket = {};
-    rank_.communicator.send(to, kTagTriangles, std::move(message));
+    if (to == rank_.ranks())
+      rank_.communicator.multicast(receivers_, kTagTriangles, std::move(message));
+    else
+      rank_.communicator.send(to, kTagTriangles, std::move(message));
   }
 
   RankContext& rank_;
+  const std::vector<int> receivers_;
+  const loadbalance::Partition seen_;
   const loadbalance::RegionIndex regions_;
   SortedMiddle& sorted_;
   RegionDrawing& drawing_;
-  std::map<int, Bucket> buckets_;  // by receiver
+  std::map<int, Bucket> buckets_;  // by receiver; the number of ranks stands for receivers_
   int senders_left_ = 0;
   double seconds_ = 0;
   std::uint64_t culled_ = 0;
@@ -323,12 +357,13 @@ Picture render(RankContext& rank) {
   const std::vector<std::uint32_t> own = number_globally(rank, sorted.list);
   rank.counts.phases.redistribute += communicator.seconds() - before_cut;
   RegionDrawing drawing = rank.begin(sorted.list, regions);
-  Redistributor redistributor(rank, partition, costed.boxes, sorted, drawing);
+  Redistributor redistributor(rank, partition, roles.first_rasterizer, costed.boxes, sorted,
+                              drawing);
   if (redistributor.nothing_travels()) {
     communicator.mark(comm::Phase::rasterize, 0);
     drawing.draw(own);
     sorted.drawn = own;
-  } else if (rank.options.redistribution == Redistribution::at_end) {
+  } else if (rank.options.redistribution != Redistribution::immediate) {
     draw_at_end(rank, own, redistributor, drawing, sorted.drawn);
   } else {
     draw_at_once(rank, own, redistributor, drawing, sorted.drawn);

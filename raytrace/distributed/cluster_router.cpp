@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "parallel/parallel_for.h"
+#include "raytrace/clusters/compress_cluster.h"
 #include "raytrace/distributed/ray_router.h"
 
 namespace delray::raytrace {
@@ -48,23 +49,34 @@ class ClusterRouter final : public RayRouter {
       MessageHeader answer;
       answer.kind = MessageKind::cluster;
       answer.cluster = header.cluster;
+      const ClusterData& data = context_.scene.owned().at(header.cluster)->data();
       context_.messenger.send(
-          from, with_header(answer, pack(context_.scene.owned().at(header.cluster)->data())));
+          from, with_header(answer, context_.scene.compresses() ? compress(data) : pack(data)));
       return;
     }
     fetching_.erase(header.cluster);
     ++context_.counts.clusters_fetched;
     context_.counts.cluster_bytes += content.size();
     context_.waiting.arrived.emplace_back(
-        header.cluster, context_.scene.put(header.cluster, unpack_cluster(content)));
+        header.cluster,
+        context_.scene.put(header.cluster, context_.scene.compresses() ? decompress_cluster(content)
+                                                                       : unpack_cluster(content)));
   }
 
   void take_turn(bool idle) override {
+    if (distribution_.tells_loads) context_.messenger.set_load(own_load());
     send_or_fetch(idle);
     read_from_file();
   }
 
  private:
+  std::uint64_t own_load() const {
+    std::uint64_t rays = 0;
+    for (const RayQueue& queue : context_.waiting.at_resident) rays += queue.size();
+    for (const auto& [cluster, queue] : context_.waiting.by_cluster) rays += queue.size();
+    return rays;
+  }
+
   void send_or_fetch(bool idle) {
     auto& by_cluster = context_.waiting.by_cluster;
     for (auto at = by_cluster.begin(); at != by_cluster.end();) {
@@ -126,6 +138,11 @@ class ClusterRouter final : public RayRouter {
     list.cluster_seconds =
         scene.travel_costs().cluster_byte * static_cast<double>(list.cluster_bytes);
     list.has_room = scene.has_room_for(cluster);
+    if (distribution_.tells_loads) {
+      list.own_load = context_.messenger.load();
+      list.owner_load = context_.messenger.load_of(scene.owner(cluster));
+      list.least_load = context_.messenger.least_load();
+    }
     list.idle = idle;
     return list;
   }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/distributed/cluster.h"
+#include "raytrace/clusters/cluster.h"
 #include "raytrace/integrators/intersect.h"
 #include "raytrace/scene/embree_scene.h"
 

@@ -12,5 +12,6 @@ inline constexpr std::uint64_t kBatchRays = 256;
 RoutingDecision distribute_ray(const WaitingList& waiting);
 RoutingDecision distribute_object(const WaitingList& waiting);
 RoutingDecision distribute_hybrid(const WaitingList& waiting);
+RoutingDecision distribute_by_load(const WaitingList& waiting);
 
 }  // namespace delray::raytrace

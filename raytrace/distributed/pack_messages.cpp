@@ -86,7 +86,7 @@ MessageHeader header_of(const comm::Buffer& message) {
   comm::check_message(message.size() >= sizeof(MessageHeader));
   MessageHeader header;
   std::memcpy(&header, message.data(), sizeof header);
-  comm::check_message(header.kind <= MessageKind::tiles);
+  comm::check_message(header.kind <= MessageKind::no_rays);
   return header;
 }
 
@@ -129,6 +129,10 @@ std::vector<std::uint32_t> unpack_tiles(const comm::Buffer& message, std::uint32
   if (bytes > 0) std::memcpy(tiles.data(), message.data() + sizeof(MessageHeader), bytes);
   for (const std::uint32_t tile : tiles) comm::check_message(tile < all);
   return tiles;
+}
+
+void set_load_of(comm::Buffer& message, std::uint64_t load) {
+  std::memcpy(message.data() + offsetof(MessageHeader, load), &load, sizeof load);
 }
 
 comm::Buffer with_header(const MessageHeader& header, const comm::Buffer& content) {

@@ -11,9 +11,20 @@
 
 namespace delray::raytrace {
 
-enum class MessageKind : std::uint32_t { intersect, answer, fetch, cluster, move, load, tiles };
+enum class MessageKind : std::uint32_t {
+  intersect,
+  answer,
+  fetch,
+  cluster,
+  move,
+  load,
+  tiles,
+  request_rays,  // the reply is intersect or no_rays
+  no_rays
+};
 
-// How every message begins.
+// How every message begins. `load`: of a message of kind load, or with Distribution::tells_loads of
+// all.
 struct MessageHeader {
   MessageKind kind = MessageKind::intersect;
   std::uint32_t cluster = 0;
@@ -36,6 +47,9 @@ RayQueue unpack_rays(const comm::Buffer& message, const MessageHeader& header);
 // Numbers of tiles, all of them less than `all`. Throws comm::BadMessage where they are not.
 comm::Buffer pack_tiles(std::span<const std::uint32_t> tiles);
 std::vector<std::uint32_t> unpack_tiles(const comm::Buffer& message, std::uint32_t all);
+
+// Sets MessageHeader::load of a packed message.
+void set_load_of(comm::Buffer& message, std::uint64_t load);
 
 comm::Buffer with_header(const MessageHeader& header, const comm::Buffer& content);
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "packs/pack_reader.h"
-#include "raytrace/distributed/cluster.h"
+#include "raytrace/clusters/cluster.h"
 #include "raytrace/distributed/cluster_tree.h"
 
 namespace delray::raytrace {

@@ -2,6 +2,7 @@
 // tracer knows nothing of.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -33,13 +34,26 @@ class RayMessenger {
   static constexpr comm::Tag kTag = 200;  // beside those of schedules, which are used meanwhile
 
   RayMessenger(comm::Communicator& communicator, comm::Termination& termination)
-      : communicator_(communicator), termination_(termination) {}
+      : communicator_(communicator),
+        termination_(termination),
+        loads_(static_cast<std::size_t>(communicator.size())) {}
+  // REQUIRES: a header is at the front.
   void send(int to, comm::Buffer&& message) {
+    if (tells_load_) set_load_of(message, load());
     communicator_.send(to, kTag, std::move(message));
     termination_.count_sent();
     ++sent_;
   }
   std::uint64_t sent() const { return sent_; }
+  // From now on every message says how many rays this rank has to intersect.
+  void set_load(std::uint64_t rays) {
+    tells_load_ = true;
+    loads_[static_cast<std::size_t>(rank())] = rays;
+  }
+  void hear_load(int from, std::uint64_t rays) { loads_[static_cast<std::size_t>(from)] = rays; }
+  std::uint64_t load() const { return load_of(rank()); }
+  std::uint64_t load_of(int rank) const { return loads_[static_cast<std::size_t>(rank)]; }
+  std::uint64_t least_load() const { return *std::min_element(loads_.begin(), loads_.end()); }
   int rank() const { return communicator_.rank(); }
   int ranks() const { return communicator_.size(); }
 
@@ -47,11 +61,15 @@ class RayMessenger {
   comm::Communicator& communicator_;
   comm::Termination& termination_;
   std::uint64_t sent_ = 0;
+  bool tells_load_ = false;
+  std::vector<std::uint64_t> loads_;  // by rank, as it told last
 };
 
 // Rays on a rank, by what they wait for.
 struct WaitingRays {
-  std::vector<RayQueue> at_resident;                       // to be intersected with those clusters
+  std::size_t pending_tasks = 0;      // whose rays wait to be intersected here
+  bool is_done = false;               // the rank has no tasks any more, and gets none
+  std::vector<RayQueue> at_resident;  // to be intersected with those clusters
   std::unordered_map<std::uint32_t, RayQueue> by_cluster;  // that are not resident
   std::vector<RayQueue> to_intersect, to_answer;           // by rank: to be sent
   // Clusters that have just come: they stay until their rays have been intersected, however little
@@ -88,6 +106,14 @@ class RayRouter {
   // Decides about rays whose clusters are not at hand, or about clusters. `idle`: there is nothing
   // else to do.
   virtual void take_turn(bool idle) = 0;
+
+  // The rays of so many of the tasks whose rays wait to be intersected here go to another rank in
+  // place of that: with kOnward, by choose_next.
+  virtual std::size_t give_tasks() { return 0; }
+  // Whether a message may be sent though no other comes before: the rank is not idle then.
+  virtual bool has_plans() const { return false; }
+  // Rays to be intersected have come from another rank.
+  virtual void got_rays(int) {}
 };
 
 // To the owners of clusters, or clusters from there, as the distribution decides.
@@ -95,5 +121,7 @@ std::unique_ptr<RayRouter> make_cluster_router(const Distribution& distribution,
                                                const RoutingContext& context);
 // From rank to rank.
 std::unique_ptr<RayRouter> make_ring_router(const RoutingContext& context);
+// To ranks that ask for some.
+std::unique_ptr<RayRouter> make_pool_router(const RoutingContext& context);
 
 }  // namespace delray::raytrace

@@ -26,6 +26,19 @@ double thread_seconds() {
   return 1e-9 * static_cast<double>(parallel::quick_processor_nanoseconds());
 }
 
+namespace {
+
+// The tile and what its packets, or other squares of such a side, show beside it of the window.
+Rect with_whole_packets(const TiledFrame& frame, const Rect& tile, int side) {
+  const Rect& window = frame.tiles.frame;
+  const auto down = [side](int at, int origin) { return at - (at - origin) % side; };
+  const auto up = [side](int at, int origin) { return at + (side - (at - origin) % side) % side; };
+  return geometry::intersection(window, {down(tile.x0, window.x0), down(tile.y0, window.y0),
+                                         up(tile.x1, window.x0), up(tile.y1, window.y0)});
+}
+
+}  // namespace
+
 TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile) {
   TilePixels pixels;
   pixels.tile = tile;
@@ -60,30 +73,48 @@ std::vector<Task> tasks_of(const TiledFrame& frame, const Rect& tile, int side) 
   const Rect& window = frame.tiles.frame;
   const auto columns = static_cast<std::size_t>((window.width() + kTaskSide - 1) / kTaskSide);
   if (!part.squares.empty()) side = kTaskSide;
+  const Rect whole = with_whole_packets(frame, tile, part.squares.empty() ? kBlockSide : kTaskSide);
   std::vector<Task> tasks;
-  for (int y = tile.y0; y < tile.y1; y += side) {
-    for (int x = tile.x0; x < tile.x1; x += side) {
+  for (int y = whole.y0; y < whole.y1; y += side) {
+    for (int x = whole.x0; x < whole.x1; x += side) {
       const std::size_t square = static_cast<std::size_t>((y - window.y0) / kTaskSide) * columns +
                                  static_cast<std::size_t>((x - window.x0) / kTaskSide);
       if (!part.squares.empty() && part.squares[square] == 0) continue;
       Task& task = tasks.emplace_back();
-      task.pixels = geometry::intersection(tile, {x, y, x + side, y + side});
+      task.pixels = geometry::intersection(whole, {x, y, x + side, y + side});
       task.first_sample = part.first_sample;
     }
   }
   return tasks;
 }
 
+std::uint64_t surplus_of(const TiledFrame& frame, const Rect& tile, const Task& task) {
+  const Rect own = geometry::intersection(tile, task.pixels);
+  if (own == task.pixels) return 0;
+  const std::span<const std::uint8_t> traced = frame.options.part.pixels;
+  if (traced.empty()) return static_cast<std::uint64_t>(task.pixels.area() - own.area());
+  std::uint64_t count = 0;
+  for (int y = task.pixels.y0; y < task.pixels.y1; ++y) {
+    for (int x = task.pixels.x0; x < task.pixels.x1; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.options.width) +
+          static_cast<std::size_t>(x);
+      count += traced[pixel] != 0 && !own.contains(x, y) ? 1 : 0;
+    }
+  }
+  return count;
+}
+
 namespace {
 
-// Adds `weight` times a block's lanes to the pixels of it that are within so many columns and rows,
-// or overwrites those with it.
+// Adds `weight` times lanes of a block, the `own` ones of its columns and rows, to pixels, of which
+// colour and depth are the first, or overwrites those with it.
 template <bool kFirst>
-void add_block(const SampleBlock& block, float weight, int columns, int rows, image::RgbaF* colour,
+void add_block(const SampleBlock& block, float weight, const Rect& own, image::RgbaF* colour,
                float* depth, std::size_t stride) {
-  for (int y = 0; y < rows; ++y, colour += stride, depth += stride) {
-    for (int x = 0; x < columns; ++x) {
-      const int i = y * kBlockSide + x;
+  for (int y = own.y0; y < own.y1; ++y, colour += stride, depth += stride) {
+    for (int x = 0; x < own.width(); ++x) {
+      const int i = y * kBlockSide + own.x0 + x;
       const image::RgbaF sum = kFirst ? image::RgbaF{} : colour[x];
       colour[x] = {sum.r + block.colour.x[i] * weight, sum.g + block.colour.y[i] * weight,
                    sum.b + block.colour.z[i] * weight, sum.a + block.alpha[i] * weight};
@@ -126,7 +157,7 @@ void finish_writes() { _mm_sfence(); }
 
 void write_past_caches(const SampleBlock& block, float weight, image::RgbaF* colour, float* depth,
                        std::size_t stride) {
-  add_block<true>(block, weight, kBlockSide, kBlockSide, colour, depth, stride);
+  add_block<true>(block, weight, {0, 0, kBlockSide, kBlockSide}, colour, depth, stride);
 }
 bool may_pass_caches(const TiledFrame&, const image::RgbaF*) { return false; }
 void finish_writes() {}
@@ -142,18 +173,20 @@ void add_samples(const TiledFrame& frame, const WavefrontIntegrator& integrator,
   const Rect& tile = pixels.rect;
   const SampleBlock* block = integrator.samples().data();
   const bool past_caches = first && may_pass_caches(frame, pixels.colour);
+  const Rect inside = geometry::intersection(task.pixels, tile);
   for (int y = task.pixels.y0; y < task.pixels.y1; y += kBlockSide) {
-    const std::size_t row = static_cast<std::size_t>(y - tile.y0) * pixels.stride;
     for (int x = task.pixels.x0; x < task.pixels.x1; x += kBlockSide, ++block) {
-      const std::size_t at = row + static_cast<std::size_t>(x - tile.x0);
-      if (past_caches && x + kBlockSide <= task.pixels.x1 && y + kBlockSide <= task.pixels.y1) {
+      const Rect own = geometry::intersection(inside, {x, y, x + kBlockSide, y + kBlockSide});
+      if (own.empty()) continue;
+      const std::size_t at = static_cast<std::size_t>(own.y0 - tile.y0) * pixels.stride +
+                             static_cast<std::size_t>(own.x0 - tile.x0);
+      if (past_caches && own.area() == kPacketRays) {
         write_past_caches(*block, weight, pixels.colour + at, pixels.depth + at, pixels.stride);
         continue;
       }
       const auto add = first ? add_block<true> : add_block<false>;
-      add(*block, weight, std::min(kBlockSide, task.pixels.x1 - x),
-          std::min(kBlockSide, task.pixels.y1 - y), pixels.colour + at, pixels.depth + at,
-          pixels.stride);
+      add(*block, weight, {own.x0 - x, own.y0 - y, own.x1 - x, own.y1 - y}, pixels.colour + at,
+          pixels.depth + at, pixels.stride);
     }
   }
   if (past_caches) finish_writes();
@@ -172,6 +205,7 @@ TilePixels sample_tile(const TiledFrame& frame, std::uint32_t tile,
       }
       add_samples(frame, integrator, task, pixels);
       pixels.rays += integrator.rays();
+      pixels.rays.surplus += surplus_of(frame, pixels.rect, task);
     }
   }
   pixels.busy = thread_seconds() - start;

@@ -28,13 +28,16 @@ struct TilePixels {
 TilePixels start_tile(const TiledFrame& frame, std::uint32_t tile);
 
 // The parts of a tile that are walked through at once, the first sample of each. Rays of so many
-// pixels are traced, then shaded, and so on: they stay in the cache meanwhile.
-// `side`: of the largest, a multiple of kTaskSide.
+// pixels are traced, then shaded, and so on: they stay in the cache meanwhile. Together they are
+// the tile with all of the packets that it cuts. `side`: of the largest, a multiple of kTaskSide.
 std::vector<Task> tasks_of(const TiledFrame& frame, const geometry::Rect& tile,
                            int side = kTaskSide);
 
 // How many samples a task gets, one after the other.
 int samples_of(const RenderOptions& options);
+
+// How many pixels of a task are traced and belong to other tiles.
+std::uint64_t surplus_of(const TiledFrame& frame, const geometry::Rect& tile, const Task& task);
 
 // Adds what an integrator that is done has found to the pixels, but not its rays: tasks of a tile
 // may do so at the same time. Samples of a pixel have to be added in ascending order.

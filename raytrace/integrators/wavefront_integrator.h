@@ -31,13 +31,15 @@ struct TraceOptions {
   } background = Background::environment;
 };
 
-// Rays sent. A ray that goes on behind a see-through layer counts again.
+// Rays sent. A ray that goes on behind a see-through layer counts again. `surplus` of the primary
+// ones were sent because packets are never cut, through pixels that belong to another tile.
 struct RayCounts {
-  std::uint64_t primary = 0, shadow = 0, secondary = 0;
+  std::uint64_t primary = 0, shadow = 0, secondary = 0, surplus = 0;
   RayCounts& operator+=(const RayCounts& b) {
     primary += b.primary;
     shadow += b.shadow;
     secondary += b.secondary;
+    surplus += b.surplus;
     return *this;
   }
   bool operator==(const RayCounts&) const = default;

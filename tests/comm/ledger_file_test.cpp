@@ -83,6 +83,67 @@ TEST(LedgerFile, TheMachineIsWhatSendsTook) {
   EXPECT_EQ(machine_of(Ledger{{{}, {}}}, 2).network.overhead, 0);
 }
 
+// All messages together take the processor what they took, large ones by their bytes.
+TEST(LedgerFile, TheMachineTakesTheProcessorTimeOfAllMessages) {
+  Ledger ledger;
+  ledger.ranks.resize(2);
+  double all = 0;
+  const auto add = [&](Event::Kind kind, std::uint64_t bytes, double processor) {
+    Event event;
+    event.kind = kind;
+    event.peer = 1;
+    event.amount = bytes;
+    event.end = 1;  // of the clock, most of it waiting
+    event.processor = processor;
+    all += processor;
+    ledger.ranks[0].push_back(event);
+  };
+  add(Event::Kind::send, 100, 3e-6);
+  add(Event::Kind::receive, 100, 9e-6);
+  add(Event::Kind::send, 100'000, 20e-6);
+  add(Event::Kind::receive, 300'000, 60e-6);
+  const Network machine = machine_of(ledger, 1).network;
+  EXPECT_NEAR(machine.copy_seconds_per_byte, 80e-6 / 400'000, 1e-15);
+  double predicted = 0;
+  for (const Event& event : ledger.ranks[0])
+    predicted +=
+        machine.overhead + machine.copy_seconds_per_byte * static_cast<double>(event.amount);
+  EXPECT_NEAR(predicted, all, 0.05 * all);
+}
+
+// What waits for a device leaves its core to the others, in a replay as in the run.
+TEST(LedgerFile, BlockedRanksLeaveTheirCores) {
+  Ledger ledger;
+  ledger.ranks.resize(3);
+  const auto work = [&](std::size_t rank, Work kind) {
+    Event event;
+    event.kind = Event::Kind::work;
+    event.work = kind;
+    event.amount = 40'000'000;
+    ledger.ranks[rank].push_back(event);
+  };
+  Network one_core;
+  one_core.shared_cores = 1;
+  work(0, Work::blocked_e9);
+  work(1, Work::blocked_e9);
+  work(2, Work::seconds_e9);
+  for (const double end : replay(ledger, one_core)) EXPECT_NEAR(end, 0.04, 1e-9);
+  // Ranks that compete take turns: all are done at about the same time.
+  ledger.ranks.assign(3, {});
+  for (std::size_t rank = 0; rank < 3; ++rank) work(rank, Work::seconds_e9);
+  for (const double end : replay(ledger, one_core)) {
+    EXPECT_GT(end, 0.11);
+    EXPECT_LT(end, 0.12 + 1e-9);
+  }
+}
+
+TEST(LedgerFile, OtherProgramsAreTold) {
+  RecordedRun run = small_run();
+  EXPECT_LT(parse_ledger(ledger_text(run), "l.json").other_programs, 0);
+  run.other_programs = 1.5;
+  EXPECT_EQ(parse_ledger(ledger_text(run), "l.json").other_programs, 1.5);
+}
+
 TEST(LedgerFile, RealRanksAreChargedForWhatTheyDoBetweenMessages) {
   for (const ChargedTime time : {ChargedTime::processor, ChargedTime::clock}) {
     std::vector<std::vector<Event>> events(2);

@@ -43,5 +43,21 @@ TEST(ProcessorTime, IsQuicklyToldWithinAFifthOfAMillisecondAndNeverFalls) {
   }
 }
 
+// Sleeping is no waiting for a core; waiting never falls.
+TEST(ProcessorTime, WaitingForACoreIsToldFromSleeping) {
+  const auto before = core_wait_nanoseconds();
+  if (!before) GTEST_SKIP() << "the system does not tell";
+  const auto begin = std::chrono::steady_clock::now();
+  const std::int64_t processor = processor_nanoseconds();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const std::int64_t waited = *core_wait_nanoseconds() - *before;
+  const std::int64_t used = processor_nanoseconds() - processor;
+  const std::int64_t passed =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin)
+          .count();
+  EXPECT_GE(waited, 0);
+  EXPECT_LE(waited, passed - used - 50 * kMillisecond + kMillisecond);
+}
+
 }  // namespace
 }  // namespace delray::parallel

@@ -14,7 +14,7 @@
 #include "comm/threads.h"
 #include "loadbalance/schedule.h"
 #include "parallel/arena.h"
-#include "raytrace/distributed/cluster.h"
+#include "raytrace/clusters/cluster.h"
 #include "raytrace/render.h"
 #include "scenes/camera_path.h"
 #include "scenes/generate.h"
@@ -34,7 +34,7 @@ Result shared_out(const scenes::Scene& scene, const RenderOptions& options,
                   int threads) {
   Result result;
   comm::run_threads(ranks, threads, [&](comm::Communicator& communicator) {
-    SharedScene mine = SharedScene::make(communicator, scene, share);
+    SharedScene mine = SharedScene::make(communicator, scene, share_options(distribution, share));
     Renderer renderer(mine, distribution);
     Result one = renderer.render(communicator, scene.cameras[0], options);
     if (communicator.rank() == 0) result = std::move(one);
@@ -161,6 +161,124 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Distributions,
                            std::replace(name.begin(), name.end(), ':', '_');
                            return name + '_' + of.param.integrator;
                          });
+
+// Nebel's rule: rays to who has fewer, if they are enough; objects else.
+TEST(HybridByLoad, SendsRaysToThoseWithFewerAndFetchesElse) {
+  const auto decide = find_distribution("hybrid-by-load")->decide;
+  WaitingList waiting;
+  waiting.rays = 1000;
+  waiting.own_load = 500;
+  waiting.owner_load = 100;
+  waiting.least_load = 50;
+  EXPECT_EQ(decide(waiting), RoutingDecision::send_rays);
+  waiting.owner_load = 500;
+  EXPECT_EQ(decide(waiting), RoutingDecision::fetch_cluster);
+  waiting.own_load = waiting.least_load = 10;
+  EXPECT_EQ(decide(waiting), RoutingDecision::fetch_cluster);
+  waiting.rays = 3;
+  EXPECT_EQ(decide(waiting), RoutingDecision::wait);
+  waiting.idle = true;
+  EXPECT_EQ(decide(waiting), RoutingDecision::fetch_cluster);
+}
+
+// Of all ranks, in a frame.
+RankCounts counted(const scenes::Scene& scene, const RenderOptions& options, const char* data,
+                   const ShareOptions& share, const Result& whole) {
+  const Result result = shared_out(scene, options, *find_distribution(data), share, 4, 1);
+  EXPECT_EQ(different(result, whole), 0U) << data;
+  RankStatistics sum;
+  for (RankStatistics rank : result.statistics.ranks) {
+    const std::uint64_t clusters = sum.clusters + rank.clusters;
+    const std::uint64_t tree = std::max(sum.tree_bytes, rank.tree_bytes);
+    sum += std::move(rank);
+    sum.clusters = clusters;
+    sum.tree_bytes = tree;
+  }
+  return sum;
+}
+
+// Both kinds of messages, and fewer bytes than the worse of the pure schemes.
+TEST(HybridByLoad, SendsRaysAndClusters) {
+  const scenes::Scene scene = completed("gen:terrain:40000");
+  RenderOptions options = small(192, 128);
+  options.integrator = "direct";
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  ShareOptions share;
+  share.assignment = ShareOptions::Assignment::random;
+  const RankCounts hybrid = counted(scene, options, "hybrid-by-load", share, whole);
+  EXPECT_GT(hybrid.rays_sent, 0U);
+  EXPECT_GT(hybrid.clusters_fetched, 0U);
+}
+
+// Pending rays go to ranks that have none, whoever has the tiles: of a static share that is uneven
+// the rays that ranks intersect are more even than those that they send.
+TEST(SharedPool, IdleRanksIntersectRaysOfOthers) {
+  const scenes::Scene scene = completed("gen:corner:20000");
+  RenderOptions options = small(192, 144);
+  options.schedule = "static";
+  options.trace.depth = 4;
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  const Distribution& pool = *find_distribution("shared-pool");
+  Result result;
+  parallel::Arena(1).execute([&] {
+    comm::run_simulated(4, {}, 1, [&](comm::Communicator& communicator) {
+      SharedScene mine = SharedScene::make(communicator, scene, share_options(pool));
+      Renderer renderer(mine, pool);
+      Result one = renderer.render(communicator, scene.cameras[0], options);
+      if (communicator.rank() == 0) result = std::move(one);
+    });
+  });
+  EXPECT_EQ(different(result, whole), 0U);
+  EXPECT_EQ(result.statistics.rays, whole.statistics.rays);
+  std::vector<double> sent, intersected;
+  std::uint64_t taken = 0;
+  for (const RankStatistics& rank : result.statistics.ranks) {
+    sent.push_back(static_cast<double>(rank.rays.primary + rank.rays.shadow + rank.rays.secondary));
+    intersected.push_back(static_cast<double>(rank.tests));
+    taken += rank.rays_sent;
+  }
+  EXPECT_GT(taken, 0U);
+  EXPECT_GT(loadbalance::imbalance(sent), 1.3);
+  EXPECT_LT(loadbalance::imbalance(intersected) - 1, 0.7 * (loadbalance::imbalance(sent) - 1));
+}
+
+// Voxels are compressed on their way, and each is fetched whole.
+TEST(PackedVoxels, TravelInFewerBytes) {
+  const scenes::Scene scene = completed("gen:terrain:40000");
+  const RenderOptions options = small(96, 64);
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  const RankCounts packed = counted(scene, options, "packed-voxels", {}, whole);
+  EXPECT_GT(packed.clusters_fetched, 0U);
+  EXPECT_EQ(packed.rays_sent, 0U);
+  const RankCounts object = counted(scene, options, "object", {}, whole);
+  const auto bytes_of = [](const RankCounts& counts, std::uint64_t geometry) {
+    return static_cast<double>(counts.clusters_fetched_bytes) /
+           static_cast<double>(counts.clusters_fetched) /
+           (static_cast<double>(geometry) / static_cast<double>(counts.clusters));
+  };
+  // For a cluster of average size, beside the geometry, which all ranks have together.
+  EXPECT_LT(bytes_of(packed, 40000), 0.8 * bytes_of(object, 40000));
+}
+
+// The key issue of Caspary and Scherson: cut low, every rank has more of the tree, and the work is
+// shared more evenly than with a subtree for each rank.
+TEST(CutLevel, TradesWhatIsReplicatedForBalance) {
+  const scenes::Scene scene = completed("gen:terrain:40000");
+  const RenderOptions options = small(96, 64);
+  const Result whole = render_alone(scene, scene.cameras[0], options);
+  std::vector<std::uint64_t> clusters, tree_bytes;
+  for (const int level : {2, 5, 8, 11}) {
+    ShareOptions share;
+    share.cut_level = level;
+    const RankCounts counts = counted(scene, options, "ray", share, whole);
+    clusters.push_back(counts.clusters);
+    tree_bytes.push_back(counts.tree_bytes);
+    EXPECT_GE(counts.clusters, std::uint64_t{1} << level) << level;
+    EXPECT_LE(counts.clusters, std::uint64_t{2} << level) << level;
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(tree_bytes));
+  EXPECT_GT(tree_bytes.back(), 8 * tree_bytes[1]);
+}
 
 // A process has room for some hundreds of Embree's devices, but not for a thousand.
 TEST(SharedScene, ThousandsOfClustersFitIntoAProcess) {

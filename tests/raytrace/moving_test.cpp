@@ -52,7 +52,7 @@ TEST(MovingTracer, RanksThatShareTheSceneOutShowTheSame) {
       if (distribution.replicated) continue;
       image::ImageF image;
       comm::run_threads(3, 1, [&](comm::Communicator& communicator) {
-        SharedScene mine = SharedScene::make(communicator, scene, {});
+        SharedScene mine = SharedScene::make(communicator, scene, share_options(distribution));
         Renderer renderer(mine, distribution);
         Result one = renderer.render(communicator, scene.cameras[0], small(48, 36));
         if (communicator.rank() == 0) image = std::move(one.image);

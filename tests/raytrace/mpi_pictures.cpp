@@ -54,7 +54,8 @@ int wrong_pictures(comm::Communicator& communicator, bool full) {
         look_at(arena.execute([&] {
           if (distribution.replicated)
             return raytrace::render(communicator, tracer, camera, options);
-          raytrace::SharedScene shared = raytrace::SharedScene::make(communicator, scene, {});
+          raytrace::SharedScene shared = raytrace::SharedScene::make(
+              communicator, scene, raytrace::share_options(distribution));
           return raytrace::Renderer(shared, distribution).render(communicator, camera, options);
         }),
                 std::string(schedule.name) + ", " + distribution.name + ", " +

@@ -181,7 +181,7 @@ TEST(Render, UnknownNamesAreRefused) {
   };
   refused([](RenderOptions& o) { o.schedule = "nonsense"; });
   refused([](RenderOptions& o) { o.partition = "nonsense"; });
-  refused([](RenderOptions& o) { o.tile = 24; });
+  refused([](RenderOptions& o) { o.tile = -1; });
   refused([](RenderOptions& o) { o.tile = -16; });
 }
 

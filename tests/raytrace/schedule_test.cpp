@@ -101,6 +101,68 @@ TEST(Schedules, GiveOnePictureForEverySizeOfTiles) {
   }
 }
 
+// Badouel's blocks of 3 x 3 pixels, Heirich's of one, and others that cut packets: these are traced
+// whole, and every tile keeps its own pixels.
+TEST(Schedules, GiveOnePictureWhereTilesCutPackets) {
+  RenderOptions options = small(37, 22);
+  const Result alone = single(options, 1, 1);
+  const auto traced_for = [&](int tile) {
+    std::uint64_t pixels = 0;  // of packets, once for each tile that they reach into
+    for (int y = 0; y < options.height; y += tile) {
+      for (int x = 0; x < options.width; x += tile) {
+        const auto side = [tile](int from, int all) {
+          const int last = std::min(from + tile, all);
+          return std::min((last + 3) / 4 * 4, all) - from / 4 * 4;
+        };
+        pixels += static_cast<std::uint64_t>(side(x, options.width) * side(y, options.height));
+      }
+    }
+    return pixels;
+  };
+  const std::uint64_t pixels = 37 * 22;
+  options.schedule = "demand";
+  for (const int tile : {1, 2, 3, 4, 5, 18, 20}) {
+    SCOPED_TRACE(tile);
+    options.tile = tile;
+    const Result result = single(options, 3, 1);
+    ASSERT_EQ(alone.image.pixels(), result.image.pixels());
+    EXPECT_EQ(std::memcmp(alone.image.colour.data(), result.image.colour.data(),
+                          pixels * sizeof(image::RgbaF)),
+              0);
+    EXPECT_EQ(
+        std::memcmp(alone.image.depth.data(), result.image.depth.data(), pixels * sizeof(float)),
+        0);
+    EXPECT_EQ(result.statistics.rays.primary, traced_for(tile));
+    EXPECT_EQ(result.statistics.rays.surplus, traced_for(tile) - pixels);
+    if (tile % 4 == 0) {
+      EXPECT_EQ(result.statistics.rays, alone.statistics.rays);
+    }
+  }
+}
+
+// Heirich: a static share is uneven however small the tiles are, if each is one pixel, too; dynamic
+// ones are not. Of a corner of the picture that takes most rays.
+TEST(Schedules, AreUnevenOrEvenWhateverTheSizeOfTiles) {
+  const auto imbalance_of = [](const char* schedule, int tile) {
+    RenderOptions options = small(48, 36);
+    options.schedule = schedule;
+    options.tile = tile;
+    options.trace.depth = 4;
+    double imbalance = 0;
+    parallel::Arena(1).execute([&] {
+      comm::run_simulated(8, {}, 1, [&](comm::Communicator& communicator) {
+        const Result result = render(communicator, corner().tracer, corner().camera, options);
+        if (communicator.rank() == 0) imbalance = result.statistics.imbalance_rays;
+      });
+    });
+    return imbalance;
+  };
+  for (const int tile : {1, 4}) {
+    EXPECT_GT(imbalance_of("static", tile), 1.3) << tile;
+    EXPECT_LT(imbalance_of("half-stealing", tile), imbalance_of("static", tile)) << tile;
+  }
+}
+
 // Counted rays on eight ranks of the simulated machine, each with a core of its own: what the
 // number of cores here has no influence on.
 Statistics simulated(const std::string& schedule) {

@@ -104,7 +104,7 @@ TEST_P(SecondUvs, LookAsTheFirst) {
     comm::run_threads(3, 1, [&](comm::Communicator& communicator) {
       ShareOptions share;
       share.most_triangles = 16;
-      SharedScene mine = SharedScene::make(communicator, moved, share);
+      SharedScene mine = SharedScene::make(communicator, moved, share_options(distribution, share));
       Renderer renderer(mine, distribution);
       Result one = renderer.render(communicator, moved.cameras[0], options);
       if (communicator.rank() == 0) result = std::move(one);

@@ -139,7 +139,8 @@ TEST(RaySplats, HaveOnePictureHoweverTheSceneIsSharedOut) {
       comm::run_threads(3, 2, [&](comm::Communicator& communicator) {
         ShareOptions share;
         share.most_triangles = 64;
-        SharedScene mine = SharedScene::make(communicator, scene, share);
+        SharedScene mine =
+            SharedScene::make(communicator, scene, share_options(distribution, share));
         Renderer renderer(mine, distribution);
         const Result result = renderer.render(communicator, camera(), options);
         if (communicator.rank() != 0) return;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "apps/compare/compose/growth_claims.h"
 #include "apps/compare/compose/own_networks.h"
 
 namespace delray::apps {
@@ -79,6 +80,7 @@ Json compose_statistics(const CompareRequest& request, const Prepared& prepared,
           {"networks", networks_json(request.networks)},
           {"left_out", std::move(left_out)},
           {"own_networks", own_networks_json(on_own_networks(comparison.rows, request.networks))},
+          {"growth", growth_claims_json(judge_growth(comparison.rows))},
           {"rows", std::move(table)}};
 }
 

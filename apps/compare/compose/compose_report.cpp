@@ -12,6 +12,7 @@
 
 #include "apps/compare/compose/compose_answer.h"
 #include "apps/compare/compose/compose_figures.h"
+#include "apps/compare/compose/growth_claims.h"
 #include "apps/compare/compose/own_networks.h"
 #include "apps/compare/compose/shown_scheme.h"
 #include "apps/compare/variant_looks.h"
@@ -124,6 +125,7 @@ Html predictions(const CompareRequest& request, const ComposeComparison& compari
   }
   return in_columns(charts) + omissions(comparison.left_out) +
          own_networks_tab(on_own_networks(rows, request.networks)) +
+         growth_claims_tab(judge_growth(rows)) +
          paragraph(
              "Predicted: the schemes' own code runs on a simulated machine whose ranks "
              "have a core each. On this machine: by a model fitted to the times of the other "

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <thread>
 
+#include "apps/compare/schedule/cut_levels.h"
 #include "apps/compare/verdict.h"
 #include "comm/collectives.h"
 #include "image/hash.h"
@@ -110,7 +111,7 @@ class ScheduleRuns {
         request_.ranks.begin(), request_.ranks.end(), [&](int ranks) { return is_traced(ranks); }));
     const auto frames = static_cast<std::size_t>(repeats());
     steps_.start(frames + count * request_.ranks.size() + count * traced * frames +
-                 distributions().size() * distributed_ranks().size());
+                 distributions().size() * distributed_ranks().size() + request_.cut_levels.size());
     try {
       measure_tiles();
       for (const int ranks : request_.ranks) {
@@ -124,6 +125,7 @@ class ScheduleRuns {
       for (ComparedSchedule& row : result_.rows)
         if (is_traced(row.ranks)) trace(row);
       for (const int ranks : distributed_ranks()) distribute(ranks);
+      for (const int level : request_.cut_levels) cut(level);
     } catch (const parallel::Interrupted&) {
       if (result_.rows.empty()) throw;
       result_.unfinished = true;
@@ -317,6 +319,26 @@ class ScheduleRuns {
       result_.distributions.push_back(std::move(row));
       steps_.done();
     }
+  }
+
+  // Over the first network that not all ranks share.
+  void cut(int level) {
+    steps_.stop_if_asked();
+    const std::vector<const comm::NamedNetwork*> all = networks();
+    const auto named =
+        std::ranges::find_if(all, [](const auto* n) { return !n->network.is_bus(); });
+    const std::vector<int> ranks = distributed_ranks();
+    if (named != all.end() && !ranks.empty()) {
+      raytrace::ShareOptions share;
+      share.cut_level = level;
+      const int most = *std::ranges::max_element(ranks);
+      const std::vector<raytrace::SimulatedFrame> frames = raytrace::simulate_frames(
+          {prepared_.scene, *prepared_.tracer, prepared_.camera, options_, kDistributedFrames,
+           share},
+          *raytrace::find_distribution(kCutDistribution), most, (*named)->network);
+      result_.cut_levels.push_back({level, most, (*named)->name, frames.back()});
+    }
+    steps_.done();
   }
 
   const Session& session_;

@@ -22,6 +22,9 @@ struct ScheduleRequest : SceneComparison {
   // Of a scene that no rank has all of; empty: all of them, none with `quick`.
   std::vector<std::string> distributions;
   int tile = 16;  // pixels, the side
+  // Heights at which the hierarchy of a scene that is distributed is cut (cut_levels.h), on most of
+  // the ranks that distributions run on.
+  std::vector<int> cut_levels;
 };
 
 // A schedule on the simulated machine, of whose ranks each has a core: counted there.
@@ -79,6 +82,13 @@ struct ComparedDistribution {
   std::vector<Over> over;  // the request's network first; none that all ranks share
 };
 
+// A height of the cut, on the simulated machine. Of a frame after the first.
+struct CutLevel {
+  int level = 0, ranks = 0;
+  std::string network;
+  raytrace::SimulatedFrame frame;
+};
+
 // A run over the request's network, of shown_ranks(request) or the fewest.
 struct ShownSchedule {
   std::string name;
@@ -93,6 +103,7 @@ struct ScheduleComparison {
   Spread frame;                                     // that of single frames
   std::vector<ComparedSchedule> rows;               // by ranks
   std::vector<ComparedDistribution> distributions;  // by ranks, few enough to run here
+  std::vector<CutLevel> cut_levels;
   std::vector<ShownSchedule> shown;
   image::Image8 picture;
   bool unfinished = false;

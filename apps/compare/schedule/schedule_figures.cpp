@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "apps/compare/schedule/cut_levels.h"
+
 namespace delray::apps {
 namespace {
 
@@ -123,6 +125,7 @@ Json schedule_statistics(const ScheduleRequest& request, const Prepared& prepare
           {"rows", std::move(rows)},
           {"stops_gaining", std::move(limits)},
           {"distributions", distributions_json(comparison)},
+          {"cut_levels", cut_levels_json(comparison.cut_levels)},
           {"tile_columns", {"x", "y", "rays", "seconds"}},
           {"tiles", std::move(tiles)}};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/compare/comparison.h"
+#include "apps/compare/schedule/cut_levels.h"
 #include "apps/compare/variant_looks.h"
 #include "apps/compare/verdict.h"
 #include "apps/report/chart.h"
@@ -170,7 +171,7 @@ Html schedule_scaling_tab(const ScheduleComparison& comparison) {
   result += paragraph(
       "The rank that traces longest. Messages: the schedule's. Waiting: for tiles. Gather: from "
       "the end of its tiles until rank 0 has the whole picture.");
-  result += splits(comparison) + distributions(comparison);
+  result += splits(comparison) + distributions(comparison) + cut_levels_tab(comparison.cut_levels);
   return result + heading("All figures") + all_figures(comparison);
 }
 

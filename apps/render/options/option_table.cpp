@@ -91,7 +91,9 @@ std::string why_no_geometry_ranks(const RenderRequest& r) {
   return r.raster.groups == raster::Groups::one ? "--groups one" : "";
 }
 std::string why_no_assignment(const RenderRequest& r) {
-  return raytrace::find_distribution(r.data)->replicated ? "--data " + r.data : "";
+  const raytrace::Distribution& data = *raytrace::find_distribution(r.data);
+  const bool is_dealt = data.division == raytrace::ShareOptions::Division::voxels;
+  return data.replicated || is_dealt ? "--data " + r.data : "";
 }
 std::string why_no_cache(const RenderRequest& r) {
   return raytrace::find_distribution(r.data)->fetches ? "" : "--data " + r.data;
@@ -286,9 +288,10 @@ std::vector<RenderOption> rasterizer_options() {
           .reported("keep", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::of(
           "--block", [](auto& r) -> auto& { return r.sharing.block; }, group::kSharing,
-          "Side in pixels of the blocks that --schedule hands out (default: 64; ray tracer: a "
-          "multiple of 16, by default 16, or 32 with path)")
-          .transform(count_between(1, 4096))
+          "Side in pixels of the blocks that --schedule hands out (default: 64; ray tracer: 16, or "
+          "32 with path), or cache: as many pixels as fit the first-level data cache, in whole "
+          "lines of it")
+          .transform(block_side())
           .unless(unless_strategy(&Strategy::schedules, why_no_block))
           .reported("block", ray_tracer_or_strategy_that(&Strategy::partitions)),
       RenderOption::choice<raster::Groups>(
@@ -307,10 +310,12 @@ std::vector<RenderOption> rasterizer_options() {
       RenderOption::choice<raster::Redistribution>(
           "--redistribute", [](auto& r) -> auto& { return r.raster.redistribution; },
           {{"immediate", raster::Redistribution::immediate},
-           {"at-end", raster::Redistribution::at_end}},
+           {"at-end", raster::Redistribution::at_end},
+           {"broadcast", raster::Redistribution::broadcast}},
           group::kSharing,
           "For --strategy sort-middle: send triangles in batches as they are transformed "
-          "(immediate, default), or all at-end")
+          "(immediate, default), all at-end, or broadcast, at the end and once to all ranks, which "
+          "take what they need, as on InfiniteReality's bus (with --partition infinite-reality)")
           .unless(unless_raster(unless_strategy(&Strategy::groups)))
           .reported("redistribute", strategy_that(&Strategy::groups)),
   };
@@ -439,7 +444,7 @@ std::vector<RenderOption> raytracer_options() {
       RenderOption::of(
           "--data", [](auto& r) -> auto& { return r.data; }, group::kSharing,
           "Ray tracer: distribution of the scene: replicated, all of it on every rank (default), "
-          "object, ray, ring or hybrid")
+          "or another one of --list")
           .one_of(names_in(raytrace::distributions()))
           .unless(unless_raytrace())
           .reported("data", is_raytrace),
@@ -451,9 +456,19 @@ std::vector<RenderOption> raytracer_options() {
           .unless(unless_raytrace(why_no_assignment))
           .reported("deal", is_raytrace),
       RenderOption::of(
+          "--cut-level", [](auto& r) -> auto& { return r.share.cut_level; }, group::kSharing,
+          "Height at which the hierarchy of a scene that --data distributes is cut: about 2^N "
+          "subtrees go to ranks, which all have what is above (default: by the number of "
+          "triangles)")
+          .transform(count_between(0, 24))
+          .unless(unless_raytrace(why_no_assignment))
+          .reported(
+              "cut_level",
+              [](const RenderRequest& r) { return is_raytrace(r) && r.share.cut_level >= 0; }),
+      RenderOption::of(
           "--cache", [](auto& r) -> auto& { return r.cache_mebibytes; }, group::kSharing,
-          "MiB of other ranks' parts of the scene that a rank keeps, for --data object and hybrid "
-          "(default: a tenth of the scene)")
+          "MiB of other ranks' parts of the scene that a rank keeps, for --data object, "
+          "packed-voxels and both hybrids (default: a tenth of the scene)")
           .check(number_between(1e-3, 1e9))
           .unless(unless_raytrace(why_no_cache))
           .reported("cache", is_raytrace),

@@ -104,10 +104,6 @@ void check_raytrace(const CLI::App& command, RenderRequest& request) {
                                  request.raytrace.integrator));
   }
   check_sampling(request);
-  if (request.sharing.block % raytrace::kTaskSide != 0) {
-    throw UsageError(
-        fmt::format("--block: the ray tracer's are a multiple of {} pixels", raytrace::kTaskSide));
-  }
 }
 
 }  // namespace

@@ -117,7 +117,9 @@ TEST(Simulated, RanksTakeTurnsOnSharedCores) {
   const auto work = [](Communicator& c) { c.work(Work::seconds_e9, 1'000'000'000); };
   for (const int ranks : {1, 2, 3, 4, 7}) {
     const auto finished = run_simulated(ranks, n, 0, work);
-    EXPECT_DOUBLE_EQ(*std::max_element(finished.begin(), finished.end()), (ranks + 1) / 2);
+    // In turns of some milliseconds: all are done at about the same time.
+    EXPECT_NEAR(*std::max_element(finished.begin(), finished.end()), std::max(1.0, 0.5 * ranks),
+                0.01);
   }
   // A rank that waits for a message takes no core.
   n.latency = 10;
@@ -128,8 +130,8 @@ TEST(Simulated, RanksTakeTurnsOnSharedCores) {
     if (c.rank() == 1) c.receive(0, 1);
     work(c);
   });
-  EXPECT_DOUBLE_EQ(finished[1], 11);
-  EXPECT_DOUBLE_EQ(std::max({finished[0], finished[2], finished[3]}), 2);
+  EXPECT_NEAR(finished[1], 11, 1e-9);
+  EXPECT_NEAR(std::max({finished[0], finished[2], finished[3]}), 1.5, 0.01);
 }
 
 TEST(Simulated, CopyingTakesTheProcessorOnBothSides) {

@@ -46,7 +46,7 @@ std::vector<RenderOptions> variants(RenderOptions options) {
   options.strategy = "sort-middle";
   for (const Groups groups : {Groups::one, Groups::two}) {
     for (const Redistribution redistribution :
-         {Redistribution::immediate, Redistribution::at_end}) {
+         {Redistribution::immediate, Redistribution::at_end, Redistribution::broadcast}) {
       options.groups = groups;
       options.redistribution = redistribution;
       result.push_back(options);
@@ -57,7 +57,9 @@ std::vector<RenderOptions> variants(RenderOptions options) {
 
 std::string described_ranks(const RenderOptions& options) {
   return std::string(options.groups == Groups::one ? "one group" : "two groups") +
-         (options.redistribution == Redistribution::at_end ? ", at end" : ", immediate");
+         (options.redistribution == Redistribution::at_end      ? ", at end"
+          : options.redistribution == Redistribution::broadcast ? ", broadcast"
+                                                                : ", immediate");
 }
 
 RenderOptions small_sort_middle() {
@@ -105,6 +107,40 @@ TEST(SortMiddle, OnePictureWithEveryKindOfShading) {
       }
     }
   }
+}
+
+// Primitives are broadcast once over a bus, however many renderers' fine regions they touch;
+// messages to each of them carry them several times.
+TEST(SortMiddle, ABroadcastCarriesPrimitivesOnce) {
+  constexpr int kRanks = 6;
+  const scenes::Scene scene = random_scene(7);
+  RenderOptions options = small_sort_middle();
+  options.strategy = "sort-middle";
+  options.partition = "infinite-reality";
+  const auto carried = [&](Redistribution redistribution, bool once) {
+    options.redistribution = redistribution;
+    std::vector<std::vector<comm::Event>> events(kRanks);
+    comm::run_threads(kRanks, 1, [&](comm::Communicator& communicator) {
+      comm::Recording recording(communicator,
+                                events[static_cast<std::size_t>(communicator.rank())]);
+      render(recording, scene, random_scene_camera(), options);
+    });
+    constexpr comm::Tag kTagTriangles = 81;
+    std::uint64_t bytes = 0;
+    for (const auto& of_rank : events) {
+      for (const comm::Event& event : of_rank) {
+        if (event.kind == comm::Event::Kind::send && event.tag == kTagTriangles &&
+            !(once && event.is_repeated))
+          bytes += event.amount;
+      }
+    }
+    return bytes;
+  };
+  const std::uint64_t each = carried(Redistribution::at_end, false);
+  const std::uint64_t broadcast = carried(Redistribution::broadcast, true);
+  EXPECT_GT(broadcast, 0U);
+  EXPECT_LT(broadcast, each);
+  EXPECT_EQ(carried(Redistribution::broadcast, false), broadcast * (kRanks - 1));
 }
 
 // Vertices without normals are lit for every triangle, so that a cluster has three for each of its

@@ -1,6 +1,6 @@
 // Packs clusters into messages and bounds them with slack for rounding. Lengths in a message are
 // checked against its size before memory is taken.
-#include "raytrace/distributed/cluster.h"
+#include "raytrace/clusters/cluster.h"
 
 #include <algorithm>
 #include <cstring>
@@ -126,6 +126,13 @@ void include(const glm::vec3& p, geometry::Box3& box) {
   box.high = glm::max(box.high, p);
 }
 
+// Leaves of a box what is in the other, at least a point of it.
+void clip(const geometry::Box3& to, geometry::Box3& box) {
+  if (box.empty()) return;
+  box.low = glm::clamp(box.low, to.low, to.high);
+  box.high = glm::clamp(box.high, to.low, to.high);
+}
+
 geometry::Box3 with_slack(const geometry::Box3& box, float more) {
   float reach = more;
   for (int k = 0; k < 3; ++k)
@@ -179,12 +186,15 @@ std::vector<geometry::Box3> boxes_of(const ClusterData& cluster) {
   for (const GeometryInstance& instance : cluster.instances) {
     const scenes::Mesh& mesh = cluster.pieces[instance.mesh_number].mesh;
     if (!instance.instanced) {
+      const bool is_clipped = !cluster.clip.empty() && mesh.has_triangles() &&
+                              !instance.see_through && !instance.layered;
       const float radius = mesh.has_triangles() ? 0.0F : splat_radius(instance, mesh.shape);
       for (const glm::uvec3& corners : mesh.triangles) {
         geometry::Box3& box = triangles.emplace_back();
         for (int k = 0; k < 3; ++k) include(mesh.positions[corners[k]], box);
         box.low -= glm::vec3(radius);
         box.high += glm::vec3(radius);
+        if (is_clipped) clip(cluster.clip, box);
       }
       continue;
     }

@@ -27,6 +27,9 @@ struct Piece {
 struct ClusterData {
   std::vector<Piece> pieces;
   std::vector<GeometryInstance> instances;  // of all pieces, piece by piece; pointers are not set
+  // Where opaque triangles that are placed once count, as other clusters have the rest of those
+  // that reach beyond it; empty: everywhere. Does not travel: boxes_of() is all that looks at it.
+  geometry::Box3 clip = {};
 
   std::uint64_t triangles() const;
   std::uint64_t bytes() const;  // of the arrays

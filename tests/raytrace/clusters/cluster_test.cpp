@@ -1,5 +1,5 @@
 // Clusters know which of their triangles nobody sees through, and their boxes hold all of them.
-#include "raytrace/distributed/cluster.h"
+#include "raytrace/clusters/cluster.h"
 
 #include <gtest/gtest.h>
 
