@@ -38,12 +38,6 @@ constexpr Distribution kDistributions[] = {
      .plans_tiles = true,
      .division = ShareOptions::Division::voxels,
      .compresses = true},
-    {.name = "shared-pool",
-     .description = "every rank has the whole scene; idle ranks take rays that wait at others "
-                    "(Badouel, Heirich)",
-     .decide = nullptr,
-     .division = ShareOptions::Division::whole,
-     .pools = true},
     {.name = "hybrid-by-load",
      .description = "rays go to ranks that have fewer, else parts of the scene are fetched; every "
                     "message tells its sender's load (Nebel)",

@@ -63,11 +63,16 @@ class PoolRouter final : public RayRouter {
     if (takers_.empty() || half == 0) return 0;
     taker_ = takers_.front();
     takers_.pop_front();
+    gave_ = true;
     return half;
   }
 
   void take_turn(bool idle) override {
     context_.messenger.set_load(context_.waiting.pending_tasks);
+    // Rays that meet no box need not travel: there may be nothing for who asked.
+    if (gave_ && context_.waiting.to_intersect[static_cast<std::size_t>(taker_)].empty())
+      send(taker_, MessageKind::no_rays);
+    gave_ = false;
     if (context_.waiting.pending_tasks < 2) {
       for (const int taker : takers_) send(taker, MessageKind::no_rays);
       takers_.clear();
@@ -105,6 +110,7 @@ class PoolRouter final : public RayRouter {
   std::deque<int> takers_;       // who asked, in order
   int taker_ = 0;                // who gets rays of tasks that are given
   bool asked_ = false;           // and no reply has come
+  bool gave_ = false;            // tasks to taker_, in this turn
   int to_wait_ = 0, pause_ = 0;  // turns until the next request, and after the last one
   std::vector<bool> is_done_;    // by rank, as it told
 };

@@ -210,38 +210,6 @@ TEST(HybridByLoad, SendsRaysAndClusters) {
   EXPECT_GT(hybrid.clusters_fetched, 0U);
 }
 
-// Pending rays go to ranks that have none, whoever has the tiles: of a static share that is uneven
-// the rays that ranks intersect are more even than those that they send.
-TEST(SharedPool, IdleRanksIntersectRaysOfOthers) {
-  const scenes::Scene scene = completed("gen:corner:20000");
-  RenderOptions options = small(192, 144);
-  options.schedule = "static";
-  options.trace.depth = 4;
-  const Result whole = render_alone(scene, scene.cameras[0], options);
-  const Distribution& pool = *find_distribution("shared-pool");
-  Result result;
-  parallel::Arena(1).execute([&] {
-    comm::run_simulated(4, {}, 1, [&](comm::Communicator& communicator) {
-      SharedScene mine = SharedScene::make(communicator, scene, share_options(pool));
-      Renderer renderer(mine, pool);
-      Result one = renderer.render(communicator, scene.cameras[0], options);
-      if (communicator.rank() == 0) result = std::move(one);
-    });
-  });
-  EXPECT_EQ(different(result, whole), 0U);
-  EXPECT_EQ(result.statistics.rays, whole.statistics.rays);
-  std::vector<double> sent, intersected;
-  std::uint64_t taken = 0;
-  for (const RankStatistics& rank : result.statistics.ranks) {
-    sent.push_back(static_cast<double>(rank.rays.primary + rank.rays.shadow + rank.rays.secondary));
-    intersected.push_back(static_cast<double>(rank.tests));
-    taken += rank.rays_sent;
-  }
-  EXPECT_GT(taken, 0U);
-  EXPECT_GT(loadbalance::imbalance(sent), 1.3);
-  EXPECT_LT(loadbalance::imbalance(intersected) - 1, 0.7 * (loadbalance::imbalance(sent) - 1));
-}
-
 // Voxels are compressed on their way, and each is fetched whole.
 TEST(PackedVoxels, TravelInFewerBytes) {
   const scenes::Scene scene = completed("gen:terrain:40000");
