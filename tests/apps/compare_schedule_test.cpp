@@ -17,7 +17,8 @@ TEST(CompareSchedule, TellsOfEveryScheduleWhatTheInterfaceSays) {
   const Folder folder;
   const std::string scene = "gen:spheres:500 --size 97x65 --integrator direct";
   const Ran ran = run("delray compare schedule " + scene +
-                          " --ranks 2,5,80 --tile 16 --quick --data object,ray,hybrid,ring --stats "
+                          " --ranks 2,5,80 --tile 16 --quick --data "
+                          "object,ray,hybrid,ring,voxels,packed-voxels,hybrid-by-load --stats "
                           "- -o report.html",
                       folder.path());
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
